@@ -1,0 +1,20 @@
+/* The sub-commands, one file each: cli/NAME.c. */
+#ifndef CLI_COMMAND_H
+#define CLI_COMMAND_H
+
+#include "cli/session.h"
+
+typedef struct cli_command {
+  const char *name;
+  const char *summary; /* one line for `conic help` */
+  const char *usage;   /* "conic render IN… -o OUT [options]" */
+  /* argv[0] is the sub-command's name. Returns the exit code. */
+  int (*run)(cli_session *session, int argc, char **argv);
+} cli_command;
+
+extern const cli_command cli_make, cli_prepare, cli_render, cli_diff, cli_info;
+
+/* The command of that name, or null. */
+const cli_command *cli_find_command(const char *name);
+
+#endif

@@ -1,0 +1,39 @@
+/* What every sub-command shares: the context with its messages and progress bar, exit codes, the clock, JSON output. */
+#ifndef CLI_SESSION_H
+#define CLI_SESSION_H
+
+#include <stdio.h>
+
+#include "conic/conic.h"
+
+enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
+
+typedef struct cli_session {
+  const char *command;    /* the sub-command's name */
+  int threads;            /* --threads; 0: all */
+  int is_quiet, is_verbose;
+  const char *json_path;  /* --json; null: none */
+  const char *task;       /* of the progress bar that is on the screen; null: none */
+  double task_seconds, drawn_seconds;
+  conic_context *context; /* made by cli_session_open */
+} cli_session;
+
+/* Makes the context. Returns CLI_DONE or, after an error message, the exit code. */
+int cli_session_open(cli_session *session);
+/* Ends the context; fine where it was never made. */
+void cli_session_close(cli_session *session);
+
+/* The exit code that stands for a status; the message has been printed by the context's log. */
+int cli_exit_of(conic_status status);
+
+/* Prints "conic: error: …" and returns CLI_USAGE. */
+int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Prints "conic: error: …" and returns `exit_code`. */
+int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Seconds of a monotonic clock. */
+double cli_seconds(void);
+/* The process's peak resident set. */
+unsigned long long cli_peak_rss_bytes(void);
+
+#endif

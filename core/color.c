@@ -1,0 +1,66 @@
+#include "core/color.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A positive number whose logarithm is about 1/n of v's: a start for Newton's iteration, from the bits of the double. */
+static double root_guess(double v, int n) {
+  uint64_t bits, one = UINT64_C(0x3ff0000000000000);
+  memcpy(&bits, &v, sizeof bits);
+  int64_t log_scaled = ((int64_t)bits - (int64_t)one) / n;
+  bits = (uint64_t)((int64_t)one + log_scaled);
+  memcpy(&v, &bits, sizeof bits);
+  return v;
+}
+
+static double cube_root(double v) {
+  double r = root_guess(v, 3);
+  for (int i = 0; i < 5; i++)
+    r = r - (r - v / (r * r)) / 3.0;
+  return r;
+}
+
+static double fifth_root(double v) {
+  double r = root_guess(v, 5);
+  for (int i = 0; i < 6; i++)
+    r = r - (r - v / (r * r * (r * r))) / 5.0;
+  return r;
+}
+
+double conic_srgb_decode(double encoded) {
+  if (!(encoded > 0.04045))
+    return encoded / 12.92;
+  double y = (encoded + 0.055) / 1.055;
+  return y * y * fifth_root(y * y); /* y^2.4 */
+}
+
+double conic_srgb_encode(double linear) {
+  if (!(linear > 0.0031308))
+    return linear * 12.92;
+  if (!(linear < 1e60))
+    return linear;
+  double five_thirds = linear * cube_root(linear * linear);
+  return 1.055 * sqrt(sqrt(five_thirds)) - 0.055; /* linear^(5/12) */
+}
+
+void conic_srgb_decode_table(float table[256]) {
+  for (int i = 0; i < 256; i++)
+    table[i] = (float)conic_srgb_decode((double)i / 255.0);
+}
+
+void conic_srgb_thresholds(float thresholds[255]) {
+  for (int i = 0; i < 255; i++)
+    thresholds[i] = (float)conic_srgb_decode(((double)i + 0.5) / 255.0);
+}
+
+uint8_t conic_srgb_code(const float thresholds[255], float linear) {
+  int low = 0, high = 255; /* the code is in [low, high] */
+  while (low < high) {
+    int middle = (low + high) / 2;
+    if (linear >= thresholds[middle])
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return (uint8_t)low;
+}

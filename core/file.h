@@ -1,0 +1,27 @@
+/* Output files that appear under their name only when they are whole: written beside it, then renamed. */
+#ifndef CORE_FILE_H
+#define CORE_FILE_H
+
+#include <stdio.h>
+
+#include "conic/context.h"
+
+typedef struct conic_output conic_output;
+
+/* Opens PATH for writing ("-" is standard output). On success the caller owns *output. Errors: MEMORY, IO. */
+conic_status conic_output_open(conic_context *context, const char *path, conic_output **output);
+
+/* Where to write; never null. */
+FILE *conic_output_stream(conic_output *output);
+
+/* The name of the file that is being written, for libraries that want a name and not a stream; null for standard
+ * output. It has the ending of PATH. */
+const char *conic_output_temporary_path(const conic_output *output);
+
+/* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
+conic_status conic_output_commit(conic_output *output);
+
+/* Removes what was written and releases `output`; null is allowed. */
+void conic_output_abandon(conic_output *output);
+
+#endif

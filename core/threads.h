@@ -1,0 +1,17 @@
+/* The context's thread pool. */
+#ifndef CORE_THREADS_H
+#define CORE_THREADS_H
+
+#include <stddef.h>
+
+#include "conic/context.h"
+
+/* Does item `i_item`; `i_thread` is below conic_context_threads and no two items at a time share one. */
+typedef void conic_task(void *data, size_t i_item, int i_thread);
+
+/* Calls `task` once for each of n_items, in any order, on all threads, and returns when all are done. Items should
+ * be coarse (a tile, a chunk of splats). What they compute must not depend on which thread runs them. Cannot fail; must not be
+ * called from inside a task. */
+void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task, void *data);
+
+#endif

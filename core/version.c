@@ -1,0 +1,35 @@
+#include "conic/version.h"
+
+#include <stddef.h>
+
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+
+const char *conic_version(void) {
+  return TEXT(CONIC_VERSION_MAJOR) "." TEXT(CONIC_VERSION_MINOR) "." TEXT(CONIC_VERSION_PATCH);
+}
+
+#ifndef CONIC_HAVE_OPENEXR
+#define CONIC_HAVE_OPENEXR 0
+#endif
+#ifndef CONIC_HAVE_OPENIMAGEIO
+#define CONIC_HAVE_OPENIMAGEIO 0
+#endif
+#ifndef CONIC_HAVE_OPENCL
+#define CONIC_HAVE_OPENCL 0
+#endif
+#ifndef CONIC_HAVE_ZSTD
+#define CONIC_HAVE_ZSTD 0
+#endif
+#ifndef CONIC_HAVE_CURL
+#define CONIC_HAVE_CURL 0
+#endif
+
+static const conic_feature features[] = {
+    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", CONIC_HAVE_OPENIMAGEIO}, {"OpenCL", CONIC_HAVE_OPENCL},
+    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL},
+};
+
+const conic_feature *conic_feature_at(int i) {
+  return i >= 0 && (size_t)i < sizeof features / sizeof features[0] ? &features[i] : NULL;
+}

@@ -1,0 +1,16 @@
+/* conic: a software rasteriser for surface splatting. This header brings in the whole public API. */
+#ifndef CONIC_CONIC_H
+#define CONIC_CONIC_H
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/export.h"
+#include "conic/image.h"
+#include "conic/model.h"
+#include "conic/render.h"
+#include "conic/scene.h"
+#include "conic/splats.h"
+#include "conic/status.h"
+#include "conic/version.h"
+
+#endif

@@ -1,0 +1,66 @@
+/* The context: where memory comes from, where messages go, how many threads compute.
+ *
+ * Every call takes one. A context may be used by one thread at a time; two contexts are independent. The
+ * library has no state outside them. */
+#ifndef CONIC_CONTEXT_H
+#define CONIC_CONTEXT_H
+
+#include <stddef.h>
+
+#include "conic/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_context conic_context;
+
+typedef enum conic_log_level {
+  CONIC_LOG_ERROR = 0,   /* why the call that is about to return fails: one line */
+  CONIC_LOG_WARNING = 1, /* the call goes on, but its caller may want to know */
+  CONIC_LOG_INFO = 2
+} conic_log_level;
+
+/* Fill with conic_context_options_init, then change what differs. Callbacks may be null. */
+typedef struct conic_context_options {
+  size_t size; /* sizeof(conic_context_options), set by the init function */
+
+  /* Memory. `allocate` returns null on failure; both are called from any of the context's threads, so they must
+   * be thread-safe. Default: malloc and free. */
+  void *(*allocate)(void *cookie, size_t bytes);
+  void (*release)(void *cookie, void *pointer);
+  void *allocator_cookie;
+
+  /* Messages, without a newline. `message` is valid during the call only. Default: dropped. */
+  void (*log)(void *cookie, conic_log_level level, const char *message);
+  void *log_cookie;
+
+  /* Progress of long work: `task` names it ("read", "render" …), `fraction` grows from 0 to 1. Called on the
+   * calling thread, a few times a second at most. A non-zero answer cancels: the call returns
+   * CONIC_ERROR_CANCELLED and leaves nothing behind. */
+  int (*progress)(void *cookie, const char *task, double fraction);
+  void *progress_cookie;
+
+  /* Threads that compute, the calling one included; 0: as many as the machine has. The results never depend on it. */
+  int threads;
+
+  /* No single allocation is larger than this; 0: no limit. */
+  size_t max_allocation_bytes;
+} conic_context_options;
+
+CONIC_API void conic_context_options_init(conic_context_options *options);
+
+/* Creates a context; `options` may be null for the defaults. On success the caller owns *context and ends it with
+ * conic_context_destroy; on failure *context is null. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_context_create(const conic_context_options *options, conic_context **context);
+
+/* Ends the context and its threads; null is allowed. Everything made with it must have been released before. */
+CONIC_API void conic_context_destroy(conic_context *context);
+
+/* The number of threads that compute, at least 1. */
+CONIC_API int conic_context_threads(const conic_context *context);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

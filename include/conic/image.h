@@ -1,0 +1,113 @@
+/* Images: planes of pixels, read, written, compared.
+ *
+ * A plane is an array of width × height pixels, row by row from the top, the channels of a pixel side by side. Colour
+ * is linear; rgba is premultiplied. */
+#ifndef CONIC_IMAGE_H
+#define CONIC_IMAGE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum conic_plane {
+  CONIC_PLANE_RGBA = 0,   /* 4 floats: R, G, B premultiplied by A */
+  CONIC_PLANE_Z = 1,      /* 1 float: camera-space z, 0 where nothing is */
+  CONIC_PLANE_NORMAL = 2, /* 3 floats: world, unit, towards the viewer; 0 where nothing is */
+  CONIC_PLANE_ALBEDO = 3, /* 3 floats: colour before shading */
+  CONIC_PLANE_WEIGHT = 4, /* 1 float: sum of the weights */
+  CONIC_PLANE_COUNT = 5,  /* 1 uint32: splats blended */
+  CONIC_PLANE_ID = 6,     /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
+  CONIC_N_PLANES = 7
+} conic_plane;
+
+#define CONIC_NO_ID 0xFFFFFFFFu
+
+typedef struct conic_plane_description {
+  const char *name;        /* as on the command line and in statistics: "rgba", "Z", "N", "albedo", … */
+  int n_channels;          /* 1 to 4, each of 4 bytes */
+  int is_uint;             /* channels are uint32 instead of float */
+  const char *channels[4]; /* their names in an EXR: "R", "N.X", … */
+} conic_plane_description;
+
+/* Static data; null for a number that is no plane. */
+CONIC_API const conic_plane_description *conic_plane_describe(conic_plane plane);
+
+/* A named value that goes into an EXR's header. */
+typedef enum conic_attribute_type {
+  CONIC_ATTRIBUTE_TEXT = 0,
+  CONIC_ATTRIBUTE_DOUBLE = 1,
+  CONIC_ATTRIBUTE_MATRIX = 2 /* 4 × 4, rows */
+} conic_attribute_type;
+
+typedef struct conic_attribute {
+  char name[40];
+  conic_attribute_type type;
+  char text[88];
+  double values[16];
+} conic_attribute;
+
+#define CONIC_MAX_ATTRIBUTES 24
+
+typedef struct conic_image {
+  int width, height;
+  void *planes[CONIC_N_PLANES]; /* float or uint32_t by conic_plane_describe; null: not there */
+  int n_attributes;
+  conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
+} conic_image;
+
+/* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.
+ * Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_image_allocate(conic_context *context, int width, int height, unsigned planes,
+                                            conic_image *image);
+/* Which planes there are, as bits 1 << plane. */
+CONIC_API unsigned conic_image_planes(const conic_image *image);
+CONIC_API void conic_image_release(conic_context *context, conic_image *image);
+
+/* 64-bit FNV-1a over the plane's little-endian bytes, row by row; 0 where the plane is not there. */
+CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane);
+
+/* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z or weight as grey),
+ * and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats, unpremultiplied where the format wants that). The file
+ * appears under its name only when it is whole. "-" writes EXR… to standard output is not supported: ARGUMENT.
+ * Errors: ARGUMENT (no plane the format can hold, unknown ending), UNSUPPORTED (not in this build), MEMORY, IO. */
+CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
+
+/* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns *image.
+ * Errors: INPUT, UNSUPPORTED, MEMORY. */
+CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
+
+/* How two images differ. See docs/diff.md for the definitions. */
+typedef struct conic_plane_difference {
+  int compared; /* the plane is in both images */
+  double max_abs, rmse;
+} conic_plane_difference;
+
+typedef struct conic_difference {
+  int identical;            /* same size, same planes, same bits */
+  int same_size;            /* where 0, nothing below is set */
+  double max_abs, rmse;     /* over all common planes but id and count; NaN against a number counts as infinite */
+  double psnr, ssim;        /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
+  int has_color;            /* both have rgba: psnr and ssim are set */
+  size_t differing_pixels;  /* pixels where any common plane differs */
+  size_t largest_hole;      /* pixels of the largest 4-connected set covered in the first and not in the second */
+  conic_plane_difference planes[CONIC_N_PLANES];
+} conic_difference;
+
+/* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
+                                           conic_difference *difference);
+
+/* A false-colour picture of where `b` differs from `a` (rgba plane; same size needed): black where equal, then blue, red, yellow, white by
+ * the logarithm of the largest channel's difference. On success the caller owns *heatmap. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                           conic_image *heatmap);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

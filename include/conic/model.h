@@ -1,0 +1,103 @@
+/* Models: what a file holds, before it is drawn. Points or splats, and triangles where the file has faces. */
+#ifndef CONIC_MODEL_H
+#define CONIC_MODEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_model {
+  conic_splats points;           /* vertices, raw points or splats */
+  size_t n_triangles;            /* 0 for a set of points */
+  uint32_t (*triangles)[3];      /* vertex indices, each below points.count; polygons and strips are triangulated */
+} conic_model;
+
+typedef struct conic_read_options {
+  size_t size; /* sizeof(conic_read_options), set by the init function */
+
+  /* The cutoff F_g of the kernel that will draw: a `radius` in a file is the splat's outline, so σ = radius / F_g. */
+  float cutoff;
+} conic_read_options;
+
+CONIC_API void conic_read_options_init(conic_read_options *options);
+
+/* Reads a model; "-" is standard input (PLY only). The format is told by the content first, then by the name's ending.
+ * 8-bit colours are decoded from sRGB, float colours are taken as linear. On success the caller owns *model
+ * and releases it; on failure it is empty and the log says file, line or byte offset, and what is wrong there.
+ * Errors: INPUT, MEMORY. */
+CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
+                                        conic_model *model);
+
+CONIC_API void conic_model_release(conic_context *context, conic_model *model);
+
+/* Points that could not be used as they stood, by reason. */
+typedef struct conic_repairs {
+  size_t nan;       /* a position that is not finite: skipped */
+  size_t zero;      /* zero or non-finite normals or axes, repaired from the neighbours */
+  size_t duplicate; /* coincident with an earlier point: kept, but no neighbour of it */
+  size_t isolated;  /* far from everything else: kept small */
+  size_t failed;    /* no ellipse could be found: skipped */
+} conic_repairs;
+
+typedef struct conic_estimate_options {
+  size_t size;      /* sizeof(conic_estimate_options), set by the init function */
+  int n_neighbours; /* k, 6 to 64 */
+  float cutoff;     /* F_g: the estimated outline is F_g standard deviations */
+} conic_estimate_options;
+
+CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
+
+/* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
+ * neighbours (Confetti §4.3 with the corrections of docs/errata.md); a set that has axes keeps them, and only
+ * its zero and non-finite ones are repaired. Missing normals come from the covariance of the neighbours and are oriented
+ * consistently. Points that can't be repaired get NaN axes, which the renderer skips and counts, so that indices
+ * stay those of the file. The result is the same for any number of threads. `repairs` may be null.
+ * Errors: ARGUMENT, MEMORY, CANCELLED; the model is then as it was. */
+CONIC_API conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options,
+                                             conic_model *model, conic_repairs *repairs);
+
+/* Keeps `count` of the splats, chosen by `seed`, in their old order; a smaller count is a subset of a larger one with
+ * the same seed. A count not below the set's leaves it as it is. Errors: MEMORY. */
+CONIC_API conic_status conic_splats_thin(conic_context *context, conic_splats *splats, size_t count, uint64_t seed);
+
+/* Writes splats as PLY in batches, so that any number fits through bounded memory. The file appears under its name only when
+ * it is whole. */
+typedef struct conic_splats_writer conic_splats_writer;
+
+typedef enum conic_ply_encoding { CONIC_PLY_BINARY = 0, CONIC_PLY_ASCII = 1 } conic_ply_encoding;
+
+typedef struct conic_write_options {
+  size_t size;                 /* sizeof(conic_write_options), set by the init function */
+  conic_ply_encoding encoding; /* binary little endian by default */
+  int double_positions;        /* write positions as double; also done when a batch's origin is not zero */
+  int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long */
+  float cutoff;                /* F_g, for that radius */
+} conic_write_options;
+
+CONIC_API void conic_write_options_init(conic_write_options *options);
+
+/* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. On success the caller
+ * owns *writer and ends it with finish or abandon. Errors: ARGUMENT, MEMORY, IO. */
+CONIC_API conic_status conic_splats_writer_open(conic_context *context, const char *path, size_t count, unsigned fields,
+                                                const conic_write_options *options, conic_splats_writer **writer);
+/* Appends a batch. Errors: ARGUMENT (more than `count` in all, or arrays missing), IO. */
+CONIC_API conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic_splats *batch);
+/* Completes the file and releases the writer, on failure too. Errors: ARGUMENT (fewer than `count` in all), IO. */
+CONIC_API conic_status conic_splats_writer_finish(conic_splats_writer *writer);
+/* Drops the file and releases the writer; null is allowed. */
+CONIC_API void conic_splats_writer_abandon(conic_splats_writer *writer);
+
+/* open, append, finish for one set. */
+CONIC_API conic_status conic_splats_write(conic_context *context, const char *path, const conic_splats *splats,
+                                          const conic_write_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

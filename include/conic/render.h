@@ -1,0 +1,109 @@
+/* Rendering: splats and a camera in, an image and its statistics out.
+ *
+ * What a picture is, is defined in docs/picture.md. It has one set of bits: threads, tile size, compiler and machine
+ * change none of them. */
+#ifndef CONIC_RENDER_H
+#define CONIC_RENDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How a splat is projected and weighed. */
+typedef enum conic_method {
+  CONIC_METHOD_CONIC = 0, /* EWA with the conic whose outline at the cutoff is the exact projection (PAS) */
+  CONIC_METHOD_RAY = 1    /* exact ray–splat parameter, the pixel's filter mapped into the splat at the pixel */
+} conic_method;
+
+#define CONIC_N_METHODS 2
+
+/* "conic", "ray" …; null for a number that is no method. */
+CONIC_API const char *conic_method_name(conic_method method);
+
+typedef enum conic_kernel_type {
+  CONIC_KERNEL_GAUSS = 0,    /* exp(-r²/2) up to the cutoff */
+  CONIC_KERNEL_CONFETTI = 1, /* exp(-a (r/b)ⁿ / (1 - (r/b)ⁿ)) for r < b, 0 beyond (Confetti Eq. 10, corrected) */
+  CONIC_KERNEL_HAT = 2,      /* 1 - r/F_g */
+  CONIC_KERNEL_BOX = 3       /* 1 */
+} conic_kernel_type;
+
+typedef struct conic_kernel {
+  conic_kernel_type type;
+  float cutoff; /* F_g, in standard deviations; 0.25 to 5 */
+  float a, b;   /* Confetti's, both above 0 */
+  int n;        /* Confetti's, 1 to 16 */
+} conic_kernel;
+
+typedef enum conic_shading {
+  CONIC_SHADE_NONE = 0,    /* the albedo */
+  CONIC_SHADE_LAMBERT = 1, /* ambient and diffuse */
+  CONIC_SHADE_PHONG = 2    /* ambient, diffuse and a highlight */
+} conic_shading;
+
+typedef struct conic_render_options {
+  size_t size; /* sizeof(conic_render_options), set by the init function */
+  conic_method method;
+  conic_kernel kernel;
+  float prefilter;  /* low-pass variance h in pixels², 0 or more */
+  double epsilon;   /* depth tolerance along the ray in world units; negative: from the splat sizes */
+  int passes;       /* 3: blend what belongs to one surface; 1: the nearest splat wins */
+  int cull_back;    /* leave out splats that face away */
+  double near_z;    /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
+  conic_shading shading;
+  int has_light;    /* 0: headlight, from the viewer */
+  double light[3];  /* direction towards the light, world coordinates, any length but zero */
+  int has_background;
+  float background[3]; /* linear RGB behind the picture, which then is opaque */
+  double exposure;     /* in stops: the colour is multiplied by 2^exposure */
+  int tile;            /* tile edge in pixels, a multiple of 4 from 8 to 256; changes no bit of the image */
+} conic_render_options;
+
+/* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no background. */
+CONIC_API void conic_render_options_init(conic_render_options *options);
+
+typedef struct conic_render_milliseconds {
+  double setup, bin, visibility, accumulate, resolve, frame;
+} conic_render_milliseconds;
+
+typedef struct conic_render_statistics {
+  uint64_t splats_in;       /* = culled + skipped + drawn */
+  uint64_t splats_culled;   /* behind near, off-screen, back-facing */
+  uint64_t splats_skipped;  /* not finite, or without area where nothing widens them */
+  uint64_t splats_drawn;
+  uint64_t splats_fallback; /* of the drawn: not by the method's own formula */
+  uint64_t splats_by_method[CONIC_N_METHODS]; /* of the drawn, by the formula used */
+  uint64_t fragments;       /* splat–pixel pairs inside a cutoff */
+  uint64_t pixels_covered;
+  double near_z;            /* the one used */
+  double epsilon;           /* c of the automatic ε, or the fixed ε */
+  int epsilon_is_fixed;
+  int threads, tile;
+  conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
+} conic_render_statistics;
+
+/* A renderer keeps the memory of a frame from one frame to the next. One thread at a time. */
+typedef struct conic_renderer conic_renderer;
+
+/* On success the caller owns *renderer, which must not outlive the context. Errors: MEMORY. */
+CONIC_API conic_status conic_renderer_create(conic_context *context, conic_renderer **renderer);
+CONIC_API void conic_renderer_destroy(conic_renderer *renderer);
+
+/* Draws `splats` (with tangent axes) into the planes that `image` has; its size must be the camera's. `statistics` may
+ * be null. Splats that cannot be drawn are counted, never an error; with none at all the image is empty.
+ * Errors: ARGUMENT, MEMORY, CANCELLED; the image's contents are then undefined. */
+CONIC_API conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                    const conic_render_options *options, conic_image *image,
+                                    conic_render_statistics *statistics);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,74 @@
+/* The splat set: points, and the ellipses that make splats of them.
+ *
+ * A splat is an ellipse in space with a kernel on it: centre p, tangent axes t_u and t_v (world units, orthogonal,
+ * one standard deviation long for the Gaussian kernel); its normal is t_u × t_v. Structure of arrays: every pointer
+ * is to `count` floats. */
+#ifndef CONIC_SPLATS_H
+#define CONIC_SPLATS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
+ * by a function of the library (then release it so). Optional arrays are null when absent. An optional
+ * three-component array is there in all three components or in none. */
+typedef struct conic_splats {
+  size_t count;
+
+  /* Where the positions are measured from, in world units: the world position of splat i is
+   * origin + position[.][i], formed in double. Large coordinates (map projections) so keep their precision. */
+  double origin[3];
+  float *position[3];
+
+  /* Tangent axes, both or none. Without them the set holds raw points: see conic_model_to_splats. */
+  float *tangent_u[3];
+  float *tangent_v[3];
+
+  /* Normals as read from the file, of any length; optional. Only looked at where tangent axes are missing. */
+  float *normal[3];
+
+  /* Linear RGB, optional (null: white). */
+  float *color[3];
+
+  /* Multiplies the weight of a splat; optional (null: 1). */
+  float *opacity;
+} conic_splats;
+
+/* The optional arrays of a set, as bits. */
+typedef enum conic_splats_field {
+  CONIC_SPLATS_TANGENTS = 1,
+  CONIC_SPLATS_NORMALS = 2,
+  CONIC_SPLATS_COLORS = 4,
+  CONIC_SPLATS_OPACITIES = 8
+} conic_splats_field;
+
+/* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents
+ * undefined, origin zero. On failure *splats is empty. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t count, unsigned fields,
+                                             conic_splats *splats);
+
+/* Which optional arrays the set has, as bits of conic_splats_field. */
+CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
+
+/* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
+ * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs). `more` is
+ * left as it was; on failure `splats` is too. Errors: MEMORY. */
+CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
+
+/* Releases the arrays and leaves an empty set; a set of zero bytes is allowed. */
+CONIC_API void conic_splats_release(conic_context *context, conic_splats *splats);
+
+/* The axis-aligned box of the finite centres, in world coordinates. Returns how many centres are finite; where that
+ * is 0, minimum and maximum are zero. */
+CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

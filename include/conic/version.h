@@ -1,0 +1,30 @@
+/* The library's version and what was built into it. */
+#ifndef CONIC_VERSION_H
+#define CONIC_VERSION_H
+
+#include "conic/export.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CONIC_VERSION_MAJOR 0
+#define CONIC_VERSION_MINOR 1
+#define CONIC_VERSION_PATCH 0
+
+/* "0.1.0"; static. */
+CONIC_API const char *conic_version(void);
+
+/* A library that conic can use, and whether this build does. */
+typedef struct conic_feature {
+  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL" */
+  int available;
+} conic_feature;
+
+/* The i-th feature, or null past the last; static. */
+CONIC_API const conic_feature *conic_feature_at(int i);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
