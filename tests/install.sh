@@ -8,7 +8,11 @@ build_folder=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-if grep -q '^CONIC_SANITIZE:STRING=.' "$build_folder/CMakeCache.txt"; then
+setting() { # NAME: its value in the build
+  sed -nE "s/^$1:[A-Z]+=(.*)$/\1/p" "$build_folder/CMakeCache.txt"
+}
+
+if [[ -n $(setting CONIC_SANITIZE) ]]; then
   echo "skipped: a sanitized library is not one to install"
   exit 77
 fi
@@ -48,7 +52,8 @@ END
 build_package() { # NAME, CMake settings …
   local name=$1
   shift
-  cmake -S "$work/project" -B "$work/$name" -DCMAKE_PREFIX_PATH="$work/prefix" "$@" > "$work/$name.log" 2>&1 &&
+  cmake -S "$work/project" -B "$work/$name" -G "$(setting CMAKE_GENERATOR)" -DCMAKE_PREFIX_PATH="$work/prefix" \
+    -DCMAKE_C_COMPILER="$(setting CMAKE_C_COMPILER)" "$@" > "$work/$name.log" 2>&1 &&
     cmake --build "$work/$name" >> "$work/$name.log" 2>&1 && return
   cat "$work/$name.log"
   exit 1
@@ -68,7 +73,7 @@ cmp "$work/by_package/shared.pfm" "$work/by_package_static/static.pfm"
 if command -v pkg-config > /dev/null; then
   export PKG_CONFIG_PATH=$library_folder/pkgconfig
   # shellcheck disable=SC2046 # its answer is several words
-  cc -std=c11 "$source_folder/examples/minimal.c" -o "$work/by_pkg_config" $(pkg-config --cflags --libs conic) -lm
+  "$(setting CMAKE_C_COMPILER)" -std=c11 "$source_folder/examples/minimal.c" -o "$work/by_pkg_config" $(pkg-config --cflags --libs conic) -lm
   draw "$work/by_pkg_config"
   cmp "$work/by_package/shared.pfm" "$work/by_pkg_config.pfm"
 else
