@@ -57,6 +57,7 @@ typedef struct conic_render_options {
   int passes;       /* 3: blend what belongs to one surface; 1: the nearest splat wins */
   int cull_back;    /* leave out splats that face away */
   double near_z;    /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
+  double splat_length; /* what conic_splats_length gives; 0: found anew by every call */
   conic_shading shading;
   int has_light;    /* 0: headlight, from the viewer */
   double light[3];  /* direction towards the light, world coordinates, any length but zero */
