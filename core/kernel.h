@@ -12,8 +12,8 @@
 /* eˣ for x ≤ 0, clamped below at e⁻⁸⁰; NaN gives e⁻⁸⁰. Error at most 1.1 ulp (tests/test_kernel.c). */
 static inline float conic_exp_negative(float x) {
   x = x > -80.0f ? x : -80.0f;
-  /* x = k·ln 2 + r with |r| ≤ ½·ln 2; truncation rounds to nearest here, since x ≤ 0. The first part of ln 2 has few bits, so that
-   * k·ln 2 is exact in it. */
+  /* x = k·ln 2 + r with |r| ≤ ½·ln 2; truncation rounds to nearest here, since x ≤ 0. The first part of ln 2 has few
+   * bits, so that k·ln 2 is exact in it. */
   int32_t k = (int32_t)(x * 0x1.715476p+0f - 0.5f);
   float r = (x - (float)k * 0x1.63p-1f) + (float)k * 0x1.bd0106p-13f;
   float p = 0x1.6a23cap-10f;

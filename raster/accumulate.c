@@ -1,6 +1,7 @@
 #include "raster/tile_walk.h"
 
-/* Adds a visible fragment to the pixel's sums. Splats come in file order: sums keep it, and the first of equals stays. */
+/* Adds a visible fragment to the pixel's sums. Splats come in file order: sums keep it, and the first of equals stays.
+ */
 static inline __attribute__((always_inline)) void blend(conic_tile *tile, uint32_t i_footprint,
                                                         const conic_footprint *footprint, size_t at,
                                                         const conic_fragment *fragment) {

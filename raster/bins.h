@@ -5,12 +5,12 @@
 #include "raster/projected.h"
 
 typedef struct conic_bins {
-  int tile;               /* edge in pixels */
+  int tile; /* edge in pixels */
   int n_tiles_x, n_tiles_y;
   size_t n_tiles;
-  uint32_t *counts;       /* [chunk][tile]: first how many, then where the chunk's next entry goes */
-  size_t *tile_begin;     /* [n_tiles + 1]: a tile's entries are references[tile_begin[t] … tile_begin[t + 1]) */
-  uint32_t *references;   /* indices of footprints */
+  uint32_t *counts;     /* [chunk][tile]: first how many, then where the chunk's next entry goes */
+  size_t *tile_begin;   /* [n_tiles + 1]: a tile's entries are references[tile_begin[t] … tile_begin[t + 1]) */
+  uint32_t *references; /* indices of footprints */
 } conic_bins;
 
 /* Counts the tiles of the chunk's footprints. */

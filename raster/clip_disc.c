@@ -53,7 +53,8 @@ static void consider(extremes *found, const conic_view *view, double x, double y
   found->n_points++;
 }
 
-static void consider_angle(extremes *found, const conic_view *view, const outline *o, const double angle[2], int on_near) {
+static void consider_angle(extremes *found, const conic_view *view, const outline *o, const double angle[2],
+                           int on_near) {
   double at[3];
   for (int i = 0; i < 3; i++)
     at[i] = o->constant[i] + o->cosine[i] * angle[0] + o->sine[i] * angle[1];

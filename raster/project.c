@@ -13,11 +13,11 @@ typedef struct splat_setup {
   const conic_view *view;
   const conic_splats *splats;
   size_t i;
-  double p[3];     /* camera space */
+  double p[3]; /* camera space */
   double inverse_z;
-  float reach;     /* F_g·h_z / p_z */
+  float reach;             /* F_g·h_z / p_z */
   float nearest, farthest; /* 1 - reach and 1 + reach, rounded from double: the difference may nearly vanish */
-  float along_ray; /* p·(t_u × t_v), up to a positive factor: below 0 the splat faces the viewer */
+  float along_ray;         /* p·(t_u × t_v), up to a positive factor: below 0 the splat faces the viewer */
   conic_footprint *footprint;
   conic_ray *ray;
   conic_surface *surface;
@@ -55,7 +55,8 @@ static void fill_disc(const splat_setup *s, conic_disc *disc) {
   disc->determinant = (disc->p[0] * disc->n[0] + disc->p[1] * disc->n[1]) + disc->p[2] * disc->n[2];
 }
 
-/* Pixels [begin, end) of [0, size) that lie within `half` of the centre, and a hair more: the pixel's own test decides. */
+/* Pixels [begin, end) of [0, size) that lie within `half` of the centre, and a hair more: the pixel's own test decides.
+ */
 static void pixel_range(double center, float half, int size, uint16_t *begin, uint16_t *end) {
   double reach = (double)half * 1.0001 + 0.01;
   double low = center - reach + 0.5, high = center + reach + 0.5;
@@ -71,11 +72,11 @@ static void pixel_range(double center, float half, int size, uint16_t *begin, ui
 /* The variance of the projected kernel about its centre, and what else the dual conic gives (PAS §4 in dual form,
  * shifted so that p projects to the origin; docs/picture.md has the derivation). */
 typedef struct projected_kernel {
-  float rxx, rxy, ryy;       /* px² */
-  float root_determinant;    /* √|R'|, not by rxx·ryy - rxy²: that cancels when edge-on */
-  float shift_x, shift_y;    /* from the projected p to the footprint's centre, px */
-  float bx, by;              /* t'_u·t_u.z + t'_v·t_v.z, over p_z² */
-  float inverse_w;           /* p_z² / (p_z² - F_g²·h_z²) */
+  float rxx, rxy, ryy;    /* px² */
+  float root_determinant; /* √|R'|, not by rxx·ryy - rxy²: that cancels when edge-on */
+  float shift_x, shift_y; /* from the projected p to the footprint's centre, px */
+  float bx, by;           /* t'_u·t_u.z + t'_v·t_v.z, over p_z² */
+  float inverse_w;        /* p_z² / (p_z² - F_g²·h_z²) */
 } projected_kernel;
 
 static projected_kernel dual_conic(const tangents *t, float cutoff, float w) {
@@ -270,7 +271,8 @@ static conic_verdict project_splat(splat_setup *s) {
   return is_finite_record(s->footprint, s->ray, s->surface) ? verdict : CONIC_SKIPPED;
 }
 
-void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
+void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
+                         conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
   if (end > splats->count)

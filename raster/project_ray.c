@@ -73,8 +73,8 @@ static double gradient_length(const conic_view *view, const conic_disc *disc) {
   return sqrt(gx * gx + gy * gy);
 }
 
-conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint, conic_ray *ray,
-                                conic_surface *surface) {
+conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                                conic_ray *ray, conic_surface *surface) {
   double m_u[3], m_v[3];
   if (disc->determinant == 0.0)
     return CONIC_SKIPPED;
@@ -100,7 +100,8 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
   return CONIC_DRAWN_RAY;
 }
 
-/* The clipped disc seen from its own plane: a segment, whose variance is that of a splat with its ends on the outline. */
+/* The clipped disc seen from its own plane: a segment, whose variance is that of a splat with its ends on the outline.
+ */
 static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                      conic_surface *surface) {
   conic_screen_point a, b;

@@ -8,10 +8,9 @@
 
 /* The part that both passes read, one cache line.
  *
- * Pixel offsets are taken from the splat's reference: pixel (x, y) plus a fraction, dx = (pixel - x) + dx0, so that their
- * precision depends neither on the place on the screen nor on the tile.
- *   q  = (s1·dx + s2·dy)² + (s3·dy)², the Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded
- *        quadratic has; covered where q < support
+ * Pixel offsets are taken from the splat's reference: pixel (x, y) plus a fraction, dx = (pixel - x) + dx0, so that
+ * their precision depends neither on the place on the screen nor on the tile. q  = (s1·dx + s2·dy)² + (s3·dy)², the
+ * Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded quadratic has; covered where q < support
  *   iz = iz0 + iz_dy·dy + iz_dx·dx, clamped to [iz_far, iz_near]: inverse depth
  * Where s3 is 0 the splat is drawn by the exact ray–splat parameter, with the coefficients of rays[i_ray]. */
 typedef struct conic_footprint {
@@ -24,8 +23,8 @@ typedef struct conic_footprint {
   float s2, s3;
   float iz0, iz_dx, iz_dy;
   float iz_far, iz_near;
-  float nearness;  /* s = 1 / (1 + ε/‖p‖) */
-  float amplitude; /* A·opacity */
+  float nearness;                          /* s = 1 / (1 + ε/‖p‖) */
+  float amplitude;                         /* A·opacity */
   uint16_t x_begin, x_end, y_begin, y_end; /* pixels that may be covered, within the image */
 } conic_footprint;
 
@@ -39,9 +38,9 @@ typedef struct conic_ray {
 /* The part that blending and resolving read. */
 typedef struct conic_surface {
   float color[3];
-  float normal[3];            /* world, unit, towards the viewer */
-  float plane_dx, plane_dy;   /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
-  uint32_t index;             /* in the splat set */
+  float normal[3];          /* world, unit, towards the viewer */
+  float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
+  uint32_t index;           /* in the splat set */
 } conic_surface;
 
 /* A chunk of consecutive splats, projected and compacted. */
@@ -51,7 +50,8 @@ typedef struct conic_chunk {
   size_t n_culled, n_skipped, n_fallback;
 } conic_chunk;
 
-/* All splats of a frame in file order. The arrays have room for every splat of the set; only what is drawn is touched. */
+/* All splats of a frame in file order. The arrays have room for every splat of the set; only what is drawn is touched.
+ */
 typedef struct conic_projected {
   size_t n_chunks, chunk_size;
   conic_chunk *chunks;
@@ -61,7 +61,8 @@ typedef struct conic_projected {
 } conic_projected;
 
 /* Projects the splats of chunk i_chunk. */
-void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
+void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
+                         conic_projected *projected);
 
 /* What became of a splat. */
 typedef enum conic_verdict {
@@ -81,8 +82,8 @@ typedef struct conic_disc {
 
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
-conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint, conic_ray *ray,
-                                conic_surface *surface);
+conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                                conic_ray *ray, conic_surface *surface);
 
 /* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
  * is 0). */

@@ -1,6 +1,7 @@
 #include "conic/render.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <time.h>
 
@@ -33,11 +34,12 @@ typedef struct frame {
   conic_bins bins;
   conic_finish finish;
   conic_image *image;
-  char *planes;            /* one tile's planes a thread */
+  char *planes; /* one tile's planes a thread */
   size_t planes_bytes;
-  tile_times *times;       /* a thread */
+  tile_times *times;                 /* a thread */
   uint64_t *n_fragments, *n_covered; /* a tile */
-  int is_cancelled;
+  atomic_size_t n_tiles_done;
+  atomic_int is_cancelled;
 } frame;
 
 static double seconds_now(void) {
@@ -95,7 +97,8 @@ static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t s
   return memory->pointer;
 }
 
-/* Chunks of splats are what set-up and binning share out: enough of them for balance, few enough for their histograms. */
+/* Chunks of splats are what set-up and binning share out: enough of them for balance, few enough for their histograms.
+ */
 static conic_status plan_chunks(frame *f) {
   conic_renderer *renderer = f->renderer;
   conic_projected *projected = &f->projected;
@@ -169,8 +172,19 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   conic_tile_clear(tile, f->planes + (size_t)i_thread * f->planes_bytes);
 }
 
+/* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
+static void report_progress(frame *f) {
+  size_t done = atomic_load(&f->n_tiles_done);
+  if (conic_progress(f->renderer->context, "render", (double)done / (double)f->bins.n_tiles) != CONIC_OK)
+    atomic_store(&f->is_cancelled, 1);
+}
+
 static void tile_task(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
+  if (atomic_load(&f->is_cancelled))
+    return;
+  if (i_thread == 0)
+    report_progress(f);
   int nearest_only = f->finish.options->passes == 1;
   conic_tile tile;
   double start = seconds_now();
@@ -188,6 +202,7 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   f->times[i_thread].resolve += seconds_now() - summed;
   f->n_fragments[i_tile] = tile.n_fragments;
   f->n_covered[i_tile] = tile.n_covered;
+  atomic_fetch_add(&f->n_tiles_done, 1);
 }
 
 static conic_status bin(frame *f) {
@@ -241,18 +256,21 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   statistics->tile = f->bins.tile;
 }
 
+double conic_default_near(const conic_splats *splats) {
+  double low[3], high[3], diagonal_squared = 0.0;
+  conic_splats_bounds(splats, low, high);
+  for (int i = 0; i < 3; i++)
+    diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
+  return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
+}
+
 /* What of the scene the picture depends on as a whole: the near distance and the automatic ε's scale. */
 static conic_status measure_scene(conic_context *context, const conic_splats *splats,
                                   const conic_render_options *options, double *near_z, double *splat_length) {
   *near_z = options->near_z;
   *splat_length = options->splat_length;
-  if (!(*near_z > 0.0)) {
-    double low[3], high[3], diagonal_squared = 0.0;
-    conic_splats_bounds(splats, low, high);
-    for (int i = 0; i < 3; i++)
-      diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
-    *near_z = diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
-  }
+  if (!(*near_z > 0.0))
+    *near_z = conic_default_near(splats);
   if (!(*splat_length > 0.0) && options->epsilon < 0.0)
     return conic_splats_length(context, splats, splat_length);
   return CONIC_OK;
@@ -271,7 +289,8 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
     return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
   for (int i = 0; options->has_light && i < 3; i++)
     finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
-  finish->needs_viewer = options->shading == CONIC_SHADE_PHONG || (options->shading != CONIC_SHADE_NONE && !options->has_light);
+  finish->needs_viewer =
+      options->shading == CONIC_SHADE_PHONG || (options->shading != CONIC_SHADE_NONE && !options->has_light);
   finish->exposure = conic_exposure_factor(options->exposure);
   return CONIC_OK;
 }
@@ -290,7 +309,7 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   ms->setup = 1e3 * (projected - start);
   ms->bin = 1e3 * (binned - projected);
   share_out(f, 1e3 * (done - binned), ms);
-  return CONIC_OK;
+  return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
 }
 
 conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
@@ -301,7 +320,8 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
   conic_context *context = renderer->context;
   memset(&counted, 0, sizeof counted);
   if (!splats || !camera || !options || !image || options->size != sizeof *options)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: an argument is null, or the options were not initialised");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "render: an argument is null, or the options were not initialised");
   if (image->width != camera->width || image->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
   frame f = {.renderer = renderer, .splats = splats, .image = image};

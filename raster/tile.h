@@ -12,14 +12,14 @@
 
 /* The planes of one tile, row by row, `tile` pixels a row. Splats are named by their footprint. */
 typedef struct conic_tile_planes {
-  float *threshold;             /* max of s·iz over what covers the pixel; 0: nothing does */
-  float *nearest_iz;            /* the largest iz among the visible splats, and whose it is */
+  float *threshold;  /* max of s·iz over what covers the pixel; 0: nothing does */
+  float *nearest_iz; /* the largest iz among the visible splats, and whose it is */
   uint32_t *nearest;
-  float *weight;                /* Σ w */
-  float *color[3], *normal[3];  /* Σ w c, Σ w n */
-  float *heaviest_weight;       /* the largest w, and whose it is */
+  float *weight;               /* Σ w */
+  float *color[3], *normal[3]; /* Σ w c, Σ w n */
+  float *heaviest_weight;      /* the largest w, and whose it is */
   uint32_t *heaviest;
-  uint32_t *count;              /* visible splats */
+  uint32_t *count; /* visible splats */
 } conic_tile_planes;
 
 #define CONIC_N_TILE_PLANES 13
@@ -32,7 +32,7 @@ typedef struct conic_tile {
   int edge;                           /* pixels a row of the planes */
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   conic_tile_planes planes;
-  uint64_t n_fragments, n_covered;    /* found by visibility, and by resolving */
+  uint64_t n_fragments, n_covered; /* found by visibility, and by resolving */
 } conic_tile;
 
 /* Points the planes into `memory`, of CONIC_N_TILE_PLANES · edge² 4-byte words, and empties what the passes add to. */

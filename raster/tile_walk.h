@@ -4,7 +4,8 @@
 
 #include "raster/coverage.h"
 
-/* Does something with one fragment: footprint i_footprint covers the pixel at `at` in the tile's planes. Inlined into the walk. */
+/* Does something with one fragment: footprint i_footprint covers the pixel at `at` in the tile's planes. Inlined into
+ * the walk. */
 typedef void conic_visit(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
                          const conic_fragment *fragment);
 

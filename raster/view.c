@@ -54,7 +54,8 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
 }
 
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                             const conic_render_options *options, double near_z, double splat_length, conic_view *view) {
+                             const conic_render_options *options, double near_z, double splat_length,
+                             conic_view *view) {
   const char *wrong = what_is_wrong(splats, camera, options);
   if (wrong)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s", wrong);
