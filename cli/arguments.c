@@ -121,7 +121,7 @@ static const char *dashes(const cli_option *option) {
 }
 
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
-  return cli_usage("%s: %s%s: %s is not within %.10g and %.10g", session->command, dashes(option), option->name, text,
+  return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, dashes(option), option->name, text,
                    option->minimum, option->maximum);
 }
 

@@ -161,15 +161,17 @@ static void on_interrupt(int signal_number) {
   is_interrupted = 1;
 }
 
-/* The first signal asks the work to stop, so that it removes what it has half written; the second kills. */
-static void catch_interrupts(void) {
+/* The first signal asks the work to stop, so that it removes what it has half written; the second kills. A signal that
+ * whoever started the program has turned off stays off. */
+static void catch_signal(int signal_number) {
   struct sigaction action;
+  if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
+    return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_interrupt;
   action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  sigaction(signal_number, &action, NULL);
 }
 
 int cli_session_open(cli_session *session) {
@@ -183,7 +185,8 @@ int cli_session_open(cli_session *session) {
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
-  catch_interrupts();
+  catch_signal(SIGINT);
+  catch_signal(SIGTERM);
   return CLI_DONE;
 }
 
