@@ -54,7 +54,8 @@ void conic_input_close(conic_input *input) {
 
 static conic_status report(conic_input *input) {
   uint64_t end = input->window_offset + input->filled;
-  if (!input->has_size || end - input->reported_bytes < report_bytes)
+  int is_last = end >= input->size_bytes && input->reported_bytes > 0 && input->reported_bytes < end;
+  if (!input->has_size || (end - input->reported_bytes < report_bytes && !is_last))
     return CONIC_OK;
   input->reported_bytes = end;
   double fraction = (double)end / (double)input->size_bytes;
