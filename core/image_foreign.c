@@ -1,0 +1,146 @@
+#include "core/image_foreign.h"
+
+#include "core/message.h"
+
+#if CONIC_HAVE_OPENIMAGEIO
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/image.h"
+#include "core/image_samples.h"
+#include "core/memory.h"
+#include "core/openimageio_bridge.h"
+
+/* OpenImageIO writes EXR too, but would leave out all but rgba. */
+static int is_float_format(const char *format) {
+  return strcmp(format, "hdr") == 0 || strcmp(format, "zfile") == 0 || strcmp(format, "openexr") == 0;
+}
+
+static conic_samples_layout choose_layout(const conic_bridge_writer *writer) {
+  conic_samples_layout layout = {.n_channels = writer->has_alpha ? 4 : 3, .sample_bytes = 1};
+  layout.is_straight = writer->has_alpha;
+  if (strcmp(writer->format, "tiff") == 0)
+    layout.sample_bytes = 2;
+  if (is_float_format(writer->format)) {
+    layout.sample_bytes = 4;
+    layout.is_straight = 0;
+  }
+  return layout;
+}
+
+static int take_bytes(void *cookie, const void *bytes, size_t n_bytes) {
+  return fwrite(bytes, 1, n_bytes, cookie) == n_bytes;
+}
+
+static conic_status write_samples(conic_context *context, const char *path, const conic_bridge_picture *picture,
+                                  const void *samples) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  conic_output *output;
+  conic_status status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  conic_bridge_result result = conic_bridge_write(path, picture, samples, take_bytes, stream, message);
+  if (result == CONIC_BRIDGE_OK || ferror(stream))
+    return conic_output_commit(output); /* which also says what is wrong with the stream */
+  conic_output_abandon(output);
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
+}
+
+conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  conic_bridge_writer writer;
+  conic_bridge_result result = conic_bridge_find_writer(path, &writer, message);
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
+  if (result != CONIC_BRIDGE_OK)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: %s", path, message);
+  const float *rgba = image->planes[CONIC_PLANE_RGBA];
+  if (!rgba)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
+                      path);
+  conic_samples_layout layout = choose_layout(&writer);
+  conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
+                                  layout.is_straight};
+  void *samples =
+      conic_memory_allocate(context, conic_image_pixels(image), (size_t)(layout.n_channels * layout.sample_bytes));
+  if (!samples)
+    return CONIC_ERROR_MEMORY;
+  conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
+  conic_status status = write_samples(context, path, &picture, samples);
+  conic_memory_release(context, samples);
+  return status;
+}
+
+typedef struct reading {
+  conic_context *context;
+  conic_status status;
+  void *samples;
+} reading;
+
+static void *make_room(void *cookie, const conic_bridge_picture *picture) {
+  reading *work = cookie;
+  if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
+      picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
+    work->status = CONIC_ERROR_INPUT;
+    return NULL;
+  }
+  size_t pixel_bytes = (size_t)picture->n_channels * (size_t)picture->sample_bytes;
+  work->samples = conic_memory_allocate(work->context, (size_t)picture->width * (size_t)picture->height, pixel_bytes);
+  if (!work->samples)
+    work->status = CONIC_ERROR_MEMORY;
+  return work->samples;
+}
+
+/* The samples and the picture's layout, or why not. */
+static conic_status read_samples(conic_context *context, const char *path, conic_bridge_picture *picture,
+                                 reading *work) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  conic_bridge_result result = conic_bridge_read(path, picture, make_room, work, message);
+  if (result == CONIC_BRIDGE_OK)
+    return CONIC_OK;
+  if (work->status == CONIC_ERROR_INPUT)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used", path,
+                      picture->width, picture->height, picture->n_channels);
+  if (work->status == CONIC_ERROR_MEMORY)
+    return CONIC_ERROR_MEMORY; /* which is logged */
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
+}
+
+conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
+  conic_bridge_picture picture = {0};
+  reading work = {.context = context, .status = CONIC_OK};
+  conic_status status = read_samples(context, path, &picture, &work);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
+  if (status == CONIC_OK) {
+    conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
+    conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
+                          image->planes[CONIC_PLANE_RGBA]);
+  }
+  conic_memory_release(context, work.samples);
+  return status;
+}
+
+#else
+
+conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+  (void)image;
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
+                    "%s: cannot write: this build is without OpenImageIO and writes no such format", path);
+}
+
+conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
+  (void)image;
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
+                    "%s: cannot read: this build is without OpenImageIO, or it is no image", path);
+}
+
+#endif
