@@ -5,32 +5,32 @@
 #include "cli/session.h"
 
 typedef enum cli_option_type {
-  CLI_FLAG,    /* int *: set to 1 */
-  CLI_INT,     /* int *, within minimum and maximum */
-  CLI_COUNT,   /* unsigned long long *, within minimum and maximum; also 10k, 2M, 1e6 */
-  CLI_NUMBER,  /* double *, within minimum and maximum */
-  CLI_TEXT,    /* const char ** */
-  CLI_CHOICE,  /* int *: the index of the word in `choices` */
-  CLI_VECTOR,  /* double[3]: X,Y,Z */
-  CLI_SIZE,    /* int[2]: WxH, each within minimum and maximum */
-  CLI_PARSED   /* any: by `parse` */
+  CLI_FLAG,   /* int *: set to 1 */
+  CLI_INT,    /* int *, within minimum and maximum */
+  CLI_COUNT,  /* unsigned long long *, within minimum and maximum; also 10k, 2M, 1e6 */
+  CLI_NUMBER, /* double *, within minimum and maximum */
+  CLI_TEXT,   /* const char ** */
+  CLI_CHOICE, /* int *: the index of the word in `choices` */
+  CLI_VECTOR, /* double[3]: X,Y,Z */
+  CLI_SIZE,   /* int[2]: WxH, each within minimum and maximum */
+  CLI_PARSED  /* any: by `parse` */
 } cli_option_type;
 
 typedef struct cli_option {
-  const char *name;     /* without the dashes; one letter means a short option */
+  const char *name; /* without the dashes; one letter means a short option */
   cli_option_type type;
   void *value;
-  const char *argument; /* what the help calls the value: "FILE", "N"; null for flags */
-  const char *help;     /* one line; the default in brackets at its end */
-  double minimum, maximum; /* both 0: no limits */
-  const char *const *choices; /* null-terminated */
+  const char *argument;                        /* what the help calls the value: "FILE", "N"; null for flags */
+  const char *help;                            /* one line; the default in brackets at its end */
+  double minimum, maximum;                     /* both 0: no limits */
+  const char *const *choices;                  /* null-terminated */
   int (*parse)(const char *text, void *value); /* 0: not understood */
-  int *is_given;        /* set to 1 when the option is given; may be null */
+  int *is_given;                               /* set to 1 when the option is given; may be null */
 } cli_option;
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,
- * --json, --quiet, --verbose (and --help) are understood for every command. Returns CLI_DONE, or CLI_USAGE after a message;
- * -1 when help was asked for and printed. `positional` has room for argc. */
+ * --json, --quiet, --verbose (and --help) are understood for every command. Returns CLI_DONE, or CLI_USAGE after a
+ * message; -1 when help was asked for and printed. `positional` has room for argc. */
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
 

@@ -1,5 +1,5 @@
-/* A writer for the JSON that --json asks for: objects and arrays nest, keys come in call order. Numbers are printed so that
- * they read back as the same double; NaN and infinity become null. */
+/* A writer for the JSON that --json asks for: objects and arrays nest, keys come in call order. Numbers are printed so
+ * that they read back as the same double; NaN and infinity become null. */
 #ifndef CLI_JSON_H
 #define CLI_JSON_H
 
@@ -11,11 +11,11 @@ typedef struct cli_json {
   int depth, has_items[32];
 } cli_json;
 
-void cli_json_begin(cli_json *json, FILE *to);           /* opens the outermost object */
-int cli_json_end(cli_json *json);                        /* closes it with a newline; 0 where writing failed */
-void cli_json_object(cli_json *json, const char *key);   /* key is null inside an array */
+void cli_json_begin(cli_json *json, FILE *to);         /* opens the outermost object */
+int cli_json_end(cli_json *json);                      /* closes it with a newline; 0 where writing failed */
+void cli_json_object(cli_json *json, const char *key); /* key is null inside an array */
 void cli_json_array(cli_json *json, const char *key);
-void cli_json_close(cli_json *json);                     /* the innermost object or array */
+void cli_json_close(cli_json *json);                                    /* the innermost object or array */
 void cli_json_text(cli_json *json, const char *key, const char *value); /* null becomes null */
 void cli_json_number(cli_json *json, const char *key, double value);
 void cli_json_count(cli_json *json, const char *key, uint64_t value);
@@ -24,8 +24,9 @@ void cli_json_hash(cli_json *json, const char *key, uint64_t value); /* 16 hex d
 
 struct cli_session;
 
-/* Opens the session's --json file ("-" is standard output) for cli_json; null where none was asked for or, after a message, where
- * it can't be written (*exit_code is then set). Ended by cli_json_finish, which returns the exit code. */
+/* Opens the session's --json file ("-" is standard output) for cli_json; null where none was asked for or, after a
+ * message, where it can't be written (*exit_code is then set). Ended by cli_json_finish, which returns the exit code.
+ */
 typedef struct cli_json_file cli_json_file;
 cli_json *cli_json_open(struct cli_session *session, cli_json_file **file, int *exit_code);
 int cli_json_finish(cli_json_file *file);

@@ -9,12 +9,14 @@
 enum cli_exit { CLI_DONE = 0, CLI_DIFFERENT = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_RESOURCE = 4 };
 
 typedef struct cli_session {
-  const char *command;    /* the sub-command's name */
-  int threads;            /* --threads; 0: all */
+  const char *command; /* the sub-command's name */
+  int threads;         /* --threads; 0: all */
   int is_quiet, is_verbose;
-  const char *json_path;  /* --json; null: none */
-  const char *task;       /* of the progress bar that is on the screen; null: none */
-  double task_seconds, drawn_seconds;
+  const char *json_path; /* --json; null: none */
+  char task[32];         /* what the progress bar is about; empty: nothing yet */
+  double task_seconds;   /* when that began */
+  double drawn_seconds;  /* when the bar was last drawn */
+  int bar_is_shown;
   conic_context *context; /* made by cli_session_open */
 } cli_session;
 
@@ -30,6 +32,10 @@ int cli_exit_of(conic_status status);
 int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Wrong usage where two of the run's outputs (null entries are fine), --json's included, go to standard output or to
+ * the same file. Returns CLI_DONE, or CLI_USAGE after a message. */
+int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths);
 
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);

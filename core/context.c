@@ -74,23 +74,23 @@ int conic_context_threads(const conic_context *context) {
 }
 
 /* Each block is preceded by the pointer that the allocator gave, so that any allocator serves aligned blocks. */
-enum { ALIGNMENT = 64 };
+static const size_t alignment_bytes = 64;
 
 void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
   size_t limit = context->options.max_allocation_bytes ? context->options.max_allocation_bytes : SIZE_MAX;
-  if (limit > SIZE_MAX - 2 * ALIGNMENT)
-    limit = SIZE_MAX - 2 * ALIGNMENT;
+  if (limit > SIZE_MAX - 2 * alignment_bytes)
+    limit = SIZE_MAX - 2 * alignment_bytes;
   if (size && count > limit / size) {
     conic_fail(context, CONIC_ERROR_MEMORY, "%zu × %zu bytes of memory are over the limit", count, size);
     return NULL;
   }
-  char *raw = context->options.allocate(context->options.allocator_cookie, count * size + 2 * ALIGNMENT);
+  char *raw = context->options.allocate(context->options.allocator_cookie, count * size + 2 * alignment_bytes);
   if (!raw) {
     conic_fail(context, CONIC_ERROR_MEMORY, "out of memory: %zu bytes asked for", count * size);
     return NULL;
   }
-  size_t past = (uintptr_t)raw % ALIGNMENT;
-  char *aligned = raw + (2 * ALIGNMENT - past);
+  size_t past = (uintptr_t)raw % alignment_bytes;
+  char *aligned = raw + (2 * alignment_bytes - past);
   memcpy(aligned - sizeof raw, &raw, sizeof raw);
   return aligned;
 }

@@ -1,0 +1,303 @@
+#include "cli/arguments.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/suggest.h"
+
+enum { N_COMMON = 6 };
+
+/* The options of every command. */
+static void list_common(cli_session *session, int *is_help, cli_option common[N_COMMON]) {
+  const cli_option list[N_COMMON] = {
+      {.name = "threads",
+       .type = CLI_INT,
+       .value = &session->threads,
+       .argument = "N",
+       .maximum = 1024,
+       .help = "threads that compute; the results never depend on it [0: all]"},
+      {.name = "json",
+       .type = CLI_TEXT,
+       .value = &session->json_path,
+       .argument = "FILE",
+       .help = "write the run's statistics; - is standard output"},
+      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "no progress bar, no warnings"},
+      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "say more on standard error"},
+      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "this text"},
+      {.name = "h", .type = CLI_FLAG, .value = is_help},
+  };
+  memcpy(common, list, sizeof list);
+}
+
+/* A decimal number without anything behind it; strtod alone would also take blanks, hexadecimals, "inf" and "nan". */
+static int parse_decimal(const char *text, const char **end, double *number) {
+  if (strspn(text, "+-.0123456789") == 0 || text[strspn(text, "+-0")] == 'x' || text[strspn(text, "+-0")] == 'X')
+    return 0;
+  char *stop;
+  *number = strtod(text, &stop);
+  *end = stop;
+  return stop != text && *number - *number == 0.0;
+}
+
+static int parse_number(const char *text, double *number) {
+  const char *end;
+  return parse_decimal(text, &end, number) && *end == '\0';
+}
+
+static int parse_int(const char *text, int *value) {
+  char *end;
+  if (strspn(text, "+-0123456789") != strlen(text))
+    return 0;
+  long long number = strtoll(text, &end, 10);
+  if (end == text || *end || number < INT_MIN || number > INT_MAX)
+    return 0;
+  *value = (int)number;
+  return 1;
+}
+
+/* All digits are taken exactly; 10k, 2M, 1.5e6 as long as they are whole. */
+static int parse_count(const char *text, unsigned long long *value) {
+  unsigned long long exact = 0;
+  const char *digit = text;
+  for (; *digit >= '0' && *digit <= '9'; digit++) {
+    unsigned next = (unsigned)(*digit - '0');
+    if (exact > (ULLONG_MAX - next) / 10)
+      return 0;
+    exact = 10 * exact + next;
+  }
+  if (digit != text && *digit == '\0') {
+    *value = exact;
+    return 1;
+  }
+  const char *end;
+  double number;
+  if (!parse_decimal(text, &end, &number))
+    return 0;
+  number *= *end == 'k' ? 1e3 : *end == 'M' ? 1e6 : *end == 'G' ? 1e9 : 1.0;
+  end += *end == 'k' || *end == 'M' || *end == 'G';
+  if (*end || !(number >= 0.0 && number < 9e15) || number != (double)(unsigned long long)number)
+    return 0;
+  *value = (unsigned long long)number;
+  return 1;
+}
+
+int cli_parse_vector(const char *text, double vector[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    const char *end;
+    if (!parse_decimal(text, &end, &vector[axis]) || *end != (axis < 2 ? ',' : '\0'))
+      return 0;
+    text = end + 1;
+  }
+  return 1;
+}
+
+static int parse_size(const char *text, int size[2]) {
+  char width[16];
+  const char *cross = strchr(text, 'x');
+  if (!cross || cross - text >= (int)sizeof width)
+    return 0;
+  snprintf(width, sizeof width, "%.*s", (int)(cross - text), text);
+  return parse_int(width, &size[0]) && parse_int(cross + 1, &size[1]);
+}
+
+static int parse_choice(const char *text, const char *const *choices, int *value) {
+  for (int i = 0; choices[i]; i++) {
+    if (strcmp(text, choices[i]) == 0) {
+      *value = i;
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static int is_within(const cli_option *option, double value) {
+  return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
+}
+
+static const char *dashes(const cli_option *option) {
+  return option->name[1] ? "--" : "-";
+}
+
+static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
+  return cli_usage("%s: %s%s: %s is not between %.10g and %.10g", session->command, dashes(option), option->name, text,
+                   option->minimum, option->maximum);
+}
+
+static int refuse_text(const cli_session *session, const cli_option *option, const char *text) {
+  char words[512] = "";
+  size_t used = 0;
+  for (int i = 0; option->choices && option->choices[i] && used < sizeof words; i++)
+    used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? ", " : "", option->choices[i]);
+  return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, dashes(option), option->name,
+                   text, used ? words : option->argument);
+}
+
+/* Reads one value; CLI_DONE or CLI_USAGE after a message. */
+static int store(const cli_session *session, const cli_option *option, const char *text) {
+  int is_understood = 1, is_in_range = 1;
+  switch (option->type) {
+  case CLI_FLAG:
+    *(int *)option->value = 1;
+    break;
+  case CLI_INT:
+    is_understood = parse_int(text, option->value);
+    is_in_range = is_understood && is_within(option, *(int *)option->value);
+    break;
+  case CLI_COUNT:
+    is_understood = parse_count(text, option->value);
+    is_in_range = is_understood && is_within(option, (double)*(unsigned long long *)option->value);
+    break;
+  case CLI_NUMBER:
+    is_understood = parse_number(text, option->value);
+    is_in_range = is_understood && is_within(option, *(double *)option->value);
+    break;
+  case CLI_TEXT:
+    *(const char **)option->value = text;
+    break;
+  case CLI_CHOICE:
+    is_understood = parse_choice(text, option->choices, option->value);
+    break;
+  case CLI_VECTOR:
+    is_understood = cli_parse_vector(text, option->value);
+    break;
+  case CLI_SIZE:
+    is_understood = parse_size(text, option->value);
+    is_in_range =
+        is_understood && is_within(option, ((int *)option->value)[0]) && is_within(option, ((int *)option->value)[1]);
+    break;
+  case CLI_PARSED:
+    is_understood = option->parse(text, option->value);
+    break;
+  }
+  if (!is_understood)
+    return refuse_text(session, option, text);
+  if (!is_in_range)
+    return refuse_range(session, option, text);
+  if (option->is_given)
+    *option->is_given = 1;
+  return CLI_DONE;
+}
+
+/* The command's options and the common ones, searched as one. */
+typedef struct option_set {
+  const cli_option *tables[2];
+  int counts[2];
+} option_set;
+
+static const cli_option *find_option(const option_set *set, const char *name, size_t length) {
+  for (int table = 0; table < 2; table++)
+    for (int i = 0; i < set->counts[table]; i++) {
+      const cli_option *option = &set->tables[table][i];
+      if (strlen(option->name) == length && strncmp(option->name, name, length) == 0)
+        return option;
+    }
+  return NULL;
+}
+
+static int refuse_option(const cli_session *session, const option_set *set, const char *argument) {
+  char name[64];
+  const char *nearest = NULL;
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(argument + strspn(argument, "-"), "="),
+           argument + strspn(argument, "-"));
+  for (int table = 0; table < 2; table++)
+    for (int i = 0; i < set->counts[table]; i++)
+      if (set->tables[table][i].name[1])
+        nearest = cli_nearer_word(name, nearest, set->tables[table][i].name);
+  if (nearest)
+    return cli_usage("%s: unknown option %s; did you mean --%s?", session->command, argument, nearest);
+  return cli_usage("%s: unknown option %s; see conic help %s", session->command, argument, session->command);
+}
+
+/* Reads the option at argv[*i] and its value, which may be the next argument; *i moves to the last one used. */
+static int parse_option(const cli_session *session, const option_set *set, int argc, char **argv, int *i) {
+  const char *argument = argv[*i], *value = NULL;
+  int is_long = argument[1] == '-';
+  const char *name = argument + 1 + is_long;
+  size_t length = is_long ? strcspn(name, "=") : 1;
+  const cli_option *option = is_long && length == 1 ? NULL : find_option(set, name, length);
+  if (!option)
+    return refuse_option(session, set, argument);
+  if (name[length])
+    value = name + length + is_long; /* behind the equals sign, or a short option's rest */
+  if (option->type == CLI_FLAG)
+    return value ? cli_usage("%s: %s%s takes no value", session->command, dashes(option), option->name)
+                 : store(session, option, NULL);
+  if (!value && (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0))
+    return cli_usage("%s: %s%s needs a value: %s", session->command, dashes(option), option->name, option->argument);
+  if (!value)
+    value = argv[++*i];
+  return store(session, option, value);
+}
+
+/* Whether help is asked for anywhere, whatever else is wrong with the arguments. */
+static int asks_for_help(int argc, char **argv) {
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)
+      return 1;
+  return 0;
+}
+
+static void print_help(const cli_session *session, const cli_option *options, int n_options) {
+  const cli_command *command = cli_find_command(session->command);
+  if (command)
+    printf("%s\n\nusage: %s\n\n", command->summary, command->usage);
+  cli_print_options(stdout, options, n_options);
+}
+
+int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
+              const char **positional, int *n_positional) {
+  int is_help = 0, exit_code = CLI_DONE, is_over = 0;
+  cli_option common[N_COMMON];
+  list_common(session, &is_help, common);
+  option_set set = {{options, common}, {n_options, N_COMMON}};
+  *n_positional = 0;
+  if (asks_for_help(argc, argv)) {
+    print_help(session, options, n_options);
+    return -1;
+  }
+  for (int i = 1; i < argc && exit_code == CLI_DONE; i++) {
+    if (!is_over && strcmp(argv[i], "--") == 0)
+      is_over = 1;
+    else if (is_over || argv[i][0] != '-' || argv[i][1] == '\0')
+      positional[(*n_positional)++] = argv[i];
+    else
+      exit_code = parse_option(session, &set, argc, argv, &i);
+  }
+  return exit_code;
+}
+
+/* Columns on the screen, one a character. */
+static int text_width(const char *text) {
+  int width = 0;
+  for (; *text; text++)
+    width += ((unsigned char)*text & 0xC0) != 0x80;
+  return width;
+}
+
+static void print_option(FILE *to, const cli_option *option) {
+  const int help_column = 28;
+  const char *argument = option->argument ? option->argument : "";
+  int width = fprintf(to, "  %s%s%s%s", dashes(option), option->name, *argument ? " " : "", argument);
+  width += text_width(argument) - (int)strlen(argument);
+  if (width > help_column - 2)
+    fprintf(to, "\n%*s%s\n", help_column, "", option->help);
+  else
+    fprintf(to, "%*s%s\n", help_column - width, "", option->help);
+}
+
+void cli_print_options(FILE *to, const cli_option *options, int n_options) {
+  cli_session session = {0};
+  int is_help;
+  cli_option common[N_COMMON];
+  list_common(&session, &is_help, common);
+  fputs("options:\n", to);
+  for (int i = 0; i < n_options; i++)
+    if (options[i].help)
+      print_option(to, &options[i]);
+  fputs("\noptions of every command:\n", to);
+  for (int i = 0; i < N_COMMON; i++)
+    if (common[i].help)
+      print_option(to, &common[i]);
+}

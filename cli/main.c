@@ -1,0 +1,118 @@
+/* The program: finds the sub-command and hands over. */
+#include <errno.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/suggest.h"
+
+/* A build without a command's file is a build without that command. */
+#pragma weak cli_make
+#pragma weak cli_prepare
+#pragma weak cli_render
+#pragma weak cli_diff
+#pragma weak cli_info
+
+static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_render, &cli_diff, &cli_info};
+
+enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
+
+const cli_command *cli_find_command(const char *name) {
+  for (int i = 0; i < N_COMMANDS; i++)
+    if (commands[i] && strcmp(commands[i]->name, name) == 0)
+      return commands[i];
+  return NULL;
+}
+
+static int refuse_command(const char *name) {
+  int is_option = name[0] == '-';
+  const char *kind = is_option ? "option" : "command";
+  const char *nearest = cli_nearer_word(name, NULL, is_option ? "--version" : "help");
+  if (is_option)
+    nearest = cli_nearer_word(name, nearest, "--help");
+  for (int i = 0; i < N_COMMANDS && !is_option; i++)
+    if (commands[i])
+      nearest = cli_nearer_word(name, nearest, commands[i]->name);
+  if (nearest)
+    return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
+  return cli_usage("unknown %s %s; see conic help", kind, name);
+}
+
+static void print_usage(FILE *to) {
+  fputs("conic draws point-sampled surfaces as splats.\n\n"
+        "usage: conic COMMAND [arguments]\n"
+        "       conic help [COMMAND]\n"
+        "       conic --version\n\n"
+        "commands:\n",
+        to);
+  for (int i = 0; i < N_COMMANDS; i++)
+    if (commands[i])
+      fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+}
+
+static int help(int argc, char **argv) {
+  if (argc < 2 || strcmp(argv[1], "help") == 0 || argv[1][0] == '-') {
+    print_usage(stdout);
+    fputs("\nexit codes:\n"
+          "  0  done\n"
+          "  1  compared and different\n"
+          "  2  wrong usage\n"
+          "  3  an input that cannot be used\n"
+          "  4  a resource failed: memory, disk, what this build or machine lacks\n",
+          stdout);
+    return CLI_DONE;
+  }
+  const cli_command *command = cli_find_command(argv[1]);
+  if (!command)
+    return refuse_command(argv[1]);
+  char ask[] = "--help";
+  char *arguments[] = {argv[1], ask, NULL};
+  cli_session session = {.command = command->name};
+  return command->run(&session, 2, arguments);
+}
+
+static void print_features(const char *label, int available) {
+  fputs(label, stdout);
+  int n_printed = 0;
+  for (int i = 0; conic_feature_at(i); i++)
+    if (conic_feature_at(i)->available == available)
+      n_printed += printf(" %s", conic_feature_at(i)->name) > 0;
+  puts(n_printed ? "" : " none");
+}
+
+static int print_version(void) {
+  printf("conic %s\n", conic_version());
+  puts("License: BSD-3-Clause. There is no warranty.");
+  print_features("In this build:", 1);
+  print_features("Not in this build:", 0);
+  return CLI_DONE;
+}
+
+static int run_command(int argc, char **argv) {
+  const cli_command *command = cli_find_command(argv[0]);
+  if (!command)
+    return refuse_command(argv[0]);
+  cli_session session = {.command = command->name};
+  int exit_code = command->run(&session, argc, argv);
+  cli_session_close(&session);
+  return exit_code;
+}
+
+static int run(int argc, char **argv) {
+  if (argc < 2) {
+    print_usage(stderr);
+    return CLI_USAGE;
+  }
+  if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
+    return help(argc - 1, argv + 1);
+  if (strcmp(argv[1], "--version") == 0)
+    return print_version();
+  return run_command(argc - 1, argv + 1);
+}
+
+int main(int argc, char **argv) {
+  int exit_code = run(argc, argv);
+  errno = 0;
+  if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)
+    return cli_error(CLI_RESOURCE, "standard output: cannot write: %s", errno ? strerror(errno) : "the device failed");
+  return exit_code;
+}

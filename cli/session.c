@@ -1,0 +1,197 @@
+#include "cli/session.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
+static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
+
+static volatile sig_atomic_t is_interrupted;
+
+double cli_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */
+unsigned long long cli_peak_rss_bytes(void) {
+  unsigned long long kibibytes = 0;
+  char line[256];
+  FILE *file = fopen("/proc/self/status", "r");
+  while (file && !kibibytes && fgets(line, sizeof line, file))
+    if (strncmp(line, "VmHWM:", 6) == 0)
+      kibibytes = strtoull(line + 6, NULL, 10);
+  if (file)
+    fclose(file);
+  struct rusage usage;
+  if (!kibibytes && getrusage(RUSAGE_SELF, &usage) == 0)
+    kibibytes = (unsigned long long)usage.ru_maxrss;
+  return kibibytes * 1024;
+}
+
+static void print_message(const char *label, const char *format, va_list arguments) {
+  fprintf(stderr, "conic: %s", label);
+  vfprintf(stderr, format, arguments);
+  fputc('\n', stderr);
+}
+
+int cli_usage(const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_message("error: ", format, arguments);
+  va_end(arguments);
+  return CLI_USAGE;
+}
+
+int cli_error(int exit_code, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  print_message("error: ", format, arguments);
+  va_end(arguments);
+  return exit_code;
+}
+
+int cli_exit_of(conic_status status) {
+  switch (status) {
+  case CONIC_OK:
+    return CLI_DONE;
+  case CONIC_ERROR_ARGUMENT:
+    return CLI_USAGE;
+  case CONIC_ERROR_INPUT:
+    return CLI_INPUT;
+  case CONIC_ERROR_MEMORY:
+  case CONIC_ERROR_IO:
+  case CONIC_ERROR_UNSUPPORTED:
+  case CONIC_ERROR_CANCELLED:
+    break;
+  }
+  return CLI_RESOURCE;
+}
+
+int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths) {
+  for (int i = 0; i < n_paths; i++) {
+    for (int j = i + 1; j <= n_paths; j++) {
+      const char *first = paths[i], *second = j < n_paths ? paths[j] : session->json_path;
+      if (!first || !second || strcmp(first, second) != 0 || strncmp(first, "/dev/", 5) == 0)
+        continue;
+      if (strcmp(first, "-") == 0)
+        return cli_usage("%s: two outputs cannot both go to standard output", session->command);
+      return cli_usage("%s: two outputs cannot both go to %s", session->command, first);
+    }
+  }
+  return CLI_DONE;
+}
+
+static void erase_bar(cli_session *session) {
+  if (session->bar_is_shown)
+    fputs("\r\033[K", stderr);
+  session->bar_is_shown = 0;
+}
+
+static int bar_cells(void) {
+  struct winsize window;
+  int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col ? window.ws_col : 80;
+  int cells = columns - 36;
+  return cells < 0 ? 0 : cells > 40 ? 40 : cells;
+}
+
+static void draw_bar(cli_session *session, double fraction, double now) {
+  char bar[48] = "", remaining[32] = "";
+  int cells = bar_cells(), full = (int)(fraction * cells);
+  for (int i = 0; i < cells; i++)
+    bar[i] = i < full ? '#' : '.';
+  double elapsed = now - session->task_seconds;
+  if (fraction > 0.0 && elapsed > 0.5) {
+    double seconds = elapsed * (1.0 - fraction) / fraction;
+    if (seconds < 359999.0)
+      snprintf(remaining, sizeof remaining, "  ETA %d:%02d", (int)seconds / 60, (int)seconds % 60);
+  }
+  fprintf(stderr, "\r%-10.16s %s %3d %%%s\033[K", session->task, bar, (int)(100.0 * fraction), remaining);
+  fflush(stderr);
+  session->bar_is_shown = 1;
+  session->drawn_seconds = now;
+}
+
+static void show_progress(cli_session *session, const char *task, double fraction) {
+  const double refresh_seconds = 1.0 / 6.0;
+  double now = cli_seconds();
+  fraction = fraction > 0.0 ? fraction < 1.0 ? fraction : 1.0 : 0.0;
+  if (strncmp(session->task, task, sizeof session->task - 1) != 0) {
+    snprintf(session->task, sizeof session->task, "%s", task);
+    session->task_seconds = now;
+  }
+  if (fraction >= 1.0) {
+    erase_bar(session);
+    session->task[0] = '\0';
+  } else if (now - session->drawn_seconds >= refresh_seconds)
+    draw_bar(session, fraction, now);
+}
+
+static int on_progress(void *cookie, const char *task, double fraction) {
+  cli_session *session = cookie;
+  if (!session->is_quiet && isatty(STDERR_FILENO)) {
+    pthread_mutex_lock(&screen);
+    show_progress(session, task, fraction);
+    pthread_mutex_unlock(&screen);
+  }
+  return is_interrupted;
+}
+
+static void on_log(void *cookie, conic_log_level level, const char *message) {
+  cli_session *session = cookie;
+  if ((level == CONIC_LOG_WARNING && session->is_quiet) || (level == CONIC_LOG_INFO && !session->is_verbose))
+    return;
+  const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
+  pthread_mutex_lock(&screen);
+  erase_bar(session);
+  fprintf(stderr, "conic: %s%s\n", label, message);
+  pthread_mutex_unlock(&screen);
+}
+
+static void on_interrupt(int signal_number) {
+  (void)signal_number;
+  is_interrupted = 1;
+}
+
+/* The first signal asks the work to stop, so that it removes what it has half written; the second kills. A signal that
+ * whoever started the program has turned off stays off. */
+static void catch_signal(int signal_number) {
+  struct sigaction action;
+  if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
+    return;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_interrupt;
+  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal_number, &action, NULL);
+}
+
+int cli_session_open(cli_session *session) {
+  conic_context_options options;
+  conic_context_options_init(&options);
+  options.log = on_log;
+  options.log_cookie = session;
+  options.progress = on_progress;
+  options.progress_cookie = session;
+  options.threads = session->threads;
+  conic_status status = conic_context_create(&options, &session->context);
+  if (status != CONIC_OK)
+    return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
+  catch_signal(SIGINT);
+  catch_signal(SIGTERM);
+  return CLI_DONE;
+}
+
+void cli_session_close(cli_session *session) {
+  erase_bar(session);
+  conic_context_destroy(session->context);
+  session->context = NULL;
+}

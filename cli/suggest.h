@@ -1,0 +1,11 @@
+/* What a mistyped word may have meant. */
+#ifndef CLI_SUGGEST_H
+#define CLI_SUGGEST_H
+
+/* How many letters must be inserted, left out, replaced or swapped with their neighbour to make one of the other. */
+int cli_word_distance(const char *a, const char *b);
+
+/* The name nearest to `word` so far, for a loop over names: `best` or `name`, and null while none is near enough. */
+const char *cli_nearer_word(const char *word, const char *best, const char *name);
+
+#endif

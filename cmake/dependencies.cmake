@@ -1,0 +1,51 @@
+# What conic can use: all of it optional, but for threads.
+include(CheckLanguage)
+
+set(THREADS_PREFER_PTHREAD_FLAG ON)
+find_package(Threads REQUIRED)
+
+if(CONIC_WITH_OPENEXR)
+  set(CMAKE_MESSAGE_LOG_LEVEL WARNING) # Debian's package of it talks even when asked to be quiet
+  find_package(OpenEXR 3.1 CONFIG QUIET)
+  unset(CMAKE_MESSAGE_LOG_LEVEL)
+endif()
+
+if(CONIC_WITH_OPENIMAGEIO)
+  if(NOT CMAKE_CXX_COMPILER)
+    unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
+  endif()
+  check_language(CXX)
+  if(CMAKE_CXX_COMPILER)
+    enable_language(CXX)
+    set(CMAKE_CXX_STANDARD 17)
+    set(CMAKE_CXX_STANDARD_REQUIRED ON)
+    set(CMAKE_CXX_EXTENSIONS OFF)
+    set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+    include(cmake/openimageio.cmake)
+  endif()
+endif()
+
+# Looked for, so that the report below is whole, but nothing is built on them yet.
+find_package(OpenCL QUIET)
+find_package(CURL QUIET)
+find_library(ZSTD_LIBRARY zstd)
+find_path(ZSTD_INCLUDE_FOLDER zstd.h)
+mark_as_advanced(ZSTD_LIBRARY ZSTD_INCLUDE_FOLDER)
+
+set(found_openexr ${OpenEXR_FOUND})
+set(found_openimageio ${OpenImageIO_FOUND})
+set(found_opencl ${OpenCL_FOUND})
+set(found_curl ${CURL_FOUND})
+if(ZSTD_LIBRARY AND ZSTD_INCLUDE_FOLDER)
+  set(found_zstd TRUE)
+endif()
+foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
+        "opencl:OpenCL (not used yet)" "zstd:zstd (not used yet)" "curl:CURL (not used yet)")
+  string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
+  set(description "${CMAKE_MATCH_2}")
+  if(found_${CMAKE_MATCH_1})
+    message(STATUS "Found: ${description}")
+  else()
+    message(STATUS "Not found: ${description}")
+  endif()
+endforeach()

@@ -1,0 +1,35 @@
+/* A model that grows while it is read. */
+#ifndef CORE_BUILDER_H
+#define CORE_BUILDER_H
+
+#include "conic/model.h"
+
+typedef struct conic_builder {
+  conic_context *context;
+  conic_model *model; /* points.count says how many points have been filled in */
+  size_t point_capacity, triangle_capacity;
+} conic_builder;
+
+/* The most points a model can have: indices are 32 bits and the largest stands for none. */
+#define CONIC_MAX_POINTS UINT64_C(0xFFFFFFFE)
+
+/* Starts with an empty model whose points have the optional arrays of `fields`. What has been built is released by
+ * conic_model_release. Errors: MEMORY. */
+conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields, conic_builder *builder);
+
+/* Room for `count` points in all; grows at least by half, so that many small steps cost little. Errors: MEMORY. */
+conic_status conic_builder_reserve_points(conic_builder *builder, size_t count);
+
+/* Room for exactly `count` points, or more where there is more. Errors: MEMORY. */
+conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count);
+
+/* Gives the points another optional array, filled with white, 1 or zero for those that there are. Errors: MEMORY. */
+conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field field);
+
+/* Room for `count` triangles in all. Errors: MEMORY. */
+conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count);
+
+/* Errors: MEMORY. */
+conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c);
+
+#endif

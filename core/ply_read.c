@@ -1,0 +1,171 @@
+#include "core/ply_read.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/ply_columns.h"
+
+/* What the reading of the vertices shares. */
+typedef struct vertex_reader {
+  conic_ply_source *source;
+  const conic_ply_property *properties;
+  conic_ply_layout layout;
+  conic_builder *builder;
+  conic_ply_block block;
+} vertex_reader;
+
+/* Appends the block's first `n` rows to the points. A known file size has shown that all rows can be there; behind a
+ * pipe the arrays grow with what has really come. */
+static conic_status append_block(vertex_reader *reader, size_t n) {
+  conic_splats *points = &reader->builder->model->points;
+  conic_status status = conic_builder_reserve_points(reader->builder, points->count + n);
+  if (status != CONIC_OK)
+    return status;
+  conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, points->count, points);
+  points->count += n;
+  return CONIC_OK;
+}
+
+/* Binary rows of one size: column by column, straight from the window. */
+static conic_status read_blocks(vertex_reader *reader) {
+  conic_ply_source *source = reader->source;
+  conic_input *input = source->input;
+  size_t row_bytes = source->element->least_row_bytes;
+  while (source->i_row < source->element->count) {
+    uint64_t left = source->element->count - source->i_row;
+    conic_status status = conic_input_fill(input, row_bytes);
+    size_t n = conic_input_available(input) / row_bytes;
+    if (status != CONIC_OK)
+      return status;
+    if (n == 0)
+      return conic_ply_truncated(source);
+    n = n < CONIC_PLY_BLOCK ? n : CONIC_PLY_BLOCK;
+    n = n < left ? n : (size_t)left;
+    for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++) {
+      int i_property = reader->layout.property[column];
+      if (i_property >= 0)
+        conic_ply_convert(conic_input_bytes(input) + reader->properties[i_property].row_offset, row_bytes, n,
+                          reader->layout.type[column], source->format, reader->block[column]);
+    }
+    status = append_block(reader, n);
+    if (status != CONIC_OK)
+      return status;
+    input->next += n * row_bytes;
+    source->i_row += n;
+  }
+  return CONIC_OK;
+}
+
+/* One row, value by value, into row `i_row` of the block. */
+static conic_status read_row(vertex_reader *reader, const int *column_of_property, size_t i_row) {
+  conic_ply_source *source = reader->source;
+  conic_status status = conic_ply_begin_row(source);
+  for (size_t i = 0; status == CONIC_OK && i < source->element->n_properties; i++) {
+    const conic_ply_property *property = &reader->properties[i];
+    uint64_t count = 1;
+    if (column_of_property[i] >= 0) {
+      status = conic_ply_read_value(source, property->type, &reader->block[column_of_property[i]][i_row]);
+      continue;
+    }
+    if (property->is_list)
+      status = conic_ply_read_list_length(source, property, &count);
+    if (status == CONIC_OK)
+      status = conic_ply_skip_values(source, property->type, count);
+  }
+  return status == CONIC_OK ? conic_ply_end_row(source) : status;
+}
+
+static conic_status read_rows(vertex_reader *reader) {
+  const conic_ply_element *element = reader->source->element;
+  conic_context *context = reader->source->input->context;
+  conic_status status = CONIC_OK;
+  int *column_of_property = conic_memory_allocate(context, element->n_properties, sizeof *column_of_property);
+  if (!column_of_property)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < element->n_properties; i++)
+    column_of_property[i] = -1;
+  for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++)
+    if (reader->layout.property[column] >= 0)
+      column_of_property[reader->layout.property[column]] = column;
+  for (uint64_t done = 0; status == CONIC_OK && done < element->count;) {
+    uint64_t left = element->count - done;
+    size_t n = left < CONIC_PLY_BLOCK ? (size_t)left : CONIC_PLY_BLOCK;
+    for (size_t i = 0; status == CONIC_OK && i < n; i++)
+      status = read_row(reader, column_of_property, i);
+    if (status == CONIC_OK)
+      status = append_block(reader, n);
+    done += n;
+  }
+  conic_memory_release(context, column_of_property);
+  return status;
+}
+
+static conic_status read_vertices(vertex_reader *reader) {
+  const conic_ply_source *source = reader->source;
+  const conic_ply_element *element = source->element;
+  conic_status status = CONIC_OK;
+  if (source->input->has_size)
+    status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
+  if (status != CONIC_OK)
+    return status;
+  int is_plain =
+      source->format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
+  return is_plain ? read_blocks(reader) : read_rows(reader);
+}
+
+/* Elements stand in the file in the header's order; those that mean nothing here are passed over. */
+static conic_status read_elements(vertex_reader *reader, const conic_ply_header *header,
+                                  const conic_ply_element *vertices) {
+  conic_ply_source *source = reader->source;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; status == CONIC_OK && i < header->n_elements; i++) {
+    const conic_ply_element *element = &header->elements[i];
+    status = conic_ply_begin_element(source, element);
+    if (status != CONIC_OK)
+      break;
+    if (element == vertices)
+      status = read_vertices(reader);
+    else if ((strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0) && element->count > 0)
+      status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
+    else
+      status = conic_ply_skip_element(source, header);
+  }
+  return status;
+}
+
+static conic_status read_body(conic_input *input, const conic_read_options *options, const conic_ply_header *header,
+                              conic_model *model) {
+  conic_builder builder;
+  conic_ply_source source = {.input = input, .format = header->format};
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  if (!vertices)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no element 'vertex' in the header (line %llu)",
+                      input->name, (unsigned long long)(input->line - 1));
+  if (vertices->count > CONIC_MAX_POINTS)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %llu vertices are too many (line %llu)", input->name,
+                      (unsigned long long)vertices->count, (unsigned long long)vertices->line);
+  vertex_reader *reader = conic_memory_allocate(input->context, 1, sizeof *reader);
+  if (!reader)
+    return CONIC_ERROR_MEMORY;
+  reader->source = &source;
+  reader->builder = &builder;
+  reader->properties = header->properties + vertices->first_property;
+  conic_status status = conic_ply_layout_find(input, header, vertices, options->cutoff, &reader->layout);
+  if (status == CONIC_OK)
+    status = conic_builder_begin(input->context, model, reader->layout.fields, &builder);
+  if (status == CONIC_OK)
+    status = read_elements(reader, header, vertices);
+  conic_memory_release(input->context, reader);
+  return status;
+}
+
+conic_status conic_ply_read(conic_input *input, const conic_read_options *options, conic_model *model) {
+  conic_ply_header header;
+  conic_status status = conic_ply_header_read(input, &header);
+  if (status != CONIC_OK)
+    return status;
+  status = read_body(input, options, &header, model);
+  conic_ply_header_release(input->context, &header);
+  return status;
+}

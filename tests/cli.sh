@@ -1,0 +1,143 @@
+#!/usr/bin/env bash
+# The program as its users and their scripts rely on it: help, exit codes, messages, and nothing half-written.
+set -uo pipefail
+
+conic=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# Runs conic; its output is then in `out` and `err`. run EXIT_CODE ARGUMENTS …
+run() {
+  local wanted=$1 got
+  shift
+  "$conic" "$@" > out 2> err < /dev/null
+  got=$?
+  [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 err)"
+}
+# The same for a run that must fail: one line on standard error, in the one form; nothing on standard output.
+run_wrong() { # EXIT_CODE, PATTERN, ARGUMENTS …
+  local pattern=$2
+  run "$1" "${@:3}"
+  [[ ! -s out ]] || fail "conic ${*:3}: something on standard output"
+  [[ $(wc -l < err) -eq 1 ]] || fail "conic ${*:3}: not one line of error: $(head -c 300 err)"
+  grep -q '^conic: error: ' err || fail "conic ${*:3}: not an error line: $(head -c 300 err)"
+  grep -qe "$pattern" err || fail "conic ${*:3}: no \"$pattern\" in: $(head -c 300 err)"
+}
+no_files_but() { # NAMES: what may be in the folder `outputs`
+  local found
+  found=$(cd outputs && find . -mindepth 1 -printf '%P ')
+  [[ $found == "$*" ]] || fail "left in the folder: $found"
+}
+mkdir outputs
+
+# Help and version
+run 2
+[[ ! -s out && -s err ]] || fail "without arguments the short help belongs on standard error"
+grep -q '^usage: conic ' err || fail "no usage without arguments"
+run 0 help
+[[ -s out && ! -s err ]] || fail "help belongs on standard output"
+cp out help
+for ask in --help -h; do
+  run 0 $ask
+  cmp -s out help || fail "conic $ask is not conic help"
+done
+for command in make prepare render diff info; do
+  grep -q "^  $command " help || fail "conic help does not list $command"
+  run 0 help $command
+  [[ -s out && ! -s err ]] || fail "conic help $command belongs on standard output"
+  grep -q "^usage: conic $command" out || fail "conic help $command shows no usage"
+  grep -qe "^  --quiet " out || fail "conic help $command shows no common options"
+  cp out help_command
+  run 0 $command --help
+  cmp -s out help_command || fail "conic $command --help is not conic help $command"
+done
+run 0 --version
+grep -qE '^conic [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no version"
+grep -q 'BSD-3-Clause' out || fail "no license"
+grep -q '^In this build:' out || fail "no features"
+grep -q '^Not in this build:.*OpenCL' out || fail "what is not used is not said"
+
+# Wrong usage
+run_wrong 2 'did you mean render?' rendr
+run_wrong 2 'did you mean prepare?' help prepar
+run_wrong 2 'did you mean --version?' --versoin
+run_wrong 2 'unknown command xyzzy' xyzzy
+for command in make prepare render diff info; do
+  run_wrong 2 'did you mean --quiet?' $command --quite
+  run_wrong 2 'threads' $command --threads many
+  run_wrong 2 'needs a value' $command --json
+done
+run_wrong 2 '' make
+run_wrong 2 '' make nothing-known -n 10 -o outputs/a.ply
+run_wrong 2 '' make sphere -n 10
+run_wrong 2 '' render
+run_wrong 2 '' diff one.pfm
+run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+no_files_but
+
+# Inputs that cannot be used
+run_wrong 3 'absent.ply' info absent.ply
+run_wrong 3 'absent.ply' render absent.ply -o outputs/a.pfm
+run_wrong 3 'absent.ply' prepare absent.ply -o outputs/a.ply
+run_wrong 3 'absent.pfm' diff absent.pfm absent.pfm
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n' \
+  > short.ply
+head -c 5000 /dev/zero > zeros.ply
+: > empty.ply
+for input in short.ply zeros.ply empty.ply .; do
+  run_wrong 3 "^conic: error: $input: " render $input -o outputs/a.pfm
+done
+no_files_but
+
+# Resources that fail
+run_wrong 4 'outputs/none/a.ply' make sphere -n 10 -o outputs/none/a.ply
+run_wrong 4 'outputs' make sphere -n 10 -o outputs
+run_wrong 4 'outputs/none/a.json' make sphere -n 10 -o outputs/a.ply --json outputs/none/a.json
+rm -f outputs/a.ply
+if [[ -w /dev/full ]]; then
+  run_wrong 4 '/dev/full' make sphere -n 100000 -o /dev/full
+  "$conic" help > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "help on a full disk: exit code"
+  "$conic" --version > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "version on a full disk: exit code"
+  "$conic" make sphere -n 10 -o outputs/a.ply --json - > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "statistics on a full disk: exit code"
+  rm -f outputs/a.ply
+fi
+no_files_but
+
+# Done: pictures of the same splats are equal, of others different
+run 0 make sphere -n 2000 -o a.ply --json -
+head -n 1 out | grep -q '^{$' || fail "statistics do not begin the standard output"
+tail -n 1 out | grep -q '^}$' || fail "statistics do not end the standard output"
+grep -q '"points_out": 2000' out || fail "statistics without points_out"
+run 0 make torus -n 2000 -o - # the same bytes by way of a pipe
+cp out b.ply
+run 0 make torus -n 2000 -o c.ply
+cmp -s b.ply c.ply || fail "make writes other bytes to standard output"
+[[ ! -s err ]] || fail "make says something without a terminal: $(head -c 300 err)"
+for scene in a b c; do
+  run 0 render $scene.ply -o $scene.pfm --size 64x48
+  [[ ! -s out && ! -s err ]] || fail "render says something without a terminal: $(head -c 300 err)"
+done
+run 0 diff b.pfm c.pfm
+run 1 diff a.pfm b.pfm
+run 1 diff a.pfm b.pfm --max-abs 0.0001
+run 0 diff a.pfm b.pfm --max-abs 1e9
+run_wrong 3 'b.ply' diff a.pfm b.ply
+run 0 info a.ply --json -
+grep -q '"points": 2000' out || fail "info does not count"
+
+# A run that is stopped leaves nothing behind
+timeout --preserve-status --signal TERM --kill-after 60 1 "$conic" make sphere -n 2G -o outputs/a.ply > out 2> err
+[[ $? -eq 4 ]] || fail "a stopped run: exit code"
+no_files_but
+
+[[ $failures -eq 0 ]]

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# Installs into an empty folder, moves that, and builds examples/minimal.c against it: by find_package (shared and
+# static) and by pkg-config. Each program must draw a picture that is not black, and all the same one.
+set -euo pipefail
+
+source_folder=$1
+build_folder=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+setting() { # NAME: its value in the build
+  sed -nE "s/^$1:[A-Z]+=(.*)$/\1/p" "$build_folder/CMakeCache.txt"
+}
+
+if [[ -n $(setting CONIC_SANITIZE) ]]; then
+  echo "skipped: a sanitized library is not one to install"
+  exit 77
+fi
+
+cmake --install "$build_folder" --prefix "$work/first" > /dev/null
+mv "$work/first" "$work/prefix"
+library_folder=$(dirname "$(find "$work/prefix" -name libconic.so)")
+export LD_LIBRARY_PATH=$library_folder
+
+not_black() { # PFM: some byte behind the header is not zero
+  [[ -s $1 && $(tail -c +64 "$1" | tr -d '\000' | wc -c) -gt 0 ]]
+}
+# The check itself, on a black picture and a grey one.
+{ printf 'PF\n8 8\n-1.0\n' && head -c 768 /dev/zero; } > "$work/black.pfm"
+{ printf 'PF\n8 8\n-1.0\n' && head -c 768 /dev/zero | tr '\000' '?'; } > "$work/grey.pfm"
+if not_black "$work/black.pfm" || ! not_black "$work/grey.pfm"; then
+  echo "the check for black is wrong"
+  exit 1
+fi
+
+mkdir "$work/project"
+cat > "$work/project/CMakeLists.txt" << END
+cmake_minimum_required(VERSION 3.25)
+project(minimal LANGUAGES C)
+find_package(conic 0.1 REQUIRED)
+add_executable(shared "$source_folder/examples/minimal.c")
+target_link_libraries(shared conic::conic m)
+option(STATIC "" OFF)
+if(STATIC)
+  enable_language(CXX)
+  find_package(conic 0.1 REQUIRED COMPONENTS static)
+  add_executable(static "$source_folder/examples/minimal.c")
+  target_link_libraries(static conic::static)
+endif()
+END
+
+build_package() { # NAME, CMake settings …
+  local name=$1
+  shift
+  cmake -S "$work/project" -B "$work/$name" -G "$(setting CMAKE_GENERATOR)" -DCMAKE_PREFIX_PATH="$work/prefix" \
+    -DCMAKE_C_COMPILER="$(setting CMAKE_C_COMPILER)" "$@" > "$work/$name.log" 2>&1 &&
+    cmake --build "$work/$name" >> "$work/$name.log" 2>&1 && return
+  cat "$work/$name.log"
+  exit 1
+}
+draw() { # PROGRAM
+  "$1" "$1.pfm" || { echo "$1 failed"; exit 1; }
+  not_black "$1.pfm" || { echo "$1 drew a black picture"; exit 1; }
+}
+
+build_package by_package
+draw "$work/by_package/shared"
+
+build_package by_package_static -DSTATIC=ON
+draw "$work/by_package_static/static"
+cmp "$work/by_package/shared.pfm" "$work/by_package_static/static.pfm"
+
+if command -v pkg-config > /dev/null; then
+  export PKG_CONFIG_PATH=$library_folder/pkgconfig
+  # shellcheck disable=SC2046 # its answer is several words
+  "$(setting CMAKE_C_COMPILER)" -std=c11 "$source_folder/examples/minimal.c" -o "$work/by_pkg_config" $(pkg-config --cflags --libs conic) -lm
+  draw "$work/by_pkg_config"
+  cmp "$work/by_package/shared.pfm" "$work/by_pkg_config.pfm"
+else
+  echo "no pkg-config here: that way was not tried"
+fi
+
+"$work/prefix/bin/conic" --version > "$work/version"
+grep -q "^conic " "$work/version"
