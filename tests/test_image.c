@@ -229,8 +229,8 @@ static void test_read_failures(conic_context *context) {
   write_bytes(in_folder("a.png"), "ply\nformat ascii 1.0\n", 21);
   CHECK(conic_image_read(context, in_folder("a.png"), &image) == CONIC_ERROR_INPUT);
   const conic_status broken = has_feature("OpenImageIO") ? CONIC_ERROR_INPUT : CONIC_ERROR_UNSUPPORTED;
-  write_bytes(in_folder("a.png"), "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16);
-  CHECK(conic_image_read(context, in_folder("a.png"), &image) == broken);
+  write_bytes(in_folder("a.hdr"), "#?RADIANCE\nFORMAT=", 18);
+  CHECK(conic_image_read(context, in_folder("a.hdr"), &image) == broken);
   CHECK(conic_image_planes(&image) == 0);
 }
 
