@@ -12,8 +12,8 @@
 #include "core/trigonometry.h"
 
 static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
-    [CONIC_SCENE_PLANE] = &conic_scene_plane, [CONIC_SCENE_SPHERE] = &conic_scene_sphere,
-    [CONIC_SCENE_TORUS] = &conic_scene_torus, [CONIC_SCENE_KNOT] = &conic_scene_knot,
+    [CONIC_SCENE_PLANE] = &conic_scene_plane,     [CONIC_SCENE_SPHERE] = &conic_scene_sphere,
+    [CONIC_SCENE_TORUS] = &conic_scene_torus,     [CONIC_SCENE_KNOT] = &conic_scene_knot,
     [CONIC_SCENE_TERRAIN] = &conic_scene_terrain, [CONIC_SCENE_GYROID] = &conic_scene_gyroid};
 
 /* Pictures number their splats with 32 bits, and the last number means none. */
@@ -187,7 +187,7 @@ typedef struct slab_sampling {
   uint64_t n_found, n_kept; /* points of the lattice before the next one */
 } slab_sampling;
 
-static void sample_lattice_point(void *cookie, const double lattice_point[3]) {
+static void sample_lattice_point(void *cookie, const double start[3]) {
   slab_sampling *slab = cookie;
   const sampling *work = slab->work;
   uint64_t i = slab->n_kept;
@@ -195,7 +195,7 @@ static void sample_lattice_point(void *cookie, const double lattice_point[3]) {
   if (slab->n_kept == i || i < work->first || i - work->first >= work->n)
     return;
   conic_surface_point point;
-  work->scene->kind->project(work->scene->surface, lattice_point, &point);
+  work->scene->kind->project(work->scene->surface, start, &point);
   finish(work->scene, i, &point, work->splats, (size_t)(i - work->first));
 }
 

@@ -1,8 +1,8 @@
 /* What a scene's surface has to give, and what is done with it.
  *
- * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says (an even lattice carried onto the
- * surface by a map that keeps areas). Where no such map is known, the scene has a lattice (core/scene_lattice.h) instead,
- * and `walk` and `project` find its points near the surface and carry them there. */
+ * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says (an even lattice carried
+ * onto the surface by a map that keeps areas). Where no such map is known, the scene has a lattice
+ * (core/scene_lattice.h) instead, and `walk` and `project` find its points near the surface and carry them there. */
 #ifndef CORE_SCENE_H
 #define CORE_SCENE_H
 
@@ -21,8 +21,8 @@ struct conic_surface_point {
 typedef struct conic_scene_kind {
   const char *name, *summary;
 
-  /* Makes scene->surface where the kind needs one, sets scene->area, and scene->lattice where `place` is null. What it has made
-   * on failure is released by conic_scene_destroy. */
+  /* Makes scene->surface where the kind needs one, sets scene->area, and scene->lattice where `place` is null. What it
+   * has made on failure is released by conic_scene_destroy. */
   conic_status (*prepare)(conic_scene *scene);
 
   /* Sample i of scene->options.count; null: by the lattice. */
@@ -37,9 +37,9 @@ struct conic_scene {
   conic_scene_options options;
   const conic_scene_kind *kind;
   double area;
-  double spacing;       /* sqrt(area / count) */
-  float decode[256];    /* linear values of colour codes */
-  void *surface;        /* the kind's own, one allocation; may be null */
+  double spacing;    /* sqrt(area / count) */
+  float decode[256]; /* linear values of colour codes */
+  void *surface;     /* the kind's own, one allocation; may be null */
   conic_lattice lattice;
 };
 
@@ -49,8 +49,8 @@ extern const conic_scene_kind conic_scene_plane, conic_scene_sphere, conic_scene
 /* Makes scene->surface, `bytes` large; null on failure. */
 void *conic_scene_surface(conic_scene *scene, size_t bytes);
 
-/* Point i of n of the golden lattice in the unit square: u = (i + ½)/n, v = i/φ modulo 1, exact to 2⁻⁵³ for any i. It stays
- * even when the square is stretched to a rectangle of any shape and the same area. */
+/* Point i of n of the golden lattice in the unit square: u = (i + ½)/n, v = i/φ modulo 1, exact to 2⁻⁵³ for any i. It
+ * stays even when the square is stretched to a rectangle of any shape and the same area. */
 void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v);
 
 /* The angle ψ with ψ − e·sin ψ = 2π·turns (Kepler's equation), |e| ≤ 0.7, to 1e-7: where the circumference of a bent

@@ -5,8 +5,8 @@
 #include "core/scene.h"
 #include "core/trigonometry.h"
 
-/* sin x cos y + sin y cos z + sin z cos x = 0 with so many periods along an edge of the cube that a picture of it has, on
- * average over its pixels, more than 20 sheets one behind the other. */
+/* sin x cos y + sin y cos z + sin z cos x = 0 with so many periods along an edge of the cube that a picture of it has,
+ * on average over its pixels, more than 20 sheets one behind the other. */
 enum { PERIODS = 22 };
 #define WAVE_NUMBER (PERIODS * CONIC_PI) /* a period is 2 / PERIODS wide */
 
@@ -16,7 +16,8 @@ enum { PERIODS = 22 };
 /* With fewer cells the layer that the lattice fills would reach from one sheet to the next. */
 enum { MIN_CELLS = 4 * PERIODS };
 
-/* Cells along the edge of the tiles that a slab is walked in, so that sines are taken once an edge and not once a cell. */
+/* Cells along the edge of the tiles that a slab is walked in, so that sines are taken once an edge and not once a cell.
+ */
 enum { TILE = 512 };
 
 /* From the middle of the cube outwards: ember, apricot, sand, sage, deep blue. */

@@ -115,7 +115,5 @@ static void place(const conic_scene *scene, uint64_t i, conic_surface_point *poi
     point->color[c] = (uint8_t)(point->color[c] / 2);
 }
 
-const conic_scene_kind conic_scene_knot = {.name = "knot",
-                                           .summary = "a (2, 3) torus knot as a tube, colours along it",
-                                           .prepare = prepare,
-                                           .place = place};
+const conic_scene_kind conic_scene_knot = {
+    .name = "knot", .summary = "a (2, 3) torus knot as a tube, colours along it", .prepare = prepare, .place = place};

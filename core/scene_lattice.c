@@ -7,11 +7,11 @@
 #include "core/message.h"
 #include "core/threads.h"
 
-/* floor(found · n_wanted / n_found), as found − ceil(found · surplus / n_found): the surplus is small where the numbers
- * are large, so the product stays below 2⁶⁴. */
+/* found · n_wanted / n_found, rounded: found minus its share of the surplus. The surplus is small where the numbers are
+ * large, so the product stays below 2⁶⁴. */
 uint64_t conic_lattice_kept(const conic_lattice *lattice, uint64_t found) {
   uint64_t surplus = lattice->n_found - lattice->n_wanted;
-  return found - (found * surplus + lattice->n_found - 1) / lattice->n_found;
+  return found - (2 * found * surplus + lattice->n_found - 1) / (2 * lattice->n_found);
 }
 
 /* The slab whose points bring the number of kept points over `i`. */

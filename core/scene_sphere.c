@@ -23,7 +23,8 @@ static conic_status prepare(conic_scene *scene) {
   return CONIC_OK;
 }
 
-/* The Fibonacci lattice: heights in even steps (a zone's area is its height's), longitudes turning by the golden ratio. */
+/* The Fibonacci lattice: heights in even steps (a zone's area is its height's), longitudes turning by the golden ratio.
+ */
 static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
   const sphere *surface = scene->surface;
   uint64_t n = scene->options.count;

@@ -18,8 +18,8 @@ enum { OCTAVES = 10 };
 #define UPLIFT 0.21          /* lifts the island's middle */
 #define SEA_FLOOR 0.10       /* depth of the ground along the border */
 
-/* The sum of the octaves, and its gradient. Where the octaves so far have made the ground steep, finer ones count less: as if
- * rain had washed the slopes smooth and left the valleys and the ridges rough. */
+/* The sum of the octaves, and its gradient. Where the octaves so far have made the ground steep, finer ones count less:
+ * as if rain had washed the slopes smooth and left the valleys and the ridges rough. */
 static void mountains(uint64_t seed, double x, double z, double *height, double slope[2], double *ruggedness) {
   /* Noise coordinates are (a·x + b·z, −b·x + a·z): turned by the 3-4-5 angle and doubled with each octave. */
   double a = FIRST_FREQUENCY, b = 0.0, amplitude = RELIEF;
@@ -66,8 +66,8 @@ void conic_terrain_at(uint64_t seed, double x, double z, conic_terrain_place *pl
 
 /* From the deep to the shore; from the beach to the tree line; bare rock; snow. */
 static const uint8_t sea[][3] = {{0x12, 0x2f, 0x56}, {0x1b, 0x54, 0x7e}, {0x2f, 0x8f, 0xa3}, {0x86, 0xd0, 0xc6}};
-static const uint8_t land[][3] = {{0xe3, 0xd3, 0x9f}, {0x9d, 0xae, 0x5a}, {0x5b, 0x86, 0x41}, {0x3d, 0x66, 0x3a},
-                                  {0x6a, 0x70, 0x4c}, {0x8b, 0x80, 0x6d}};
+static const uint8_t land[][3] = {{0xe3, 0xd3, 0x9f}, {0x9d, 0xae, 0x5a}, {0x5b, 0x86, 0x41},
+                                  {0x3d, 0x66, 0x3a}, {0x6a, 0x70, 0x4c}, {0x8b, 0x80, 0x6d}};
 static const uint8_t rock[][3] = {{0x5d, 0x52, 0x4a}, {0x93, 0x86, 0x79}};
 static const uint8_t snow[3] = {0xf6, 0xf8, 0xfb};
 
@@ -142,42 +142,39 @@ static conic_status prepare(conic_scene *scene) {
                            &scene->lattice);
 }
 
-/* The column over each cell of the slab cuts the layer in an interval of heights, half open so that on flat ground there is always one. */
-static void walk(const void *surface, const conic_lattice *lattice, size_t i_slab, conic_lattice_visit *visit,
-                 void *cookie) {
-  const terrain *self = surface;
-  double point[3];
-  point[2] = conic_lattice_coordinate(lattice, i_slab);
-  for (size_t i = 0; i < lattice->n_cells; i++) {
-    conic_terrain_place place;
-    point[0] = conic_lattice_coordinate(lattice, i);
-    conic_terrain_at(self->seed, point[0], point[2], &place);
-    double middle = place.height / lattice->spacing, half = 0.5 * stretch(&place);
-    double top = floor(middle + half);
-    for (double level = floor(middle - half) + 1.0; level <= top; level += 1.0) {
-      point[1] = level * lattice->spacing;
-      visit(cookie, point);
-    }
-  }
-}
-
 static double clamp_to_square(double t) {
   return t > -1.0 ? t < 1.0 ? t : 1.0 : -1.0;
 }
 
-/* To the foot of the point on the tangent plane of its column, then up or down onto the surface. */
+/* The column over a cell cuts the layer in an interval of heights, half open so that on flat ground it always holds one
+ * point. Projections start at the foot of the point on the tangent plane at the column. */
+static void walk(const void *surface, const conic_lattice *lattice, size_t i_slab, conic_lattice_visit *visit,
+                 void *cookie) {
+  const terrain *self = surface;
+  double x, z = conic_lattice_coordinate(lattice, i_slab);
+  for (size_t i = 0; i < lattice->n_cells; i++) {
+    conic_terrain_place place;
+    x = conic_lattice_coordinate(lattice, i);
+    conic_terrain_at(self->seed, x, z, &place);
+    double length = stretch(&place), middle = place.height / lattice->spacing;
+    double top = floor(middle + 0.5 * length);
+    for (double level = floor(middle - 0.5 * length) + 1.0; level <= top; level += 1.0) {
+      double along = (level * lattice->spacing - place.height) / (length * length);
+      double start[3] = {clamp_to_square(x + along * place.slope[0]), 0.0, clamp_to_square(z + along * place.slope[1])};
+      visit(cookie, start);
+    }
+  }
+}
+
+/* Up onto the surface. */
 static void project(const void *surface, const double start[3], conic_surface_point *point) {
   const terrain *self = surface;
   conic_terrain_place place;
   conic_terrain_at(self->seed, start[0], start[2], &place);
   double length = stretch(&place);
-  double along = (start[1] - place.height) / (length * length);
-  double x = clamp_to_square(start[0] + along * place.slope[0]), z = clamp_to_square(start[2] + along * place.slope[1]);
-  conic_terrain_at(self->seed, x, z, &place);
-  length = stretch(&place);
-  *point = (conic_surface_point){.position = {x, place.height, z},
+  *point = (conic_surface_point){.position = {start[0], place.height, start[2]},
                                  .normal = {-place.slope[0] / length, 1.0 / length, -place.slope[1] / length}};
-  paint(self->seed, x, z, &place, point->color);
+  paint(self->seed, start[0], start[2], &place, point->color);
 }
 
 const conic_scene_kind conic_scene_terrain = {.name = "terrain",
