@@ -4,6 +4,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -50,13 +51,16 @@ bool is_refused(const std::string &format) {
 
 OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &format) {
   OIIO::ImageSpec spec(picture.width, picture.height, picture.n_channels, type_of(picture.sample_bytes));
-  spec.attribute("oiio:ColorSpace", picture.sample_bytes == 4 ? "Linear" : "sRGB");
+  if (format != "tiff") // there it would become a second directory, which breaks files written to memory
+    spec.attribute("oiio:ColorSpace", picture.sample_bytes == 4 ? "Linear" : "sRGB");
   if (picture.is_straight)
     spec.attribute("oiio:UnassociatedAlpha", 1);
   if (format == "png")
     spec.attribute("png:compressionLevel", 1);
-  if (format == "tiff")
+  if (format == "tiff") {
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", ""); // the same picture is the same file, whenever it is written
+  }
   if (format == "jpeg") {
     spec.attribute("Compression", "jpeg:95");
     spec.attribute("jpeg:subsampling", "4:4:4");
@@ -88,8 +92,7 @@ extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_
                                                   int (*take)(void *cookie, const void *bytes, size_t n_bytes),
                                                   void *cookie, char *message) {
   return guarded(message, [&] {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
+    OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(path);
     if (!output)
       return fail(message, OIIO::geterror());
@@ -99,9 +102,9 @@ extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_
         !output->write_image(type_of(picture->sample_bytes), samples) || !output->close())
       return fail(message, output->geterror());
     output.reset(); // some formats write their last bytes here
-    if (bytes.empty())
+    if (memory.buffer().empty())
       return fail(message, "OpenImageIO wrote nothing");
-    if (!take(cookie, bytes.data(), bytes.size()))
+    if (!take(cookie, memory.buffer().data(), memory.buffer().size()))
       return fail(message, "the file cannot be written");
     return CONIC_BRIDGE_OK;
   });

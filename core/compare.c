@@ -1,0 +1,140 @@
+#include "core/compare.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/image.h"
+#include "core/memory.h"
+#include "core/message.h"
+
+/* The sums of one plane, or of several. */
+typedef struct plane_sums {
+  double max_abs, sum_of_squares;
+  double n_samples;
+} plane_sums;
+
+static uint32_t bits_at(const unsigned char *row, size_t i) {
+  uint32_t bits;
+  memcpy(&bits, row + 4 * i, sizeof bits);
+  return bits;
+}
+
+/* |a − b| of floats whose bits differ; NaN, and infinities of two signs, differ by infinity. */
+static double sample_difference(uint32_t a_bits, uint32_t b_bits) {
+  float a, b;
+  memcpy(&a, &a_bits, sizeof a);
+  memcpy(&b, &b_bits, sizeof b);
+  double difference = fabs((double)a - (double)b);
+  return difference >= 0.0 ? difference : (double)INFINITY;
+}
+
+static double integer_difference(uint32_t a, uint32_t b) {
+  return a > b ? (double)(a - b) : (double)(b - a);
+}
+
+/* Row by row, so that the rounding of the sums is the same whatever the rows' number; marks the pixels that differ. */
+static plane_sums compare_plane(const conic_image *a, const conic_image *b, conic_plane plane, unsigned char *differs) {
+  const conic_plane_description *description = conic_plane_describe(plane);
+  size_t n_channels = (size_t)description->n_channels, width = (size_t)a->width;
+  plane_sums sums = {.n_samples = (double)(conic_image_pixels(a) * n_channels)};
+  for (size_t y = 0; y < (size_t)a->height; y++) {
+    size_t first = y * width * n_channels;
+    const unsigned char *a_row = (const unsigned char *)a->planes[plane] + first * 4;
+    const unsigned char *b_row = (const unsigned char *)b->planes[plane] + first * 4;
+    double row_sum = 0.0;
+    if (memcmp(a_row, b_row, width * n_channels * 4) == 0)
+      continue;
+    for (size_t i = 0; i < width * n_channels; i++) {
+      uint32_t a_bits = bits_at(a_row, i), b_bits = bits_at(b_row, i);
+      if (a_bits == b_bits)
+        continue;
+      double difference = description->is_uint ? integer_difference(a_bits, b_bits) : sample_difference(a_bits, b_bits);
+      differs[y * width + i / n_channels] = 1;
+      if (difference > sums.max_abs)
+        sums.max_abs = difference;
+      row_sum += difference * difference;
+    }
+    sums.sum_of_squares += row_sum;
+  }
+  return sums;
+}
+
+static double root_mean(const plane_sums *sums) {
+  return sums->n_samples > 0.0 ? sqrt(sums->sum_of_squares / sums->n_samples) : 0.0;
+}
+
+static void compare_planes(const conic_image *a, const conic_image *b, conic_difference *difference,
+                           unsigned char *differs) {
+  plane_sums total = {0};
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (!a->planes[i] || !b->planes[i])
+      continue;
+    plane_sums sums = compare_plane(a, b, (conic_plane)i, differs);
+    difference->planes[i].compared = 1;
+    difference->planes[i].max_abs = sums.max_abs;
+    difference->planes[i].rmse = root_mean(&sums);
+    if (i == CONIC_PLANE_ID || i == CONIC_PLANE_COUNT)
+      continue;
+    if (sums.max_abs > total.max_abs)
+      total.max_abs = sums.max_abs;
+    total.sum_of_squares += sums.sum_of_squares;
+    total.n_samples += sums.n_samples;
+  }
+  difference->max_abs = total.max_abs;
+  difference->rmse = root_mean(&total);
+  for (size_t i = 0; i < conic_image_pixels(a); i++)
+    difference->differing_pixels += differs[i];
+}
+
+/* ln v for v > 0 within 1e-15, with the same bits everywhere: ln(m·2^e) by the series of artanh((m − 1)/(m + 1)). */
+static double natural_logarithm(double v) {
+  int exponent;
+  double m = frexp(v, &exponent); /* exact; in [½, 1) */
+  if (m < 0.70710678118654752) {
+    m *= 2.0;
+    exponent--;
+  }
+  double t = (m - 1.0) / (m + 1.0), t_squared = t * t, sum = 0.0;
+  for (int k = 23; k >= 1; k -= 2) /* |t| < 0.172: the first term left out is under 1e-20 */
+    sum = sum * t_squared + 1.0 / (double)k;
+  return (double)exponent * 0.69314718055994530942 + 2.0 * t * sum;
+}
+
+static double psnr_of(double mean_square) {
+  if (mean_square == 0.0)
+    return (double)INFINITY;
+  return -10.0 * natural_logarithm(mean_square) / 2.30258509299404568402;
+}
+
+static conic_status compare_colors(conic_context *context, const conic_image *a, const conic_image *b,
+                                   conic_difference *difference) {
+  double sum_of_squares;
+  if (!a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
+    return CONIC_OK;
+  conic_status status = conic_compare_color(context, a, b, &sum_of_squares, &difference->ssim);
+  if (status != CONIC_OK)
+    return status;
+  difference->has_color = 1;
+  difference->psnr = psnr_of(sum_of_squares / (3.0 * (double)conic_image_pixels(a)));
+  return CONIC_OK;
+}
+
+conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_difference *difference) {
+  if (!a || !b || !difference || a->width < 1 || a->height < 1 || b->width < 1 || b->height < 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "compare: an image is missing or empty");
+  memset(difference, 0, sizeof *difference);
+  difference->same_size = a->width == b->width && a->height == b->height;
+  if (!difference->same_size)
+    return CONIC_OK;
+  unsigned char *differs = conic_memory_allocate_zeroed(context, conic_image_pixels(a), 1);
+  if (!differs)
+    return CONIC_ERROR_MEMORY;
+  compare_planes(a, b, difference, differs);
+  conic_memory_release(context, differs);
+  difference->identical = conic_image_planes(a) == conic_image_planes(b) && difference->differing_pixels == 0;
+  conic_status status = compare_colors(context, a, b, difference);
+  if (status == CONIC_OK)
+    status = conic_largest_hole(context, a, b, &difference->largest_hole);
+  return status;
+}

@@ -1,0 +1,66 @@
+#include "conic/image.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/image.h"
+#include "core/message.h"
+
+/* The smallest difference that is told from the next: 2^-20, a millionth. */
+enum { DARKEST_EXPONENT = -20 };
+
+/* How far `difference` is from the smallest (0) to 1 and beyond (1) by its logarithm, taken as straight between powers
+ * of two: that needs no logarithm and no one sees the difference. Infinity and NaN are 1. */
+static float scale_position(double difference) {
+  int exponent;
+  if (!(difference < 1.0))
+    return 1.0f;
+  double mantissa = frexp(difference, &exponent); /* in [½, 1) */
+  double logarithm = (double)(exponent - 1) + (2.0 * mantissa - 1.0);
+  double position = 1.0 - logarithm / DARKEST_EXPONENT;
+  return position > 0.0 ? (float)position : 0.0f;
+}
+
+/* From blue over red and yellow to white. */
+static void paint(float position, float pixel[4]) {
+  static const float stops[4][3] = {{0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+  float scaled = position * 3.0f;
+  int i = scaled < 1.0f ? 0 : scaled < 2.0f ? 1 : 2;
+  float part = scaled - (float)i;
+  for (int c = 0; c < 3; c++)
+    pixel[c] = stops[i][c] + part * (stops[i + 1][c] - stops[i][c]);
+}
+
+/* The largest channel's difference; NaN where a channel's is none. Equal bits differ by nothing. */
+static double pixel_difference(const float *a, const float *b) {
+  double largest = 0.0;
+  for (int c = 0; c < 4; c++) {
+    if (memcmp(&a[c], &b[c], sizeof *a) == 0)
+      continue;
+    double difference = fabs((double)a[c] - (double)b[c]);
+    if (!(difference <= largest))
+      largest = difference >= 0.0 ? difference : (double)INFINITY;
+  }
+  return largest;
+}
+
+conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_image *heatmap) {
+  if (!a || !b || !heatmap || !a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: an image has no colour");
+  if (a->width != b->width || a->height != b->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: the images differ in size, %d × %d and %d × %d",
+                      a->width, a->height, b->width, b->height);
+  conic_status status = conic_image_allocate(context, a->width, a->height, 1u << CONIC_PLANE_RGBA, heatmap);
+  if (status != CONIC_OK)
+    return status;
+  const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
+  float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(a); i++, pixel += 4) {
+    double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i);
+    if (difference > 0.0)
+      paint(scale_position(difference), pixel);
+    pixel[3] = 1.0f;
+  }
+  return CONIC_OK;
+}
