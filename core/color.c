@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A positive number whose logarithm is about 1/n of v's: a start for Newton's iteration, from the bits of the double. */
+/* A positive number whose logarithm is about 1/n of v's: a start for Newton's iteration, from the bits of the double.
+ */
 static double root_guess(double v, int n) {
   uint64_t bits, one = UINT64_C(0x3ff0000000000000);
   memcpy(&bits, &v, sizeof bits);

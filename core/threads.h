@@ -10,8 +10,8 @@
 typedef void conic_task(void *data, size_t i_item, int i_thread);
 
 /* Calls `task` once for each of n_items, in any order, on all threads, and returns when all are done. Items should
- * be coarse (a tile, a chunk of splats). What they compute must not depend on which thread runs them. Cannot fail; must not be
- * called from inside a task. */
+ * be coarse (a tile, a chunk of splats). What they compute must not depend on which thread runs them. Cannot fail; must
+ * not be called from inside a task. */
 void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task, void *data);
 
 #endif

@@ -26,8 +26,9 @@ const char *conic_version(void) {
 #endif
 
 static const conic_feature features[] = {
-    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", CONIC_HAVE_OPENIMAGEIO}, {"OpenCL", CONIC_HAVE_OPENCL},
-    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL},
+    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", CONIC_HAVE_OPENIMAGEIO},
+    {"OpenCL", CONIC_HAVE_OPENCL},   {"zstd", CONIC_HAVE_ZSTD},
+    {"CURL", CONIC_HAVE_CURL},
 };
 
 const conic_feature *conic_feature_at(int i) {

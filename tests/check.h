@@ -1,4 +1,5 @@
-/* The few macros that the tests share: a test is a program that checks, reports every failure, and returns check_result(). */
+/* The few macros that the tests share: a test is a program that checks, reports every failure, and returns
+ * check_result(). */
 #ifndef TESTS_CHECK_H
 #define TESTS_CHECK_H
 

@@ -12,9 +12,9 @@ extern "C" {
 #endif
 
 typedef struct conic_camera {
-  int width, height;          /* pixels, 1 to 65535 each */
-  double fx, fy;              /* focal lengths in pixels */
-  double cx, cy;              /* principal point in pixels */
+  int width, height;           /* pixels, 1 to 65535 each */
+  double fx, fy;               /* focal lengths in pixels */
+  double cx, cy;               /* principal point in pixels */
   double cam_from_world[3][4]; /* rows of the rotation and the translation; columns act on (x, y, z, 1) */
 } conic_camera;
 

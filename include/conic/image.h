@@ -71,14 +71,15 @@ CONIC_API void conic_image_release(conic_context *context, conic_image *image);
 /* 64-bit FNV-1a over the plane's little-endian bytes, row by row; 0 where the plane is not there. */
 CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane);
 
-/* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z or weight as grey),
- * and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats, unpremultiplied where the format wants that). The file
- * appears under its name only when it is whole. "-" writes EXR… to standard output is not supported: ARGUMENT.
- * Errors: ARGUMENT (no plane the format can hold, unknown ending), UNSUPPORTED (not in this build), MEMORY, IO. */
+/* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z
+ * or weight as grey), and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats,
+ * unpremultiplied where the format wants that). The file appears under its name only when it is whole. "-" writes EXR…
+ * to standard output is not supported: ARGUMENT. Errors: ARGUMENT (no plane the format can hold, unknown ending),
+ * UNSUPPORTED (not in this build), MEMORY, IO. */
 CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
 
-/* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns *image.
- * Errors: INPUT, UNSUPPORTED, MEMORY. */
+/* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns
+ * *image. Errors: INPUT, UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
 
 /* How two images differ. See docs/diff.md for the definitions. */
@@ -88,13 +89,13 @@ typedef struct conic_plane_difference {
 } conic_plane_difference;
 
 typedef struct conic_difference {
-  int identical;            /* same size, same planes, same bits */
-  int same_size;            /* where 0, nothing below is set */
-  double max_abs, rmse;     /* over all common planes but id and count; NaN against a number counts as infinite */
-  double psnr, ssim;        /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
-  int has_color;            /* both have rgba: psnr and ssim are set */
-  size_t differing_pixels;  /* pixels where any common plane differs */
-  size_t largest_hole;      /* pixels of the largest 4-connected set covered in the first and not in the second */
+  int identical;           /* same size, same planes, same bits */
+  int same_size;           /* where 0, nothing below is set */
+  double max_abs, rmse;    /* over all common planes but id and count; NaN against a number counts as infinite */
+  double psnr, ssim;       /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
+  int has_color;           /* both have rgba: psnr and ssim are set */
+  size_t differing_pixels; /* pixels where any common plane differs */
+  size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_N_PLANES];
 } conic_difference;
 
@@ -102,8 +103,9 @@ typedef struct conic_difference {
 CONIC_API conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_difference *difference);
 
-/* A false-colour picture of where `b` differs from `a` (rgba plane; same size needed): black where equal, then blue, red, yellow, white by
- * the logarithm of the largest channel's difference. On success the caller owns *heatmap. Errors: ARGUMENT, MEMORY. */
+/* A false-colour picture of where `b` differs from `a` (rgba plane; same size needed): black where equal, then blue,
+ * red, yellow, white by the logarithm of the largest channel's difference. On success the caller owns *heatmap. Errors:
+ * ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_image *heatmap);
 

@@ -13,9 +13,9 @@ extern "C" {
 #endif
 
 typedef struct conic_model {
-  conic_splats points;           /* vertices, raw points or splats */
-  size_t n_triangles;            /* 0 for a set of points */
-  uint32_t (*triangles)[3];      /* vertex indices, each below points.count; polygons and strips are triangulated */
+  conic_splats points;      /* vertices, raw points or splats */
+  size_t n_triangles;       /* 0 for a set of points */
+  uint32_t (*triangles)[3]; /* vertex indices, each below points.count; polygons and strips are triangulated */
 } conic_model;
 
 typedef struct conic_read_options {
@@ -55,10 +55,10 @@ CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
  * neighbours (Confetti §4.3 with the corrections of docs/errata.md); a set that has axes keeps them, and only
- * its zero and non-finite ones are repaired. Missing normals come from the covariance of the neighbours and are oriented
- * consistently. Points that can't be repaired get NaN axes, which the renderer skips and counts, so that indices
- * stay those of the file. The result is the same for any number of threads. `repairs` may be null.
- * Errors: ARGUMENT, MEMORY, CANCELLED; the model is then as it was. */
+ * its zero and non-finite ones are repaired. Missing normals come from the covariance of the neighbours and are
+ * oriented consistently. Points that can't be repaired get NaN axes, which the renderer skips and counts, so that
+ * indices stay those of the file. The result is the same for any number of threads. `repairs` may be null. Errors:
+ * ARGUMENT, MEMORY, CANCELLED; the model is then as it was. */
 CONIC_API conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options,
                                              conic_model *model, conic_repairs *repairs);
 
@@ -66,8 +66,8 @@ CONIC_API conic_status conic_model_to_splats(conic_context *context, const conic
  * the same seed. A count not below the set's leaves it as it is. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_thin(conic_context *context, conic_splats *splats, size_t count, uint64_t seed);
 
-/* Writes splats as PLY in batches, so that any number fits through bounded memory. The file appears under its name only when
- * it is whole. */
+/* Writes splats as PLY in batches, so that any number fits through bounded memory. The file appears under its name only
+ * when it is whole. */
 typedef struct conic_splats_writer conic_splats_writer;
 
 typedef enum conic_ply_encoding { CONIC_PLY_BINARY = 0, CONIC_PLY_ASCII = 1 } conic_ply_encoding;

@@ -52,21 +52,23 @@ typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */
   conic_method method;
   conic_kernel kernel;
-  float prefilter;  /* low-pass variance h in pixels², 0 or more */
-  double epsilon;   /* depth tolerance along the ray in world units; negative: from the splat sizes */
-  int passes;       /* 3: blend what belongs to one surface; 1: the nearest splat wins */
-  int cull_back;    /* leave out splats that face away */
-  double near_z;    /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
+  float prefilter; /* low-pass variance h in pixels², 0 or more */
+  double epsilon;  /* depth tolerance along the ray in world units; negative: from the splat sizes */
+  int passes;      /* 3: blend what belongs to one surface; 1: the nearest splat wins */
+  int cull_back;   /* leave out splats that face away */
+  double near_z;   /* nothing nearer in camera-space z is drawn; 0: 1e-4 × the diagonal of the finite centres' box */
+  double splat_length; /* what conic_splats_length gives; 0: found anew by every call */
   conic_shading shading;
-  int has_light;    /* 0: headlight, from the viewer */
-  double light[3];  /* direction towards the light, world coordinates, any length but zero */
+  int has_light;   /* 0: headlight, from the viewer */
+  double light[3]; /* direction towards the light, world coordinates, any length but zero */
   int has_background;
   float background[3]; /* linear RGB behind the picture, which then is opaque */
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
   int tile;            /* tile edge in pixels, a multiple of 4 from 8 to 256; changes no bit of the image */
 } conic_render_options;
 
-/* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no background. */
+/* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
+ * background. */
 CONIC_API void conic_render_options_init(conic_render_options *options);
 
 typedef struct conic_render_milliseconds {
@@ -74,20 +76,23 @@ typedef struct conic_render_milliseconds {
 } conic_render_milliseconds;
 
 typedef struct conic_render_statistics {
-  uint64_t splats_in;       /* = culled + skipped + drawn */
-  uint64_t splats_culled;   /* behind near, off-screen, back-facing */
-  uint64_t splats_skipped;  /* not finite, or without area where nothing widens them */
+  uint64_t splats_in;      /* = culled + skipped + drawn */
+  uint64_t splats_culled;  /* behind near, off-screen, back-facing */
+  uint64_t splats_skipped; /* not finite, or without area where nothing widens them */
   uint64_t splats_drawn;
-  uint64_t splats_fallback; /* of the drawn: not by the method's own formula */
+  uint64_t splats_fallback;                   /* of the drawn: not by the method's own formula */
   uint64_t splats_by_method[CONIC_N_METHODS]; /* of the drawn, by the formula used */
-  uint64_t fragments;       /* splat–pixel pairs inside a cutoff */
+  uint64_t fragments;                         /* splat–pixel pairs inside a cutoff */
   uint64_t pixels_covered;
-  double near_z;            /* the one used */
-  double epsilon;           /* c of the automatic ε, or the fixed ε */
+  double near_z;  /* the one used */
+  double epsilon; /* c of the automatic ε, or the fixed ε */
   int epsilon_is_fixed;
   int threads, tile;
   conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
 } conic_render_statistics;
+
+/* The near distance that near_z = 0 stands for. Looks at every centre; who draws many frames asks once. */
+CONIC_API double conic_default_near(const conic_splats *splats);
 
 /* A renderer keeps the memory of a frame from one frame to the next. One thread at a time. */
 typedef struct conic_renderer conic_renderer;

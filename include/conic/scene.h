@@ -31,7 +31,7 @@ CONIC_API const char *conic_scene_summary(conic_scene_type type);
 typedef struct conic_scene_options {
   size_t size; /* sizeof(conic_scene_options), set by the init function */
   conic_scene_type type;
-  size_t count;     /* splats */
+  size_t count; /* splats */
   uint64_t seed;
   double jitter;    /* moves each sample within the surface by up to this fraction of the spacing */
   double noise;     /* moves each sample along its normal by a Gaussian of this many spacings */
@@ -42,11 +42,12 @@ typedef struct conic_scene_options {
 /* A sphere of 100,000 splats. */
 CONIC_API void conic_scene_options_init(conic_scene_options *options);
 
-/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with tangents and
- * colours for at least n and which gets the count n. Any split into batches gives the same splats. Circles: outline radius
- * 1.5 × sqrt(area / count). Errors: ARGUMENT, MEMORY. */
+/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with tangents
+ * and colours for at least n and which gets the count n. Any split into batches gives the same splats. Circles: outline
+ * radius 1.5 × sqrt(area / count). Errors: ARGUMENT, MEMORY. */
 typedef struct conic_scene conic_scene;
-CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options, conic_scene **scene);
+CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options,
+                                          conic_scene **scene);
 CONIC_API conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, conic_splats *splats);
 CONIC_API void conic_scene_destroy(conic_scene *scene);
 

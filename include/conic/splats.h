@@ -68,6 +68,10 @@ CONIC_API void conic_splats_release(conic_context *context, conic_splats *splats
  * is 0, minimum and maximum are zero. */
 CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]);
 
+/* The lower median of max(|t_u|, |t_v|) over the splats whose centre and axes are finite and whose axes are not zero:
+ * the scale of the automatic ε (docs/picture.md). 0 where there is none. Errors: MEMORY. */
+CONIC_API conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length);
+
 #ifdef __cplusplus
 }
 #endif

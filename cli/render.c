@@ -1,0 +1,227 @@
+/* conic render: splats, raw points or meshes in, pictures out. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/render_job.h"
+
+/* Reads an input, and gives its points axes where it has none. */
+static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
+                               double *estimate_seconds) {
+  conic_model model;
+  conic_read_options read_options;
+  conic_estimate_options estimate_options;
+  conic_repairs repairs;
+  conic_read_options_init(&read_options);
+  conic_estimate_options_init(&estimate_options);
+  read_options.cutoff = estimate_options.cutoff = job->options.kernel.cutoff;
+  estimate_options.n_neighbours = job->n_neighbours;
+  conic_status status = conic_model_read(session->context, path, &read_options, &model);
+  if (status != CONIC_OK)
+    return status;
+  double low[3], high[3], start = cli_seconds();
+  if (conic_splats_bounds(&model.points, low, high) == 0) {
+    cli_error(CLI_INPUT, "%s: nothing to draw: %s", path,
+              model.points.count ? "no point is finite" : "it holds no points");
+    status = CONIC_ERROR_INPUT;
+  }
+  if (status == CONIC_OK)
+    status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
+  if (status == CONIC_OK && splats->count == 0) {
+    *splats = model.points; /* the first input's arrays are taken over, not copied */
+    memset(&model.points, 0, sizeof model.points);
+  } else if (status == CONIC_OK)
+    status = conic_splats_append(session->context, splats, &model.points);
+  *estimate_seconds += cli_seconds() - start;
+  conic_model_release(session->context, &model);
+  return status;
+}
+
+static conic_status read_inputs(cli_session *session, cli_render_job *job, conic_splats *splats) {
+  double start = cli_seconds(), estimate_seconds = 0.0;
+  memset(splats, 0, sizeof *splats);
+  for (int i = 0; i < job->n_inputs; i++) {
+    conic_status status = read_input(session, job, job->inputs[i], splats, &estimate_seconds);
+    if (status != CONIC_OK)
+      return status;
+  }
+  job->read_ms = 1e3 * (cli_seconds() - start - estimate_seconds);
+  job->estimate_ms = 1e3 * estimate_seconds;
+  return CONIC_OK;
+}
+
+/* What every frame would find anew: the near distance and the scale of ε. */
+static conic_status measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
+  double start = cli_seconds();
+  conic_status status = conic_splats_length(session->context, splats, &job->options.splat_length);
+  if (status == CONIC_OK && job->options.near_z == 0.0)
+    job->options.near_z = conic_default_near(splats);
+  job->estimate_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+static conic_status place_camera(cli_session *session, const cli_render_job *job, const conic_splats *splats,
+                                 int i_frame, conic_camera *camera) {
+  double low[3], high[3];
+  conic_framing framing = job->framing;
+  if (job->camera_path)
+    return conic_camera_read(session->context, job->camera_path, camera);
+  conic_splats_bounds(splats, low, high);
+  framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
+  return conic_camera_frame(session->context, &framing, low, high, camera);
+}
+
+static int compare_frames(const void *a, const void *b) {
+  const conic_render_statistics *first = a, *second = b;
+  return (first->ms.frame > second->ms.frame) - (first->ms.frame < second->ms.frame);
+}
+
+/* Each time's own median over the frames. */
+static double median_of(conic_render_statistics *frames, size_t n, size_t offset) {
+  for (size_t i = 0; i < n; i++) /* sorted by the frame's time, so each other time takes its turn there */
+    memcpy(&frames[i].ms.frame, (const char *)&frames[i].ms + offset, sizeof(double));
+  qsort(frames, n, sizeof *frames, compare_frames);
+  return n % 2 ? frames[n / 2].ms.frame : 0.5 * (frames[n / 2 - 1].ms.frame + frames[n / 2].ms.frame);
+}
+
+static void take_medians(cli_render_job *job, conic_render_statistics *frames, size_t n) {
+  conic_render_milliseconds ms;
+  conic_render_statistics last = frames[n - 1];
+  job->first_frame_ms = frames[0].ms.frame;
+  if (n > 1) {
+    frames++;
+    n--;
+  }
+  ms.frame = median_of(frames, n, offsetof(conic_render_milliseconds, frame));
+  ms.setup = median_of(frames, n, offsetof(conic_render_milliseconds, setup));
+  ms.bin = median_of(frames, n, offsetof(conic_render_milliseconds, bin));
+  ms.visibility = median_of(frames, n, offsetof(conic_render_milliseconds, visibility));
+  ms.accumulate = median_of(frames, n, offsetof(conic_render_milliseconds, accumulate));
+  ms.resolve = median_of(frames, n, offsetof(conic_render_milliseconds, resolve));
+  job->statistics = last;
+  job->statistics.ms = ms;
+}
+
+static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
+  conic_attribute *attribute = &image->attributes[image->n_attributes++];
+  memset(attribute, 0, sizeof *attribute);
+  snprintf(attribute->name, sizeof attribute->name, "%s", name);
+  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
+  if (text)
+    snprintf(attribute->text, sizeof attribute->text, "%s", text);
+  attribute->values[0] = value;
+}
+
+/* What the picture says of itself in its header. */
+static void describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
+  const conic_render_statistics *s = &job->statistics;
+  image->n_attributes = 0;
+  name_attribute(image, "conicVersion", conic_version(), 0);
+  name_attribute(image, "conicMethod", conic_method_name(job->options.method), 0);
+  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
+  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
+  name_attribute(image, "conicNear", NULL, s->near_z);
+  name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
+  name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicFx", NULL, camera->fx);
+  name_attribute(image, "conicFy", NULL, camera->fy);
+  name_attribute(image, "conicCx", NULL, camera->cx);
+  name_attribute(image, "conicCy", NULL, camera->cy);
+  conic_attribute *matrix = &image->attributes[image->n_attributes++];
+  memset(matrix, 0, sizeof *matrix);
+  snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
+  matrix->type = CONIC_ATTRIBUTE_MATRIX;
+  memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
+  matrix->values[15] = 1.0;
+}
+
+/* "dir/name.exr" becomes "dir/name.0001.exr" in a turntable. */
+static char *frame_path(const cli_render_job *job, const char *path, int i_frame) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+  size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path), room = strlen(path) + 16;
+  char *name = malloc(room);
+  if (name && job->is_turntable)
+    snprintf(name, room, "%.*s.%04d%s", (int)stem, path, i_frame + 1, path + stem);
+  else if (name)
+    snprintf(name, room, "%s", path);
+  return name;
+}
+
+static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  double start = cli_seconds();
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
+    char *path = frame_path(job, job->outputs[i], i_frame);
+    status = path ? conic_image_write(session->context, path, image) : CONIC_ERROR_MEMORY;
+    free(path);
+  }
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                                 conic_renderer *renderer, int i_frame, conic_image *image,
+                                 conic_render_statistics *repeats) {
+  conic_camera camera;
+  conic_status status = place_camera(session, job, splats, i_frame, &camera);
+  if (status == CONIC_OK && !conic_image_planes(image))
+    status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
+  for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
+    status = conic_render(renderer, splats, &camera, &job->options, image, &repeats[i]);
+  if (status != CONIC_OK)
+    return status;
+  take_medians(job, repeats, (size_t)job->repeat);
+  describe(job, &camera, image);
+  return write_frame(session, job, image, i_frame);
+}
+
+static void print_summary(const cli_session *session, const cli_render_job *job) {
+  const conic_render_statistics *s = &job->statistics;
+  if (!session->is_verbose)
+    return;
+  fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
+          (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
+          (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);
+}
+
+static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
+  conic_renderer *renderer = NULL;
+  conic_image image;
+  int exit_code = CLI_DONE;
+  memset(&image, 0, sizeof image);
+  conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
+  conic_status status = repeats ? conic_renderer_create(session->context, &renderer) : CONIC_ERROR_MEMORY;
+  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++)
+    status = render_frame(session, job, splats, renderer, i, &image, repeats);
+  job->total_ms = 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK) {
+    print_summary(session, job);
+    exit_code = cli_render_report(session, job, &image);
+  } else
+    exit_code = cli_exit_of(status);
+  conic_image_release(session->context, &image);
+  conic_renderer_destroy(renderer);
+  free(repeats);
+  return exit_code;
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  cli_render_job job;
+  conic_splats splats;
+  double start = cli_seconds();
+  int exit_code = cli_render_parse(session, argc, argv, &job);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_session_open(session);
+  if (exit_code == CLI_DONE) {
+    conic_status status = read_inputs(session, &job, &splats);
+    if (status == CONIC_OK)
+      status = measure(session, &job, &splats);
+    exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
+    conic_splats_release(session->context, &splats);
+  }
+  free(job.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
+                                "conic render IN… -o OUT [options]", run};

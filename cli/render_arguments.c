@@ -1,0 +1,247 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/render_job.h"
+
+static const char *const method_words[] = {"conic", "ray", NULL};
+static const char *const cull_words[] = {"none", "back", NULL};
+static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
+static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
+
+/* Options whose words are checked after all have been read. */
+typedef struct raw_options {
+  int size[2], is_size_given;
+  const char *device;
+  int isa;
+  double cutoff, prefilter;
+  int is_passes_given, passes;
+} raw_options;
+
+static int parse_output(const char *text, void *value) {
+  cli_render_job *job = value;
+  if (!*text || job->n_outputs == CLI_MAX_OUTPUTS)
+    return 0;
+  job->outputs[job->n_outputs++] = text;
+  return 1;
+}
+
+static int parse_turntable(const char *text, void *value) {
+  cli_render_job *job = value;
+  char *end;
+  long n = strtol(text, &end, 10);
+  if (*end || end == text || n < 1 || n > 9999)
+    return 0;
+  job->is_turntable = 1;
+  job->n_frames = (int)n;
+  return 1;
+}
+
+static int parse_number(const char *text, double *number) {
+  char *end;
+  *number = strtod(text, &end);
+  return *text && !*end && *number * 0.0 == 0.0;
+}
+
+/* gauss, hat, box, or confetti:A,B,N. */
+static int parse_kernel(const char *text, void *value) {
+  conic_kernel *kernel = value;
+  double abn[3];
+  if (strcmp(text, "gauss") == 0)
+    kernel->type = CONIC_KERNEL_GAUSS;
+  else if (strcmp(text, "hat") == 0)
+    kernel->type = CONIC_KERNEL_HAT;
+  else if (strcmp(text, "box") == 0)
+    kernel->type = CONIC_KERNEL_BOX;
+  else if (strcmp(text, "confetti") == 0)
+    kernel->type = CONIC_KERNEL_CONFETTI;
+  else if (strncmp(text, "confetti:", 9) == 0 && cli_parse_vector(text + 9, abn) && abn[0] > 0.0 && abn[1] > 0.0 &&
+           abn[2] >= 1.0 && abn[2] <= 16.0 && abn[2] == (double)(int)abn[2]) {
+    kernel->type = CONIC_KERNEL_CONFETTI;
+    kernel->a = (float)abn[0];
+    kernel->b = (float)abn[1];
+    kernel->n = (int)abn[2];
+  } else
+    return 0;
+  return 1;
+}
+
+static int parse_epsilon(const char *text, void *value) {
+  double *epsilon = value;
+  if (strcmp(text, "auto") == 0) {
+    *epsilon = -1.0;
+    return 1;
+  }
+  return parse_number(text, epsilon) && *epsilon >= 0.0;
+}
+
+/* x, -y, … or X,Y,Z. */
+static int parse_up(const char *text, void *value) {
+  double *up = value, sign = 1.0;
+  const char *letter = text;
+  if (*letter == '-' || *letter == '+')
+    sign = *letter++ == '-' ? -1.0 : 1.0;
+  if ((*letter == 'x' || *letter == 'y' || *letter == 'z') && !letter[1]) {
+    up[0] = up[1] = up[2] = 0.0;
+    up[*letter - 'x'] = sign;
+    return 1;
+  }
+  return cli_parse_vector(text, up) && (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0);
+}
+
+static int parse_background(const char *text, void *value) {
+  conic_render_options *options = value;
+  double rgb[3];
+  if (strcmp(text, "none") == 0) {
+    options->has_background = 0;
+    return 1;
+  }
+  if (!cli_parse_vector(text, rgb))
+    return 0;
+  options->has_background = 1;
+  for (int i = 0; i < 3; i++)
+    options->background[i] = (float)rgb[i];
+  return 1;
+}
+
+static int parse_light(const char *text, void *value) {
+  conic_render_options *options = value;
+  options->has_light = 1;
+  return cli_parse_vector(text, options->light) &&
+         (options->light[0] != 0.0 || options->light[1] != 0.0 || options->light[2] != 0.0);
+}
+
+static int find_plane(const char *name, size_t length) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    const char *known = conic_plane_describe((conic_plane)i)->name;
+    if (strlen(known) == length && strncmp(known, name, length) == 0)
+      return i;
+  }
+  return -1;
+}
+
+/* rgba,Z,N … or all. */
+static int parse_planes(const char *text, void *value) {
+  unsigned *planes = value;
+  *planes = 0;
+  if (strcmp(text, "all") == 0) {
+    *planes = (1u << CONIC_N_PLANES) - 1;
+    return 1;
+  }
+  while (*text) {
+    size_t length = strcspn(text, ",");
+    int plane = find_plane(text, length);
+    if (plane < 0)
+      return 0;
+    *planes |= 1u << plane;
+    text += length;
+    if (*text == ',' && text[1])
+      text++;
+  }
+  return *planes != 0;
+}
+
+/* What the options mean together. */
+static int check(const cli_session *session, const raw_options *raw, cli_render_job *job) {
+  if (job->n_inputs == 0)
+    return cli_usage("render: no input; conic render IN… -o OUT");
+  if (job->n_outputs == 0)
+    return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
+  for (int i = 0; i < job->n_outputs && job->is_turntable; i++)
+    if (strcmp(job->outputs[i], "-") == 0)
+      return cli_usage("render: a turntable cannot go to standard output");
+  if (job->camera_path && raw->is_size_given)
+    return cli_usage("render: --size is the camera file's; give one of both");
+  if (job->camera_path && job->is_turntable)
+    return cli_usage("render: a turntable needs a framed camera, not --camera");
+  if (raw->passes != 1 && raw->passes != 3)
+    return cli_usage("render: --passes takes 3 or 1");
+  if (job->options.tile % 4)
+    return cli_usage("render: --tile takes a multiple of 4");
+  if (raw->isa > 1)
+    return cli_error(CLI_RESOURCE, "--isa %s: this build has only scalar code", isa_words[raw->isa]);
+  if (strncmp(raw->device, "opencl", 6) == 0)
+    return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
+  if (strcmp(raw->device, "cpu") != 0)
+    return cli_usage("render: --device takes cpu or opencl[:P.D], not %s", raw->device);
+  return cli_check_outputs(session, job->outputs, job->n_outputs);
+}
+
+static void set_defaults(cli_render_job *job, raw_options *raw) {
+  conic_estimate_options estimate;
+  memset(job, 0, sizeof *job);
+  memset(raw, 0, sizeof *raw);
+  conic_estimate_options_init(&estimate);
+  conic_framing_init(&job->framing);
+  conic_render_options_init(&job->options);
+  job->n_neighbours = estimate.n_neighbours;
+  job->n_frames = job->repeat = 1;
+  job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
+  raw->device = "cpu";
+  raw->passes = 3;
+  raw->cutoff = (double)job->options.kernel.cutoff;
+  raw->prefilter = (double)job->options.prefilter;
+}
+
+int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
+  raw_options raw;
+  set_defaults(job, &raw);
+  conic_render_options *o = &job->options;
+  conic_framing *view = &job->framing;
+  int method = o->method, shading = o->shading;
+  const cli_option table[] = {
+      {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
+       .parse = parse_output},
+      {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
+      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90},
+      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9},
+      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6},
+      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up},
+      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray [conic]",
+       .choices = method_words},
+      {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
+      {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
+      {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
+       10000},
+      {"epsilon", CLI_PARSED, &o->epsilon, "E", "depth tolerance along the ray, or auto [auto]",
+       .parse = parse_epsilon},
+      {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
+      {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
+       .choices = cull_words},
+      {"near", CLI_NUMBER, &o->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]", 1e-30, 1e30},
+      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = shade_words},
+      {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
+       .parse = parse_light},
+      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+       .parse = parse_background},
+      {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
+      {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
+       .parse = parse_planes},
+      {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
+      {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
+      {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
+      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto or scalar; changes no bit [auto]", .choices = isa_words},
+  };
+  job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
+  if (!job->inputs)
+    return cli_error(CLI_RESOURCE, "render: out of memory");
+  int answer =
+      cli_parse(session, table, (int)(sizeof table / sizeof table[0]), argc, argv, job->inputs, &job->n_inputs);
+  if (answer != CLI_DONE)
+    return answer;
+  o->method = (conic_method)method;
+  o->shading = (conic_shading)shading;
+  o->kernel.cutoff = (float)raw.cutoff;
+  o->prefilter = (float)raw.prefilter;
+  o->passes = raw.passes;
+  if (raw.is_size_given) {
+    view->width = raw.size[0];
+    view->height = raw.size[1];
+  }
+  return check(session, &raw, job);
+}

@@ -1,0 +1,37 @@
+/* One `conic render`: what was asked for, and what came of it. */
+#ifndef CLI_RENDER_JOB_H
+#define CLI_RENDER_JOB_H
+
+#include "cli/session.h"
+
+enum { CLI_MAX_OUTPUTS = 8 };
+
+typedef struct cli_render_job {
+  /* What was asked for. */
+  const char **inputs;
+  int n_inputs;
+  const char *outputs[CLI_MAX_OUTPUTS];
+  int n_outputs;
+  const char *camera_path; /* null: framed */
+  conic_framing framing;
+  int n_frames; /* of a turntable; 1 without */
+  int is_turntable;
+  int repeat;
+  unsigned planes; /* bits 1 << conic_plane */
+  int n_neighbours;
+  conic_render_options options;
+
+  /* What came of it. */
+  conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
+  double first_frame_ms;
+  double read_ms, estimate_ms, write_ms, total_ms;
+} cli_render_job;
+
+/* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
+int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job);
+
+/* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
+ * Returns the exit code. */
+int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
+
+#endif

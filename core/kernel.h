@@ -1,0 +1,77 @@
+/* Reconstruction kernels, as functions of q = r², r in standard deviations: unit peak at 0, falling to the cutoff.
+ * The same bits everywhere: + − × ÷ √ and integer operations only. */
+#ifndef CORE_KERNEL_H
+#define CORE_KERNEL_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "conic/render.h"
+
+/* eˣ for x ≤ 0, clamped below at e⁻⁸⁰; NaN gives e⁻⁸⁰. Error at most 1.1 ulp (tests/test_kernel.c). */
+static inline float conic_exp_negative(float x) {
+  x = x > -80.0f ? x : -80.0f;
+  /* x = k·ln 2 + r with |r| ≤ ½·ln 2; truncation rounds to nearest here, since x ≤ 0. The first part of ln 2 has few
+   * bits, so that k·ln 2 is exact in it. */
+  int32_t k = (int32_t)(x * 0x1.715476p+0f - 0.5f);
+  float r = (x - (float)k * 0x1.63p-1f) + (float)k * 0x1.bd0106p-13f;
+  float p = 0x1.6a23cap-10f;
+  p = p * r + 0x1.123a20p-7f;
+  p = p * r + 0x1.5558f2p-5f;
+  p = p * r + 0x1.555492p-3f;
+  p = p * r + 0x1.fffffcp-2f;
+  p = (p * (r * r) + r) + 1.0f;
+  int32_t bits;
+  memcpy(&bits, &p, sizeof bits);
+  bits += k * (1 << 23);
+  memcpy(&p, &bits, sizeof bits);
+  return p;
+}
+
+/* 2ˣ for |x| ≤ 100: an exposure in stops as a factor. */
+static inline float conic_exposure_factor(double stops) {
+  double whole = floor(stops), rest = (stops - whole) * 0.69314718055994530942, term = 1.0, sum = 1.0;
+  for (int n = 1; n < 20; n++) {
+    term *= rest / (double)n;
+    sum += term;
+  }
+  for (; whole > 0.0; whole -= 1.0)
+    sum *= 2.0;
+  for (; whole < 0.0; whole += 1.0)
+    sum *= 0.5;
+  return (float)sum;
+}
+
+/* Confetti Eq. 10, corrected: exp(-a (r/b)ⁿ / (1 - (r/b)ⁿ)) for q < b². */
+static inline float conic_kernel_confetti(const conic_kernel *kernel, float q) {
+  float r = sqrtf(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  float rest = 1.0f - power;
+  return rest > 0.0f ? conic_exp_negative(-kernel->a * power / rest) : 0.0f;
+}
+
+/* The kernel at q, 0 ≤ q < conic_kernel_support. */
+static inline float conic_kernel_value(const conic_kernel *kernel, float q) {
+  switch (kernel->type) {
+  case CONIC_KERNEL_CONFETTI:
+    return conic_kernel_confetti(kernel, q);
+  case CONIC_KERNEL_HAT:
+    return 1.0f - sqrtf(q) / kernel->cutoff;
+  case CONIC_KERNEL_BOX:
+    return 1.0f;
+  default:
+    return conic_exp_negative(-0.5f * q);
+  }
+}
+
+/* A pixel is covered where q is below this: the square of the cutoff, or of Confetti's b where that is smaller. */
+static inline float conic_kernel_support(const conic_kernel *kernel) {
+  float support = kernel->cutoff;
+  if (kernel->type == CONIC_KERNEL_CONFETTI && kernel->b < support)
+    support = kernel->b;
+  return support * support;
+}
+
+#endif

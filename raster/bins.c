@@ -1,0 +1,56 @@
+#include "raster/bins.h"
+
+#include <string.h>
+
+/* The tiles that a footprint's box touches. */
+typedef struct tile_range {
+  int x_begin, x_end, y_begin, y_end;
+} tile_range;
+
+static tile_range tiles_of(const conic_bins *bins, const conic_footprint *footprint) {
+  tile_range range = {footprint->x_begin / bins->tile, (footprint->x_end - 1) / bins->tile + 1,
+                      footprint->y_begin / bins->tile, (footprint->y_end - 1) / bins->tile + 1};
+  return range;
+}
+
+void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
+  const conic_chunk *chunk = &projected->chunks[i_chunk];
+  uint32_t *counts = bins->counts + i_chunk * bins->n_tiles;
+  memset(counts, 0, bins->n_tiles * sizeof *counts);
+  for (size_t i = 0; i < chunk->n_drawn; i++) {
+    tile_range range = tiles_of(bins, &projected->footprints[chunk->first + i]);
+    for (int y = range.y_begin; y < range.y_end; y++)
+      for (int x = range.x_begin; x < range.x_end; x++)
+        counts[y * bins->n_tiles_x + x]++;
+  }
+}
+
+size_t conic_bins_place(conic_bins *bins, const conic_projected *projected) {
+  size_t total = 0;
+  for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++) {
+    uint32_t in_tile = 0;
+    bins->tile_begin[i_tile] = total;
+    for (size_t i_chunk = 0; i_chunk < projected->n_chunks; i_chunk++) {
+      uint32_t *count = &bins->counts[i_chunk * bins->n_tiles + i_tile];
+      uint32_t of_chunk = *count;
+      *count = in_tile;
+      in_tile += of_chunk;
+    }
+    total += in_tile;
+  }
+  bins->tile_begin[bins->n_tiles] = total;
+  return total;
+}
+
+void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
+  const conic_chunk *chunk = &projected->chunks[i_chunk];
+  uint32_t *next = bins->counts + i_chunk * bins->n_tiles;
+  for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++) {
+    tile_range range = tiles_of(bins, &projected->footprints[i]);
+    for (int y = range.y_begin; y < range.y_end; y++)
+      for (int x = range.x_begin; x < range.x_end; x++) {
+        size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;
+        bins->references[bins->tile_begin[i_tile] + next[i_tile]++] = (uint32_t)i;
+      }
+  }
+}

@@ -1,0 +1,25 @@
+/* Which splats may touch which tile: a stable counting sort, so that every tile's list is in file order. */
+#ifndef RASTER_BINS_H
+#define RASTER_BINS_H
+
+#include "raster/projected.h"
+
+typedef struct conic_bins {
+  int tile; /* edge in pixels */
+  int n_tiles_x, n_tiles_y;
+  size_t n_tiles;
+  uint32_t *counts;     /* [chunk][tile]: first how many, then where the chunk's next entry goes */
+  size_t *tile_begin;   /* [n_tiles + 1]: a tile's entries are references[tile_begin[t] … tile_begin[t + 1]) */
+  uint32_t *references; /* indices of footprints */
+} conic_bins;
+
+/* Counts the tiles of the chunk's footprints. */
+void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t i_chunk);
+
+/* Turns counts into places; returns how many references there are in all. */
+size_t conic_bins_place(conic_bins *bins, const conic_projected *projected);
+
+/* Writes the references of the chunk's footprints. */
+void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t i_chunk);
+
+#endif

@@ -1,0 +1,17 @@
+/* The projection of a disc that may reach behind the camera, clipped at the near plane. */
+#ifndef RASTER_CLIP_DISC_H
+#define RASTER_CLIP_DISC_H
+
+#include "raster/projected.h"
+
+/* A point of the clipped disc's outline on the screen. */
+typedef struct conic_screen_point {
+  double x_px, y_px, z;
+} conic_screen_point;
+
+/* The two points of the clipped outline that lie farthest along -direction and +direction on the screen. Returns 0
+ * where nothing of the disc is before near. */
+int conic_clip_disc(const conic_view *view, const conic_disc *disc, const double direction_px[2],
+                    conic_screen_point *least, conic_screen_point *most);
+
+#endif

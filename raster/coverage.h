@@ -1,0 +1,111 @@
+/* The one place that says whether a splat covers a pixel, with what weight, and how deep: shared by both passes and by
+ * resolving, so that they agree in every bit. */
+#ifndef RASTER_COVERAGE_H
+#define RASTER_COVERAGE_H
+
+#include "raster/tile.h"
+
+/* A splat on one row of pixels. */
+typedef struct conic_row {
+  float q_offset;  /* s2·dy */
+  float q_rest;    /* (s3·dy)² */
+  float iz_offset; /* iz0 + iz_dy·dy */
+  float u, v;      /* rays: U and V at dx = 0 */
+} conic_row;
+
+typedef struct conic_fragment {
+  float q, iz;
+  float scale; /* what multiplies amplitude and kernel: |I + h·JJᵀ|^-½ for rays, else 1 */
+} conic_fragment;
+
+static inline float conic_row_dy(const conic_footprint *footprint, int y) {
+  return (float)(y - footprint->y) + footprint->dy0;
+}
+
+static inline float conic_row_dx(const conic_footprint *footprint, int x) {
+  return (float)(x - footprint->x) + footprint->dx0;
+}
+
+static inline conic_row conic_row_begin(const conic_footprint *footprint, float dy) {
+  conic_row row;
+  float minor = footprint->s3 * dy;
+  row.q_offset = footprint->s2 * dy;
+  row.q_rest = minor * minor;
+  row.iz_offset = footprint->iz0 + footprint->iz_dy * dy;
+  row.u = row.v = 0.0f;
+  return row;
+}
+
+static inline float conic_clamp_iz(const conic_footprint *footprint, float iz) {
+  iz = iz > footprint->iz_far ? iz : footprint->iz_far;
+  return iz < footprint->iz_near ? iz : footprint->iz_near;
+}
+
+static inline float conic_row_q(const conic_footprint *footprint, const conic_row *row, float dx) {
+  float major = footprint->s1 * dx + row->q_offset;
+  return major * major + row->q_rest;
+}
+
+static inline float conic_row_iz(const conic_footprint *footprint, const conic_row *row, float dx) {
+  return conic_clamp_iz(footprint, row->iz_offset + footprint->iz_dx * dx);
+}
+
+/* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/picture.md): 1 where the pixel is
+ * covered. */
+static inline int conic_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                     float dx, float dy, conic_fragment *fragment) {
+  float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  if (!(iz > 0.0f && iz >= ray->iz_low && iz <= ray->iz_high))
+    return 0;
+  float r = 1.0f / iz;
+  float u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
+  float v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
+  float u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
+  float v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
+  float h = view->prefilter;
+  float s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
+  float s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  float s_uv = h * (u_x * v_x + u_y * v_y);
+  /* |I + h·JJᵀ| = 1 + h·tr(JJᵀ) + h²·|J|²: sums of what is not negative. */
+  float area = u_x * v_y - u_y * v_x;
+  float determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
+  /* uS⁻¹uᵀ as a sum of two squares, by Cholesky. */
+  float along = u * s_uv - v * s_uu;
+  float q = u * u / s_uu + along * along / (s_uu * determinant);
+  if (!(q < view->support))
+    return 0;
+  fragment->q = q;
+  fragment->iz = conic_clamp_iz(footprint, iz);
+  fragment->scale = 1.0f / sqrtf(determinant);
+  return 1;
+}
+
+static inline float conic_final_weight(const conic_view *view, const conic_footprint *footprint, float q, float scale) {
+  float weight = (footprint->amplitude * scale) * conic_kernel_value(&view->kernel, q);
+  return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
+}
+
+/* Pixels [begin, end) of a row, within [x_begin, x_end), that may have q < support; a hair more, since every pixel is
+ * tested. */
+static inline void conic_row_span(const conic_footprint *footprint, const conic_row *row, float support, int x_begin,
+                                  int x_end, int *begin, int *end) {
+  float rest = support - row->q_rest;
+  if (!(rest > 0.0f)) {
+    *begin = *end = x_begin;
+    return;
+  }
+  float inverse = 1.0f / footprint->s1, half = sqrtf(rest) * inverse, middle = -row->q_offset * inverse;
+  float slack = 0.02f + 1e-5f * (fabsf(middle) + half);
+  float low = (middle - half) - slack - footprint->dx0, high = (middle + half) + slack - footprint->dx0;
+  float from = (float)(x_begin - footprint->x), to = (float)(x_end - 1 - footprint->x);
+  low = low > from ? low : from;
+  high = high < to ? high : to;
+  *begin = *end = x_begin;
+  if (low <= high) {
+    int first = footprint->x + (int)low, last = footprint->x + (int)high;
+    *begin = first > x_begin ? first : x_begin; /* far from the reference, a float does not hold every integer */
+    *end = last < x_end - 1 ? last + 1 : x_end;
+  }
+}
+
+#endif

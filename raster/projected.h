@@ -1,0 +1,93 @@
+/* Projected splats: what one frame needs to know of each splat that it may draw. */
+#ifndef RASTER_PROJECTED_H
+#define RASTER_PROJECTED_H
+
+#include <stdint.h>
+
+#include "raster/view.h"
+
+/* The part that both passes read, one cache line.
+ *
+ * Pixel offsets are taken from the splat's reference: pixel (x, y) plus a fraction, dx = (pixel - x) + dx0, so that
+ * their precision depends neither on the place on the screen nor on the tile. q  = (s1·dx + s2·dy)² + (s3·dy)², the
+ * Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded quadratic has; covered where q < support
+ *   iz = iz0 + iz_dy·dy + iz_dx·dx, clamped to [iz_far, iz_near]: inverse depth
+ * Where s3 is 0 the splat is drawn by the exact ray–splat parameter, with the coefficients of rays[i_ray]. */
+typedef struct conic_footprint {
+  int32_t x, y;
+  float dx0, dy0;
+  union {
+    float s1;
+    uint32_t i_ray;
+  };
+  float s2, s3;
+  float iz0, iz_dx, iz_dy;
+  float iz_far, iz_near;
+  float nearness;                          /* s = 1 / (1 + ε/‖p‖) */
+  float amplitude;                         /* A·opacity */
+  uint16_t x_begin, x_end, y_begin, y_end; /* pixels that may be covered, within the image */
+} conic_footprint;
+
+/* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel. */
+typedef struct conic_ray {
+  float u0, u_dx, u_dy;
+  float v0, v_dx, v_dy;
+  float iz_low, iz_high; /* covered only where iz lies between: what the disc reaches, widened by the prefilter */
+} conic_ray;
+
+/* The part that blending and resolving read. */
+typedef struct conic_surface {
+  float color[3];
+  float normal[3];          /* world, unit, towards the viewer */
+  float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
+  uint32_t index;           /* in the splat set */
+} conic_surface;
+
+/* A chunk of consecutive splats, projected and compacted. */
+typedef struct conic_chunk {
+  size_t first, n_drawn; /* its splats are at first … first + n_drawn in the arrays below */
+  size_t n_rays;         /* its rays likewise from rays[first] on */
+  size_t n_culled, n_skipped, n_fallback;
+} conic_chunk;
+
+/* All splats of a frame in file order. The arrays have room for every splat of the set; only what is drawn is touched.
+ */
+typedef struct conic_projected {
+  size_t n_chunks, chunk_size;
+  conic_chunk *chunks;
+  conic_footprint *footprints;
+  conic_surface *surfaces;
+  conic_ray *rays;
+} conic_projected;
+
+/* Projects the splats of chunk i_chunk. */
+void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
+                         conic_projected *projected);
+
+/* What became of a splat. */
+typedef enum conic_verdict {
+  CONIC_DRAWN_CONIC,   /* by the dual conic's variance */
+  CONIC_DRAWN_RAY,     /* by the exact ray–splat parameter */
+  CONIC_DRAWN_SEGMENT, /* edge-on and reaching the near plane: by the variance of a segment */
+  CONIC_CULLED,
+  CONIC_SKIPPED
+} conic_verdict;
+
+/* A splat in camera space, in double, for the paths that float cannot walk. */
+typedef struct conic_disc {
+  double p[3], tu[3], tv[3];
+  double n[3];        /* tu × tv */
+  double determinant; /* p · n */
+} conic_disc;
+
+/* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
+ * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
+conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                                conic_ray *ray, conic_surface *surface);
+
+/* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
+ * is 0). */
+conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                                 conic_ray *ray, conic_surface *surface);
+
+#endif

@@ -1,0 +1,346 @@
+#include "conic/render.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "raster/tile.h"
+
+/* Memory that is kept from frame to frame and only ever grows. */
+typedef struct kept {
+  void *pointer;
+  size_t bytes;
+} kept;
+
+typedef struct tile_times {
+  double visibility, accumulate, resolve;
+} tile_times;
+
+struct conic_renderer {
+  conic_context *context;
+  kept footprints, surfaces, rays, chunks, counts, tile_begin, references, planes, times;
+};
+
+/* One frame on its way through the stages. */
+typedef struct frame {
+  conic_renderer *renderer;
+  const conic_splats *splats;
+  conic_view view;
+  conic_projected projected;
+  conic_bins bins;
+  conic_finish finish;
+  conic_image *image;
+  char *planes; /* one tile's planes a thread */
+  size_t planes_bytes;
+  tile_times *times;                 /* a thread */
+  uint64_t *n_fragments, *n_covered; /* a tile */
+  atomic_size_t n_tiles_done;
+  atomic_int is_cancelled;
+} frame;
+
+static double seconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+const char *conic_method_name(conic_method method) {
+  static const char *const names[CONIC_N_METHODS] = {"conic", "ray"};
+  return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
+}
+
+void conic_render_options_init(conic_render_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->kernel.cutoff = 1.5f;
+  options->kernel.a = 4.0f;
+  options->kernel.b = 1.5f;
+  options->kernel.n = 5;
+  options->prefilter = 1.0f;
+  options->epsilon = -1.0;
+  options->passes = 3;
+  options->shading = CONIC_SHADE_PHONG;
+  options->tile = 64;
+}
+
+conic_status conic_renderer_create(conic_context *context, conic_renderer **renderer) {
+  *renderer = conic_memory_allocate_zeroed(context, 1, sizeof **renderer);
+  if (!*renderer)
+    return CONIC_ERROR_MEMORY;
+  (*renderer)->context = context;
+  return CONIC_OK;
+}
+
+void conic_renderer_destroy(conic_renderer *renderer) {
+  if (!renderer)
+    return;
+  kept *all[] = {&renderer->footprints, &renderer->surfaces,   &renderer->rays,   &renderer->chunks, &renderer->counts,
+                 &renderer->tile_begin, &renderer->references, &renderer->planes, &renderer->times};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    conic_memory_release(renderer->context, all[i]->pointer);
+  conic_memory_release(renderer->context, renderer);
+}
+
+/* Room for count × size bytes in `memory`; null where there is none. What was in it is gone if it had to grow. */
+static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
+  if (memory->pointer && count <= memory->bytes / size)
+    return memory->pointer;
+  conic_memory_release(renderer->context, memory->pointer);
+  memory->bytes = 0;
+  memory->pointer = conic_memory_allocate(renderer->context, count, size);
+  if (memory->pointer)
+    memory->bytes = count * size;
+  return memory->pointer;
+}
+
+/* Chunks of splats are what set-up and binning share out: enough of them for balance, few enough for their histograms.
+ */
+static conic_status plan_chunks(frame *f) {
+  conic_renderer *renderer = f->renderer;
+  conic_projected *projected = &f->projected;
+  conic_bins *bins = &f->bins;
+  size_t n = f->splats->count, n_chunks = 8 * (size_t)conic_context_threads(renderer->context);
+  if (n_chunks > n / 2048 + 1)
+    n_chunks = n / 2048 + 1;
+  while (n_chunks > 1 && n_chunks * bins->n_tiles > ((size_t)1 << 22))
+    n_chunks /= 2;
+  projected->n_chunks = n_chunks;
+  projected->chunk_size = (n + n_chunks - 1) / n_chunks;
+  projected->chunks = room(renderer, &renderer->chunks, n_chunks, sizeof *projected->chunks);
+  projected->footprints = room(renderer, &renderer->footprints, n, sizeof *projected->footprints);
+  projected->surfaces = room(renderer, &renderer->surfaces, n, sizeof *projected->surfaces);
+  projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
+  bins->counts = room(renderer, &renderer->counts, n_chunks * bins->n_tiles, sizeof *bins->counts);
+  bins->tile_begin = room(renderer, &renderer->tile_begin, bins->n_tiles * 3 + 1, sizeof *bins->tile_begin);
+  if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays || !bins->counts ||
+      !bins->tile_begin)
+    return CONIC_ERROR_MEMORY;
+  f->n_fragments = (uint64_t *)(bins->tile_begin + bins->n_tiles + 1);
+  f->n_covered = f->n_fragments + bins->n_tiles;
+  return CONIC_OK;
+}
+
+static conic_status plan_tiles(frame *f, int tile) {
+  conic_renderer *renderer = f->renderer;
+  size_t n_threads = (size_t)conic_context_threads(renderer->context);
+  f->bins.tile = tile;
+  f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
+  f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
+  f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
+  f->planes_bytes = CONIC_N_TILE_PLANES * (size_t)tile * (size_t)tile * sizeof(float);
+  f->planes = room(renderer, &renderer->planes, n_threads, f->planes_bytes);
+  f->times = room(renderer, &renderer->times, n_threads, sizeof *f->times);
+  if (!f->planes || !f->times)
+    return CONIC_ERROR_MEMORY;
+  memset(f->times, 0, n_threads * sizeof *f->times);
+  return CONIC_OK;
+}
+
+static void project_task(void *data, size_t i_chunk, int i_thread) {
+  frame *f = data;
+  (void)i_thread;
+  conic_project_chunk(&f->view, f->splats, i_chunk, &f->projected);
+}
+
+static void count_task(void *data, size_t i_chunk, int i_thread) {
+  frame *f = data;
+  (void)i_thread;
+  conic_bins_count(&f->bins, &f->projected, i_chunk);
+}
+
+static void fill_task(void *data, size_t i_chunk, int i_thread) {
+  frame *f = data;
+  (void)i_thread;
+  conic_bins_fill(&f->bins, &f->projected, i_chunk);
+}
+
+static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *tile) {
+  const conic_bins *bins = &f->bins;
+  tile->view = &f->view;
+  tile->projected = &f->projected;
+  tile->references = bins->references + bins->tile_begin[i_tile];
+  tile->n_references = bins->tile_begin[i_tile + 1] - bins->tile_begin[i_tile];
+  tile->edge = bins->tile;
+  tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
+  tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
+  tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
+  tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
+  conic_tile_clear(tile, f->planes + (size_t)i_thread * f->planes_bytes);
+}
+
+/* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
+static void report_progress(frame *f) {
+  size_t done = atomic_load(&f->n_tiles_done);
+  if (conic_progress(f->renderer->context, "render", (double)done / (double)f->bins.n_tiles) != CONIC_OK)
+    atomic_store(&f->is_cancelled, 1);
+}
+
+static void tile_task(void *data, size_t i_tile, int i_thread) {
+  frame *f = data;
+  if (atomic_load(&f->is_cancelled))
+    return;
+  if (i_thread == 0)
+    report_progress(f);
+  int nearest_only = f->finish.options->passes == 1;
+  conic_tile tile;
+  double start = seconds_now();
+  begin_tile(f, i_tile, i_thread, &tile);
+  conic_tile_visibility(&tile, nearest_only);
+  double seen = seconds_now();
+  if (nearest_only)
+    conic_tile_take_nearest(&tile);
+  else
+    conic_tile_accumulate(&tile);
+  double summed = seconds_now();
+  conic_tile_resolve(&tile, &f->finish, f->image);
+  f->times[i_thread].visibility += seen - start;
+  f->times[i_thread].accumulate += summed - seen;
+  f->times[i_thread].resolve += seconds_now() - summed;
+  f->n_fragments[i_tile] = tile.n_fragments;
+  f->n_covered[i_tile] = tile.n_covered;
+  atomic_fetch_add(&f->n_tiles_done, 1);
+}
+
+static conic_status bin(frame *f) {
+  conic_context *context = f->renderer->context;
+  conic_parallel_for(context, f->projected.n_chunks, count_task, f);
+  size_t n_references = conic_bins_place(&f->bins, &f->projected);
+  f->bins.references = room(f->renderer, &f->renderer->references, n_references, sizeof *f->bins.references);
+  if (!f->bins.references)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, f->projected.n_chunks, fill_task, f);
+  return CONIC_OK;
+}
+
+/* Wall-clock of the tiles, shared out by what their stages took on all threads. */
+static void share_out(const frame *f, double tiles_ms, conic_render_milliseconds *ms) {
+  tile_times sum = {0, 0, 0};
+  for (int i = 0; i < conic_context_threads(f->renderer->context); i++) {
+    sum.visibility += f->times[i].visibility;
+    sum.accumulate += f->times[i].accumulate;
+    sum.resolve += f->times[i].resolve;
+  }
+  double all = sum.visibility + sum.accumulate + sum.resolve;
+  double scale = all > 0.0 ? tiles_ms / all : 0.0;
+  ms->visibility = sum.visibility * scale;
+  ms->accumulate = sum.accumulate * scale;
+  ms->resolve = sum.resolve * scale;
+}
+
+static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  const conic_projected *projected = &f->projected;
+  uint64_t n_rays = 0;
+  for (size_t i = 0; i < projected->n_chunks; i++) {
+    const conic_chunk *chunk = &projected->chunks[i];
+    statistics->splats_culled += chunk->n_culled;
+    statistics->splats_skipped += chunk->n_skipped;
+    statistics->splats_drawn += chunk->n_drawn;
+    statistics->splats_fallback += chunk->n_fallback;
+    n_rays += chunk->n_rays;
+  }
+  statistics->splats_in = f->splats->count;
+  statistics->splats_by_method[CONIC_METHOD_RAY] = n_rays;
+  statistics->splats_by_method[CONIC_METHOD_CONIC] = statistics->splats_drawn - n_rays;
+  for (size_t i = 0; i < f->bins.n_tiles; i++) {
+    statistics->fragments += f->n_fragments[i];
+    statistics->pixels_covered += f->n_covered[i];
+  }
+  statistics->near_z = f->view.near_z;
+  statistics->epsilon_is_fixed = options->epsilon >= 0.0;
+  statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
+  statistics->threads = conic_context_threads(f->renderer->context);
+  statistics->tile = f->bins.tile;
+}
+
+double conic_default_near(const conic_splats *splats) {
+  double low[3], high[3], diagonal_squared = 0.0;
+  conic_splats_bounds(splats, low, high);
+  for (int i = 0; i < 3; i++)
+    diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
+  return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
+}
+
+/* What of the scene the picture depends on as a whole: the near distance and the automatic ε's scale. */
+static conic_status measure_scene(conic_context *context, const conic_splats *splats,
+                                  const conic_render_options *options, double *near_z, double *splat_length) {
+  *near_z = options->near_z;
+  *splat_length = options->splat_length;
+  if (!(*near_z > 0.0))
+    *near_z = conic_default_near(splats);
+  if (!(*splat_length > 0.0) && options->epsilon < 0.0)
+    return conic_splats_length(context, splats, splat_length);
+  return CONIC_OK;
+}
+
+static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {
+  conic_finish *finish = &f->finish;
+  double length_squared = 0.0;
+  finish->options = options;
+  for (int i = 0; i < 3; i++) {
+    length_squared += options->light[i] * options->light[i];
+    for (int j = 0; j < 3; j++)
+      finish->world_from_cam[i][j] = camera->cam_from_world[j][i];
+  }
+  if (options->has_light && !(length_squared > 1e-200 && length_squared < 1e200))
+    return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
+  for (int i = 0; options->has_light && i < 3; i++)
+    finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
+  finish->needs_viewer =
+      options->shading == CONIC_SHADE_PHONG || (options->shading != CONIC_SHADE_NONE && !options->has_light);
+  finish->exposure = conic_exposure_factor(options->exposure);
+  return CONIC_OK;
+}
+
+static conic_status draw(frame *f, conic_render_milliseconds *ms) {
+  conic_context *context = f->renderer->context;
+  double start = seconds_now();
+  conic_parallel_for(context, f->projected.n_chunks, project_task, f);
+  double projected = seconds_now();
+  conic_status status = bin(f);
+  if (status != CONIC_OK)
+    return status;
+  double binned = seconds_now();
+  conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
+  double done = seconds_now();
+  ms->setup = 1e3 * (projected - start);
+  ms->bin = 1e3 * (binned - projected);
+  share_out(f, 1e3 * (done - binned), ms);
+  return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
+}
+
+conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                          const conic_render_options *options, conic_image *image,
+                          conic_render_statistics *statistics) {
+  double near_z, splat_length, start = seconds_now();
+  conic_render_statistics counted;
+  conic_context *context = renderer->context;
+  memset(&counted, 0, sizeof counted);
+  if (!splats || !camera || !options || !image || options->size != sizeof *options)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "render: an argument is null, or the options were not initialised");
+  if (image->width != camera->width || image->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
+  frame f = {.renderer = renderer, .splats = splats, .image = image};
+  conic_status status = measure_scene(context, splats, options, &near_z, &splat_length);
+  if (status == CONIC_OK)
+    status = conic_view_init(context, splats, camera, options, near_z, splat_length, &f.view);
+  if (status == CONIC_OK)
+    status = prepare_finish(&f, camera, options);
+  if (status == CONIC_OK)
+    status = plan_tiles(&f, options->tile);
+  if (status == CONIC_OK)
+    status = plan_chunks(&f);
+  if (status == CONIC_OK)
+    status = draw(&f, &counted.ms);
+  if (status != CONIC_OK)
+    return status;
+  count_up(&f, options, &counted);
+  counted.ms.frame = 1e3 * (seconds_now() - start);
+  if (statistics)
+    *statistics = counted;
+  return CONIC_OK;
+}

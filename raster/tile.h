@@ -1,0 +1,67 @@
+/* One tile: visibility, accumulation, resolving. The tile's planes are small enough to stay in the cache. */
+#ifndef RASTER_TILE_H
+#define RASTER_TILE_H
+
+#include "conic/image.h"
+#include "raster/bins.h"
+
+#define CONIC_NO_SPLAT 0xFFFFFFFFu
+
+/* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
+#define CONIC_LEAST_WEIGHT 0x1p-60f
+
+/* The planes of one tile, row by row, `tile` pixels a row. Splats are named by their footprint. */
+typedef struct conic_tile_planes {
+  float *threshold;  /* max of s·iz over what covers the pixel; 0: nothing does */
+  float *nearest_iz; /* the largest iz among the visible splats, and whose it is */
+  uint32_t *nearest;
+  float *weight;               /* Σ w */
+  float *color[3], *normal[3]; /* Σ w c, Σ w n */
+  float *heaviest_weight;      /* the largest w, and whose it is */
+  uint32_t *heaviest;
+  uint32_t *count; /* visible splats */
+} conic_tile_planes;
+
+#define CONIC_N_TILE_PLANES 13
+
+typedef struct conic_tile {
+  const conic_view *view;
+  const conic_projected *projected;
+  const uint32_t *references;
+  size_t n_references;
+  int edge;                           /* pixels a row of the planes */
+  int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
+  conic_tile_planes planes;
+  uint64_t n_fragments, n_covered; /* found by visibility, and by resolving */
+} conic_tile;
+
+/* Points the planes into `memory`, of CONIC_N_TILE_PLANES · edge² 4-byte words, and empties what the passes add to. */
+void conic_tile_clear(conic_tile *tile, void *memory);
+
+/* Pass 1: threshold. With `nearest_only`, nearest_iz and nearest instead: the splat that wins alone. */
+void conic_tile_visibility(conic_tile *tile, int nearest_only);
+
+/* Pass 2: sums over the visible splats, in file order. */
+void conic_tile_accumulate(conic_tile *tile);
+
+/* In place of pass 2 where the nearest splat wins: its colour, normal and weight. */
+void conic_tile_take_nearest(conic_tile *tile);
+
+/* How a frame's pixels are finished. */
+typedef struct conic_finish {
+  const conic_render_options *options;
+  double world_from_cam[3][3]; /* for the direction to the viewer */
+  float light[3];              /* unit, towards the light; unused with a headlight */
+  float exposure;              /* factor */
+  int needs_viewer;            /* shading asks for the direction to the viewer */
+} conic_finish;
+
+/* Pass 3: normalises, shades, and writes the tile's pixels of every plane that the image has. */
+void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
+
+/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
+ * weighted mean of the splats' unit normals, whose length says how far they agree. */
+void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
+                 const float viewer[3], float shaded[3]);
+
+#endif

@@ -1,0 +1,37 @@
+/* What one frame asks for, brought into the form that the stages compute with. */
+#ifndef RASTER_VIEW_H
+#define RASTER_VIEW_H
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+#include "core/kernel.h"
+
+/* c of the automatic ε = c·F_g·max(|t_u|, |t_v|). */
+#define CONIC_EPSILON_C 1.0f
+
+typedef struct conic_view {
+  int width, height;
+  double rotation[3][3];      /* camera from world */
+  double translation[3];      /* of positions that are relative to the splat set's origin */
+  float rotation_float[3][3]; /* for directions */
+  double fx, fy, cx, cy;
+  double near_z;
+  conic_method method;
+  conic_kernel kernel;
+  float cutoff;    /* F_g */
+  float support;   /* a pixel is covered where q < support */
+  float prefilter; /* h, px² */
+  float growth_px; /* F_g·√h: how far the prefilter moves an outline at most */
+  int cull_back;
+  float epsilon_scale; /* ε = epsilon_scale · F_g·max(|t_u|, |t_v|) … */
+  float epsilon_cap;   /* … at most this; with a fixed ε the scale is infinite */
+} conic_view;
+
+/* Checks camera and options and fills the view. `splat_length` is the lower median of max(|t_u|, |t_v|), `near_z`
+ * the near distance in use. Errors: ARGUMENT. */
+conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                             const conic_render_options *options, double near_z, double splat_length, conic_view *view);
+
+#endif
