@@ -14,9 +14,9 @@ static float length(const float v[3]) {
 }
 
 /* Camera-space z of the splat's plane at the pixel: its gradient is not shrunk here, but stays in the splat's range. */
-static float plane_z(const conic_footprint *footprint, const conic_surface *surface, int x, int y) {
+static float plane_z(const conic_footprint *footprint, int x, int y) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
-  float iz = (footprint->iz0 + surface->plane_dy * dy) + surface->plane_dx * dx;
+  float iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx;
   return 1.0f / conic_clamp_iz(footprint, iz);
 }
 
@@ -47,7 +47,7 @@ static void finish_covered(const conic_tile *tile, const conic_finish *finish, s
   p->weight = planes->weight[at];
   p->count = planes->count[at];
   p->id = tile->projected->surfaces[planes->nearest[at]].index;
-  p->z = plane_z(&tile->projected->footprints[planes->heaviest[at]], heaviest, x, y);
+  p->z = plane_z(&tile->projected->footprints[planes->heaviest[at]], x, y);
   for (int axis = 0; axis < 3; axis++)
     p->albedo[axis] = planes->color[axis][at] / p->weight;
   normal_of_sum(tile, at, heaviest, mean_normal, p->normal);
