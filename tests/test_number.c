@@ -115,14 +115,14 @@ static void check_random(void) {
 
 static void check_prints_back(double value) {
   char text[CONIC_NUMBER_ROOM];
-  double again;
+  double again = 0.5;
   size_t n = conic_number_print(text, value);
   CHECK(n < sizeof text && strlen(text) == n && conic_number_parse(text, n, &again) == n && same(again, value));
 }
 
 static void check_float_prints_back(float value) {
   char text[CONIC_NUMBER_ROOM], shorter[CONIC_NUMBER_ROOM];
-  double again;
+  double again = 0.5;
   size_t n = conic_number_print_float(text, value);
   CHECK(strlen(text) == n && conic_number_parse(text, n, &again) == n);
   CHECK((float)again == value || isnan(value));

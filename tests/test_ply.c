@@ -503,6 +503,74 @@ static void test_truncations(void) {
   }
 }
 
+/* Any byte may be any other: the file is read or refused, and nothing else happens (the sanitizers see to that). */
+static void test_mutations(void) {
+  uint32_t state = 1;
+  for (int i = 0; i < 6000; i++) {
+    conic_model model;
+    put_mixture((encoding)(i % N_ENCODINGS), i & 1);
+    for (int k = 0; k <= i % 4; k++) {
+      state = state * 1664525u + 1013904223u;
+      size_t position = 4 + (state >> 8) % (file.n - 4);
+      state = state * 1664525u + 1013904223u;
+      file.bytes[position] = (char)(k & 1 ? '0' + (state >> 24) % 10 : state >> 24);
+    }
+    conic_status status = read_file(&model);
+    CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT);
+    for (size_t t = 0; t < model.n_triangles; t++)
+      for (int corner = 0; corner < 3; corner++)
+        CHECK(model.triangles[t][corner] < model.points.count);
+    conic_model_release(context, &model);
+  }
+}
+
+/* An allocator whose n-th call fails, and which counts what has not been released. */
+typedef struct failing_allocator {
+  int n_left, n_open;
+} failing_allocator;
+
+static void *allocate_or_fail(void *cookie, size_t bytes) {
+  failing_allocator *allocator = cookie;
+  if (allocator->n_left-- == 0)
+    return NULL;
+  allocator->n_open++;
+  return malloc(bytes);
+}
+
+static void release(void *cookie, void *pointer) {
+  failing_allocator *allocator = cookie;
+  allocator->n_open -= pointer != NULL;
+  free(pointer);
+}
+
+static void test_no_memory(void) {
+  failing_allocator allocator = {1 << 30, 0};
+  conic_context_options options;
+  conic_context *poor;
+  conic_context_options_init(&options);
+  options.allocate = allocate_or_fail;
+  options.release = release;
+  options.allocator_cookie = &allocator;
+  options.threads = 1;
+  CHECK_OK(conic_context_create(&options, &poor));
+  put_mixture(TEXT, 1);
+  const char *path = files_write_bytes("a.ply", file.bytes, file.n);
+  int n_open = allocator.n_open, n_failed = 0;
+  for (conic_status status = CONIC_ERROR_MEMORY; status != CONIC_OK && n_failed < 1000; n_failed++) {
+    conic_model model;
+    allocator.n_left = n_failed;
+    status = conic_model_read(poor, path, NULL, &model);
+    CHECK(status == CONIC_OK || (status == CONIC_ERROR_MEMORY && !model.points.position[0] && !model.triangles));
+    conic_model_release(poor, &model);
+    CHECK(allocator.n_open == n_open);
+  }
+  CHECK(n_failed > 8 && n_failed < 1000);
+  allocator.n_left = 1 << 30;
+  conic_context_destroy(poor);
+  CHECK(allocator.n_open == 0);
+  unlink(path);
+}
+
 /* A writer at the other end of a pipe. */
 typedef struct pipe_writer {
   const char *path;
@@ -600,6 +668,8 @@ int main(int argc, char **argv) {
   test_wrong_text();
   test_wrong_binary();
   test_truncations();
+  test_mutations();
+  test_no_memory();
   test_pipe();
   test_empty();
   test_real(argc > 1 ? argv[1] : ".");
