@@ -1,12 +1,11 @@
 #include "core/image_foreign.h"
 
+#include <stdio.h>
+#include <string.h>
+
 #include "core/message.h"
 
 #if CONIC_HAVE_OPENIMAGEIO
-
-#include <errno.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "core/file.h"
 #include "core/image.h"
@@ -137,10 +136,31 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
                     "%s: cannot write: this build is without OpenImageIO and writes no such format", path);
 }
 
+/* Whether the file begins as an image of a well-known format does: then it is the build that lacks something. */
+static int is_known_image(const char *path) {
+  static const struct {
+    const char *bytes;
+    size_t n_bytes;
+  } starts[] = {{"\x89PNG", 4},     {"\xff\xd8\xff", 3},     {"II*\0", 4}, {"MM\0*", 4},
+                {"#?RADIANCE", 10}, {"\x76\x2f\x31\x01", 4}, {"GIF8", 4},  {"BM", 2}};
+  char start[16] = {0};
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return 0;
+  size_t n = fread(start, 1, sizeof start, file);
+  fclose(file);
+  for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++)
+    if (n >= starts[i].n_bytes && memcmp(start, starts[i].bytes, starts[i].n_bytes) == 0)
+      return 1;
+  return 0;
+}
+
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
   (void)image;
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
-                    "%s: cannot read: this build is without OpenImageIO, or it is no image", path);
+  if (is_known_image(path))
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: this build is without the library for it",
+                      path);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
 }
 
 #endif
