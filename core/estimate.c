@@ -200,8 +200,9 @@ static void hand_over(conic_estimate *estimate, conic_model *model) {
     }
   /* A colour that is none becomes what absence means: white. */
   for (size_t i = 0; i < model->points.count; i++)
-    for (int channel = 0; channel < 3 && has_bad_color(&model->points, i); channel++)
-      model->points.color[channel][i] = 1.0f;
+    if (has_bad_color(&model->points, i))
+      for (int channel = 0; channel < 3; channel++)
+        model->points.color[channel][i] = 1.0f;
 }
 
 static conic_status allocate_estimate(conic_context *context, conic_estimate *estimate) {
