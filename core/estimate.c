@@ -218,8 +218,9 @@ static conic_status allocate_estimate(conic_context *context, conic_estimate *es
 
 static conic_status estimate_model(conic_context *context, const conic_estimate_options *options,
                                    conic_estimate *estimate, conic_repairs *repairs) {
-  conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
-  conic_status status = allocate_estimate(context, estimate);
+  conic_status status = conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
+  if (status == CONIC_OK)
+    status = allocate_estimate(context, estimate);
   if (status == CONIC_OK && estimate->model->n_triangles)
     status = conic_estimate_from_faces(context, estimate);
   if (status == CONIC_OK && count_states(estimate, CONIC_POINT_RAW))
