@@ -1,4 +1,5 @@
 /* Outlines of raw points: they cover what was sampled, whatever the pattern, and nothing that was not. */
+#include "core/neighbours.h"
 #include "tests/outlines.h"
 
 static const double along_z[3] = {0.0, 0.0, 1.0};
@@ -148,6 +149,42 @@ static void check_sheets(conic_context *context) {
   conic_model_release(context, &model);
 }
 
+/* The share of the middles between neighbours, on every 20th point, that no outline near by covers, as seen along the
+ * point's normal. Neighbours are the 12 nearest where the normals are within 60°. */
+static double uncovered_middles(conic_context *context, const conic_splats *splats) {
+  enum { NEAREST = 12, AROUND = 40 };
+  const float *const positions[3] = {splats->position[0], splats->position[1], splats->position[2]};
+  uint32_t slots[NEAREST], around[AROUND];
+  double distances2[AROUND];
+  size_t n_middles = 0, n_uncovered = 0;
+  conic_neighbours tree;
+  CHECK_OK(conic_neighbours_build(context, positions, splats->count, &tree));
+  for (uint32_t slot = 0; slot < tree.n_slots; slot += 20) {
+    outlines_splat s = outlines_get(splats, tree.point_of_slot[slot]);
+    size_t n = conic_neighbours_nearest(&tree, s.center, slot, NEAREST, HUGE_VAL, slots, distances2);
+    for (size_t i = 0; i < n; i++) {
+      outlines_splat other = outlines_get(splats, tree.point_of_slot[slots[i]]);
+      double middle[3], cosine = 0.0;
+      for (int axis = 0; axis < 3; axis++) {
+        middle[axis] = 0.5 * (s.center[axis] + other.center[axis]);
+        cosine += s.normal[axis] * other.normal[axis];
+      }
+      if (cosine < 0.5)
+        continue;
+      size_t n_around = conic_neighbours_nearest(&tree, middle, CONIC_NO_SLOT, AROUND, HUGE_VAL, around, distances2);
+      int is_covered = 0;
+      for (size_t j = 0; j < n_around && !is_covered; j++) {
+        outlines_splat candidate = outlines_get(splats, tree.point_of_slot[around[j]]);
+        is_covered = outlines_cover(&candidate, middle, s.normal, 2.0 * s.a);
+      }
+      n_middles++;
+      n_uncovered += !is_covered;
+    }
+  }
+  conic_neighbours_release(context, &tree);
+  return (double)n_uncovered / (double)n_middles;
+}
+
 /* On real data: figures to read, and bounds that only a mistake would pass. */
 static void check_lion(conic_context *context, const char *source_folder) {
   const char *path = check_data(source_folder, "lion.ply");
@@ -168,6 +205,9 @@ static void check_lion(conic_context *context, const char *source_folder) {
   }
   fprintf(stderr, "lion: mean outline %.5f, greatest %.5f; %zu isolated, %zu duplicate, %zu failed\n", sum / (double)n,
           greatest, repairs.isolated, repairs.duplicate, repairs.failed);
+  double uncovered = uncovered_middles(context, &model.points);
+  fprintf(stderr, "lion: %.4f %% of the middles between neighbours uncovered\n", 100.0 * uncovered);
+  CHECK(uncovered < 0.001);
   CHECK(n_bad == 0 && repairs.failed == 0);
   CHECK(greatest < 20.0 * sum / (double)n);
   CHECK((double)repairs.isolated < 0.01 * (double)n);
