@@ -44,6 +44,22 @@ conic_ellipse conic_ellipse_bound(const double (*points)[2], int n_points, doubl
   return ellipse;
 }
 
+void conic_ellipse_retract(conic_ellipse *ellipse, const double (*points)[2], int n_points, double limit) {
+  if (!(ellipse->reach > limit))
+    return;
+  for (int i = 0; i < n_points; i++) {
+    double along = points[i][0] * ellipse->major[0] + points[i][1] * ellipse->major[1];
+    double across = points[i][1] * ellipse->major[0] - points[i][0] * ellipse->major[1];
+    double room2 = limit * limit - along * along;
+    double ratio = room2 > 0.0 ? sqrt(across * across / room2) : 1.0;
+    ellipse->ratio = ratio > ellipse->ratio ? ratio : ellipse->ratio;
+  }
+  ellipse->ratio = ellipse->ratio < 1.0 ? ellipse->ratio : 1.0;
+  ellipse->reach = 0.0;
+  for (int i = 0; i < n_points; i++)
+    conic_ellipse_cover(ellipse, points[i][0], points[i][1]);
+}
+
 void conic_ellipse_overlap(conic_ellipse *ellipse, double cell_area, double cover, double blend,
                            double greatest_reach) {
   double wanted = blend * sqrt(cell_area / ellipse->ratio);

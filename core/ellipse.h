@@ -29,6 +29,10 @@ void conic_ellipse_cover(conic_ellipse *ellipse, double x, double y);
 /* The ellipse of the points' covariance that covers all of them. */
 conic_ellipse conic_ellipse_bound(const double (*points)[2], int n_points, double least_ratio);
 
+/* Where the ellipse reaches past `limit`, widens it across until it covers the points without; they lie within `limit`
+ * themselves. */
+void conic_ellipse_retract(conic_ellipse *ellipse, const double (*points)[2], int n_points, double limit);
+
 /* Enlarges an ellipse that covers a cell so that it overlaps its neighbours: by the factor `cover` at least, and until
  * its area is π·blend² times the cell's, but not past `greatest_reach` for the latter's sake. */
 void conic_ellipse_overlap(conic_ellipse *ellipse, double cell_area, double cover, double blend, double greatest_reach);

@@ -200,8 +200,9 @@ static void hand_over(conic_estimate *estimate, conic_model *model) {
     }
   /* A colour that is none becomes what absence means: white. */
   for (size_t i = 0; i < model->points.count; i++)
-    for (int channel = 0; channel < 3 && has_bad_color(&model->points, i); channel++)
-      model->points.color[channel][i] = 1.0f;
+    if (has_bad_color(&model->points, i))
+      for (int channel = 0; channel < 3; channel++)
+        model->points.color[channel][i] = 1.0f;
 }
 
 static conic_status allocate_estimate(conic_context *context, conic_estimate *estimate) {
@@ -217,8 +218,9 @@ static conic_status allocate_estimate(conic_context *context, conic_estimate *es
 
 static conic_status estimate_model(conic_context *context, const conic_estimate_options *options,
                                    conic_estimate *estimate, conic_repairs *repairs) {
-  conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
-  conic_status status = allocate_estimate(context, estimate);
+  conic_status status = conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
+  if (status == CONIC_OK)
+    status = allocate_estimate(context, estimate);
   if (status == CONIC_OK && estimate->model->n_triangles)
     status = conic_estimate_from_faces(context, estimate);
   if (status == CONIC_OK && count_states(estimate, CONIC_POINT_RAW))

@@ -34,7 +34,7 @@ conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_e
   uint64_t row_bytes = least_row_bytes(source, element), remaining = conic_input_remaining_bytes(input);
   source->element = element;
   source->i_row = 0;
-  remaining += remaining < UINT64_MAX; /* the last line of a text may lack its end */
+  remaining += source->format == CONIC_PLY_TEXT && remaining < UINT64_MAX; /* the last line may lack its end */
   if (row_bytes && element->count > remaining / row_bytes)
     return conic_fail(input->context, CONIC_ERROR_INPUT,
                       "%s: the file is too short for the %llu rows of '%s' that line %llu declares (at byte %llu)",
@@ -130,9 +130,11 @@ conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_pl
   if (value < 0.0)
     return conic_ply_wrong(source, "a list has a negative length");
   *length = (uint64_t)value;
-  uint64_t item_bytes = source->format == CONIC_PLY_TEXT ? 2 : conic_ply_type_bytes(property->type);
+  int is_text = source->format == CONIC_PLY_TEXT;
+  uint64_t item_bytes = is_text ? 2 : conic_ply_type_bytes(property->type);
   uint64_t remaining = conic_input_remaining_bytes(source->input);
-  if (remaining<UINT64_MAX && * length>(remaining + 1) / item_bytes)
+  remaining += is_text && remaining < UINT64_MAX; /* the last line may lack its end */
+  if (*length > remaining / item_bytes)
     return conic_ply_wrong(source, "a list runs past the end of the file");
   return CONIC_OK;
 }

@@ -208,7 +208,9 @@ static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, flo
 
 static void put_row(const conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
   for (int axis = 0; axis < 3; axis++) {
-    double position = batch->origin[axis] + (double)batch->position[axis][i];
+    double position = (double)batch->position[axis][i];
+    if (batch->origin[axis] != 0.0) /* adding 0 would turn -0 into 0 */
+      position += batch->origin[axis];
     if (writer->has_double_positions)
       put_double(row, position);
     else

@@ -10,6 +10,9 @@
 
 /* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
 #define CELL_RADIUS 1.35
+/* The ellipse around a cell reaches no farther than this many of its radii: one that kept the ratio of a long cell
+ * would point far out of it. */
+#define GREATEST_REACH 1.1
 /* A neighbour belongs to the same surface where its direction is less than 60° off the tangent plane, and the normals
  * are not turned away from each other by more than 107°. */
 #define GREATEST_SLOPE 0.866
@@ -129,6 +132,16 @@ static void cut_cell(const place *p, const double u[3], const double v[3], doubl
   }
 }
 
+/* Whether the cell is open on two opposite sides: then nothing tells how wide the surface is here, as on a cable. */
+static int is_open_across(const conic_cell *cell, double radius) {
+  for (int i = 0; i < cell->n_corners; i++)
+    for (int j = 0; j < i; j++)
+      if (cell->corners[i][0] * cell->corners[j][0] + cell->corners[i][1] * cell->corners[j][1] <
+          -0.9 * radius * radius)
+        return 1;
+  return 0;
+}
+
 static conic_ellipse circle(double radius) {
   conic_ellipse ellipse = {{1.0, 0.0}, 1.0, radius};
   return ellipse;
@@ -150,7 +163,16 @@ static conic_point_state outline(const place *p, size_t slot, const double *spac
   double own = spacings[slot], greatest = GREATEST_GROWTH * median;
   double radius = CELL_RADIUS * (own < greatest ? own : greatest);
   cut_cell(p, u, v, radius, &cell);
+  if (is_open_across(&cell, radius)) {
+    double next2 = nearest2, next = 0.0;
+    if (p->neighbourhood->n_neighbours > 1)
+      view_neighbour(p, p->list[1], d, &next2);
+    next = CELL_RADIUS * sqrt(next2);
+    radius = next < radius ? next : radius;
+    cut_cell(p, u, v, radius, &cell);
+  }
   *ellipse = conic_ellipse_bound((const double(*)[2])cell.corners, cell.n_corners, CONIC_OUTLINE_RATIO);
+  conic_ellipse_retract(ellipse, (const double(*)[2])cell.corners, cell.n_corners, GREATEST_REACH * radius);
   conic_ellipse_overlap(ellipse, conic_cell_area(&cell), CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND,
                         CONIC_OUTLINE_COVER * radius);
   return CONIC_POINT_SPREAD;

@@ -108,7 +108,8 @@ void *conic_scene_surface(conic_scene *scene, size_t bytes) {
 
 void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v) {
   *u = ((double)i + 0.5) / (double)n;
-  *v = (double)(i * UINT64_C(0x9e3779b97f4a7c15) >> 11) * 0x1p-53; /* 2⁶⁴/φ; the product wraps as the turn does */
+  /* 2⁶⁴/φ and 2⁶³: the sum wraps as the turns do. */
+  *v = (double)((i * UINT64_C(0x9e3779b97f4a7c15) + UINT64_C(0x8000000000000000)) >> 11) * 0x1p-53;
 }
 
 double conic_scene_equal_area_angle(double turns, double e) {

@@ -49,8 +49,8 @@ extern const conic_scene_kind conic_scene_plane, conic_scene_sphere, conic_scene
 /* Makes scene->surface, `bytes` large; null on failure. */
 void *conic_scene_surface(conic_scene *scene, size_t bytes);
 
-/* Point i of n of the golden lattice in the unit square: u = (i + ½)/n, v = i/φ modulo 1, exact to 2⁻⁵³ for any i. It
- * stays even when the square is stretched to a rectangle of any shape and the same area. */
+/* Point i of n of the golden lattice in the unit square: u = (i + ½)/n, v = i/φ + ½ modulo 1, exact to 2⁻⁵³ for any i.
+ * It stays even when the square is stretched to a rectangle of any shape and the same area. */
 void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v);
 
 /* The angle ψ with ψ − e·sin ψ = 2π·turns (Kepler's equation), |e| ≤ 0.7, to 1e-7: where the circumference of a bent

@@ -8,14 +8,14 @@
 #include "core/scene.h"
 #include "core/threads.h"
 
-/* Octaves of noise, each twice as fine as the one before; the finest features are 1/700 wide. */
+/* Octaves of noise, each twice as fine as the one before; the finest cells are 1/700 wide. */
 enum { OCTAVES = 10 };
 
 #define FIRST_FREQUENCY 1.37 /* noise cells per unit */
-#define RELIEF 0.62          /* height of the first octave */
+#define RELIEF 0.95          /* height of the first octave */
 #define PERSISTENCE 0.48     /* of the next one over the one before */
-#define EROSION 0.9          /* how much steep ground keeps finer octaves away */
-#define UPLIFT 0.21          /* lifts the island's middle */
+#define EROSION 1.2          /* how much steep ground keeps finer octaves away */
+#define UPLIFT 0.24          /* lifts the island's middle */
 #define SEA_FLOOR 0.10       /* depth of the ground along the border */
 
 /* The sum of the octaves, and its gradient. Where the octaves so far have made the ground steep, finer ones count less:
@@ -71,8 +71,8 @@ static const uint8_t land[][3] = {{0xe3, 0xd3, 0x9f}, {0x9d, 0xae, 0x5a}, {0x5b,
 static const uint8_t rock[][3] = {{0x5d, 0x52, 0x4a}, {0x93, 0x86, 0x79}};
 static const uint8_t snow[3] = {0xf6, 0xf8, 0xfb};
 
-#define STEEP_SLOPE 0.95
-#define SNOW_HEIGHT 0.33
+#define STEEP_SLOPE 1.05
+#define SNOW_HEIGHT 0.42
 
 static double clamp01(double t) {
   return t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;

@@ -6,7 +6,8 @@ static inline __attribute__((always_inline)) void blend(conic_tile *tile, uint32
                                                         const conic_footprint *footprint, size_t at,
                                                         const conic_fragment *fragment) {
   conic_tile_planes *planes = &tile->planes;
-  if (!(fragment->iz >= planes->threshold[at]))
+  float seen_iz = fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
+  if (!(seen_iz >= planes->threshold[at]))
     return;
   const conic_surface *surface = &tile->projected->surfaces[i_footprint];
   float weight = conic_final_weight(tile->view, footprint, fragment->q, fragment->scale);

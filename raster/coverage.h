@@ -7,15 +7,17 @@
 
 /* A splat on one row of pixels. */
 typedef struct conic_row {
-  float q_offset;  /* s2·dy */
-  float q_rest;    /* (s3·dy)² */
-  float iz_offset; /* iz0 + iz_dy·dy */
-  float u, v;      /* rays: U and V at dx = 0 */
+  float q_offset;     /* s2·dy */
+  float q_rest;       /* (s3·dy)² */
+  float iz_offset;    /* iz0 + iz_dy·dy */
+  float plane_offset; /* iz0 + plane_dy·dy */
+  float u, v;         /* rays: U and V at dx = 0 */
 } conic_row;
 
 typedef struct conic_fragment {
   float q, iz;
-  float scale; /* what multiplies amplitude and kernel: |I + h·JJᵀ|^-½ for rays, else 1 */
+  float plane_iz; /* of the splat's plane at the pixel, neither shrunk nor clamped */
+  float scale;    /* what multiplies amplitude and kernel: |I + h·JJᵀ|^-½ for rays, else 1 */
 } conic_fragment;
 
 static inline float conic_row_dy(const conic_footprint *footprint, int y) {
@@ -32,6 +34,7 @@ static inline conic_row conic_row_begin(const conic_footprint *footprint, float 
   row.q_offset = footprint->s2 * dy;
   row.q_rest = minor * minor;
   row.iz_offset = footprint->iz0 + footprint->iz_dy * dy;
+  row.plane_offset = footprint->iz0 + footprint->plane_dy * dy;
   row.u = row.v = 0.0f;
   return row;
 }
@@ -76,6 +79,7 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
     return 0;
   fragment->q = q;
   fragment->iz = conic_clamp_iz(footprint, iz);
+  fragment->plane_iz = iz;
   fragment->scale = 1.0f / sqrtf(determinant);
   return 1;
 }

@@ -116,8 +116,8 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->iz_far = inverse_z / s->farthest;
   footprint->iz_near = inverse_z / s->nearest;
   float area = t->ux * t->vy - t->uy * t->vx;
-  s->surface->plane_dx = finite_or(-inverse_z * (t->uz * t->vy - t->uy * t->vz) / area, 0.0f);
-  s->surface->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
+  footprint->plane_dx = finite_or(-inverse_z * (t->uz * t->vy - t->uy * t->vz) / area, 0.0f);
+  footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
 static conic_verdict project_conic(const splat_setup *s, const tangents *t, const projected_kernel *k) {
@@ -168,7 +168,7 @@ static conic_verdict project_before_near(splat_setup *s, const float tu[3], cons
   if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k)) {
     conic_disc disc;
     fill_disc(s, &disc);
-    return conic_project_ray(view, &disc, s->footprint, s->ray, s->surface);
+    return conic_project_ray(view, &disc, s->footprint, s->ray);
   }
   return project_conic(s, &t, &k);
 }
@@ -179,7 +179,7 @@ static conic_verdict project_across_near(splat_setup *s) {
   s->along_ray = disc.determinant > 0.0 ? 1.0f : disc.determinant < 0.0 ? -1.0f : 0.0f;
   if (s->view->cull_back && disc.determinant > 0.0)
     return CONIC_CULLED;
-  return conic_project_near(s->view, &disc, s->footprint, s->ray, s->surface);
+  return conic_project_near(s->view, &disc, s->footprint, s->ray);
 }
 
 /* The unit normal in the world, and the length of the longer axis. 0 where there is no normal. */

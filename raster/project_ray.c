@@ -74,7 +74,7 @@ static double gradient_length(const conic_view *view, const conic_disc *disc) {
 }
 
 conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                conic_ray *ray, conic_surface *surface) {
+                                conic_ray *ray) {
   double m_u[3], m_v[3];
   if (disc->determinant == 0.0)
     return CONIC_SKIPPED;
@@ -89,8 +89,8 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
   set_affine(view, footprint, m_v, disc->determinant, &ray->v0, &ray->v_dx, &ray->v_dy);
   set_affine(view, footprint, disc->n, disc->determinant, &footprint->iz0, &footprint->iz_dx, &footprint->iz_dy);
   footprint->s2 = footprint->s3 = 0.0f;
-  surface->plane_dx = footprint->iz_dx;
-  surface->plane_dy = footprint->iz_dy;
+  footprint->plane_dx = footprint->iz_dx;
+  footprint->plane_dy = footprint->iz_dy;
 
   double widening = gradient_length(view, disc) / fabs(disc->determinant) * (double)view->growth_px;
   double high = (double)footprint->iz_near + widening, low = (double)footprint->iz_far - widening;
@@ -102,8 +102,7 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
 
 /* The clipped disc seen from its own plane: a segment, whose variance is that of a splat with its ends on the outline.
  */
-static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                     conic_surface *surface) {
+static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint) {
   conic_screen_point a, b;
   double gx = disc->n[0] / view->fx, gy = disc->n[1] / view->fy, g = sqrt(gx * gx + gy * gy);
   const double along_line[2] = {g > 0.0 ? -gy / g : 1.0, g > 0.0 ? gx / g : 0.0};
@@ -141,18 +140,18 @@ static conic_verdict project_segment(const conic_view *view, const conic_disc *d
   footprint->iz_dx = (float)(shrunk * ex);
   footprint->iz_dy = (float)(shrunk * ey);
   set_range(view, disc, footprint);
-  surface->plane_dx = (float)(slope * ex);
-  surface->plane_dy = (float)(slope * ey);
+  footprint->plane_dx = (float)(slope * ex);
+  footprint->plane_dy = (float)(slope * ey);
   return CONIC_DRAWN_SEGMENT;
 }
 
 conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                 conic_ray *ray, conic_surface *surface) {
+                                 conic_ray *ray) {
   /* Edge-on is, as elsewhere, less than half a pixel per standard deviation: here, of the band on the screen in which
    * the plane's inverse depth runs from the disc's far to its near end. */
   set_range(view, disc, footprint);
   double range = (double)footprint->iz_near - (double)footprint->iz_far;
   if (range * fabs(disc->determinant) < (double)view->cutoff * gradient_length(view, disc))
-    return project_segment(view, disc, footprint, surface);
-  return conic_project_ray(view, disc, footprint, ray, surface);
+    return project_segment(view, disc, footprint);
+  return conic_project_ray(view, disc, footprint, ray);
 }

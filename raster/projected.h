@@ -22,6 +22,7 @@ typedef struct conic_footprint {
   };
   float s2, s3;
   float iz0, iz_dx, iz_dy;
+  float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
   float iz_far, iz_near;
   float nearness;                          /* s = 1 / (1 + ε/‖p‖) */
   float amplitude;                         /* A·opacity */
@@ -38,9 +39,8 @@ typedef struct conic_ray {
 /* The part that blending and resolving read. */
 typedef struct conic_surface {
   float color[3];
-  float normal[3];          /* world, unit, towards the viewer */
-  float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
-  uint32_t index;           /* in the splat set */
+  float normal[3]; /* world, unit, towards the viewer */
+  uint32_t index;  /* in the splat set */
 } conic_surface;
 
 /* A chunk of consecutive splats, projected and compacted. */
@@ -83,11 +83,11 @@ typedef struct conic_disc {
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
 conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                conic_ray *ray, conic_surface *surface);
+                                conic_ray *ray);
 
 /* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
  * is 0). */
 conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                 conic_ray *ray, conic_surface *surface);
+                                 conic_ray *ray);
 
 #endif

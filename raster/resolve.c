@@ -14,9 +14,9 @@ static float length(const float v[3]) {
 }
 
 /* Camera-space z of the splat's plane at the pixel: its gradient is not shrunk here, but stays in the splat's range. */
-static float plane_z(const conic_footprint *footprint, const conic_surface *surface, int x, int y) {
+static float plane_z(const conic_footprint *footprint, int x, int y) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
-  float iz = (footprint->iz0 + surface->plane_dy * dy) + surface->plane_dx * dx;
+  float iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx;
   return 1.0f / conic_clamp_iz(footprint, iz);
 }
 
@@ -30,28 +30,30 @@ static void viewer_at(const conic_view *view, const conic_finish *finish, int x,
   }
 }
 
-static void normal_of_sum(const conic_tile *tile, size_t at, const conic_surface *heaviest, float normal[3]) {
+/* The weighted mean of the splats' normals, and its direction; where they cancel, that of the heaviest splat. */
+static void normal_of_sum(const conic_tile *tile, size_t at, const conic_surface *heaviest, float mean[3],
+                          float normal[3]) {
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = tile->planes.normal[axis][at] / tile->planes.weight[at];
-  float norm = length(normal);
+    mean[axis] = tile->planes.normal[axis][at] / tile->planes.weight[at];
+  float norm = length(mean);
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = norm > 0.0f ? normal[axis] / norm : heaviest->normal[axis];
+    normal[axis] = norm > 0.0f ? mean[axis] / norm : heaviest->normal[axis];
 }
 
 static void finish_covered(const conic_tile *tile, const conic_finish *finish, size_t at, int x, int y, pixel *p) {
   const conic_tile_planes *planes = &tile->planes;
   const conic_surface *heaviest = &tile->projected->surfaces[planes->heaviest[at]];
-  float viewer[3] = {0.0f, 0.0f, 0.0f}, shaded[3];
+  float viewer[3] = {0.0f, 0.0f, 0.0f}, mean_normal[3], shaded[3];
   p->weight = planes->weight[at];
   p->count = planes->count[at];
   p->id = tile->projected->surfaces[planes->nearest[at]].index;
-  p->z = plane_z(&tile->projected->footprints[planes->heaviest[at]], heaviest, x, y);
+  p->z = plane_z(&tile->projected->footprints[planes->heaviest[at]], x, y);
   for (int axis = 0; axis < 3; axis++)
     p->albedo[axis] = planes->color[axis][at] / p->weight;
-  normal_of_sum(tile, at, heaviest, p->normal);
+  normal_of_sum(tile, at, heaviest, mean_normal, p->normal);
   if (finish->needs_viewer)
     viewer_at(tile->view, finish, x, y, viewer);
-  conic_shade(finish, p->albedo, p->normal, viewer, shaded);
+  conic_shade(finish, p->albedo, p->normal, mean_normal, viewer, shaded);
   for (int axis = 0; axis < 3; axis++)
     p->rgba[axis] = shaded[axis] * finish->exposure;
   p->rgba[3] = 1.0f;

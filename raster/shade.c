@@ -2,7 +2,7 @@
 
 /* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
  * the scans and meshes: the darkest side stays readable and white does not burn out. */
-static const float ambient = 0.12f, diffuse = 0.88f, specular = 0.10f;
+static const float ambient = 0.05f, diffuse = 0.75f, specular = 0.15f;
 
 static float dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -19,8 +19,11 @@ static float gloss(float x) {
   return x;
 }
 
-void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float viewer[3],
-                 float shaded[3]) {
+/* Where normals disagree, their mean is short. The light is averaged by the mean itself, not by its direction: at a
+ * silhouette, splats of the front and of the back blend, both seen almost edge-on and both flipped to the viewer; what
+ * is left of their sum points straight at the viewer, and normalised would draw a bright rim. */
+void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
+                 const float viewer[3], float shaded[3]) {
   const conic_render_options *options = finish->options;
   if (options->shading == CONIC_SHADE_NONE) {
     for (int i = 0; i < 3; i++)
@@ -28,12 +31,13 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
     return;
   }
   const float *light = options->has_light ? finish->light : viewer;
-  float towards_light = dot(normal, light), lit = ambient + diffuse * at_least_zero(towards_light), glossy = 0.0f;
+  float towards_light = dot(normal, light), glossy = 0.0f;
+  float lit = ambient + diffuse * at_least_zero(dot(mean_normal, light));
   if (options->shading == CONIC_SHADE_PHONG && towards_light > 0.0f) {
     float reflected[3];
     for (int i = 0; i < 3; i++)
       reflected[i] = 2.0f * towards_light * normal[i] - light[i];
-    glossy = specular * gloss(at_least_zero(dot(reflected, viewer)));
+    glossy = specular * gloss(at_least_zero(dot(reflected, viewer))) * dot(mean_normal, mean_normal);
   }
   for (int i = 0; i < 3; i++)
     shaded[i] = albedo[i] * lit + glossy;

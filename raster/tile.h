@@ -59,8 +59,9 @@ typedef struct conic_finish {
 /* Pass 3: normalises, shades, and writes the tile's pixels of every plane that the image has. */
 void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
 
-/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. */
-void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float viewer[3],
-                 float shaded[3]);
+/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
+ * weighted mean of the splats' unit normals, whose length says how far they agree. */
+void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
+                 const float viewer[3], float shaded[3]);
 
 #endif

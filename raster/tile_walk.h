@@ -44,6 +44,7 @@ static inline __attribute__((always_inline)) void conic_walk_ellipse(conic_tile 
       if (!(fragment.q < support))
         continue;
       fragment.iz = conic_row_iz(footprint, &row, dx);
+      fragment.plane_iz = row.plane_offset + footprint->plane_dx * dx;
       visit(tile, i_footprint, footprint, at, &fragment);
     }
   }

@@ -1,10 +1,13 @@
 #include "raster/tile_walk.h"
 
+/* Pass 1: how near something hides what is behind it (docs/picture.md, Visible). */
+
 static inline __attribute__((always_inline)) void raise_threshold(conic_tile *tile, uint32_t i_footprint,
                                                                   const conic_footprint *footprint, size_t at,
                                                                   const conic_fragment *fragment) {
   float *threshold = &tile->planes.threshold[at];
-  float offset_iz = footprint->nearness * fragment->iz;
+  float hiding_iz = fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz;
+  float offset_iz = footprint->nearness * hiding_iz;
   (void)i_footprint;
   tile->n_fragments++;
   *threshold = offset_iz > *threshold ? offset_iz : *threshold;

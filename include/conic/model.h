@@ -28,9 +28,11 @@ typedef struct conic_read_options {
 CONIC_API void conic_read_options_init(conic_read_options *options);
 
 /* Reads a model; "-" is standard input (PLY only). The format is told by the content first, then by the name's ending.
- * 8-bit colours are decoded from sRGB, float colours are taken as linear. On success the caller owns *model
- * and releases it; on failure it is empty and the log says file, line or byte offset, and what is wrong there.
- * Errors: INPUT, MEMORY. */
+ * Integer colours of a PLY and all colours of an OBJ are decoded from sRGB, float colours of a PLY are taken as linear.
+ * Positions that a float cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ) are kept from the
+ * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on failure
+ * it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the defaults.
+ * Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
@@ -75,15 +77,18 @@ typedef enum conic_ply_encoding { CONIC_PLY_BINARY = 0, CONIC_PLY_ASCII = 1 } co
 typedef struct conic_write_options {
   size_t size;                 /* sizeof(conic_write_options), set by the init function */
   conic_ply_encoding encoding; /* binary little endian by default */
-  int double_positions;        /* write positions as double; also done when a batch's origin is not zero */
+  int double_positions;        /* write positions as double; also done when the first batch's origin is not zero */
   int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long */
   float cutoff;                /* F_g, for that radius */
 } conic_write_options;
 
 CONIC_API void conic_write_options_init(conic_write_options *options);
 
-/* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. On success the caller
- * owns *writer and ends it with finish or abandon. Errors: ARGUMENT, MEMORY, IO. */
+/* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. What is written first
+ * decides for the whole file: an origin other than zero, that positions are double; colours that are all those of 8-bit
+ * sRGB codes, that colours are such codes (and any later one the nearest), else they are linear floats. Normals are
+ * written only where there are no axes. Null `options` are the defaults. On success the caller owns *writer and ends it
+ * with finish or abandon. Errors: ARGUMENT, MEMORY, IO. */
 CONIC_API conic_status conic_splats_writer_open(conic_context *context, const char *path, size_t count, unsigned fields,
                                                 const conic_write_options *options, conic_splats_writer **writer);
 /* Appends a batch. Errors: ARGUMENT (more than `count` in all, or arrays missing), IO. */

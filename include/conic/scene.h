@@ -13,12 +13,14 @@ extern "C" {
 #endif
 
 typedef enum conic_scene_type {
-  CONIC_SCENE_PLANE = 0,   /* the unit square [-½, ½]² in z = 0, facing +z, checkerboard of 8 × 8 */
+  CONIC_SCENE_PLANE = 0,   /* the unit square [-½, ½]² in z = 0, facing +z; a checkerboard of 8 × 8 in the
+                              sRGB codes 255 and 32, dark at (-½, -½) */
   CONIC_SCENE_SPHERE = 1,  /* radius 1, Fibonacci lattice, checker colours */
   CONIC_SCENE_TORUS = 2,   /* radii 1 and 0.4, around y */
   CONIC_SCENE_KNOT = 3,    /* a (2, 3) torus knot as a tube */
-  CONIC_SCENE_TERRAIN = 4, /* fractal heights over [-1, 1]², y up, coloured by height and slope */
-  CONIC_SCENE_GYROID = 5   /* the iso-surface in the cube [-1, 1]³, several periods: depth complexity over 20 */
+  CONIC_SCENE_TERRAIN = 4, /* an island of fractal heights over [-1, 1]², y up, coloured by height and slope */
+  CONIC_SCENE_GYROID = 5   /* the iso-surface in the cube [-1, 1]³, 22 periods: on average over 20 sheets deep.
+                              Resolved from some 4 million splats on */
 } conic_scene_type;
 
 #define CONIC_N_SCENES 6
@@ -33,7 +35,7 @@ typedef struct conic_scene_options {
   conic_scene_type type;
   size_t count; /* splats */
   uint64_t seed;
-  double jitter;    /* moves each sample within the surface by up to this fraction of the spacing */
+  double jitter;    /* moves each sample in its tangent plane by up to this many spacings, sqrt(area / count) */
   double noise;     /* moves each sample along its normal by a Gaussian of this many spacings */
   double offset[3]; /* becomes the set's origin: moves the scene away from the world's */
   float cutoff;     /* F_g: the outline is F_g standard deviations */
@@ -48,7 +50,13 @@ CONIC_API void conic_scene_options_init(conic_scene_options *options);
 typedef struct conic_scene conic_scene;
 CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options,
                                           conic_scene **scene);
+
+/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with tangents
+ * and colours for at least n and which gets the count n; other arrays are left as they are. Circles: outline radius 1.5
+ * × sqrt(area / count). Errors: ARGUMENT, CANCELLED. */
 CONIC_API conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, conic_splats *splats);
+
+/* Null is allowed. */
 CONIC_API void conic_scene_destroy(conic_scene *scene);
 
 #ifdef __cplusplus
