@@ -9,15 +9,20 @@
 #include "core/memory.h"
 #include "core/message.h"
 
+/* The cosine from which on a face is steep in a vertex's tangent plane: 60°. */
+#define STEEP 0.5
+
 /* The triangles of vertex i are triangles[starts[i] … starts[i + 1]), in the order of the file. */
 typedef struct incidence {
   conic_estimate *estimate;
   size_t *starts;
   uint32_t *triangles;
+  double (*normals)[3]; /* of each vertex: unit, or not finite where it has no face */
 } incidence;
 
 /* A triangle as seen from one of its vertices. */
 typedef struct corner {
+  size_t vertices[3]; /* this one, the next, the one after it */
   double edges[2][3]; /* to the next vertex and to the one after it */
   double cross[3];    /* of the edges: along the normal, twice the area long */
   double cross2;
@@ -26,6 +31,8 @@ typedef struct corner {
 /* Returns 0 for a triangle without area. */
 static int view_corner(const conic_model *model, const uint32_t triangle[3], size_t vertex, corner *c) {
   int at = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+  for (int i = 0; i < 3; i++)
+    c->vertices[i] = triangle[(at + i) % 3];
   for (int i = 0; i < 2; i++)
     for (int axis = 0; axis < 3; axis++)
       c->edges[i][axis] = (double)model->points.position[axis][triangle[(at + 1 + i) % 3]] -
@@ -61,63 +68,79 @@ static int face_normal(const incidence *in, size_t vertex, double normal[3]) {
   return length > 0.0 && length * 0.0 == 0.0;
 }
 
-/* Where the tangent plane (u, v) is met from the tip of `d` along the face's normal: what is seen straight on the face
- * is covered there. Faces that stand steeper than 60° are seen as if at 60°. */
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Where the tip of `d` comes to lie in the tangent plane (u, v). Along the face's normal, so that what is seen straight
+ * on the face is covered; from a face steeper than 60° as if it had 60°; or else straight down. */
 static void meet_plane(const corner *c, const double d[3], const double normal[3], const double u[3], const double v[3],
-                       double met[2]) {
-  double height = 0.0, cosine = 0.0, length = sqrt(c->cross2);
-  for (int axis = 0; axis < 3; axis++) {
-    height += d[axis] * normal[axis];
-    cosine += c->cross[axis] / length * normal[axis];
-  }
+                       int is_straight, double met[2]) {
+  double length = sqrt(c->cross2), cosine = dot(c->cross, normal) / length, way = 0.0;
   double sign = cosine < 0.0 ? -1.0 : 1.0;
-  double way = height / (cosine * sign > 0.5 ? cosine : sign * 0.5);
-  met[0] = met[1] = 0.0;
-  for (int axis = 0; axis < 3; axis++) {
-    double at = d[axis] - way * (c->cross[axis] / length);
-    met[0] += at * u[axis];
-    met[1] += at * v[axis];
-  }
+  if (!is_straight)
+    way = dot(d, normal) / (cosine * sign > STEEP ? cosine : sign * STEEP) / length;
+  met[0] = dot(d, u) - way * dot(c->cross, u);
+  met[1] = dot(d, v) - way * dot(c->cross, v);
 }
 
-static void view_support(const corner *c, const double normal[3], const double u[3], const double v[3],
-                         double support[3][2]) {
-  double d[3][3];
-  for (int axis = 0; axis < 3; axis++) {
-    d[0][axis] = 0.5 * c->edges[0][axis];
-    d[1][axis] = 0.5 * c->edges[1][axis];
-    d[2][axis] = (c->edges[0][axis] + c->edges[1][axis]) / 3.0;
-  }
-  for (int i = 0; i < 3; i++)
-    meet_plane(c, d[i], normal, u, v, support[i]);
+static int is_steep(const incidence *in, const corner *c, int i) {
+  return fabs(dot(c->cross, in->normals[c->vertices[i]])) < STEEP * sqrt(c->cross2);
 }
 
-static void spread_vertex(const incidence *in, size_t vertex, const double normal[3]) {
+enum { MAX_SUPPORT = 5 };
+
+/* What the vertex's ellipse must cover for this triangle, in its tangent plane. Where the triangle is steep for a
+ * vertex (the tip of a horn), the share of that vertex goes to the others, and its own ellipse only closes the end. */
+static int view_support(const incidence *in, const corner *c, const double u[3], const double v[3],
+                        double support[MAX_SUPPORT][2]) {
+  const double *normal = in->normals[c->vertices[0]];
+  int steep[3] = {is_steep(in, c, 0), is_steep(in, c, 1), is_steep(in, c, 2)}, n = 3;
+  int is_straight = steep[0] && !(steep[1] && steep[2]);
+  double middle[3], halves[2][3];
+  for (int axis = 0; axis < 3; axis++) {
+    halves[0][axis] = 0.5 * c->edges[0][axis];
+    halves[1][axis] = 0.5 * c->edges[1][axis];
+    middle[axis] = (c->edges[0][axis] + c->edges[1][axis]) / 3.0;
+  }
+  meet_plane(c, halves[0], normal, u, v, is_straight, support[0]);
+  meet_plane(c, halves[1], normal, u, v, is_straight, support[1]);
+  meet_plane(c, middle, normal, u, v, is_straight, support[2]);
+  for (int i = 0; i < 2; i++)
+    if (!steep[0] && steep[1 + i])
+      meet_plane(c, c->edges[i], normal, u, v, 0, support[n++]);
+  return n;
+}
+
+static void spread_vertex(const incidence *in, size_t vertex) {
   const conic_model *model = in->estimate->model;
-  double u[3], v[3], support[3][2], covariance[3] = {0.0, 0.0, 0.0}, area = 0.0, greatest2 = 0.0;
+  double u[3], v[3], support[MAX_SUPPORT][2], covariance[3] = {0.0, 0.0, 0.0}, area = 0.0, greatest2 = 0.0;
+  double flatness = 1.0; /* the least cosine to a face */
   float tangent_u[3], tangent_v[3];
   corner c;
-  conic_tangent_basis(normal, u, v);
+  conic_tangent_basis(in->normals[vertex], u, v);
   for (size_t i = in->starts[vertex]; i < in->starts[vertex + 1]; i++)
     if (view_corner(model, model->triangles[in->triangles[i]], vertex, &c)) {
-      view_support(&c, normal, u, v, support);
-      for (int j = 0; j < 3; j++)
+      int n = view_support(in, &c, u, v, support);
+      for (int j = 0; j < n; j++)
         conic_ellipse_add(covariance, support[j][0], support[j][1]);
       area += sqrt(c.cross2) / 6.0;
+      double cosine = fabs(dot(c.cross, in->normals[vertex])) / sqrt(c.cross2);
+      flatness = cosine < flatness ? cosine : flatness;
     }
   conic_ellipse ellipse = conic_ellipse_shape(covariance, CONIC_OUTLINE_RATIO);
   for (size_t i = in->starts[vertex]; i < in->starts[vertex + 1]; i++)
     if (view_corner(model, model->triangles[in->triangles[i]], vertex, &c)) {
-      view_support(&c, normal, u, v, support);
-      for (int j = 0; j < 3; j++) {
+      int n = view_support(in, &c, u, v, support);
+      for (int j = 0; j < n; j++) {
         double distance2 = support[j][0] * support[j][0] + support[j][1] * support[j][1];
         greatest2 = distance2 > greatest2 ? distance2 : greatest2;
         conic_ellipse_cover(&ellipse, support[j][0], support[j][1]);
       }
     }
-  /* For blending an outline grows to twice what it must cover at most: on a fan of slivers it would grow without end.
-   */
-  conic_ellipse_overlap(&ellipse, area, CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND, 2.0 * sqrt(greatest2));
+  /* For blending an outline grows less where the surface is sharp and the ellipse stands out from it; and to twice what
+   * it must cover at most: on a fan of slivers it would grow without end. */
+  conic_ellipse_overlap(&ellipse, area, CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND * flatness, 2.0 * sqrt(greatest2));
   int is_good = conic_ellipse_axes(&ellipse, u, v, in->estimate->cutoff, tangent_u, tangent_v);
   for (int axis = 0; axis < 3; axis++) {
     in->estimate->tangent_u[axis][vertex] = tangent_u[axis];
@@ -128,13 +151,23 @@ static void spread_vertex(const incidence *in, size_t vertex, const double norma
 
 static void spread_vertices(void *data, size_t begin, size_t end) {
   const incidence *in = data;
+  for (size_t vertex = begin; vertex < end; vertex++)
+    if (in->estimate->states[vertex] == CONIC_POINT_RAW && in->normals[vertex][0] * 0.0 == 0.0)
+      spread_vertex(in, vertex);
+}
+
+/* The normals of all vertices with a face: of the file where it has one, else of the faces. */
+static void find_normals(void *data, size_t begin, size_t end) {
+  const incidence *in = data;
   float *const *given = in->estimate->model->points.normal;
   for (size_t vertex = begin; vertex < end; vertex++) {
-    double of_faces[3], of_file[3];
-    if (in->estimate->states[vertex] != CONIC_POINT_RAW || !face_normal(in, vertex, of_faces))
+    double of_file[3];
+    if (!face_normal(in, vertex, in->normals[vertex])) {
+      in->normals[vertex][0] = NAN;
       continue;
-    int has_own = given[0] && conic_unit_vector(given[0][vertex], given[1][vertex], given[2][vertex], of_file);
-    spread_vertex(in, vertex, has_own ? of_file : of_faces);
+    }
+    if (given[0] && conic_unit_vector(given[0][vertex], given[1][vertex], given[2][vertex], of_file))
+      memcpy(in->normals[vertex], of_file, sizeof of_file);
   }
 }
 
@@ -167,12 +200,16 @@ conic_status conic_estimate_from_faces(conic_context *context, conic_estimate *e
   if (status != CONIC_OK)
     return status;
   incidence in = {estimate, conic_memory_allocate_zeroed(context, model->points.count + 2, sizeof *in.starts),
-                  conic_memory_allocate(context, model->n_triangles, 3 * sizeof *in.triangles)};
+                  conic_memory_allocate(context, model->n_triangles, 3 * sizeof *in.triangles),
+                  conic_memory_allocate(context, model->points.count, sizeof *in.normals)};
   status = CONIC_ERROR_MEMORY;
-  if (in.starts && in.triangles) {
+  if (in.starts && in.triangles && in.normals) {
     fill_incidence(model, &in);
-    status = conic_slots_for(context, model->points.count, spread_vertices, &in, 0.0, 1.0);
+    status = conic_slots_for(context, model->points.count, find_normals, &in, 0.0, 0.3);
   }
+  if (status == CONIC_OK)
+    status = conic_slots_for(context, model->points.count, spread_vertices, &in, 0.3, 1.0);
+  conic_memory_release(context, in.normals);
   conic_memory_release(context, in.triangles);
   conic_memory_release(context, in.starts);
   return status;

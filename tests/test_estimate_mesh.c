@@ -109,6 +109,21 @@ static void check_icosahedron(conic_context *context) {
   release(context, &model);
 }
 
+/* A long cone: the tip's own outline must stay within the cone, and the ring's outlines cover the sides. */
+static void check_horn(conic_context *context) {
+  enum { N_SIDES = 16 };
+  conic_model model = outlines_model(context, N_SIDES + 1, 0);
+  size_t tip = outlines_add(&model, 0, 0, 10);
+  for (int i = 0; i < N_SIDES; i++)
+    outlines_add(&model, cos(0.39269908169872414 * i), sin(0.39269908169872414 * i), 0);
+  for (size_t i = 0; i < N_SIDES; i++)
+    add_triangle(context, &model, tip, 1 + i, 1 + (i + 1) % N_SIDES);
+  outlines_estimate(context, &model);
+  check_covered("horn", &model);
+  CHECK(outlines_get(&model.points, tip).a < 1.2);
+  release(context, &model);
+}
+
 /* Slivers, degenerate faces, a vertex that is nowhere, and one of no face. */
 static void check_bad_faces(conic_context *context) {
   conic_model model = outlines_model(context, 110, 0);
@@ -163,6 +178,7 @@ int main(int argc, char **argv) {
   check_bumpy_grid(context, 1.0);
   check_bumpy_grid(context, 3.0);
   check_icosahedron(context);
+  check_horn(context);
   check_bad_faces(context);
   for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
     check_file(context, argc > 1 ? argv[1] : ".", files[i]);
