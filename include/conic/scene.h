@@ -33,8 +33,8 @@ CONIC_API const char *conic_scene_summary(conic_scene_type type);
 typedef struct conic_scene_options {
   size_t size; /* sizeof(conic_scene_options), set by the init function */
   conic_scene_type type;
-  size_t count; /* splats */
-  uint64_t seed;
+  size_t count;     /* splats, 1 to 2³² - 2 */
+  uint64_t seed;    /* of the jitter, the noise and the terrain's shape */
   double jitter;    /* moves each sample in its tangent plane by up to this many spacings, sqrt(area / count) */
   double noise;     /* moves each sample along its normal by a Gaussian of this many spacings */
   double offset[3]; /* becomes the set's origin: moves the scene away from the world's */
@@ -44,10 +44,11 @@ typedef struct conic_scene_options {
 /* A sphere of 100,000 splats. */
 CONIC_API void conic_scene_options_init(conic_scene_options *options);
 
-/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with tangents
- * and colours for at least n and which gets the count n. Any split into batches gives the same splats. Circles: outline
- * radius 1.5 × sqrt(area / count). Errors: ARGUMENT, MEMORY. */
+/* A scene that is ready to be sampled; any split into batches gives the same splats. */
 typedef struct conic_scene conic_scene;
+
+/* Prepares the scene, in memory that grows with the square root of the count at most. On success the caller owns
+ * *scene, which must not outlive the context; on failure it is null. Errors: ARGUMENT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options,
                                           conic_scene **scene);
 
