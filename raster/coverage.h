@@ -89,26 +89,36 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
   return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
 }
 
-/* Pixels [begin, end) of a row, within [x_begin, x_end), that may have q < support; a hair more, since every pixel is
- * tested. */
-static inline void conic_row_span(const conic_footprint *footprint, const conic_row *row, float support, int x_begin,
-                                  int x_end, int *begin, int *end) {
+/* What is the same for all rows of a footprint in a window of pixels. */
+typedef struct conic_span {
+  const conic_footprint *footprint;
+  int x_begin, x_end;
+  float from, to;   /* the first and last pixel, from the reference */
+  float inverse_s1;
+} conic_span;
+
+static inline conic_span conic_span_begin(const conic_footprint *footprint, int x_begin, int x_end) {
+  conic_span span = {footprint, x_begin, x_end, (float)(x_begin - footprint->x), (float)(x_end - 1 - footprint->x),
+                     1.0f / footprint->s1};
+  return span;
+}
+
+/* Pixels [begin, end) of a row, within the window, that may have q < support; a hair more, since every pixel is tested. */
+static inline void conic_row_span(const conic_span *span, const conic_row *row, float support, int *begin, int *end) {
+  const conic_footprint *footprint = span->footprint;
   float rest = support - row->q_rest;
-  if (!(rest > 0.0f)) {
-    *begin = *end = x_begin;
+  *begin = *end = span->x_begin;
+  if (!(rest > 0.0f))
     return;
-  }
-  float inverse = 1.0f / footprint->s1, half = sqrtf(rest) * inverse, middle = -row->q_offset * inverse;
+  float half = sqrtf(rest) * span->inverse_s1, middle = -row->q_offset * span->inverse_s1;
   float slack = 0.02f + 1e-5f * (fabsf(middle) + half);
   float low = (middle - half) - slack - footprint->dx0, high = (middle + half) + slack - footprint->dx0;
-  float from = (float)(x_begin - footprint->x), to = (float)(x_end - 1 - footprint->x);
-  low = low > from ? low : from;
-  high = high < to ? high : to;
-  *begin = *end = x_begin;
+  low = low > span->from ? low : span->from;
+  high = high < span->to ? high : span->to;
   if (low <= high) {
     int first = footprint->x + (int)low, last = footprint->x + (int)high;
-    *begin = first > x_begin ? first : x_begin; /* far from the reference, a float does not hold every integer */
-    *end = last < x_end - 1 ? last + 1 : x_end;
+    *begin = first > span->x_begin ? first : span->x_begin; /* far from the reference, a float skips integers */
+    *end = last < span->x_end - 1 ? last + 1 : span->x_end;
   }
 }
 

@@ -131,7 +131,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
-  f->planes_bytes = CONIC_N_TILE_PLANES * (size_t)tile * (size_t)tile * sizeof(float);
+  f->planes_bytes = conic_tile_bytes(tile);
   f->planes = room(renderer, &renderer->planes, n_threads, f->planes_bytes);
   f->times = room(renderer, &renderer->times, n_threads, sizeof *f->times);
   if (!f->planes || !f->times)
@@ -164,12 +164,11 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->projected = &f->projected;
   tile->references = bins->references + bins->tile_begin[i_tile];
   tile->n_references = bins->tile_begin[i_tile + 1] - bins->tile_begin[i_tile];
-  tile->edge = bins->tile;
   tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
-  conic_tile_clear(tile, f->planes + (size_t)i_thread * f->planes_bytes);
+  conic_tile_clear(tile, bins->tile, f->planes + (size_t)i_thread * f->planes_bytes);
 }
 
 /* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */

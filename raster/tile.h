@@ -10,7 +10,7 @@
 /* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
 #define CONIC_LEAST_WEIGHT 0x1p-60f
 
-/* The planes of one tile, row by row, `tile` pixels a row. Splats are named by their footprint. */
+/* The planes of one tile, row by row. Splats are named by their footprint. */
 typedef struct conic_tile_planes {
   float *threshold;  /* max of s·iz over what covers the pixel; 0: nothing does */
   float *nearest_iz; /* the largest iz among the visible splats, and whose it is */
@@ -29,14 +29,17 @@ typedef struct conic_tile {
   const conic_projected *projected;
   const uint32_t *references;
   size_t n_references;
-  int edge;                           /* pixels a row of the planes */
+  int stride;                         /* from row to row of the planes: the edge, and room for a few pixels past it */
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   conic_tile_planes planes;
   uint64_t n_fragments, n_covered; /* found by visibility, and by resolving */
 } conic_tile;
 
-/* Points the planes into `memory`, of CONIC_N_TILE_PLANES · edge² 4-byte words, and empties what the passes add to. */
-void conic_tile_clear(conic_tile *tile, void *memory);
+/* The memory that a tile's planes take. */
+size_t conic_tile_bytes(int edge);
+
+/* Points the planes into `memory`, of conic_tile_bytes, and empties what the passes add to. */
+void conic_tile_clear(conic_tile *tile, int edge, void *memory);
 
 /* Pass 1: threshold. With `nearest_only`, nearest_iz and nearest instead: the splat that wins alone. */
 void conic_tile_visibility(conic_tile *tile, int nearest_only);
