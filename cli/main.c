@@ -5,20 +5,13 @@
 #include "cli/command.h"
 #include "cli/suggest.h"
 
-/* A build without a command's file is a build without that command. */
-#pragma weak cli_make
-#pragma weak cli_prepare
-#pragma weak cli_render
-#pragma weak cli_diff
-#pragma weak cli_info
-
 static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_render, &cli_diff, &cli_info};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 
 const cli_command *cli_find_command(const char *name) {
   for (int i = 0; i < N_COMMANDS; i++)
-    if (commands[i] && strcmp(commands[i]->name, name) == 0)
+    if (strcmp(commands[i]->name, name) == 0)
       return commands[i];
   return NULL;
 }
@@ -30,8 +23,7 @@ static int refuse_command(const char *name) {
   if (is_option)
     nearest = cli_nearer_word(name, nearest, "--help");
   for (int i = 0; i < N_COMMANDS && !is_option; i++)
-    if (commands[i])
-      nearest = cli_nearer_word(name, nearest, commands[i]->name);
+    nearest = cli_nearer_word(name, nearest, commands[i]->name);
   if (nearest)
     return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
   return cli_usage("unknown %s %s; see conic help", kind, name);
@@ -45,8 +37,7 @@ static void print_usage(FILE *to) {
         "commands:\n",
         to);
   for (int i = 0; i < N_COMMANDS; i++)
-    if (commands[i])
-      fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+    fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
 }
 
 static int help(int argc, char **argv) {

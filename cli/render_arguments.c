@@ -189,7 +189,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   set_defaults(job, &raw);
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
-  int method = o->method, shading = o->shading;
+  int method = (int)o->method, shading = (int)o->shading;
   const cli_option table[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},

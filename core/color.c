@@ -65,3 +65,16 @@ uint8_t conic_srgb_code(const float thresholds[255], float linear) {
   }
   return (uint8_t)low;
 }
+
+float conic_exposure_factor(double stops) {
+  double whole = floor(stops), rest = (stops - whole) * 0.69314718055994530942, term = 1.0, sum = 1.0;
+  for (int n = 1; n < 20; n++) {
+    term *= rest / (double)n;
+    sum += term;
+  }
+  for (; whole > 0.0; whole -= 1.0)
+    sum *= 2.0;
+  for (; whole < 0.0; whole += 1.0)
+    sum *= 0.5;
+  return (float)sum;
+}

@@ -17,4 +17,7 @@ void conic_srgb_decode_table(float table[256]);
 void conic_srgb_thresholds(float thresholds[255]);
 uint8_t conic_srgb_code(const float thresholds[255], float linear);
 
+/* An exposure in stops, -100 to 100, as a factor: 2^stops. */
+float conic_exposure_factor(double stops);
+
 #endif

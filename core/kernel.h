@@ -29,20 +29,6 @@ static inline float conic_exp_negative(float x) {
   return p;
 }
 
-/* 2ˣ for |x| ≤ 100: an exposure in stops as a factor. */
-static inline float conic_exposure_factor(double stops) {
-  double whole = floor(stops), rest = (stops - whole) * 0.69314718055994530942, term = 1.0, sum = 1.0;
-  for (int n = 1; n < 20; n++) {
-    term *= rest / (double)n;
-    sum += term;
-  }
-  for (; whole > 0.0; whole -= 1.0)
-    sum *= 2.0;
-  for (; whole < 0.0; whole += 1.0)
-    sum *= 0.5;
-  return (float)sum;
-}
-
 /* Confetti Eq. 10, corrected: exp(-a (r/b)ⁿ / (1 - (r/b)ⁿ)) for q < b². */
 static inline float conic_kernel_confetti(const conic_kernel *kernel, float q) {
   float r = sqrtf(q) / kernel->b, power = r;

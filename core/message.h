@@ -4,8 +4,8 @@
 
 #include "conic/context.h"
 
-/* Logs the formatted line as an error and returns `status`: `return conic_fail(context, CONIC_ERROR_INPUT, "%s: …", …);`
- * Understands %s %d %u %zu %lld %llu %g as printf does. */
+/* Logs the formatted line as an error and returns `status`: `return conic_fail(context, CONIC_ERROR_INPUT, "%s: …",
+ * …);` Understands %s %d %u %zu %lld %llu %g as printf does. */
 conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -25,8 +25,8 @@ CONIC_INLINE void keep_better(float *kept, uint32_t *whose, conic_mask better, c
   conic_store_indices(whose, conic_select_indices(better, conic_index_lanes(i_footprint), conic_load_indices(whose)));
 }
 
-/* Adds the visible fragments to the pixels' sums: an invisible one adds 0, which changes no bit. Splats come in file order: sums
- * keep it, and the first of equals stays. */
+/* Adds the visible fragments to the pixels' sums: an invisible one adds 0, which changes no bit. Splats come in file
+ * order: sums keep it, and the first of equals stays. */
 CONIC_INLINE void blend(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
                         const conic_fragments *fragments, int is_gauss) {
   conic_tile_planes *planes = &tile->planes;
@@ -44,8 +44,8 @@ CONIC_INLINE void blend(conic_tile *tile, uint32_t i_footprint, const conic_foot
   conic_store_indices(&planes->count[at], conic_load_indices(&planes->count[at]) - (conic_indices)visible);
   conic_floats heaviest = conic_load(&planes->heaviest_weight[at]), nearest = conic_load(&planes->nearest_iz[at]);
   keep_better(&planes->heaviest_weight[at], &planes->heaviest[at], weight > heaviest, weight, heaviest, i_footprint);
-  keep_better(&planes->nearest_iz[at], &planes->nearest[at], visible & (fragments->iz > nearest), fragments->iz, nearest,
-              i_footprint);
+  keep_better(&planes->nearest_iz[at], &planes->nearest[at], visible & (fragments->iz > nearest), fragments->iz,
+              nearest, i_footprint);
 }
 
 CONIC_INLINE void blend_gauss(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,

@@ -93,17 +93,19 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
 typedef struct conic_span {
   const conic_footprint *footprint;
   int x_begin, x_end;
-  float from, to;   /* the first and last pixel, from the reference */
+  float from, to; /* the first and last pixel, from the reference */
   float inverse_s1;
 } conic_span;
 
 static inline conic_span conic_span_begin(const conic_footprint *footprint, int x_begin, int x_end) {
-  conic_span span = {footprint, x_begin, x_end, (float)(x_begin - footprint->x), (float)(x_end - 1 - footprint->x),
-                     1.0f / footprint->s1};
+  conic_span span = {
+      footprint,           x_begin, x_end, (float)(x_begin - footprint->x), (float)(x_end - 1 - footprint->x),
+      1.0f / footprint->s1};
   return span;
 }
 
-/* Pixels [begin, end) of a row, within the window, that may have q < support; a hair more, since every pixel is tested. */
+/* Pixels [begin, end) of a row, within the window, that may have q < support; a hair more, since every pixel is tested.
+ */
 static inline void conic_row_span(const conic_span *span, const conic_row *row, float support, int *begin, int *end) {
   const conic_footprint *footprint = span->footprint;
   float rest = support - row->q_rest;

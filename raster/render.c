@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/color.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"

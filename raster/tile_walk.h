@@ -1,5 +1,5 @@
-/* Walks over the fragments of a tile: every pixel that every splat of the tile's list covers, splats in file order, pixels of a
- * row a few at a time. */
+/* Walks over the fragments of a tile: every pixel that every splat of the tile's list covers, splats in file order,
+ * pixels of a row a few at a time. */
 #ifndef RASTER_TILE_WALK_H
 #define RASTER_TILE_WALK_H
 
@@ -14,8 +14,8 @@ typedef struct conic_fragments {
   conic_floats scale;
 } conic_fragments;
 
-/* Does something with the fragments of footprint i_footprint whose first pixel is at `at` in the tile's planes. Inlined into
- * the walk; at least one pixel is covered. */
+/* Does something with the fragments of footprint i_footprint whose first pixel is at `at` in the tile's planes. Inlined
+ * into the walk; at least one pixel is covered. */
 typedef void conic_visit(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
                          const conic_fragments *fragments);
 

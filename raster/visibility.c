@@ -7,8 +7,7 @@ CONIC_INLINE void raise_threshold(conic_tile *tile, uint32_t i_footprint, const 
   float *to = &tile->planes.threshold[at];
   (void)i_footprint;
   tile->n_fragments += conic_count_lanes(fragments->covered);
-  conic_floats hiding_iz =
-      conic_select(fragments->plane_iz < fragments->iz, fragments->plane_iz, fragments->iz);
+  conic_floats hiding_iz = conic_select(fragments->plane_iz < fragments->iz, fragments->plane_iz, fragments->iz);
   conic_floats offset_iz = footprint->nearness * hiding_iz, threshold = conic_load(to);
   conic_store(to, conic_select(fragments->covered & (offset_iz > threshold), offset_iz, threshold));
 }

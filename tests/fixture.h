@@ -52,8 +52,8 @@ static inline void fixture_splats(fixture *f, size_t count) {
     exit(1);
 }
 
-static inline void fixture_set(fixture *f, size_t i, const double p[3], const double tu[3], const double tv[3], float red,
-                               float green, float blue) {
+static inline void fixture_set(fixture *f, size_t i, const double p[3], const double tu[3], const double tv[3],
+                               float red, float green, float blue) {
   const float color[3] = {red, green, blue};
   for (int axis = 0; axis < 3; axis++) {
     f->splats.position[axis][i] = (float)p[axis];

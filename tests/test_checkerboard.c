@@ -1,5 +1,5 @@
-/* A checkerboard that runs towards the horizon (PAS Fig. 6), against the board filtered analytically: the average of the
- * exact board under the pixel's Gaussian. The prefilter must earn its keep where the squares are small. */
+/* A checkerboard that runs towards the horizon (PAS Fig. 6), against the board filtered analytically: the average of
+ * the exact board under the pixel's Gaussian. The prefilter must earn its keep where the squares are small. */
 #include "tests/fixture.h"
 
 enum { WIDTH = 320, HEIGHT = 200, N_SPLATS = 420 };
@@ -23,7 +23,8 @@ static void fill_board(fixture *f) {
     }
 }
 
-/* The board's average under a Gaussian of variance 1 px² about the pixel's centre; negative where that leaves the board. */
+/* The board's average under a Gaussian of variance 1 px² about the pixel's centre; negative where that leaves the
+ * board. */
 static double filtered_board(int x_px, int y_px) {
   double sum = 0.0, weights = 0.0;
   enum { N = 24 };
@@ -82,9 +83,10 @@ int main(void) {
   f.options.prefilter = 0.0f;
   fixture_render(&f);
   score unfiltered = compare(&f, expected);
-  printf("checkerboard, PSNR far / near: %.1f / %.1f dB, with a cutoff of 3 %.1f / %.1f, without prefilter %.1f / %.1f\n",
-         filtered.far_psnr, filtered.near_psnr, whole.far_psnr, whole.near_psnr, unfiltered.far_psnr,
-         unfiltered.near_psnr);
+  printf(
+      "checkerboard, PSNR far / near: %.1f / %.1f dB, with a cutoff of 3 %.1f / %.1f, without prefilter %.1f / %.1f\n",
+      filtered.far_psnr, filtered.near_psnr, whole.far_psnr, whole.near_psnr, unfiltered.far_psnr,
+      unfiltered.near_psnr);
   CHECK(filtered.far_psnr > 22.0 && filtered.near_psnr > 23.0);
   CHECK(whole.far_psnr > 30.0 && whole.near_psnr > 27.0);
   CHECK(filtered.far_psnr >= unfiltered.far_psnr + 6.0);

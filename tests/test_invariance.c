@@ -1,5 +1,5 @@
-/* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes. And
- * every plane is defined on every pixel. */
+/* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
+ * And every plane is defined on every pixel. */
 #include "tests/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {

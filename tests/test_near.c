@@ -2,7 +2,8 @@
  * eye. A floor that runs under the camera must fill the picture up to the horizon, and not a pixel above it. */
 #include "tests/fixture.h"
 
-/* A floor of n × n overlapping discs at `height` below the eye, from behind it to far ahead, rolled about the view axis. */
+/* A floor of n × n overlapping discs at `height` below the eye, from behind it to far ahead, rolled about the view
+ * axis. */
 static void fill_floor(fixture *f, int n, double height, double roll, double half_size, double outline_in_spacings) {
   double spacing = 2.0 * half_size / n, sigma = outline_in_spacings * spacing / 1.5, c = cos(roll), s = sin(roll);
   fixture_splats(f, (size_t)n * (size_t)n);
@@ -84,8 +85,8 @@ static void test_single_disc(void) {
   fixture_close(&f);
 }
 
-/* Seen exactly from its edge, before near and across it, a disc is a line as wide as the prefilter: no hole, no spike, no
- * false depth. */
+/* Seen exactly from its edge, before near and across it, a disc is a line as wide as the prefilter: no hole, no spike,
+ * no false depth. */
 static void test_edge_on(void) {
   const double centers_z[] = {2.0, 0.5};
   for (int k = 0; k < 2; k++) {
@@ -93,7 +94,8 @@ static void test_edge_on(void) {
     fixture_camera(&f, 100, 100, 80.0);
     f.options.near_z = 1e-2;
     fixture_splats(&f, 1);
-    const double p[3] = {0, 0, centers_z[k]}, tu[3] = {0.4, 0, 0}, tv[3] = {0, 0, -0.4}; /* reaches 0.6 to either side */
+    const double p[3] = {0, 0, centers_z[k]}, tu[3] = {0.4, 0, 0},
+                 tv[3] = {0, 0, -0.4}; /* reaches 0.6 to either side */
     fixture_set(&f, 0, p, tu, tv, 1, 1, 1);
     fixture_render(&f);
     CHECK(f.statistics.splats_drawn == 1);

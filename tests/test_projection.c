@@ -1,4 +1,5 @@
-/* The projected outline and box against sampled contours, through the projection stage itself, from frontal to edge-on. */
+/* The projected outline and box against sampled contours, through the projection stage itself, from frontal to edge-on.
+ */
 #include "raster/projected.h"
 #include "tests/fixture.h"
 
@@ -14,15 +15,15 @@ static contour sample_contour(const fixture *f, const conic_footprint *footprint
   for (int i = 0; i < 20001; i++) {
     double angle = 2.0 * 3.14159265358979 * i / 20001.0, at[3];
     for (int axis = 0; axis < 3; axis++)
-      at[axis] = (double)f->splats.position[axis][0] +
-                 cutoff * (cos(angle) * (double)f->splats.tangent_u[axis][0] +
-                           sin(angle) * (double)f->splats.tangent_v[axis][0]);
+      at[axis] = (double)f->splats.position[axis][0] + cutoff * (cos(angle) * (double)f->splats.tangent_u[axis][0] +
+                                                                 sin(angle) * (double)f->splats.tangent_v[axis][0]);
     double x = f->camera.cx + f->camera.fx * at[0] / at[2], y = f->camera.cy + f->camera.fy * at[1] / at[2];
     c.x_min = fmin(c.x_min, x);
     c.x_max = fmax(c.x_max, x);
     c.y_min = fmin(c.y_min, y);
     c.y_max = fmax(c.y_max, y);
-    double dx = x - (footprint->x + 0.5) + (double)footprint->dx0, dy = y - (footprint->y + 0.5) + (double)footprint->dy0;
+    double dx = x - (footprint->x + 0.5) + (double)footprint->dx0,
+           dy = y - (footprint->y + 0.5) + (double)footprint->dy0;
     double major = (double)footprint->s1 * dx + (double)footprint->s2 * dy, minor = (double)footprint->s3 * dy;
     c.worst_q = fmax(c.worst_q, fabs((major * major + minor * minor) / (cutoff * cutoff) - 1.0));
   }
@@ -100,8 +101,10 @@ int main(void) {
     worst_box = fmax(worst_box, fabs(y_t - half_y - c.y_min));
     worst_box = fmax(worst_box, fabs(y_t + half_y - c.y_max));
     if (c.x_max > 1 && c.x_min < 999 && c.y_max > 1 && c.y_min < 799) {
-      CHECK(footprint.x_begin <= fmax(0.0, ceil(c.x_min - 0.5)) && footprint.x_end >= fmin(1000.0, floor(c.x_max + 0.5)));
-      CHECK(footprint.y_begin <= fmax(0.0, ceil(c.y_min - 0.5)) && footprint.y_end >= fmin(800.0, floor(c.y_max + 0.5)));
+      CHECK(footprint.x_begin <= fmax(0.0, ceil(c.x_min - 0.5)) &&
+            footprint.x_end >= fmin(1000.0, floor(c.x_max + 0.5)));
+      CHECK(footprint.y_begin <= fmax(0.0, ceil(c.y_min - 0.5)) &&
+            footprint.y_end >= fmin(800.0, floor(c.y_max + 0.5)));
     }
   }
   printf("%d splats: outline value off by %.2g relative (%.2g from 89 to 89.98 degrees), box by %.2g px\n", n_projected,

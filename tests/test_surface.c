@@ -1,5 +1,5 @@
-/* Pictures of surfaces that are known: a tilted plane's depth, a uniform colour, a sphere's silhouette, the weights of a
- * lone splat. */
+/* Pictures of surfaces that are known: a tilted plane's depth, a uniform colour, a sphere's silhouette, the weights of
+ * a lone splat. */
 #include "tests/fixture.h"
 
 /* A square grid of splats in the plane through (0, 0, 2) that leans by `tilt` about x; true for pixels well inside. */
@@ -106,7 +106,8 @@ static void test_sphere_silhouette(void) {
   fixture_close(&f);
 }
 
-/* One frontal splat: its weight is the Gaussian of variance R' + h with the amplitude sqrt(|R'|/|V|), exactly computable. */
+/* One frontal splat: its weight is the Gaussian of variance R' + h with the amplitude sqrt(|R'|/|V|), exactly
+ * computable. */
 static void test_lone_splat(void) {
   fixture f = fixture_open(1);
   fixture_camera(&f, 64, 64, 100.0);

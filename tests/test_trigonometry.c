@@ -30,5 +30,7 @@ int main(void) {
     CHECK(conic_srgb_code(thresholds, table[i]) == i);
   CHECK(conic_srgb_code(thresholds, -1.0f) == 0 && conic_srgb_code(thresholds, 9.0f) == 255);
   CHECK(conic_srgb_code(thresholds, (float)NAN) == 0);
+  for (int i = -30; i <= 30; i++)
+    CHECK_NEAR(conic_exposure_factor((double)i * 0.3), exp2((double)i * 0.3), 1e-7 * exp2((double)i * 0.3));
   return check_result();
 }

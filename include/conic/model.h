@@ -30,9 +30,9 @@ CONIC_API void conic_read_options_init(conic_read_options *options);
 /* Reads a model; "-" is standard input (PLY only). The format is told by the content first, then by the name's ending.
  * Integer colours of a PLY and all colours of an OBJ are decoded from sRGB, float colours of a PLY are taken as linear.
  * Positions that a float cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ) are kept from the
- * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on failure
- * it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the defaults.
- * Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
+ * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on
+ * failure it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the
+ * defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
