@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
@@ -201,7 +201,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
-      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray [conic]",
+      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},

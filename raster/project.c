@@ -95,6 +95,12 @@ static projected_kernel dual_conic(const tangents *t, float cutoff, float w) {
   return k;
 }
 
+/* The Jacobian at the centre (HQP §3.4 with its Eq. 3.27 corrected): what the dual conic becomes for a vanishing
+ * outline, F_g = 0 and w = 1. */
+static projected_kernel jacobian_at_center(const tangents *t) {
+  return dual_conic(t, 0.0f, 1.0f);
+}
+
 /* The smaller eigenvalue of R' is below ¼ px²: edge-on or tiny. */
 static int is_thin(const projected_kernel *k) {
   float trace = k->rxx + k->ryy, difference = k->rxx - k->ryy;
@@ -120,7 +126,7 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
-static conic_verdict project_conic(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+static conic_verdict project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
   float h = view->prefilter;
@@ -146,7 +152,7 @@ static conic_verdict project_conic(const splat_setup *s, const tangents *t, cons
   footprint->s3 = 1.0f / sqrtf(vyy);
   footprint->amplitude = k->root_determinant / sqrtf(determinant);
   set_depth(s, t, k, vxx, vyy, determinant);
-  return CONIC_DRAWN_CONIC;
+  return CONIC_DRAWN_VARIANCE;
 }
 
 /* Wholly before near: the usual path, in float. */
@@ -164,13 +170,17 @@ static conic_verdict project_before_near(splat_setup *s, const float tu[3], cons
   s->along_ray = t.ux * t.vy - t.uy * t.vx;
   if (view->cull_back && s->along_ray > 0.0f)
     return CONIC_CULLED;
+  if (view->method == CONIC_METHOD_AFFINE) {
+    projected_kernel affine = jacobian_at_center(&t);
+    return project_variance(s, &t, &affine);
+  }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
   if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k)) {
     conic_disc disc;
     fill_disc(s, &disc);
     return conic_project_ray(view, &disc, s->footprint, s->ray);
   }
-  return project_conic(s, &t, &k);
+  return project_variance(s, &t, &k);
 }
 
 static conic_verdict project_across_near(splat_setup *s) {
@@ -292,8 +302,9 @@ void conic_project_chunk(const conic_view *view, const conic_splats *splats, siz
     } else {
       if (verdict == CONIC_DRAWN_RAY)
         s.footprint->i_ray = (uint32_t)(first + chunk->n_rays++);
-      if ((verdict == CONIC_DRAWN_RAY) != (view->method == CONIC_METHOD_RAY))
-        chunk->n_fallback++;
+      int is_own = verdict == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
+                                              : verdict == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+      chunk->n_fallback += !is_own;
       chunk->n_drawn++;
     }
   }

@@ -66,9 +66,9 @@ void conic_project_chunk(const conic_view *view, const conic_splats *splats, siz
 
 /* What became of a splat. */
 typedef enum conic_verdict {
-  CONIC_DRAWN_CONIC,   /* by the dual conic's variance */
-  CONIC_DRAWN_RAY,     /* by the exact ray–splat parameter */
-  CONIC_DRAWN_SEGMENT, /* edge-on and reaching the near plane: by the variance of a segment */
+  CONIC_DRAWN_VARIANCE, /* by a variance on the screen: the dual conic's, or the centre's Jacobian's */
+  CONIC_DRAWN_RAY,      /* by the exact ray–splat parameter */
+  CONIC_DRAWN_SEGMENT,  /* edge-on and reaching the near plane: by the variance of a segment */
   CONIC_CULLED,
   CONIC_SKIPPED
 } conic_verdict;

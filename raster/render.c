@@ -50,7 +50,7 @@ static double seconds_now(void) {
 }
 
 const char *conic_method_name(conic_method method) {
-  static const char *const names[CONIC_N_METHODS] = {"conic", "ray"};
+  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine"};
   return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 
@@ -244,7 +244,8 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   }
   statistics->splats_in = f->splats->count;
   statistics->splats_by_method[CONIC_METHOD_RAY] = n_rays;
-  statistics->splats_by_method[CONIC_METHOD_CONIC] = statistics->splats_drawn - n_rays;
+  conic_method by_variance = options->method == CONIC_METHOD_AFFINE ? CONIC_METHOD_AFFINE : CONIC_METHOD_CONIC;
+  statistics->splats_by_method[by_variance] = statistics->splats_drawn - n_rays;
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];

@@ -61,17 +61,18 @@ static void check_defined(const fixture *f) {
 
 int main(void) {
   static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 8};
-  uint64_t reference[3][2][2][CONIC_N_PLANES];
+  uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
     for (int scene = 0; scene < 3; scene++) {
       fill(&f, scene);
-      for (int variant = 0; variant < 4; variant++)
+      for (int variant = 0; variant < 2 * CONIC_N_METHODS; variant++)
         for (int i_tile = 0; i_tile < 4; i_tile++) {
-          uint64_t hashes[CONIC_N_PLANES], *expected = reference[scene][variant / 2][variant % 2];
+          uint64_t hashes[CONIC_N_PLANES],
+              *expected = reference[scene][variant / CONIC_N_METHODS][variant % CONIC_N_METHODS];
           f.options.tile = tiles[i_tile];
-          f.options.passes = variant / 2 ? 1 : 3;
-          f.options.method = variant % 2 ? CONIC_METHOD_RAY : CONIC_METHOD_CONIC;
+          f.options.passes = variant / CONIC_N_METHODS ? 1 : 3;
+          f.options.method = (conic_method)(variant % CONIC_N_METHODS);
           f.options.shading = CONIC_SHADE_PHONG;
           fixture_render(&f);
           hash_all(&f, hashes);
