@@ -38,12 +38,6 @@ static int parse_turntable(const char *text, void *value) {
   return 1;
 }
 
-static int parse_number(const char *text, double *number) {
-  char *end;
-  *number = strtod(text, &end);
-  return *text && !*end && *number * 0.0 == 0.0;
-}
-
 /* gauss, hat, box, or confetti:A,B,N. */
 static int parse_kernel(const char *text, void *value) {
   conic_kernel *kernel = value;
@@ -68,12 +62,17 @@ static int parse_kernel(const char *text, void *value) {
 }
 
 static int parse_epsilon(const char *text, void *value) {
-  double *epsilon = value;
+  cli_length *epsilon = value;
   if (strcmp(text, "auto") == 0) {
-    *epsilon = -1.0;
+    epsilon->value = -1.0;
     return 1;
   }
-  return parse_number(text, epsilon) && *epsilon >= 0.0;
+  return cli_parse_length(text, value);
+}
+
+static int parse_near(const char *text, void *value) {
+  const cli_length *near_z = value;
+  return cli_parse_length(text, value) && near_z->value > 0.0;
 }
 
 /* x, -y, … or X,Y,Z. */
@@ -176,6 +175,7 @@ static void set_defaults(cli_render_job *job, raw_options *raw) {
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
+  job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
   raw->device = "cpu";
@@ -207,12 +207,13 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
        10000},
-      {"epsilon", CLI_PARSED, &o->epsilon, "E", "depth tolerance along the ray, or auto [auto]",
-       .parse = parse_epsilon},
+      {"epsilon", CLI_PARSED, &job->epsilon, "E",
+       "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
-      {"near", CLI_NUMBER, &o->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]", 1e-30, 1e30},
+      {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
+       .parse = parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = shade_words},
       {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
        .parse = parse_light},
