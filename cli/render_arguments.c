@@ -158,8 +158,6 @@ static int check(const cli_session *session, const raw_options *raw, cli_render_
     return cli_usage("render: --passes takes 3 or 1");
   if (job->options.tile % 4)
     return cli_usage("render: --tile takes a multiple of 4");
-  if (raw->isa > 1)
-    return cli_error(CLI_RESOURCE, "--isa %s: this build has only scalar code", isa_words[raw->isa]);
   if (strncmp(raw->device, "opencl", 6) == 0)
     return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
   if (strcmp(raw->device, "cpu") != 0)
@@ -226,7 +224,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
-      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto or scalar; changes no bit [auto]", .choices = isa_words},
+      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = isa_words},
   };
   job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
   if (!job->inputs)
@@ -240,6 +239,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
+  o->isa = (conic_isa)raw.isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];

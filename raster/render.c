@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "raster/tile.h"
+#include "raster/tile_kernels.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
 typedef struct kept {
@@ -34,6 +34,7 @@ typedef struct frame {
   conic_projected projected;
   conic_bins bins;
   conic_finish finish;
+  const conic_tile_kernels *kernels;
   conic_image *image;
   char *planes; /* one tile's planes a thread */
   size_t planes_bytes;
@@ -189,12 +190,15 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   conic_tile tile;
   double start = seconds_now();
   begin_tile(f, i_tile, i_thread, &tile);
-  conic_tile_visibility(&tile, nearest_only);
+  if (nearest_only)
+    f->kernels->nearest(&tile);
+  else
+    f->kernels->visibility(&tile);
   double seen = seconds_now();
   if (nearest_only)
     conic_tile_take_nearest(&tile);
   else
-    conic_tile_accumulate(&tile);
+    f->kernels->accumulate(&tile);
   double summed = seconds_now();
   conic_tile_resolve(&tile, &f->finish, f->image);
   f->times[i_thread].visibility += seen - start;
@@ -255,6 +259,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
   statistics->threads = conic_context_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
+  statistics->isa = f->kernels->name;
 }
 
 double conic_default_near(const conic_splats *splats) {
@@ -325,7 +330,10 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
                       "render: an argument is null, or the options were not initialised");
   if (image->width != camera->width || image->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
-  frame f = {.renderer = renderer, .splats = splats, .image = image};
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .kernels = conic_tile_kernels_of(options->isa)};
+  if (!f.kernels)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
+                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
   conic_status status = measure_scene(context, splats, options, &near_z, &splat_length);
   if (status == CONIC_OK)
     status = conic_view_init(context, splats, camera, options, near_z, splat_length, &f.view);

@@ -1,7 +1,6 @@
 #include <math.h>
 
 #include "raster/coverage.h"
-#include "raster/tile_walk.h"
 
 /* A finished pixel, before it is written to the planes that the image has. */
 typedef struct pixel {
@@ -96,7 +95,8 @@ void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_imag
   for (int y = tile->y_begin; y < tile->y_end; y++)
     for (int x = tile->x_begin; x < tile->x_end; x++) {
       pixel p;
-      size_t at = conic_tile_row(tile, y) + (size_t)(x - tile->x_begin);
+      size_t at = conic_tile_place(tile, x, y);
+      tile->n_fragments += tile->planes.fragments[at];
       if (tile->planes.nearest[at] != CONIC_NO_SPLAT) {
         finish_covered(tile, finish, at, x, y, &p);
         tile->n_covered++;
