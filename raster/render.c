@@ -200,7 +200,7 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   else
     f->kernels->accumulate(&tile);
   double summed = seconds_now();
-  conic_tile_resolve(&tile, &f->finish, f->image);
+  f->kernels->resolve(&tile, &f->finish, f->image);
   f->times[i_thread].visibility += seen - start;
   f->times[i_thread].accumulate += summed - seen;
   f->times[i_thread].resolve += seconds_now() - summed;
@@ -289,15 +289,16 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
   for (int i = 0; i < 3; i++) {
     length_squared += options->light[i] * options->light[i];
     for (int j = 0; j < 3; j++)
-      finish->world_from_cam[i][j] = camera->cam_from_world[j][i];
+      finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
   }
   if (options->has_light && !(length_squared > 1e-200 && length_squared < 1e200))
     return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
   for (int i = 0; options->has_light && i < 3; i++)
     finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
-  finish->needs_viewer =
-      options->shading == CONIC_SHADE_PHONG || (options->shading != CONIC_SHADE_NONE && !options->has_light);
   finish->exposure = conic_exposure_factor(options->exposure);
+  for (int i = 0; options->has_background && i < 3; i++)
+    finish->background[i] = options->background[i] * finish->exposure;
+  finish->background[3] = options->has_background ? 1.0f : 0.0f;
   return CONIC_OK;
 }
 

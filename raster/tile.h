@@ -52,21 +52,4 @@ static inline size_t conic_tile_place(const conic_tile *tile, int x, int y) {
 /* In place of pass 2 where the nearest splat wins: its colour, normal and weight. */
 void conic_tile_take_nearest(conic_tile *tile);
 
-/* How a frame's pixels are finished. */
-typedef struct conic_finish {
-  const conic_render_options *options;
-  double world_from_cam[3][3]; /* for the direction to the viewer */
-  float light[3];              /* unit, towards the light; unused with a headlight */
-  float exposure;              /* factor */
-  int needs_viewer;            /* shading asks for the direction to the viewer */
-} conic_finish;
-
-/* Pass 3: normalises, shades, and writes the tile's pixels of every plane that the image has. */
-void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
-
-/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
- * weighted mean of the splats' unit normals, whose length says how far they agree. */
-void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
-                 const float viewer[3], float shaded[3]);
-
 #endif

@@ -7,7 +7,7 @@
 #ifndef RASTER_TILE_KERNELS_H
 #define RASTER_TILE_KERNELS_H
 
-#include "raster/tile.h"
+#include "raster/resolve.h"
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
@@ -17,6 +17,8 @@ typedef struct conic_tile_kernels {
   void (*nearest)(conic_tile *tile);
   /* Pass 2: sums over the visible splats, the heaviest and the nearest of them. */
   void (*accumulate)(conic_tile *tile);
+  /* Pass 3: the image's pixels, and n_fragments and n_covered. */
+  void (*resolve)(conic_tile *tile, const conic_finish *finish, conic_image *image);
 } conic_tile_kernels;
 
 extern const conic_tile_kernels conic_tile_kernels_scalar;

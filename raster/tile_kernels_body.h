@@ -277,4 +277,6 @@ static void accumulate(conic_tile *tile) {
     walk_tile(tile, blend_other);
 }
 
-const conic_tile_kernels TABLE = {NAME, visibility, nearest, accumulate};
+#include "raster/resolve_body.h"
+
+const conic_tile_kernels TABLE = {NAME, visibility, nearest, accumulate, resolve};
