@@ -260,8 +260,6 @@ static conic_verdict project_splat(splat_setup *s) {
     return CONIC_SKIPPED;
   if (!(s->p[2] + (double)reach_z > view->near_z))
     return CONIC_CULLED;
-  if (!world_normal(s->splats, s->i, normal, &longer))
-    return CONIC_SKIPPED;
   conic_verdict verdict;
   s->footprint->amplitude = 1.0f;
   s->inverse_z = 1.0 / s->p[2];
@@ -274,6 +272,8 @@ static conic_verdict project_splat(splat_setup *s) {
     verdict = project_across_near(s);
   if (verdict >= CONIC_CULLED)
     return verdict;
+  if (!world_normal(s->splats, s->i, normal, &longer))
+    return CONIC_SKIPPED;
   if (verdict == CONIC_DRAWN_SEGMENT)
     s->footprint->amplitude = 0.0f;
   set_weighing(s, longer);
@@ -281,31 +281,39 @@ static conic_verdict project_splat(splat_setup *s) {
   return is_finite_record(s->footprint, s->ray, s->surface) ? verdict : CONIC_SKIPPED;
 }
 
+void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
+                       conic_chunk *chunk) {
+  splat_setup s = {.view = view, .splats = splats, .i = i};
+  s.footprint = &projected->footprints[chunk->first + chunk->n_drawn];
+  s.surface = &projected->surfaces[chunk->first + chunk->n_drawn];
+  s.ray = &projected->rays[chunk->first + chunk->n_rays];
+  conic_verdict verdict = project_splat(&s);
+  if (verdict == CONIC_CULLED) {
+    chunk->n_culled++;
+  } else if (verdict == CONIC_SKIPPED) {
+    chunk->n_skipped++;
+  } else {
+    if (verdict == CONIC_DRAWN_RAY)
+      s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
+    int is_own = verdict == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
+                                            : verdict == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+    chunk->n_fallback += !is_own;
+    chunk->n_drawn++;
+  }
+}
+
+size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
+  conic_chunk *chunk = &projected->chunks[i_chunk];
+  size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
+  memset(chunk, 0, sizeof *chunk);
+  chunk->first = first < splats->count ? first : splats->count;
+  return end < splats->count ? end : splats->count;
+}
+
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
-  if (end > splats->count)
-    end = splats->count;
-  memset(chunk, 0, sizeof *chunk);
-  chunk->first = first;
-  splat_setup s = {.view = view, .splats = splats};
-  for (s.i = first; s.i < end; s.i++) {
-    s.footprint = &projected->footprints[first + chunk->n_drawn];
-    s.surface = &projected->surfaces[first + chunk->n_drawn];
-    s.ray = &projected->rays[first + chunk->n_rays];
-    conic_verdict verdict = project_splat(&s);
-    if (verdict == CONIC_CULLED) {
-      chunk->n_culled++;
-    } else if (verdict == CONIC_SKIPPED) {
-      chunk->n_skipped++;
-    } else {
-      if (verdict == CONIC_DRAWN_RAY)
-        s.footprint->i_ray = (uint32_t)(first + chunk->n_rays++);
-      int is_own = verdict == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
-                                              : verdict == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
-      chunk->n_fallback += !is_own;
-      chunk->n_drawn++;
-    }
-  }
+  size_t end = conic_chunk_begin(splats, i_chunk, projected);
+  for (size_t i = chunk->first; i < end; i++)
+    conic_project_one(view, splats, i, projected, chunk);
 }

@@ -60,7 +60,14 @@ typedef struct conic_projected {
   conic_ray *rays;
 } conic_projected;
 
-/* Projects the splats of chunk i_chunk. */
+/* Empties chunk i_chunk and sets its `first`; returns the splat after its last. */
+size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected);
+
+/* Projects splat i, the next of its chunk, and appends it to the chunk where it is drawn. */
+void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
+                       conic_chunk *chunk);
+
+/* Projects the splats of chunk i_chunk: the plain C reference of the kernel table's `project`. */
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected);
 

@@ -145,7 +145,7 @@ static conic_status plan_tiles(frame *f, int tile) {
 static void project_task(void *data, size_t i_chunk, int i_thread) {
   frame *f = data;
   (void)i_thread;
-  conic_project_chunk(&f->view, f->splats, i_chunk, &f->projected);
+  f->kernels->project(&f->view, f->splats, i_chunk, &f->projected);
 }
 
 static void count_task(void *data, size_t i_chunk, int i_thread) {

@@ -11,6 +11,8 @@
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
+  /* Set-up: the splats of a chunk, compacted, in order. */
+  void (*project)(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
   /* Pass 1: threshold. */
   void (*visibility)(conic_tile *tile);
   /* Pass 1 where the nearest splat wins alone: nearest_iz and nearest; the first of equals. */

@@ -277,6 +277,7 @@ static void accumulate(conic_tile *tile) {
     walk_tile(tile, blend_other);
 }
 
+#include "raster/project_body.h"
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME, visibility, nearest, accumulate, resolve};
+const conic_tile_kernels TABLE = {NAME, project, visibility, nearest, accumulate, resolve};

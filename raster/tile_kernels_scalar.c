@@ -85,4 +85,5 @@ static void accumulate(conic_tile *tile) {
     walk_splat(tile, tile->references[i], blend);
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {"scalar", visibility, nearest, accumulate, conic_tile_resolve};
+const conic_tile_kernels conic_tile_kernels_scalar = {"scalar", conic_project_chunk, visibility,
+                                                      nearest,  accumulate,          conic_tile_resolve};

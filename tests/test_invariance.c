@@ -1,5 +1,6 @@
 /* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
  * And every plane is defined on every pixel. */
+#include "raster/tile_kernels.h"
 #include "tests/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {
@@ -44,6 +45,25 @@ static void fill(fixture *f, int scene) {
   }
 }
 
+/* Every instruction set that this machine has draws the same picture, and counts the same. */
+static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_PLANES]) {
+  conic_render_statistics counted = f->statistics;
+  for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
+    uint64_t hashes[CONIC_N_PLANES];
+    if (!conic_tile_kernels_of((conic_isa)isa))
+      continue;
+    f->options.isa = (conic_isa)isa;
+    fixture_render(f);
+    hash_all(f, hashes);
+    CHECK(memcmp(expected, hashes, sizeof hashes) == 0);
+    CHECK(strcmp(f->statistics.isa, conic_isa_name((conic_isa)isa)) == 0);
+    CHECK(counted.splats_culled == f->statistics.splats_culled && counted.splats_drawn == f->statistics.splats_drawn);
+    CHECK(counted.splats_fallback == f->statistics.splats_fallback && counted.fragments == f->statistics.fragments);
+    CHECK(counted.pixels_covered == f->statistics.pixels_covered);
+  }
+  f->options.isa = CONIC_ISA_AUTO;
+}
+
 static void check_defined(const fixture *f) {
   for (int y = 0; y < f->image.height; y++)
     for (int x = 0; x < f->image.width; x++) {
@@ -79,6 +99,7 @@ int main(void) {
           if (t == 0 && i_tile == 0) {
             memcpy(expected, hashes, sizeof hashes);
             check_defined(&f);
+            check_instruction_sets(&f, expected);
             CHECK(f.statistics.pixels_covered > 1000);
           } else
             CHECK(memcmp(expected, hashes, sizeof hashes) == 0);
