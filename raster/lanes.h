@@ -100,6 +100,10 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   return mask != 0;
 }
 
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)__builtin_popcount(mask);
+}
+
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
   return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
 }
@@ -152,6 +156,10 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
 }
 
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)__builtin_popcount((unsigned)_mm256_movemask_ps((__m256)mask));
+}
+
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
   return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
 }
@@ -170,6 +178,11 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   return _mm_movemask_ps((__m128)mask) != 0;
 }
 
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  unsigned bits = (unsigned)_mm_movemask_ps((__m128)mask);
+  return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* how many bits, for each of 16 patterns */
+}
+
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
   return (lanes)_mm_max_ps((__m128)a, (__m128)b);
 }
@@ -186,6 +199,10 @@ CONIC_INLINE lanes lanes_sqrt(lanes a) {
 
 CONIC_INLINE int lanes_any(lanes_mask mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)-(mask[0] + mask[1] + mask[2] + mask[3]);
 }
 
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {

@@ -170,6 +170,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
+  tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
   conic_tile_clear(tile, bins->tile, f->planes + (size_t)i_thread * f->planes_bytes);
 }
 

@@ -98,7 +98,6 @@ void conic_tile_resolve_indices(conic_tile *tile, conic_image *image) {
     for (int x = tile->x_begin; x < tile->x_end; x++) {
       size_t from = conic_tile_place(tile, x, y), at = (size_t)y * (size_t)image->width + (size_t)x;
       int is_covered = planes->weight[from] > 0.0f;
-      tile->n_fragments += planes->fragments[from];
       tile->n_covered += (uint64_t)is_covered;
       if (z)
         z[at] = is_covered ? plane_z(&projected->footprints[planes->heaviest[from]], x, y) : 0.0f;

@@ -22,7 +22,7 @@ void conic_tile_clear(conic_tile *tile, int edge, void *memory) {
   float **float_planes[] = {&planes->threshold, &planes->nearest_iz, &planes->weight,   &planes->heaviest_weight,
                             &planes->color[0],  &planes->color[1],   &planes->color[2], &planes->normal[0],
                             &planes->normal[1], &planes->normal[2]};
-  uint32_t **index_planes[] = {&planes->nearest, &planes->heaviest, &planes->count, &planes->fragments};
+  uint32_t **index_planes[] = {&planes->nearest, &planes->heaviest, &planes->count};
   for (size_t i = 0; i < sizeof float_planes / sizeof float_planes[0]; i++, next += n)
     *float_planes[i] = next;
   for (size_t i = 0; i < sizeof index_planes / sizeof index_planes[0]; i++, next += n)

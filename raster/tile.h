@@ -20,11 +20,10 @@ typedef struct conic_tile_planes {
   float *color[3], *normal[3]; /* Σ w c, Σ w n */
   float *heaviest_weight;      /* the largest w, and whose it is */
   uint32_t *heaviest;
-  uint32_t *count;     /* visible splats */
-  uint32_t *fragments; /* splats that cover the pixel */
+  uint32_t *count; /* visible splats */
 } conic_tile_planes;
 
-#define CONIC_N_TILE_PLANES 14
+#define CONIC_N_TILE_PLANES 13
 
 typedef struct conic_tile {
   const conic_view *view;
@@ -34,6 +33,7 @@ typedef struct conic_tile {
   int stride;                         /* columns of a band: the edge, and room for a vector past it */
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   conic_tile_planes planes;
+  int keeps_indices;               /* the image wants counts or ids: nearest and count are kept too */
   uint64_t n_fragments, n_covered; /* found by visibility, and by resolving */
 } conic_tile;
 

@@ -177,17 +177,11 @@ CONIC_INLINE void walk_tile(conic_tile *tile, visit_block *visit) {
   }
 }
 
-/* Counted in the planes, not in a sum across lanes: fragments is what visibility adds up. */
-CONIC_INLINE void count_fragments(conic_tile *tile, size_t at, lanes_mask covered) {
-  uint32_t *count = &tile->planes.fragments[at];
-  lanes_store_indices(count, lanes_increment(covered, lanes_load_indices(count)));
-}
-
 CONIC_INLINE void raise_threshold(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
                                   const fragments *f) {
   float *to = &tile->planes.threshold[at];
   (void)i_footprint;
-  count_fragments(tile, at, f->covered);
+  tile->n_fragments += lanes_count(f->covered);
   lanes offset_iz = footprint->nearness * lanes_min(f->plane_iz, f->iz), threshold = lanes_load(to);
   lanes_store(to, lanes_select(f->covered & lanes_less(threshold, offset_iz), offset_iz, threshold));
 }
@@ -204,7 +198,7 @@ CONIC_INLINE void keep_nearest(conic_tile *tile, uint32_t i_footprint, const con
                                const fragments *f) {
   lanes nearest_iz = lanes_load(&tile->planes.nearest_iz[at]);
   (void)footprint;
-  count_fragments(tile, at, f->covered);
+  tile->n_fragments += lanes_count(f->covered);
   keep_better(&tile->planes.nearest_iz[at], &tile->planes.nearest[at], f->covered & lanes_less(nearest_iz, f->iz),
               f->iz, nearest_iz, i_footprint);
 }
@@ -228,39 +222,47 @@ CONIC_INLINE void add_to(float *sum, lanes term) {
   lanes_store(sum, lanes_load(sum) + term);
 }
 
+/* Which kernel, and whether the planes are kept that only the image's count and id need. */
+typedef struct blending {
+  int is_gauss, keeps_indices;
+} blending;
+
 /* Adds the visible fragments to the pixels' sums: an invisible one adds 0, which changes no bit. Splats come in file
  * order: sums keep it, and the first of equals stays. */
 CONIC_INLINE void blend(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                        const fragments *f, int is_gauss) {
+                        const fragments *f, blending how) {
   conic_tile_planes *planes = &tile->planes;
   lanes seen_iz = lanes_max(f->plane_iz, f->iz);
   lanes_mask visible = f->covered & lanes_at_least(seen_iz, lanes_load(&planes->threshold[at]));
   if (!lanes_any(visible))
     return;
   const conic_surface *surface = &tile->projected->surfaces[i_footprint];
-  lanes weight = weigh(tile, footprint, f, visible, is_gauss);
+  lanes weight = weigh(tile, footprint, f, visible, how.is_gauss);
   add_to(&planes->weight[at], weight);
   for (int axis = 0; axis < 3; axis++) {
     add_to(&planes->color[axis][at], weight * surface->color[axis]);
     add_to(&planes->normal[axis][at], weight * surface->normal[axis]);
   }
-  lanes_store_indices(&planes->count[at], lanes_increment(visible, lanes_load_indices(&planes->count[at])));
-  lanes heaviest = lanes_load(&planes->heaviest_weight[at]), nearest = lanes_load(&planes->nearest_iz[at]);
+  lanes heaviest = lanes_load(&planes->heaviest_weight[at]);
   keep_better(&planes->heaviest_weight[at], &planes->heaviest[at], lanes_less(heaviest, weight), weight, heaviest,
               i_footprint);
+  if (!how.keeps_indices)
+    return;
+  lanes nearest = lanes_load(&planes->nearest_iz[at]);
+  lanes_store_indices(&planes->count[at], lanes_increment(visible, lanes_load_indices(&planes->count[at])));
   keep_better(&planes->nearest_iz[at], &planes->nearest[at], visible & lanes_less(nearest, f->iz), f->iz, nearest,
               i_footprint);
 }
 
-CONIC_INLINE void blend_gauss(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                              const fragments *f) {
-  blend(tile, i_footprint, footprint, at, f, 1);
-}
+#define DEFINE_BLEND(NAME_OF_BLEND, ...)                                                                               \
+  CONIC_INLINE void NAME_OF_BLEND(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at, \
+                                  const fragments *f) {                                                                \
+    blend(tile, i_footprint, footprint, at, f, (blending){__VA_ARGS__});                                               \
+  }
 
-CONIC_INLINE void blend_other(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                              const fragments *f) {
-  blend(tile, i_footprint, footprint, at, f, 0);
-}
+DEFINE_BLEND(blend_gauss, .is_gauss = 1)
+DEFINE_BLEND(blend_gauss_indices, .is_gauss = 1, .keeps_indices = 1)
+DEFINE_BLEND(blend_other_indices, .keeps_indices = 1)
 
 static void visibility(conic_tile *tile) {
   walk_tile(tile, raise_threshold);
@@ -271,10 +273,12 @@ static void nearest(conic_tile *tile) {
 }
 
 static void accumulate(conic_tile *tile) {
-  if (tile->view->kernel.type == CONIC_KERNEL_GAUSS)
-    walk_tile(tile, blend_gauss);
+  if (tile->view->kernel.type != CONIC_KERNEL_GAUSS)
+    walk_tile(tile, blend_other_indices);
+  else if (tile->keeps_indices)
+    walk_tile(tile, blend_gauss_indices);
   else
-    walk_tile(tile, blend_other);
+    walk_tile(tile, blend_gauss);
 }
 
 #include "raster/project_body.h"

@@ -30,7 +30,7 @@ static void raise_threshold(conic_tile *tile, uint32_t i_footprint, const conic_
   float hiding_iz = fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz;
   float offset_iz = footprint->nearness * hiding_iz;
   (void)i_footprint;
-  tile->planes.fragments[at]++;
+  tile->n_fragments++;
   if (tile->planes.threshold[at] < offset_iz)
     tile->planes.threshold[at] = offset_iz;
 }
@@ -39,7 +39,7 @@ static void raise_threshold(conic_tile *tile, uint32_t i_footprint, const conic_
 static void keep_nearest(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
                          const conic_fragment *fragment) {
   (void)footprint;
-  tile->planes.fragments[at]++;
+  tile->n_fragments++;
   if (tile->planes.nearest_iz[at] < fragment->iz) {
     tile->planes.nearest_iz[at] = fragment->iz;
     tile->planes.nearest[at] = i_footprint;
