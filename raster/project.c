@@ -19,6 +19,7 @@ typedef struct splat_setup {
   float nearest, farthest; /* 1 - reach and 1 + reach, rounded from double: the difference may nearly vanish */
   float along_ray;         /* p·(t_u × t_v), up to a positive factor: below 0 the splat faces the viewer */
   conic_footprint *footprint;
+  conic_box *box;
   conic_ray *ray;
   conic_surface *surface;
 } splat_setup;
@@ -129,6 +130,7 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
 static conic_verdict project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
+  conic_box *box = s->box;
   float h = view->prefilter;
   float vxx = k->rxx + h, vyy = k->ryy + h;
   float determinant = (k->root_determinant * k->root_determinant + h * (k->rxx + k->ryy)) + h * h;
@@ -136,9 +138,9 @@ static conic_verdict project_variance(const splat_setup *s, const tangents *t, c
     return CONIC_SKIPPED;
   double x_t = (view->cx + view->fx * (s->p[0] * s->inverse_z)) + (double)k->shift_x;
   double y_t = (view->cy + view->fy * (s->p[1] * s->inverse_z)) + (double)k->shift_y;
-  pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &footprint->x_begin, &footprint->x_end);
-  pixel_range(y_t, view->cutoff * sqrtf(vyy), view->height, &footprint->y_begin, &footprint->y_end);
-  if (footprint->x_begin >= footprint->x_end || footprint->y_begin >= footprint->y_end)
+  pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &box->x_begin, &box->x_end);
+  pixel_range(y_t, view->cutoff * sqrtf(vyy), view->height, &box->y_begin, &box->y_end);
+  if (conic_box_is_empty(box))
     return CONIC_CULLED;
   /* A centre that is off the screen by more than this has lost its fraction anyway. */
   x_t = x_t > -1e9 ? x_t < 1e9 ? x_t : 1e9 : -1e9;
@@ -178,7 +180,7 @@ static conic_verdict project_before_near(splat_setup *s, const float tu[3], cons
   if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k)) {
     conic_disc disc;
     fill_disc(s, &disc);
-    return conic_project_ray(view, &disc, s->footprint, s->ray);
+    return conic_project_ray(view, &disc, s->footprint, s->box, s->ray);
   }
   return project_variance(s, &t, &k);
 }
@@ -189,7 +191,7 @@ static conic_verdict project_across_near(splat_setup *s) {
   s->along_ray = disc.determinant > 0.0 ? 1.0f : disc.determinant < 0.0 ? -1.0f : 0.0f;
   if (s->view->cull_back && disc.determinant > 0.0)
     return CONIC_CULLED;
-  return conic_project_near(s->view, &disc, s->footprint, s->ray);
+  return conic_project_near(s->view, &disc, s->footprint, s->box, s->ray);
 }
 
 /* The unit normal in the world, and the length of the longer axis. 0 where there is no normal. */
@@ -285,6 +287,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
                        conic_chunk *chunk) {
   splat_setup s = {.view = view, .splats = splats, .i = i};
   s.footprint = &projected->footprints[chunk->first + chunk->n_drawn];
+  s.box = &projected->boxes[chunk->first + chunk->n_drawn];
   s.surface = &projected->surfaces[chunk->first + chunk->n_drawn];
   s.ray = &projected->rays[chunk->first + chunk->n_rays];
   conic_verdict verdict = project_splat(&s);

@@ -240,7 +240,8 @@ CONIC_INLINE lanes finish_records(group *g, records *r) {
   return not_finite;
 }
 
-CONIC_INLINE void write_record(const group *g, const records *r, int l, conic_footprint *to, conic_surface *surface) {
+CONIC_INLINE void write_record(const group *g, const records *r, int l, conic_footprint *to, conic_box *box,
+                               conic_surface *surface) {
   to->x = g->center[0][l];
   to->y = g->center[1][l];
   to->dx0 = g->fraction[0][l];
@@ -257,10 +258,10 @@ CONIC_INLINE void write_record(const group *g, const records *r, int l, conic_fo
   to->iz_near = r->iz_near[l];
   to->nearness = r->nearness[l];
   to->amplitude = r->amplitude[l];
-  to->x_begin = (uint16_t)g->begin[0][l];
-  to->x_end = (uint16_t)g->end[0][l];
-  to->y_begin = (uint16_t)g->begin[1][l];
-  to->y_end = (uint16_t)g->end[1][l];
+  box->x_begin = (uint16_t)g->begin[0][l];
+  box->x_end = (uint16_t)g->end[0][l];
+  box->y_begin = (uint16_t)g->begin[1][l];
+  box->y_end = (uint16_t)g->end[1][l];
   for (int axis = 0; axis < 3; axis++) {
     surface->color[axis] = r->color[axis][l];
     surface->normal[axis] = r->normal[axis][l];
@@ -299,7 +300,7 @@ CONIC_INLINE void take_group(const group *g, const records *r, conic_projected *
     size_t at = chunk->first + chunk->n_drawn;
     switch (g->state[l]) {
     case GROUP_USUAL:
-      write_record(g, r, l, &projected->footprints[at], &projected->surfaces[at]);
+      write_record(g, r, l, &projected->footprints[at], &projected->boxes[at], &projected->surfaces[at]);
       chunk->n_fallback += g->view->method == CONIC_METHOD_RAY;
       chunk->n_drawn++;
       break;

@@ -24,10 +24,18 @@ typedef struct conic_footprint {
   float iz0, iz_dx, iz_dy;
   float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
   float iz_far, iz_near;
-  float nearness;                          /* s = 1 / (1 + ε/‖p‖) */
-  float amplitude;                         /* A·opacity */
-  uint16_t x_begin, x_end, y_begin, y_end; /* pixels that may be covered, within the image */
+  float nearness;  /* s = 1 / (1 + ε/‖p‖) */
+  float amplitude; /* A·opacity */
 } conic_footprint;
+
+/* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. */
+typedef struct conic_box {
+  uint16_t x_begin, x_end, y_begin, y_end;
+} conic_box;
+
+static inline int conic_box_is_empty(const conic_box *box) {
+  return box->x_begin >= box->x_end || box->y_begin >= box->y_end;
+}
 
 /* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel. */
 typedef struct conic_ray {
@@ -56,6 +64,7 @@ typedef struct conic_projected {
   size_t n_chunks, chunk_size;
   conic_chunk *chunks;
   conic_footprint *footprints;
+  conic_box *boxes;
   conic_surface *surfaces;
   conic_ray *rays;
 } conic_projected;
@@ -90,11 +99,11 @@ typedef struct conic_disc {
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
 conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                conic_ray *ray);
+                                conic_box *box, conic_ray *ray);
 
 /* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
  * is 0). */
 conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                 conic_ray *ray);
+                                 conic_box *box, conic_ray *ray);
 
 #endif

@@ -70,6 +70,7 @@ void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_imag
     for (int x = tile->x_begin; x < tile->x_end; x++) {
       pixel p;
       size_t from = conic_tile_place(tile, x, y), at = (size_t)y * (size_t)image->width + (size_t)x;
+      tile->n_covered += tile->planes.weight[from] > 0.0f;
       if (tile->planes.weight[from] > 0.0f)
         finish_covered(tile, finish, from, rays.x[x - tile->x_begin], rays.y[y - tile->y_begin], &p);
       else
@@ -94,11 +95,12 @@ void conic_tile_resolve_indices(conic_tile *tile, conic_image *image) {
   const conic_projected *projected = tile->projected;
   float *z = image->planes[CONIC_PLANE_Z];
   uint32_t *count = image->planes[CONIC_PLANE_COUNT], *id = image->planes[CONIC_PLANE_ID];
+  if (!z && !count && !id)
+    return;
   for (int y = tile->y_begin; y < tile->y_end; y++)
     for (int x = tile->x_begin; x < tile->x_end; x++) {
       size_t from = conic_tile_place(tile, x, y), at = (size_t)y * (size_t)image->width + (size_t)x;
       int is_covered = planes->weight[from] > 0.0f;
-      tile->n_covered += (uint64_t)is_covered;
       if (z)
         z[at] = is_covered ? plane_z(&projected->footprints[planes->heaviest[from]], x, y) : 0.0f;
       if (count)

@@ -29,7 +29,7 @@ void conic_tile_rays_init(const conic_tile *tile, conic_tile_rays *rays);
 /* The plain C reference of the slot `resolve`: everything, a pixel at a time. */
 void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
 
-/* The planes that name splats or ask one for its depth: Z, count, id; and the tile's counts. */
+/* The planes that name splats or ask one for its depth: Z, count, id. */
 void conic_tile_resolve_indices(conic_tile *tile, conic_image *image);
 
 /* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the

@@ -4,6 +4,7 @@
 
 /* The finished pixels of one block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
 typedef struct finished {
+  lanes_mask covered;
   lanes rgb[3], alpha, normal[3], albedo[3], weight;
 } finished;
 
@@ -83,6 +84,7 @@ CONIC_INLINE void finish_block(const conic_tile *tile, const conic_finish *finis
     block->rgb[axis] = lanes_select(covered, shaded[axis] * finish->exposure, lanes_of(finish->background[axis]));
   block->alpha = lanes_select(covered, lanes_of(1.0f), lanes_of(finish->background[3]));
   block->weight = weight;
+  block->covered = covered;
 }
 
 /* From channels of lanes to the channels of pixels, those of the block that are in the tile. */
@@ -111,6 +113,7 @@ static void resolve(conic_tile *tile, const conic_finish *finish, conic_image *i
       finished block;
       size_t at = conic_tile_place(tile, x, y);
       finish_block(tile, finish, &rays, x - tile->x_begin, y - tile->y_begin, at, &block);
+      tile->n_covered += lanes_count(block.covered);
       const lanes rgba[4] = {block.rgb[0], block.rgb[1], block.rgb[2], block.alpha};
       store_block(tile, image, CONIC_PLANE_RGBA, x, y, rgba, 4);
       store_block(tile, image, CONIC_PLANE_NORMAL, x, y, block.normal, 3);

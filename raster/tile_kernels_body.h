@@ -21,12 +21,12 @@ typedef struct window {
   int x_begin, x_end, y_begin, y_end;
 } window;
 
-CONIC_INLINE window window_of(const conic_tile *tile, const conic_footprint *footprint) {
+CONIC_INLINE window window_of(const conic_tile *tile, const conic_box *box) {
   window w;
-  w.x_begin = footprint->x_begin > tile->x_begin ? footprint->x_begin : tile->x_begin;
-  w.x_end = footprint->x_end < tile->x_end ? footprint->x_end : tile->x_end;
-  w.y_begin = footprint->y_begin > tile->y_begin ? footprint->y_begin : tile->y_begin;
-  w.y_end = footprint->y_end < tile->y_end ? footprint->y_end : tile->y_end;
+  w.x_begin = box->x_begin > tile->x_begin ? box->x_begin : tile->x_begin;
+  w.x_end = box->x_end < tile->x_end ? box->x_end : tile->x_end;
+  w.y_begin = box->y_begin > tile->y_begin ? box->y_begin : tile->y_begin;
+  w.y_end = box->y_end < tile->y_end ? box->y_end : tile->y_end;
   return w;
 }
 
@@ -166,10 +166,10 @@ CONIC_INLINE void walk_tile(conic_tile *tile, visit_block *visit) {
     if (i + AHEAD < tile->n_references) {
       uint32_t i_later = tile->references[i + AHEAD];
       __builtin_prefetch(&footprints[i_later]);
-      __builtin_prefetch((const char *)&footprints[i_later] + 64);
+      __builtin_prefetch(&tile->projected->boxes[i_later]);
       __builtin_prefetch(&tile->projected->surfaces[i_later]);
     }
-    window w = window_of(tile, footprint);
+    window w = window_of(tile, &tile->projected->boxes[i_footprint]);
     if (footprint->s3 != 0.0f)
       walk_ellipse(tile, i_footprint, footprint, w, visit);
     else

@@ -15,8 +15,9 @@ static int greatest(int a, int b) {
 
 static inline void walk_splat(conic_tile *tile, uint32_t i_footprint, visit_fragment *visit) {
   const conic_footprint *footprint = &tile->projected->footprints[i_footprint];
-  int x_begin = greatest(footprint->x_begin, tile->x_begin), x_end = least(footprint->x_end, tile->x_end);
-  int y_begin = greatest(footprint->y_begin, tile->y_begin), y_end = least(footprint->y_end, tile->y_end);
+  const conic_box *box = &tile->projected->boxes[i_footprint];
+  int x_begin = greatest(box->x_begin, tile->x_begin), x_end = least(box->x_end, tile->x_end);
+  int y_begin = greatest(box->y_begin, tile->y_begin), y_end = least(box->y_end, tile->y_end);
   for (int y = y_begin; y < y_end; y++)
     for (int x = x_begin; x < x_end; x++) {
       conic_fragment fragment;
