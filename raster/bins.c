@@ -7,9 +7,14 @@ typedef struct tile_range {
   int x_begin, x_end, y_begin, y_end;
 } tile_range;
 
+/* pixel / tile by a multiplication: exact for pixels below 65,536 and tiles up to 256. */
+static int tile_of(const conic_bins *bins, unsigned pixel) {
+  return (int)((pixel * bins->reciprocal) >> 32);
+}
+
 static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
-  tile_range range = {box->x_begin / bins->tile, (box->x_end - 1) / bins->tile + 1, box->y_begin / bins->tile,
-                      (box->y_end - 1) / bins->tile + 1};
+  tile_range range = {tile_of(bins, box->x_begin), tile_of(bins, box->x_end - 1u) + 1, tile_of(bins, box->y_begin),
+                      tile_of(bins, box->y_end - 1u) + 1};
   return range;
 }
 

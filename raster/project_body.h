@@ -133,22 +133,37 @@ CONIC_INLINE void widen(group *g) {
   lanes_store(g->half[1], g->view->cutoff * lanes_sqrt(g->vyy));
 }
 
-/* The footprint's centre and box along one axis; lanes off the screen are culled. */
+CONIC_INLINE double greater_of(double a, double b) {
+  return a > b ? a : b;
+}
+
+CONIC_INLINE double lesser_of(double a, double b) {
+  return a < b ? a : b;
+}
+
+/* The footprint's centre and box along one axis, as pixel_range of project.c; an empty box has its begin not before its
+ * end. One thing a loop: that is how compilers vectorise them. */
 CONIC_INLINE void place(group *g, int axis, double principal, double focal, int size) {
+  double center[CONIC_LANES], low[CONIC_LANES], high[CONIC_LANES], limit = (double)size;
   for (int l = 0; l < CONIC_LANES; l++) {
-    double center = (principal + focal * (g->p[axis][l] * g->inverse_z[l])) + (double)g->shift[axis][l];
     double reach = (double)g->half[axis][l] * 1.0001 + 0.01;
-    double low = center - reach + 0.5, high = center + reach + 0.5;
-    low = low > 0.0 ? low : 0.0;
-    high = high < (double)size ? high : (double)size;
-    int is_empty = !(low < high);
-    g->begin[axis][l] = (int32_t)(is_empty ? 0.0 : low);
-    g->end[axis][l] = (int32_t)(is_empty ? 0.0 : high);
-    center = center > -1e9 ? center : -1e9;
-    center = center < 1e9 ? center : 1e9;
-    g->center[axis][l] = (int32_t)center;
-    g->fraction[axis][l] = (float)(((double)g->center[axis][l] + 0.5) - center);
+    center[l] = (principal + focal * (g->p[axis][l] * g->inverse_z[l])) + (double)g->shift[axis][l];
+    low[l] = center[l] - reach + 0.5;
+    high[l] = center[l] + reach + 0.5;
   }
+  for (int l = 0; l < CONIC_LANES; l++)
+    low[l] = lesser_of(greater_of(low[l], 0.0), limit);
+  for (int l = 0; l < CONIC_LANES; l++)
+    high[l] = greater_of(lesser_of(high[l], limit), 0.0);
+  for (int l = 0; l < CONIC_LANES; l++)
+    center[l] = lesser_of(greater_of(center[l], -1e9), 1e9);
+  for (int l = 0; l < CONIC_LANES; l++) {
+    g->begin[axis][l] = (int32_t)low[l];
+    g->end[axis][l] = (int32_t)high[l];
+    g->center[axis][l] = (int32_t)center[l];
+  }
+  for (int l = 0; l < CONIC_LANES; l++)
+    g->fraction[axis][l] = (float)(((double)g->center[axis][l] + 0.5) - center[l]);
 }
 
 CONIC_INLINE void cull_off_screen(group *g) {
