@@ -66,8 +66,8 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   conic_samples_layout layout = choose_layout(&writer);
   conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
                                   layout.is_straight};
-  void *samples =
-      conic_memory_allocate(context, conic_image_pixels(image), (size_t)(layout.n_channels * layout.sample_bytes));
+  void *samples = conic_memory_allocate(context, conic_image_pixels(image),
+                                        (size_t)layout.n_channels * (size_t)layout.sample_bytes);
   if (!samples)
     return CONIC_ERROR_MEMORY;
   conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
