@@ -12,4 +12,3 @@ install(TARGETS conic_openimageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/co
 target_compile_definitions(conic_objects PRIVATE CONIC_HAVE_OPENIMAGEIO=1)
 set_source_files_properties(core/openimageio_load.c PROPERTIES # which asks where it is: no question of POSIX's
   COMPILE_DEFINITIONS "_GNU_SOURCE;CONIC_MODULES_FROM_PROGRAM=\"${libraries_from_programs}/conic\"")
-add_dependencies(conic_objects conic_openimageio)
