@@ -93,6 +93,15 @@ int cli_parse_vector(const char *text, double vector[3]) {
   return 1;
 }
 
+int cli_parse_length(const char *text, void *length) {
+  cli_length *parsed = length;
+  const char *end;
+  if (!parse_decimal(text, &end, &parsed->value) || !(parsed->value >= 0.0) || !(parsed->value < 1e30))
+    return 0;
+  parsed->is_in_spacings = *end == 'x';
+  return end[parsed->is_in_spacings] == '\0';
+}
+
 static int parse_size(const char *text, int size[2]) {
   char width[16];
   const char *cross = strchr(text, 'x');

@@ -50,10 +50,25 @@ static conic_status read_inputs(cli_session *session, cli_render_job *job, conic
   return CONIC_OK;
 }
 
+/* Lengths in spacings become world units. */
+static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
+  double spacing = 1.0;
+  conic_status status = CONIC_OK;
+  if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
+    status = conic_splats_spacing(session->context, splats, &spacing);
+  if (job->epsilon.value >= 0.0)
+    job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
+  if (job->near_z.value >= 0.0)
+    job->options.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
+  return status;
+}
+
 /* What every frame would find anew: the near distance and the scale of ε. */
 static conic_status measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
-  conic_status status = conic_splats_length(session->context, splats, &job->options.splat_length);
+  conic_status status = resolve_lengths(session, job, splats);
+  if (status == CONIC_OK)
+    status = conic_splats_length(session->context, splats, &job->options.splat_length);
   if (status == CONIC_OK && job->options.near_z == 0.0)
     job->options.near_z = conic_default_near(splats);
   job->estimate_ms += 1e3 * (cli_seconds() - start);

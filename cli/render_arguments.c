@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
@@ -38,12 +38,6 @@ static int parse_turntable(const char *text, void *value) {
   return 1;
 }
 
-static int parse_number(const char *text, double *number) {
-  char *end;
-  *number = strtod(text, &end);
-  return *text && !*end && *number * 0.0 == 0.0;
-}
-
 /* gauss, hat, box, or confetti:A,B,N. */
 static int parse_kernel(const char *text, void *value) {
   conic_kernel *kernel = value;
@@ -68,12 +62,17 @@ static int parse_kernel(const char *text, void *value) {
 }
 
 static int parse_epsilon(const char *text, void *value) {
-  double *epsilon = value;
+  cli_length *epsilon = value;
   if (strcmp(text, "auto") == 0) {
-    *epsilon = -1.0;
+    epsilon->value = -1.0;
     return 1;
   }
-  return parse_number(text, epsilon) && *epsilon >= 0.0;
+  return cli_parse_length(text, value);
+}
+
+static int parse_near(const char *text, void *value) {
+  const cli_length *near_z = value;
+  return cli_parse_length(text, value) && near_z->value > 0.0;
 }
 
 /* x, -y, … or X,Y,Z. */
@@ -165,8 +164,6 @@ static int check(const cli_session *session, const raw_options *raw, cli_render_
     return cli_usage("render: --passes takes 3 or 1");
   if (job->options.tile % 4)
     return cli_usage("render: --tile takes a multiple of 4");
-  if (raw->isa > 1)
-    return cli_error(CLI_RESOURCE, "--isa %s: this build has only scalar code", isa_words[raw->isa]);
   if (strncmp(raw->device, "opencl", 6) == 0)
     return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
   if (strcmp(raw->device, "cpu") != 0)
@@ -182,6 +179,7 @@ static void set_defaults(cli_render_job *job, raw_options *raw) {
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
+  job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
   raw->device = "cpu";
@@ -212,18 +210,19 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up,
        .is_given = &raw.is_framing_given},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
-      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray [conic]",
+      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
        10000},
-      {"epsilon", CLI_PARSED, &o->epsilon, "E", "depth tolerance along the ray, or auto [auto]",
-       .parse = parse_epsilon},
+      {"epsilon", CLI_PARSED, &job->epsilon, "E",
+       "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
-      {"near", CLI_NUMBER, &o->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]", 1e-30, 1e30},
+      {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
+       .parse = parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = shade_words},
       {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
        .parse = parse_light},
@@ -236,7 +235,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
-      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto or scalar; changes no bit [auto]", .choices = isa_words},
+      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = isa_words},
   };
   job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
   if (!job->inputs)
@@ -250,6 +250,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
+  o->isa = (conic_isa)raw.isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];

@@ -2,7 +2,7 @@
 #ifndef CLI_RENDER_JOB_H
 #define CLI_RENDER_JOB_H
 
-#include "cli/session.h"
+#include "cli/arguments.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -19,7 +19,8 @@ typedef struct cli_render_job {
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
   int n_neighbours;
-  conic_render_options options;
+  conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
+  cli_length epsilon, near_z;   /* below 0: automatic */
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
