@@ -279,6 +279,7 @@ static int report(cli_session *session, const info_job *job) {
 static int run(cli_session *session, int argc, char **argv) {
   info_job job;
   memset(&job, 0, sizeof job);
+  job.path = "-"; /* until the arguments name one */
   int exit_code = parse(session, argc, argv, &job);
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);

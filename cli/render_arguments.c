@@ -12,7 +12,7 @@ static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx51
 
 /* Options whose words are checked after all have been read. */
 typedef struct raw_options {
-  int size[2], is_size_given;
+  int size[2], is_size_given, is_framing_given;
   const char *device;
   int isa;
   double cutoff, prefilter;
@@ -147,11 +147,17 @@ static int check(const cli_session *session, const raw_options *raw, cli_render_
     return cli_usage("render: no input; conic render IN… -o OUT");
   if (job->n_outputs == 0)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
-  for (int i = 0; i < job->n_outputs && job->is_turntable; i++)
+  for (int i = 0; i < job->n_outputs; i++) { /* now, and not after the work */
+    const char *slash = strrchr(job->outputs[i], '/'), *dot = strrchr(slash ? slash : job->outputs[i], '.');
     if (strcmp(job->outputs[i], "-") == 0)
-      return cli_usage("render: a turntable cannot go to standard output");
+      return cli_usage("render: a picture cannot go to standard output");
+    if (!dot || !dot[1])
+      return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
+  }
   if (job->camera_path && raw->is_size_given)
     return cli_usage("render: --size is the camera file's; give one of both");
+  if (job->camera_path && raw->is_framing_given)
+    return cli_usage("render: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
   if (raw->passes != 1 && raw->passes != 3)
@@ -193,11 +199,16 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = parse_output},
       {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
-      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6},
-      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90},
-      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9},
-      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6},
-      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up},
+      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90,
+       .is_given = &raw.is_framing_given},
+      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
+       .is_given = &raw.is_framing_given},
+      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up,
+       .is_given = &raw.is_framing_given},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},

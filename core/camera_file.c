@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "conic/camera.h"
@@ -102,7 +103,7 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
 }
 
 static conic_status read_camera(conic_json *json, conic_camera *camera) {
-  char key[CONIC_JSON_KEY_ROOM], missing[64] = "the camera lacks ";
+  char key[CONIC_JSON_KEY_ROOM], missing[64];
   int is_given[N_KEYS] = {0};
   conic_json_begin_object(json);
   while (conic_json_next_member(json, key)) {
@@ -115,8 +116,10 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
   }
   conic_json_end(json);
   for (int i = 0; i < N_KEYS; i++)
-    if (!is_given[i])
-      return conic_json_wrong(json, strcat(missing, key_names[i]));
+    if (!is_given[i]) {
+      snprintf(missing, sizeof missing, "the camera lacks %s", key_names[i]);
+      return conic_json_wrong(json, missing);
+    }
   return json->status;
 }
 

@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "conic/image.h"
 
@@ -11,6 +12,14 @@
 
 static inline size_t conic_image_pixels(const conic_image *image) {
   return (size_t)image->width * (size_t)image->height;
+}
+
+/* Tells -0 from 0, and a NaN from itself only where it is another one. */
+static inline int conic_same_bits(float a, float b) {
+  uint32_t bits_a, bits_b;
+  memcpy(&bits_a, &a, sizeof a);
+  memcpy(&bits_b, &b, sizeof b);
+  return bits_a == bits_b;
 }
 
 /* 64-bit FNV-1a. */

@@ -89,7 +89,7 @@ static exr_result_t read_layout(exr_reader *reader) {
     if (result == EXR_ERR_SUCCESS && reader->lines_per_chunk < 1)
       result = EXR_ERR_INVALID_ATTR;
     if (result == EXR_ERR_SUCCESS)
-      reader->n_chunks = (size_t)((height - 1) / reader->lines_per_chunk + 1);
+      reader->n_chunks = (size_t)((height - 1) / reader->lines_per_chunk) + 1;
   } else if (result == EXR_ERR_SUCCESS) {
     result = exr_get_tile_sizes(reader->file, 0, 0, 0, &reader->tile_width, &reader->tile_height);
     if (result == EXR_ERR_SUCCESS && (reader->tile_width < 1 || reader->tile_height < 1))

@@ -20,7 +20,7 @@ static const char *ending_of(const char *path) {
 /* Compares ASCII letters without case; the C library's way depends on the locale. */
 static int is_ending(const char *ending, const char *lower_case) {
   for (; *ending && *lower_case; ending++, lower_case++) {
-    char c = *ending >= 'A' && *ending <= 'Z' ? (char)(*ending - 'A' + 'a') : *ending;
+    int c = *ending >= 'A' && *ending <= 'Z' ? *ending - 'A' + 'a' : *ending;
     if (c != *lower_case)
       return 0;
   }

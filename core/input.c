@@ -75,7 +75,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
       continue;
     if (n < 0)
       return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %llu)", input->name,
-                        strerror(errno), (unsigned long long)(input->window_offset + input->filled));
+                        strerror(errno), (unsigned long long)input->window_offset + input->filled);
     input->filled += (size_t)n;
     input->is_at_end = n == 0;
   }

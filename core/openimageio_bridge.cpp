@@ -1,4 +1,5 @@
-// The bridge to OpenImageIO, the one C++ file. It moves samples and decides nothing about colour.
+// The bridge to OpenImageIO, the one C++ file and a module of its own. It moves samples and decides nothing about
+// colour.
 #include "core/openimageio_bridge.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -10,6 +11,9 @@
 #include <new>
 #include <string>
 #include <vector>
+
+#include "conic/export.h"
+#include "conic/version.h"
 
 namespace {
 
@@ -68,9 +72,7 @@ OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &
   return spec;
 }
 
-} // namespace
-
-extern "C" conic_bridge_result conic_bridge_find_writer(const char *path, conic_bridge_writer *writer, char *message) {
+conic_bridge_result find_writer(const char *path, conic_bridge_writer *writer, char *message) {
   return guarded(message, [&] {
     auto output = OIIO::ImageOutput::create(path);
     if (!output) {
@@ -87,10 +89,8 @@ extern "C" conic_bridge_result conic_bridge_find_writer(const char *path, conic_
   });
 }
 
-extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_bridge_picture *picture,
-                                                  const void *samples,
-                                                  int (*take)(void *cookie, const void *bytes, size_t n_bytes),
-                                                  void *cookie, char *message) {
+conic_bridge_result write(const char *path, const conic_bridge_picture *picture, const void *samples,
+                          int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie, char *message) {
   return guarded(message, [&] {
     OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(path);
@@ -110,9 +110,9 @@ extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_
   });
 }
 
-extern "C" conic_bridge_result conic_bridge_read(const char *path, conic_bridge_picture *picture,
-                                                 void *(*make_room)(void *cookie, const conic_bridge_picture *picture),
-                                                 void *cookie, char *message) {
+conic_bridge_result read(const char *path, conic_bridge_picture *picture,
+                         void *(*make_room)(void *cookie, const conic_bridge_picture *picture), void *cookie,
+                         char *message) {
   return guarded(message, [&] {
     OIIO::ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1); // straight colour stays straight
@@ -135,4 +135,15 @@ extern "C" conic_bridge_result conic_bridge_read(const char *path, conic_bridge_
     input->close();
     return CONIC_BRIDGE_OK;
   });
+}
+
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+
+} // namespace
+
+extern "C" {
+CONIC_API extern const conic_bridge conic_openimageio_bridge;
+const conic_bridge conic_openimageio_bridge = {
+    TEXT(CONIC_VERSION_MAJOR) "." TEXT(CONIC_VERSION_MINOR) "." TEXT(CONIC_VERSION_PATCH), find_writer, write, read};
 }

@@ -94,7 +94,9 @@ static void space_slots(void *data, size_t begin, size_t end) {
 
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings) {
-  spacing_work work = {neighbourhood, spacings};
+  spacing_work work;
+  work.neighbourhood = neighbourhood;
+  work.spacings = spacings;
   return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
 }
 

@@ -80,6 +80,11 @@ run_wrong 2 '' make sphere -n 10
 run_wrong 2 '' render
 run_wrong 2 '' diff one.pfm
 run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+# What cannot be written is said before anything is read
+run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'needs an ending' render absent.ply -o outputs/a
+run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
+run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
 no_files_but
 
 # Inputs that cannot be used

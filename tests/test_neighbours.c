@@ -64,7 +64,7 @@ static size_t search_all(size_t n, const char *is_first, const double query[3], 
 
 static void check_query(const conic_neighbours *tree, const char *is_first, const double query[3], size_t except,
                         size_t k, double limit2) {
-  size_t expected[MAX_K];
+  size_t expected[MAX_K] = {0};
   uint32_t slots[MAX_K];
   double distances2[MAX_K];
   uint32_t except_slot = except < tree->n_points ? tree->slot_of_point[except] : CONIC_NO_SLOT;
