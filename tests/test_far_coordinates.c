@@ -145,7 +145,7 @@ static void compare(const char *name, const conic_image *a, const conic_image *b
     n_beyond += (size_t)is_beyond;
     n_covered += ((const float *)a->planes[CONIC_PLANE_Z])[i] > 0.0f;
   }
-  if (n_covered < 20000 || n_beyond * 1000 > n_covered) {
+  if (n_covered < 10000 || n_beyond * 1000 > n_covered) {
     fprintf(stderr, "%s: %zu of %zu pixels differ\n", name, n_beyond, n_covered);
     check_failures++;
   }
