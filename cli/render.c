@@ -7,7 +7,7 @@
 
 /* Reads an input, and gives its points axes where it has none. */
 static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
-                               double *estimate_seconds) {
+                               conic_model_kind *kind, double *estimate_seconds) {
   conic_model model;
   conic_read_options read_options;
   conic_estimate_options estimate_options;
@@ -19,6 +19,7 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
   conic_status status = conic_model_read(session->context, path, &read_options, &model);
   if (status != CONIC_OK)
     return status;
+  *kind = model.kind;
   double low[3], high[3], start = cli_seconds();
   if (conic_splats_bounds(&model.points, low, high) == 0) {
     cli_error(CLI_INPUT, "%s: nothing to draw: %s", path,
@@ -39,11 +40,18 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
 
 static conic_status read_inputs(cli_session *session, cli_render_job *job, conic_splats *splats) {
   double start = cli_seconds(), estimate_seconds = 0.0;
+  int n_las = 0;
   memset(splats, 0, sizeof *splats);
   for (int i = 0; i < job->n_inputs; i++) {
-    conic_status status = read_input(session, job, job->inputs[i], splats, &estimate_seconds);
+    conic_model_kind kind;
+    conic_status status = read_input(session, job, job->inputs[i], splats, &kind, &estimate_seconds);
     if (status != CONIC_OK)
       return status;
+    n_las += kind == CONIC_MODEL_LAS;
+  }
+  if (n_las == job->n_inputs && !job->is_up_given) { /* surveys have heights in z */
+    job->framing.up[0] = job->framing.up[1] = 0.0;
+    job->framing.up[2] = 1.0;
   }
   job->read_ms = 1e3 * (cli_seconds() - start - estimate_seconds);
   job->estimate_ms = 1e3 * estimate_seconds;

@@ -156,7 +156,7 @@ static int check(const cli_session *session, const raw_options *raw, cli_render_
   }
   if (job->camera_path && raw->is_size_given)
     return cli_usage("render: --size is the camera file's; give one of both");
-  if (job->camera_path && raw->is_framing_given)
+  if (job->camera_path && (raw->is_framing_given || job->is_up_given))
     return cli_usage("render: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
@@ -207,8 +207,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
        .is_given = &raw.is_framing_given},
-      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up,
-       .is_given = &raw.is_framing_given},
+      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
+       .is_given = &job->is_up_given},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},

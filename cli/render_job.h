@@ -14,6 +14,7 @@ typedef struct cli_render_job {
   int n_outputs;
   const char *camera_path; /* null: framed */
   conic_framing framing;
+  int is_up_given;
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   int repeat;

@@ -224,8 +224,13 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
   conic_status status = choose_planes(context, reader, &planes, &has_alpha);
   if (status != CONIC_OK)
     return status;
-  status = conic_image_allocate(context, reader->window.max.x - reader->window.min.x + 1,
-                                reader->window.max.y - reader->window.min.y + 1, planes, reader->image);
+  int width = reader->window.max.x - reader->window.min.x + 1, height = reader->window.max.y - reader->window.min.y + 1;
+  size_t pixel_bytes = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    pixel_bytes += planes >> i & 1 ? 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
+  status = conic_image_check_size(context, reader->stream.path, width, height, pixel_bytes);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, width, height, planes, reader->image);
   if (status != CONIC_OK)
     return status == CONIC_ERROR_ARGUMENT ? CONIC_ERROR_INPUT : status;
   status = read_chunks(context, reader);

@@ -78,6 +78,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
 
 typedef struct reading {
   conic_context *context;
+  const char *path;
   conic_status status;
   void *samples;
 } reading;
@@ -86,10 +87,15 @@ static void *make_room(void *cookie, const conic_bridge_picture *picture) {
   reading *work = cookie;
   if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
       picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
-    work->status = CONIC_ERROR_INPUT;
+    work->status =
+        conic_fail(work->context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used",
+                   work->path, picture->width, picture->height, picture->n_channels);
     return NULL;
   }
   size_t pixel_bytes = (size_t)picture->n_channels * (size_t)picture->sample_bytes;
+  work->status = conic_image_check_size(work->context, work->path, picture->width, picture->height, pixel_bytes);
+  if (work->status != CONIC_OK)
+    return NULL;
   work->samples = conic_memory_allocate(work->context, (size_t)picture->width * (size_t)picture->height, pixel_bytes);
   if (!work->samples)
     work->status = CONIC_ERROR_MEMORY;
@@ -127,11 +133,8 @@ static conic_status read_samples(conic_context *context, const char *path, conic
   conic_bridge_result result = bridge->read(path, picture, make_room, work, message);
   if (result == CONIC_BRIDGE_OK)
     return CONIC_OK;
-  if (work->status == CONIC_ERROR_INPUT)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used", path,
-                      picture->width, picture->height, picture->n_channels);
-  if (work->status == CONIC_ERROR_MEMORY)
-    return CONIC_ERROR_MEMORY; /* which is logged */
+  if (work->status != CONIC_OK)
+    return work->status; /* which is logged */
   if (result == CONIC_BRIDGE_MEMORY)
     return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
@@ -139,7 +142,7 @@ static conic_status read_samples(conic_context *context, const char *path, conic
 
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
   conic_bridge_picture picture = {0};
-  reading work = {.context = context, .status = CONIC_OK};
+  reading work = {.context = context, .path = path, .status = CONIC_OK};
   conic_status status = read_samples(context, path, &picture, &work);
   if (status == CONIC_OK)
     status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);

@@ -72,6 +72,20 @@ OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &
   return spec;
 }
 
+// All samples at once, but the rows of a TIFF one by one: of several at a time its reader takes those that cannot be
+// decompressed for good.
+bool read_samples(OIIO::ImageInput &input, OIIO::TypeDesc type, void *samples) {
+  const OIIO::ImageSpec spec = input.spec();
+  if (std::strcmp(input.format_name(), "tiff") != 0 || spec.tile_width > 0)
+    return input.read_image(0, 0, 0, spec.nchannels, type, samples);
+  const size_t row_bytes = size_t(spec.width) * size_t(spec.nchannels) * type.size();
+  for (int y = 0; y < spec.height; y++)
+    if (!input.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, 0, 0, spec.nchannels, type,
+                              static_cast<char *>(samples) + size_t(y) * row_bytes))
+      return false;
+  return true;
+}
+
 conic_bridge_result find_writer(const char *path, conic_bridge_writer *writer, char *message) {
   return guarded(message, [&] {
     auto output = OIIO::ImageOutput::create(path);
@@ -130,7 +144,8 @@ conic_bridge_result read(const char *path, conic_bridge_picture *picture,
     void *room = make_room(cookie, picture);
     if (!room)
       return CONIC_BRIDGE_MEMORY;
-    if (!input->read_image(0, 0, 0, spec.nchannels, type_of(picture->sample_bytes), room))
+    // Some readers go on after an error, and have only noted it.
+    if (!read_samples(*input, type_of(picture->sample_bytes), room) || input->has_error())
       return fail(message, input->geterror());
     input->close();
     return CONIC_BRIDGE_OK;

@@ -145,4 +145,18 @@ timeout --preserve-status --signal TERM --kill-after 60 1 "$conic" make sphere -
 [[ $? -eq 4 ]] || fail "a stopped run: exit code"
 no_files_but
 
+# Nor when the signal comes twice at once, as from a terminal or from timeout; a later second one kills
+"$conic" make sphere -n 2G -o outputs/a.ply > out 2> err &
+process=$!
+for ((i = 0; i < 600; i++)); do # until it writes: only then are signals caught
+  [[ -z $(ls -A outputs) ]] || break
+  sleep 0.1
+done
+kill -TERM $process
+sleep 0.01
+kill -TERM $process 2> /dev/null
+wait $process
+[[ $? -eq 4 ]] || fail "a run that is stopped twice: exit code"
+no_files_but
+
 [[ $failures -eq 0 ]]
