@@ -93,6 +93,10 @@ for name in escape.ply escape_word.ply; do
   ! grep -q $'\033' err || fail "$name: an escape sequence in the message"
 done
 
+line_end=$'two\nlines.xyz' # nor does a name make two lines of one
+printf 'nan 0 0\n' > "$line_end"
+run_wrong 3 'two?lines.xyz' '' render "$line_end" -o outputs/a.pfm
+
 # Cut files
 head -c 1500 sound.ply > cut.ply
 wrong_model cut.ply 'too short.*line [0-9].*byte [0-9]'
