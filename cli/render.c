@@ -5,6 +5,27 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
+/* Whether the box can be framed: the camera's numbers then stay well within those that drawing takes. */
+static int is_in_reach(const double low[3], const double high[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(low[axis] > -1e20 && high[axis] < 1e20))
+      return 0;
+  return 1;
+}
+
+static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
+  double low[3], high[3];
+  const char *why = NULL;
+  if (conic_splats_bounds(&model->points, low, high) == 0)
+    why = model->points.count ? "no point is finite" : "it holds no points";
+  else if (!job->camera_path && !is_in_reach(low, high))
+    why = "a point is farther out than 1e20";
+  if (!why)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: cannot be drawn: %s", path, why);
+  return CONIC_ERROR_INPUT;
+}
+
 /* Reads an input, and gives its points axes where it has none. */
 static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
                                conic_model_kind *kind, double *estimate_seconds) {
@@ -20,12 +41,8 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
   if (status != CONIC_OK)
     return status;
   *kind = model.kind;
-  double low[3], high[3], start = cli_seconds();
-  if (conic_splats_bounds(&model.points, low, high) == 0) {
-    cli_error(CLI_INPUT, "%s: nothing to draw: %s", path,
-              model.points.count ? "no point is finite" : "it holds no points");
-    status = CONIC_ERROR_INPUT;
-  }
+  double start = cli_seconds();
+  status = check_extent(job, path, &model);
   if (status == CONIC_OK)
     status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
   if (status == CONIC_OK && splats->count == 0) {

@@ -39,10 +39,14 @@ unsigned long long cli_peak_rss_bytes(void) {
   return kibibytes * 1024;
 }
 
+/* One line, whatever the names in it hold. */
 static void print_message(const char *label, const char *format, va_list arguments) {
-  fprintf(stderr, "conic: %s", label);
-  vfprintf(stderr, format, arguments);
-  fputc('\n', stderr);
+  char message[2048];
+  vsnprintf(message, sizeof message, format, arguments);
+  for (char *c = message; *c; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7F)
+      *c = '?';
+  fprintf(stderr, "conic: %s%s\n", label, message);
 }
 
 int cli_usage(const char *format, ...) {

@@ -93,6 +93,10 @@ for name in escape.ply escape_word.ply; do
   ! grep -q $'\033' err || fail "$name: an escape sequence in the message"
 done
 
+line_end=$'two\nlines.xyz' # nor does a name make two lines of one
+printf 'nan 0 0\n' > "$line_end"
+run_wrong 3 'two?lines.xyz' '' render "$line_end" -o outputs/a.pfm
+
 # Cut files
 head -c 1500 sound.ply > cut.ply
 wrong_model cut.ply 'too short.*line [0-9].*byte [0-9]'
@@ -126,6 +130,11 @@ printf '4000000000\n0 0 0\n' > huge.pts
 wrong_model huge.pts '4000000000.*line 1'
 printf '{"width": 1e300}' > camera.json
 wrong_camera camera.json '(line 1)'
+matrix='"world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,3],[0,0,0,1]]'
+printf '{"width": 9, "height": 9, "fx": 1e13, "fy": 9, "cx": 4, "cy": 4, %s}' "$matrix" > focal.json
+wrong_camera focal.json 'too large (line 1)'
+printf '{"width": 9, "height": 9, "fx": 9, "fy": 9, "cx": 4, "cy": 4,\n%s}' "${matrix/3/1e31}" > far.json
+wrong_camera far.json 'too large (line 2)'
 
 # Nothing to draw
 printf "${header/3/0}end_header\n" > none.ply
@@ -137,6 +146,11 @@ for name in none.ply lost.ply none.pts lost.xyz; do
   wrong_scene $name ''
   run_wrong 3 $name '' prepare $name -o outputs/a.ply --count 2
 done
+
+printf '1e300 0 0\n2e300 0 0\n' > far.xyz
+run_wrong 3 far.xyz 'farther out' render far.xyz -o outputs/a.pfm
+printf '0 0 0\n1e-300 0 0\n1e-300 1e-300 0\n' > near.xyz # a point, as far as floats go
+run 0 render near.xyz -o near.pfm --size 16x16
 
 # What a file claims costs no memory: half a gigabyte of address space is plenty
 limited() {

@@ -125,7 +125,7 @@ static void test_cut(conic_context *context, const seed *from) {
 }
 
 static void test_replaced(conic_context *context, const seed *from) {
-  static const unsigned char values[] = {0, 0xFF, 0x80, '9', '-', ' ', '\n'};
+  static const unsigned char values[] = {0, 1, 7, 0xFF, 0x80, '9', '-', ' ', '\n'};
   unsigned char *bytes = malloc(from->n_bytes);
   if (!bytes)
     exit(1);
