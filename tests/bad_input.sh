@@ -157,7 +157,7 @@ limited() {
   ulimit -v 524288
   exec "$@"
 }
-if (limited "$conic" --version) > /dev/null 2>&1; then
+if { (limited "$conic" --version); } > /dev/null 2>&1; then
   plain_conic=$conic
   conic=limited_conic
   limited_conic() {

@@ -42,6 +42,7 @@ for name in las:6 txt:3 obj:3 ply:100; do
   grep -q "\"points\": ${name#*:}," out || fail "$file: $(grep points out)"
   grep -q '"sound": true' out || fail "$file is not sound"
   "$conic" info - < $file | grep -q "^kind  *$kind$" || fail "$file by way of standard input is not $kind"
+  cat $file | "$conic" info - | grep -q "^points  *${name#*:}$" || fail "$file by way of a pipe"
 done
 
 draw() { # OUTPUT, ARGUMENTS …
