@@ -1,0 +1,107 @@
+/* The planes of a covered pixel, from the fragments that are visible there. */
+#include "raster/oracle_pixel.h"
+
+#include <string.h>
+
+static double difference(const double a[3], const double b[3]) {
+  double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return oracle_length(d);
+}
+
+/* The splat that names the id: the nearest, the first of equals. */
+static size_t find_nearest(const oracle_fragment *f, size_t n) {
+  size_t best = n;
+  for (size_t i = 0; i < n; i++)
+    if (f[i].is_visible && (best == n || f[i].iz > f[best].iz))
+      best = i;
+  return best;
+}
+
+/* The splat that gives Z: the heaviest, the first of equals. */
+static size_t find_heaviest(const oracle_fragment *f, size_t n) {
+  size_t best = n;
+  for (size_t i = 0; i < n; i++)
+    if (f[i].is_visible && (best == n || f[i].weight > f[best].weight))
+      best = i;
+  return best;
+}
+
+/* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. */
+static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, size_t heaviest, int is_exact) {
+  unsigned doubt = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (!f[i].is_visible)
+      continue;
+    double depth_error = f[i].iz_error + f[nearest].iz_error;
+    if (i != nearest && f[i].iz != f[nearest].iz && f[i].iz + depth_error >= f[nearest].iz)
+      doubt |= 1u << CONIC_UNSTABLE_DEPTH_TIE;
+    double weight_error = is_exact ? 0.0 : f[i].weight_error + f[heaviest].weight_error;
+    if (i != heaviest && f[i].weight != f[heaviest].weight && f[i].weight + weight_error >= f[heaviest].weight &&
+        fabs(f[i].z - f[heaviest].z) > 0.5 * ORACLE_Z_BOUND * f[heaviest].z)
+      doubt |= 1u << CONIC_UNSTABLE_WEIGHT_TIE;
+  }
+  return doubt;
+}
+
+/* The rounding of one splat knows nothing of another's: their shares add as independent errors do. */
+static unsigned doubt_precision(const oracle_fragment *f, size_t n, const oracle_pixel *pixel,
+                                const oracle_fragment *heaviest) {
+  double color = 0.0, normal = 0.0, weight = 0.0, shortness = oracle_length(pixel->mean_normal);
+  unsigned doubt = 0;
+  for (size_t i = 0; i < n; i++) {
+    const oracle_splat *splat = f[i].candidate->splat;
+    if (!f[i].is_visible)
+      continue;
+    double share = f[i].weight_error / pixel->weight;
+    double color_step = share * difference(splat->color, pixel->albedo);
+    double normal_step = share * difference(splat->normal, pixel->mean_normal);
+    color += color_step * color_step;
+    normal += normal_step * normal_step;
+    weight += f[i].weight_error * f[i].weight_error;
+    if (splat->is_facing_unsure && 2.0 * f[i].weight > ORACLE_NORMAL_BOUND * shortness * pixel->weight)
+      doubt |= 1u << CONIC_UNSTABLE_FACING;
+  }
+  double brightness = oracle_max(1.0, oracle_length(pixel->albedo));
+  if (!(sqrt(color) < ORACLE_COLOR_BOUND * brightness) || !(sqrt(normal) < ORACLE_NORMAL_BOUND * shortness) ||
+      !(sqrt(weight) < ORACLE_WEIGHT_BOUND * oracle_max(1.0, pixel->weight)) ||
+      !(heaviest->z_error < ORACLE_Z_BOUND * heaviest->z))
+    doubt |= 1u << CONIC_UNSTABLE_PRECISION;
+  return doubt;
+}
+
+static void add(const oracle_fragment *f, oracle_pixel *pixel) {
+  for (int c = 0; c < 3; c++) {
+    pixel->albedo[c] += f->weight * f->candidate->splat->color[c];
+    pixel->mean_normal[c] += f->weight * f->candidate->splat->normal[c];
+  }
+  pixel->weight += f->weight;
+  pixel->count++;
+}
+
+void conic_oracle_blend(const oracle_fragment *f, size_t n, int passes, int is_exact, oracle_pixel *pixel) {
+  size_t nearest = find_nearest(f, n), heaviest = find_heaviest(f, n);
+  memset(pixel, 0, sizeof *pixel);
+  if (passes == 1)
+    add(&f[nearest], pixel);
+  else
+    for (size_t i = 0; i < n; i++)
+      if (f[i].is_visible)
+        add(&f[i], pixel);
+  for (int c = 0; c < 3; c++) {
+    pixel->albedo[c] /= pixel->weight;
+    pixel->mean_normal[c] /= pixel->weight;
+  }
+  double length = oracle_length(pixel->mean_normal);
+  const double *spare = f[passes == 1 ? nearest : heaviest].candidate->splat->normal;
+  for (int c = 0; c < 3; c++)
+    pixel->normal[c] = length > 0.0 ? pixel->mean_normal[c] / length : spare[c];
+  pixel->z = f[heaviest].z;
+  pixel->id = f[nearest].candidate->splat->index;
+  pixel->doubt = doubt_ties(f, n, nearest, heaviest, is_exact);
+  if (!is_exact) {
+    if (passes == 1)
+      pixel->doubt |= doubt_precision(&f[nearest], 1, pixel, &f[heaviest]);
+    else
+      pixel->doubt |= doubt_precision(f, n, pixel, &f[heaviest]);
+  }
+}
