@@ -170,7 +170,7 @@ static void store(const job *j, size_t at, const oracle_pixel *pixel, const doub
 }
 
 static void do_pixel(const job *j, worker *w, int column, int row, size_t n_candidates) {
-  static const oracle_pixel nothing = {.id = CONIC_NO_ID};
+  static const oracle_pixel nothing = {.id = CONIC_NO_ID, .tied_id = CONIC_NO_ID};
   double x = column + 0.5, y = row + 0.5, rgba[4];
   size_t n = 0, at = (size_t)row * (size_t)j->reference->width + (size_t)column;
   int is_covered = 0;
@@ -192,6 +192,7 @@ static void do_pixel(const job *j, worker *w, int column, int row, size_t n_cand
   doubt |= pixel.doubt;
   store(j, at, &pixel, rgba);
   j->reference->unstable[at] = (uint8_t)doubt;
+  j->reference->tied_id[at] = pixel.tied_id;
   w->covered += (size_t)is_covered;
   w->unstable += doubt != 0;
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
@@ -274,7 +275,8 @@ static conic_status allocate(conic_context *context, conic_reference *r) {
       return CONIC_ERROR_MEMORY;
   }
   r->unstable = conic_memory_allocate_zeroed(context, n, sizeof *r->unstable);
-  return r->unstable ? CONIC_OK : CONIC_ERROR_MEMORY;
+  r->tied_id = conic_memory_allocate_zeroed(context, n, sizeof *r->tied_id);
+  return r->unstable && r->tied_id ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static conic_status check(conic_context *context, const conic_splats *splats, const conic_camera *camera,
@@ -318,5 +320,6 @@ void conic_reference_release(conic_context *context, conic_reference *reference)
   for (int i = 0; i < CONIC_N_PLANES; i++)
     conic_memory_release(context, reference->planes[i]);
   conic_memory_release(context, reference->unstable);
+  conic_memory_release(context, reference->tied_id);
   memset(reference, 0, sizeof *reference);
 }

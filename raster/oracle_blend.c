@@ -26,17 +26,29 @@ static size_t find_heaviest(const oracle_fragment *f, size_t n) {
   return best;
 }
 
-/* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. */
-static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, size_t heaviest, int is_exact) {
+/* The errors of two splats are independent. */
+static double together(double a, double b) {
+  return sqrt(a * a + b * b);
+}
+
+/* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. A single
+ * rival for the id changes nothing else, so that it is noted and both are accepted. */
+static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, size_t heaviest, int passes,
+                           int is_exact, oracle_pixel *pixel) {
   unsigned doubt = 0;
+  pixel->tied_id = CONIC_NO_ID;
   for (size_t i = 0; i < n; i++) {
     if (!f[i].is_visible)
       continue;
-    double depth_error = f[i].iz_error + f[nearest].iz_error;
-    if (i != nearest && f[i].iz != f[nearest].iz && f[i].iz + depth_error >= f[nearest].iz)
-      doubt |= 1u << CONIC_UNSTABLE_DEPTH_TIE;
-    double weight_error = is_exact ? 0.0 : f[i].weight_error + f[heaviest].weight_error;
-    if (i != heaviest && f[i].weight != f[heaviest].weight && f[i].weight + weight_error >= f[heaviest].weight &&
+    double depth_error = together(f[i].iz_error, f[nearest].iz_error);
+    if (i != nearest && f[i].iz != f[nearest].iz && f[i].iz + depth_error >= f[nearest].iz) {
+      if (passes == 1 || pixel->tied_id != CONIC_NO_ID)
+        doubt |= 1u << CONIC_UNSTABLE_DEPTH_TIE;
+      pixel->tied_id = f[i].candidate->splat->index;
+    }
+    double weight_error = is_exact ? 0.0 : together(f[i].weight_error, f[heaviest].weight_error);
+    if (passes != 1 && i != heaviest && f[i].weight != f[heaviest].weight &&
+        f[i].weight + weight_error >= f[heaviest].weight &&
         fabs(f[i].z - f[heaviest].z) > 0.5 * ORACLE_Z_BOUND * f[heaviest].z)
       doubt |= 1u << CONIC_UNSTABLE_WEIGHT_TIE;
   }
@@ -79,7 +91,8 @@ static void add(const oracle_fragment *f, oracle_pixel *pixel) {
 }
 
 void conic_oracle_blend(const oracle_fragment *f, size_t n, int passes, int is_exact, oracle_pixel *pixel) {
-  size_t nearest = find_nearest(f, n), heaviest = find_heaviest(f, n);
+  /* Of one pass, the nearest is all there is. */
+  size_t nearest = find_nearest(f, n), heaviest = passes == 1 ? nearest : find_heaviest(f, n);
   memset(pixel, 0, sizeof *pixel);
   if (passes == 1)
     add(&f[nearest], pixel);
@@ -92,12 +105,12 @@ void conic_oracle_blend(const oracle_fragment *f, size_t n, int passes, int is_e
     pixel->mean_normal[c] /= pixel->weight;
   }
   double length = oracle_length(pixel->mean_normal);
-  const double *spare = f[passes == 1 ? nearest : heaviest].candidate->splat->normal;
+  const double *spare = f[heaviest].candidate->splat->normal;
   for (int c = 0; c < 3; c++)
     pixel->normal[c] = length > 0.0 ? pixel->mean_normal[c] / length : spare[c];
   pixel->z = f[heaviest].z;
   pixel->id = f[nearest].candidate->splat->index;
-  pixel->doubt = doubt_ties(f, n, nearest, heaviest, is_exact);
+  pixel->doubt = doubt_ties(f, n, nearest, heaviest, passes, is_exact, pixel);
   if (!is_exact) {
     if (passes == 1)
       pixel->doubt |= doubt_precision(&f[nearest], 1, pixel, &f[heaviest]);

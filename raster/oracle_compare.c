@@ -47,7 +47,7 @@ static double difference(const conic_reference *reference, const conic_image *im
     double expected = reference->planes[plane][at], found = sample(image, plane, about->is_uint, at);
     int is_alpha = plane == CONIC_PLANE_RGBA && c == 3;
     double scaled = fabs(found - expected) / (is_alpha ? 1.0 : scale_of(reference, plane, expected));
-    if (found == expected)
+    if (found == expected || (plane == CONIC_PLANE_ID && found == (double)reference->tied_id[i]))
       scaled = 0.0;
     if (!(scaled <= largest))
       largest = scaled == scaled ? scaled : INFINITY;

@@ -87,7 +87,7 @@ void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, d
 /* V is held to a few roundings of its own entries, and so are the pixel's offset and what is summed from them. */
 static void round_ellipse(const oracle_shape *shape, const double offset[2], const double values[ORACLE_N_VALUES],
                           double errors[ORACLE_N_VALUES]) {
-  const double unit = 4.0 * ORACLE_UNIT;
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   double pull[2];
   oracle_apply(shape->inverse, offset, pull);
   double spread = fabs(pull[0]) * sqrt(shape->variance.xx) + fabs(pull[1]) * sqrt(shape->variance.yy);
@@ -101,7 +101,7 @@ static void round_ellipse(const oracle_shape *shape, const double offset[2], con
 /* U, V and iz are sums over the offset from the splat's place, each rounded; J and S follow from them. */
 static void round_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
                       const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
-  const double unit = 4.0 * ORACLE_UNIT;
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   const double(*rows)[3] = shape->from_screen;
   ray_parameters at = find_parameters(view, shape, x, y);
   double reach_x = fabs(x - 0.5 * (shape->box[0][0] + shape->box[1][0])),

@@ -5,7 +5,9 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
   candidate->splat = splat;
   candidate->is_drawn =
       splat->formula != ORACLE_NOT_DRAWN && conic_oracle_shape(view, &splat->placed, splat->formula, &candidate->shape);
-  for (int i = 0; i < ORACLE_N_INPUTS; i++) {
+  /* The set-up of rays and segments is in double precision: nothing disturbs it. */
+  candidate->n_disturbed = splat->formula == ORACLE_CONIC || splat->formula == ORACLE_AFFINE ? ORACLE_N_INPUTS : 0;
+  for (int i = 0; i < candidate->n_disturbed; i++) {
     oracle_placed moved = conic_oracle_disturb(&splat->placed, i);
     candidate->is_disturbed[i] =
         candidate->is_drawn && conic_oracle_shape(view, &moved, splat->formula, &candidate->disturbed[i]);
@@ -19,7 +21,7 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
 static void find_errors(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
                         const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   conic_oracle_rounding(view, &candidate->shape, x, y, values, errors);
-  for (int i = 0; i < ORACLE_N_INPUTS; i++) {
+  for (int i = 0; i < candidate->n_disturbed; i++) {
     double disturbed[ORACLE_N_VALUES];
     if (candidate->is_disturbed[i])
       conic_oracle_evaluate(view, &candidate->disturbed[i], x, y, disturbed);
@@ -50,7 +52,7 @@ static oracle_interval around(double value, double error) {
 /* The greater of both depths is what a splat is seen by, the lesser, moved back, what it hides by. */
 static void set_depths(const oracle_splat *splat, const oracle_shape *shape, const double values[ORACLE_N_VALUES],
                        const double errors[ORACLE_N_VALUES], oracle_fragment *fragment) {
-  const double slack = 4.0 * ORACLE_UNIT, behind = splat->behind;
+  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, behind = splat->behind;
   oracle_interval iz = around(values[ORACLE_IZ], errors[ORACLE_IZ]);
   oracle_interval plane = around(values[ORACLE_IZ_PLANE], errors[ORACLE_IZ_PLANE]);
   iz.low = oracle_max(iz.low, shape->range[0] * (1.0 - slack));

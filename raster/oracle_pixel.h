@@ -15,7 +15,7 @@
 typedef struct oracle_candidate {
   const oracle_splat *splat;
   oracle_shape shape, disturbed[ORACLE_N_INPUTS], others[ORACLE_MAX_OTHERS];
-  int is_drawn, is_disturbed[ORACLE_N_INPUTS], is_other[ORACLE_MAX_OTHERS];
+  int is_drawn, n_disturbed, is_disturbed[ORACLE_N_INPUTS], is_other[ORACLE_MAX_OTHERS];
 } oracle_candidate;
 
 void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, oracle_candidate *candidate);
@@ -47,7 +47,7 @@ unsigned conic_oracle_see(oracle_fragment *fragments, size_t n);
 typedef struct oracle_pixel {
   double albedo[3], normal[3], mean_normal[3], z, weight;
   size_t count;
-  uint32_t id;
+  uint32_t id, tied_id; /* tied: CONIC_NO_ID, or as near but for rounding */
   unsigned doubt;
 } oracle_pixel;
 

@@ -3,15 +3,14 @@
 #include "core/memory.h"
 #include "core/message.h"
 
-/* A coordinate of the centre is rounded by itself, an axis may have been turned in single precision. */
+/* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
+ * rounding of the whole. */
 oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i) {
   oracle_placed disturbed = *placed;
   if (i < 3)
-    disturbed.p[i] += ORACLE_UNIT * disturbed.p[i];
-  else if (i < 6)
-    disturbed.tu[i - 3] += ORACLE_UNIT * oracle_length(placed->tu);
+    disturbed.tu[i] += ORACLE_UNIT * oracle_length(placed->tu);
   else
-    disturbed.tv[i - 6] += ORACLE_UNIT * oracle_length(placed->tv);
+    disturbed.tv[i - 3] += ORACLE_UNIT * oracle_length(placed->tv);
   return disturbed;
 }
 
@@ -40,7 +39,7 @@ static int read_splat(const conic_splats *splats, size_t i, oracle_placed *world
   return oracle_is_finite(sum);
 }
 
-/* 1e-4 × the diagonal of the box of the finite centres. */
+/* 1e-4 × the diagonal of the box of the finite centres, as if that were 1 where it is 0. */
 static double default_near(const conic_splats *splats) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent[3];
   for (size_t i = 0; i < splats->count; i++) {
@@ -54,8 +53,9 @@ static double default_near(const conic_splats *splats) {
     }
   }
   for (int c = 0; c < 3; c++)
-    extent[c] = high[c] - low[c];
-  return low[0] <= high[0] ? 1e-4 * oracle_length(extent) : 0.0;
+    extent[c] = low[0] <= high[0] ? high[c] - low[c] : 0.0;
+  double diagonal = oracle_length(extent);
+  return 1e-4 * (diagonal > 0.0 ? diagonal : 1.0);
 }
 
 static double longer_axis(const oracle_placed *placed) {
@@ -85,7 +85,7 @@ static conic_status median_length(conic_context *context, const conic_splats *sp
 /* How far off an answer may be in single precision: what the rounded inputs make of it, and its own roundings. */
 static void answer_errors(const oracle_view *view, const oracle_placed *placed,
                           const double answers[ORACLE_N_QUESTIONS], double errors[ORACLE_N_QUESTIONS]) {
-  const double unit = 4.0 * ORACLE_UNIT;
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   double reach = view->cutoff * (fabs(placed->tu[2]) + fabs(placed->tv[2]));
   for (int i = 0; i < ORACLE_N_QUESTIONS; i++)
     errors[i] = 0.0;

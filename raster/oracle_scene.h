@@ -8,7 +8,7 @@
 #include "conic/oracle.h"
 #include "raster/oracle_splat.h"
 
-enum { ORACLE_N_INPUTS = 9, ORACLE_MAX_OTHERS = 3 };
+enum { ORACLE_N_INPUTS = 6, ORACLE_MAX_OTHERS = 3 };
 
 typedef struct oracle_splat {
   oracle_placed placed;
@@ -32,7 +32,8 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
                                        const conic_render_options *options, oracle_scene *scene);
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene);
 
-/* The splat with its i-th input, of ORACLE_N_INPUTS, rounded to single precision the worst way. */
+/* The splat with one of its inputs as far off as single precision may put it: the components of the axes, that is. The
+ * centre is projected in double precision (docs/picture.md, Numbers). */
 oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i);
 
 #endif

@@ -31,9 +31,9 @@ void conic_oracle_shade(const conic_camera *camera, const conic_render_options *
   if (options->shading != CONIC_SHADE_NONE)
     diffuse = 0.05 + 0.75 * oracle_max(oracle_dot(m, l), 0.0);
   if (options->shading == CONIC_SHADE_PHONG) {
-    double along = 2.0 * oracle_dot(n, l);
+    double along = 2.0 * oracle_max(oracle_dot(n, l), 0.0);
     double mirrored[3] = {along * n[0] - l[0], along * n[1] - l[1], along * n[2] - l[2]};
-    double cosine = oracle_max(oracle_dot(mirrored, v), 0.0);
+    double cosine = along > 0.0 ? oracle_max(oracle_dot(mirrored, v), 0.0) : 0.0;
     highlight = 0.15 * oracle_dot(m, m);
     for (int i = 0; i < 32; i++)
       highlight *= cosine;

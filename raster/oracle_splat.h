@@ -9,6 +9,9 @@
 
 /* The rounding unit of single precision: a rounding is off by at most this, relatively. */
 #define ORACLE_UNIT 0x1p-24
+/* What a value that some seven independent roundings went into may be off by, in units. One rounding's standard
+ * deviation is 0.4 units on average over all numbers, so these are 4.7 standard deviations. */
+#define ORACLE_ROUNDINGS 5.0
 
 /* What all splats share. */
 typedef struct oracle_view {

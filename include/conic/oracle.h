@@ -35,7 +35,7 @@ typedef enum conic_unstable_reason {
   CONIC_UNSTABLE_FORMULA = 3,    /* which formula draws a splat, or whether it is drawn at all */
   CONIC_UNSTABLE_FACING = 4,     /* to which side a splat's normal points */
   CONIC_UNSTABLE_WEIGHT_TIE = 5, /* which splat is the heaviest, where that changes Z */
-  CONIC_UNSTABLE_DEPTH_TIE = 6,  /* which splat is the nearest, and names the id */
+  CONIC_UNSTABLE_DEPTH_TIE = 6,  /* which splat is the nearest, among three or where that changes more than the id */
   CONIC_UNSTABLE_PRECISION = 7   /* no decision, but single precision cannot hold the value to the bound */
 } conic_unstable_reason;
 
@@ -58,6 +58,7 @@ typedef struct conic_reference {
   conic_oracle_question question;
   double *planes[CONIC_N_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
   uint8_t *unstable;              /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
+  uint32_t *tied_id;              /* CONIC_NO_ID, or the one other splat that is as near but for rounding */
   double white;                   /* 2^exposure, by which rgba is multiplied */
   size_t covered_pixels, unstable_pixels;
   size_t unstable_by_reason[CONIC_N_UNSTABLE_REASONS];
