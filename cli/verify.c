@@ -87,6 +87,7 @@ static void report_pixels(cli_json *json, const verify_job *job) {
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
+  cli_json_count(json, "undecided_ids", job->reference.undecided_ids);
   cli_json_number(json, "unstable_limit", verdict->unstable_limit);
   cli_json_object(json, "unstable_by_reason");
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)

@@ -27,7 +27,7 @@ typedef struct worker {
   size_t room;
   histogram absolute, of_peak;
   double quadrature;
-  size_t n_weights, covered, unstable, by_reason[CONIC_N_UNSTABLE_REASONS];
+  size_t n_weights, covered, unstable, undecided_ids, by_reason[CONIC_N_UNSTABLE_REASONS];
 } worker;
 
 typedef struct job {
@@ -195,6 +195,7 @@ static void do_pixel(const job *j, worker *w, int column, int row, size_t n_cand
   j->reference->tied_id[at] = pixel.tied_id;
   w->covered += (size_t)is_covered;
   w->unstable += doubt != 0;
+  w->undecided_ids += pixel.tied_id == CONIC_ANY_ID;
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
     w->by_reason[i] += doubt >> i & 1;
 }
@@ -230,6 +231,7 @@ static void gather(job *j, int n_threads) {
     const worker *w = &j->workers[t];
     r->covered_pixels += w->covered;
     r->unstable_pixels += w->unstable;
+    r->undecided_ids += w->undecided_ids;
     for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
       r->unstable_by_reason[i] += w->by_reason[i];
     r->weight_error.n_weights += w->n_weights;

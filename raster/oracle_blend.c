@@ -31,8 +31,18 @@ static double together(double a, double b) {
   return sqrt(a * a + b * b);
 }
 
-/* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. A single
- * rival for the id changes nothing else, so that it is noted and both are accepted. */
+/* Copies of a splat are equal however they are computed; so are the depths of discs across the line of sight. */
+static int are_copies(const oracle_fragment *a, const oracle_fragment *b) {
+  const oracle_splat *first = a->candidate->splat, *second = b->candidate->splat;
+  return memcmp(&first->placed, &second->placed, sizeof first->placed) == 0 && first->opacity == second->opacity;
+}
+static int are_level(const oracle_fragment *a, const oracle_fragment *b) {
+  const double *first = a->candidate->shape.range, *second = b->candidate->shape.range;
+  return first[0] == first[1] && second[0] == second[1] && first[0] == second[0];
+}
+
+/* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. A rival
+ * for the id changes nothing else, unless there is one pass only: it is noted and accepted. */
 static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, size_t heaviest, int passes,
                            int is_exact, oracle_pixel *pixel) {
   unsigned doubt = 0;
@@ -41,13 +51,13 @@ static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, s
     if (!f[i].is_visible)
       continue;
     double depth_error = together(f[i].iz_error, f[nearest].iz_error);
-    if (i != nearest && f[i].iz != f[nearest].iz && f[i].iz + depth_error >= f[nearest].iz) {
-      if (passes == 1 || pixel->tied_id != CONIC_NO_ID)
-        doubt |= 1u << CONIC_UNSTABLE_DEPTH_TIE;
-      pixel->tied_id = f[i].candidate->splat->index;
+    if (i != nearest && !are_copies(&f[i], &f[nearest]) && !are_level(&f[i], &f[nearest]) &&
+        f[i].iz + depth_error >= f[nearest].iz) {
+      doubt |= passes == 1 ? 1u << CONIC_UNSTABLE_DEPTH_TIE : 0u;
+      pixel->tied_id = pixel->tied_id == CONIC_NO_ID ? f[i].candidate->splat->index : CONIC_ANY_ID;
     }
     double weight_error = is_exact ? 0.0 : together(f[i].weight_error, f[heaviest].weight_error);
-    if (passes != 1 && i != heaviest && f[i].weight != f[heaviest].weight &&
+    if (passes != 1 && i != heaviest && !are_copies(&f[i], &f[heaviest]) &&
         f[i].weight + weight_error >= f[heaviest].weight &&
         fabs(f[i].z - f[heaviest].z) > 0.5 * ORACLE_Z_BOUND * f[heaviest].z)
       doubt |= 1u << CONIC_UNSTABLE_WEIGHT_TIE;

@@ -38,6 +38,11 @@ static double scale_of(const conic_reference *reference, conic_plane plane, doub
   }
 }
 
+static int is_rival(const conic_reference *reference, conic_plane plane, size_t i, double found) {
+  uint32_t tied = reference->tied_id[i];
+  return plane == CONIC_PLANE_ID && (tied == CONIC_ANY_ID || (tied != CONIC_NO_ID && found == (double)tied));
+}
+
 /* The largest difference of the pixel's channels. */
 static double difference(const conic_reference *reference, const conic_image *image, conic_plane plane, size_t i) {
   const conic_plane_description *about = conic_plane_describe(plane);
@@ -47,7 +52,7 @@ static double difference(const conic_reference *reference, const conic_image *im
     double expected = reference->planes[plane][at], found = sample(image, plane, about->is_uint, at);
     int is_alpha = plane == CONIC_PLANE_RGBA && c == 3;
     double scaled = fabs(found - expected) / (is_alpha ? 1.0 : scale_of(reference, plane, expected));
-    if (found == expected || (plane == CONIC_PLANE_ID && found == (double)reference->tied_id[i]))
+    if (found == expected || is_rival(reference, plane, i, found))
       scaled = 0.0;
     if (!(scaled <= largest))
       largest = scaled == scaled ? scaled : INFINITY;

@@ -56,8 +56,9 @@ static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, dou
   double q = oracle_form(oracle_inverse(at.spread), at.u), widened = gradient_length(shape) * view->reach_px;
   values[ORACLE_MARGIN_Q] = view->support - q;
   values[ORACLE_MARGIN_FRONT] = at.iz;
-  values[ORACLE_MARGIN_FAR] = at.iz - (shape->range[0] - widened);
-  values[ORACLE_MARGIN_NEAR] = oracle_min(1.0 / view->near_z, shape->range[1] + widened) - at.iz;
+  values[ORACLE_MARGIN_FAR] = at.iz - (shape->range[0] - widened - ORACLE_RANGE_SLACK * shape->range[0]);
+  values[ORACLE_MARGIN_NEAR] =
+      oracle_min(1.0 / view->near_z, shape->range[1] + widened) + ORACLE_RANGE_SLACK * shape->range[1] - at.iz;
   values[ORACLE_MARGIN_LEFT] = x - shape->box[0][0];
   values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
   values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
@@ -98,14 +99,22 @@ static void round_ellipse(const oracle_shape *shape, const double offset[2], con
   errors[ORACLE_WEIGHT] = values[ORACLE_WEIGHT] * unit;
 }
 
+/* The middle of what of the box is on the screen. */
+static double middle(const oracle_shape *shape, int axis, int size_px) {
+  double low = oracle_min(oracle_max(shape->box[0][axis], 0.0), (double)size_px);
+  double high = oracle_min(oracle_max(shape->box[1][axis], 0.0), (double)size_px);
+  return 0.5 * (low + high);
+}
+
 /* U, V and iz are sums over the offset from the splat's place, each rounded; J and S follow from them. */
 static void round_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
                       const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   const double(*rows)[3] = shape->from_screen;
   ray_parameters at = find_parameters(view, shape, x, y);
-  double reach_x = fabs(x - 0.5 * (shape->box[0][0] + shape->box[1][0])),
-         reach_y = fabs(y - 0.5 * (shape->box[0][1] + shape->box[1][1])), sums[3], pull[2], error = 0.0;
+  double reach_x = fabs(x - middle(shape, 0, view->camera.width));
+  double reach_y = fabs(y - middle(shape, 1, view->camera.height));
+  double sums[3], pull[2], error = 0.0;
   for (int i = 0; i < 3; i++)
     sums[i] = fabs(rows[0][i]) * reach_x + fabs(rows[1][i]) * reach_y + (i < 2 ? fabs(at.u[i] * at.iz) : fabs(at.iz));
   oracle_apply(oracle_inverse(at.spread), at.u, pull);

@@ -78,7 +78,11 @@ typedef struct oracle_shape {
 int conic_oracle_shape(const oracle_view *view, const oracle_placed *placed, oracle_formula formula,
                        oracle_shape *shape);
 
-/* What a shape is at a pixel. A pixel is covered where all of the margins are positive. */
+/* By how much of itself the ray formula's range of inverse depth is widened: docs/picture.md, Ray. */
+#define ORACLE_RANGE_SLACK 0x1p-20
+
+/* What a shape is at a pixel. A pixel is covered where none of the margins is negative, and those of q and in front of
+ * the eye are positive. */
 enum {
   ORACLE_MARGIN_Q,
   ORACLE_MARGIN_FRONT,
@@ -104,9 +108,9 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
 
 static inline int conic_oracle_covers(const double values[ORACLE_N_VALUES]) {
   for (int i = 0; i < ORACLE_N_MARGINS; i++)
-    if (!(values[i] > 0.0))
+    if (!(values[i] >= 0.0))
       return 0;
-  return 1;
+  return values[ORACLE_MARGIN_Q] > 0.0 && values[ORACLE_MARGIN_FRONT] > 0.0;
 }
 
 /* The kernel at the squared distance q, wherever it is not cut off; and without its cutoff. */

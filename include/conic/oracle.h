@@ -35,7 +35,7 @@ typedef enum conic_unstable_reason {
   CONIC_UNSTABLE_FORMULA = 3,    /* which formula draws a splat, or whether it is drawn at all */
   CONIC_UNSTABLE_FACING = 4,     /* to which side a splat's normal points */
   CONIC_UNSTABLE_WEIGHT_TIE = 5, /* which splat is the heaviest, where that changes Z */
-  CONIC_UNSTABLE_DEPTH_TIE = 6,  /* which splat is the nearest, among three or where that changes more than the id */
+  CONIC_UNSTABLE_DEPTH_TIE = 6,  /* which splat is the nearest, where passes = 1 makes the pixel of it */
   CONIC_UNSTABLE_PRECISION = 7   /* no decision, but single precision cannot hold the value to the bound */
 } conic_unstable_reason;
 
@@ -53,14 +53,18 @@ typedef struct conic_weight_error {
   size_t n_weights;
 } conic_weight_error;
 
+#define CONIC_ANY_ID 0xFFFFFFFEu
+
 typedef struct conic_reference {
   int width, height;
   conic_oracle_question question;
   double *planes[CONIC_N_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
   uint8_t *unstable;              /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
-  uint32_t *tied_id;              /* CONIC_NO_ID, or the one other splat that is as near but for rounding */
+  uint32_t *tied_id;              /* CONIC_NO_ID; or the splat that is as near as the id's but for rounding, which is
+                                     as good an id; or CONIC_ANY_ID where there are several */
   double white;                   /* 2^exposure, by which rgba is multiplied */
   size_t covered_pixels, unstable_pixels;
+  size_t undecided_ids; /* pixels with CONIC_ANY_ID: their ids are not compared */
   size_t unstable_by_reason[CONIC_N_UNSTABLE_REASONS];
   conic_weight_error weight_error; /* for the exact question; else zero */
 } conic_reference;
