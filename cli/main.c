@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/suggest.h"
 
-static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_render, &cli_diff, &cli_info};
+static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_render, &cli_diff, &cli_info, &cli_verify};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 

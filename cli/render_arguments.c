@@ -141,10 +141,29 @@ static int parse_planes(const char *text, void *value) {
   return *planes != 0;
 }
 
-/* What the options mean together. */
-static int check(const cli_session *session, const raw_options *raw, cli_render_job *job) {
+/* What the options of the scene and the drawing mean together. */
+static int check_scene(const cli_session *session, const raw_options *raw, const cli_render_job *job) {
+  const char *command = session->command;
   if (job->n_inputs == 0)
-    return cli_usage("render: no input; conic render IN… -o OUT");
+    return cli_usage("%s: no input; see conic help %s", command, command);
+  if (job->camera_path && raw->is_size_given)
+    return cli_usage("%s: --size is the camera file's; give one of both", command);
+  if (job->camera_path && (raw->is_framing_given || job->is_up_given))
+    return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
+                     command);
+  if (raw->passes != 1 && raw->passes != 3)
+    return cli_usage("%s: --passes takes 3 or 1", command);
+  if (job->options.tile % 4)
+    return cli_usage("%s: --tile takes a multiple of 4", command);
+  if (strncmp(raw->device, "opencl", 6) == 0)
+    return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
+  if (strcmp(raw->device, "cpu") != 0)
+    return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", command, raw->device);
+  return CLI_DONE;
+}
+
+/* What render's own options mean. */
+static int check_outputs(const cli_session *session, const cli_render_job *job) {
   if (job->n_outputs == 0)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs; i++) { /* now, and not after the work */
@@ -154,27 +173,14 @@ static int check(const cli_session *session, const raw_options *raw, cli_render_
     if (!dot || !dot[1])
       return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
   }
-  if (job->camera_path && raw->is_size_given)
-    return cli_usage("render: --size is the camera file's; give one of both");
-  if (job->camera_path && (raw->is_framing_given || job->is_up_given))
-    return cli_usage("render: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  if (raw->passes != 1 && raw->passes != 3)
-    return cli_usage("render: --passes takes 3 or 1");
-  if (job->options.tile % 4)
-    return cli_usage("render: --tile takes a multiple of 4");
-  if (strncmp(raw->device, "opencl", 6) == 0)
-    return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
-  if (strcmp(raw->device, "cpu") != 0)
-    return cli_usage("render: --device takes cpu or opencl[:P.D], not %s", raw->device);
   return cli_check_outputs(session, job->outputs, job->n_outputs);
 }
 
-static void set_defaults(cli_render_job *job, raw_options *raw) {
+void cli_scene_defaults(cli_render_job *job) {
   conic_estimate_options estimate;
   memset(job, 0, sizeof *job);
-  memset(raw, 0, sizeof *raw);
   conic_estimate_options_init(&estimate);
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
@@ -182,21 +188,34 @@ static void set_defaults(cli_render_job *job, raw_options *raw) {
   job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
-  raw->device = "cpu";
-  raw->passes = 3;
-  raw->cutoff = (double)job->options.kernel.cutoff;
-  raw->prefilter = (double)job->options.prefilter;
 }
 
-int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
-  raw_options raw;
-  set_defaults(job, &raw);
+/* The command's own options, then those of the scene. */
+static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
+                     int argc, char **argv, cli_render_job *job) {
+  cli_option *table = calloc((size_t)(n_own + n_scene), sizeof *table);
+  job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
+  int answer = CLI_RESOURCE;
+  if (table && job->inputs) {
+    memcpy(table, own, (size_t)n_own * sizeof *table);
+    memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
+    answer = cli_parse(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs);
+  } else
+    cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  free(table);
+  return answer;
+}
+
+int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
+                    cli_render_job *job) {
+  raw_options raw = {.device = "cpu",
+                     .passes = 3,
+                     .cutoff = (double)job->options.kernel.cutoff,
+                     .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading;
   const cli_option table[] = {
-      {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
-       .parse = parse_output},
       {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
@@ -209,7 +228,6 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .is_given = &raw.is_framing_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
-      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
@@ -232,17 +250,12 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
        .parse = parse_planes},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
-      {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_words},
   };
-  job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
-  if (!job->inputs)
-    return cli_error(CLI_RESOURCE, "render: out of memory");
-  int answer =
-      cli_parse(session, table, (int)(sizeof table / sizeof table[0]), argc, argv, job->inputs, &job->n_inputs);
+  int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
   o->method = (conic_method)method;
@@ -255,5 +268,17 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     view->width = raw.size[0];
     view->height = raw.size[1];
   }
-  return check(session, &raw, job);
+  return check_scene(session, &raw, job);
+}
+
+int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
+  cli_scene_defaults(job);
+  const cli_option own[] = {
+      {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
+       .parse = parse_output},
+      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
+  };
+  int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  return answer == CLI_DONE ? check_outputs(session, job) : answer;
 }

@@ -32,6 +32,20 @@ typedef struct cli_render_job {
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job);
 
+/* The same for another command that takes render's camera and drawing options beside `own` ones, and has neither
+ * outputs nor several frames. */
+int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv, cli_render_job *job);
+/* What job's options are before any is parsed; cli_scene_parse leaves alone what is no option of its own. */
+void cli_scene_defaults(cli_render_job *job);
+
+/* Reads the inputs into one set of splats, which the caller releases, also after a failure. */
+conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);
+/* Fills in what every frame would find anew: the near distance and the scale of ε. */
+conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats);
+/* The camera of a frame. */
+conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, const conic_splats *splats, int i_frame,
+                              conic_camera *camera);
+
 /* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
  * Returns the exit code. */
 int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);

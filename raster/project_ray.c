@@ -89,10 +89,12 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
   footprint->plane_dx = footprint->iz_dx;
   footprint->plane_dy = footprint->iz_dy;
 
+  /* A hair more than the range: across the line of sight it is narrower than a rounding of iz. */
+  const double hair = 0x1p-20;
   double widening = gradient_length(view, disc) / fabs(disc->determinant) * (double)view->growth_px;
-  double high = (double)footprint->iz_near + widening, low = (double)footprint->iz_far - widening;
-  double highest = 1.0 / view->near_z;
-  ray->iz_high = (float)(high < highest ? high : highest);
+  double high = (double)footprint->iz_near + widening, highest = 1.0 / view->near_z;
+  double low = (double)footprint->iz_far - widening - hair * (double)footprint->iz_far;
+  ray->iz_high = (float)((high < highest ? high : highest) + hair * (double)footprint->iz_near);
   ray->iz_low = (float)(low > 0.0 ? low : 0.0);
   return CONIC_DRAWN_RAY;
 }

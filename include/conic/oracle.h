@@ -1,0 +1,127 @@
+/* The oracle: what a picture should have been, slowly and in double precision.
+ *
+ * It implements docs/picture.md once more, from the equations, pixel by pixel over all splats, and shares no code
+ * with the renderer; docs/oracle.md says how it computes and how far it can be trusted. Who writes a renderer of
+ * splats can measure it against this: ask for the reference of a scene, then compare an image with it. */
+#ifndef CONIC_ORACLE_H
+#define CONIC_ORACLE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum conic_oracle_question {
+  CONIC_ORACLE_METHOD = 0, /* is the arithmetic right? The method's own formula, in double */
+  CONIC_ORACLE_EXACT = 1   /* is the method right? The kernel, projected exactly, convolved with the pixel's filter */
+} conic_oracle_question;
+
+/* "method", "exact"; null for a number that is no question. */
+CONIC_API const char *conic_oracle_question_name(conic_oracle_question question);
+
+/* Why a pixel is unstable: a decision there is so close that a renderer in single precision may take it either way. */
+typedef enum conic_unstable_reason {
+  CONIC_UNSTABLE_CUTOFF = 0,     /* whether a splat's footprint covers the pixel */
+  CONIC_UNSTABLE_CLIP = 1,       /* whether the ray formula's range of depths or its box does */
+  CONIC_UNSTABLE_VISIBILITY = 2, /* whether a splat lies behind another */
+  CONIC_UNSTABLE_FORMULA = 3,    /* which formula draws a splat, or whether it is drawn at all */
+  CONIC_UNSTABLE_FACING = 4,     /* to which side a splat's normal points */
+  CONIC_UNSTABLE_WEIGHT_TIE = 5, /* which splat is the heaviest, where that changes Z */
+  CONIC_UNSTABLE_DEPTH_TIE = 6,  /* which splat is the nearest, where passes = 1 makes the pixel of it */
+  CONIC_UNSTABLE_PRECISION = 7   /* no decision, but single precision cannot hold the value to the bound */
+} conic_unstable_reason;
+
+#define CONIC_N_UNSTABLE_REASONS 8
+
+/* "cutoff", "clip" …; null for a number that is no reason. */
+CONIC_API const char *conic_unstable_reason_name(conic_unstable_reason reason);
+
+/* How the method's weights differ from the exact ones, over all pairs of a splat and a pixel that it covers and where
+ * it is visible. The percentiles are good to 4 %. */
+typedef struct conic_weight_error {
+  double max_abs, p999;             /* of the weights of unit-peak kernels, opacity left out */
+  double max_of_peak, p999_of_peak; /* relative to the splat's peak, the amplitude at its centre */
+  double quadrature;                /* the largest change in the last refinement of the integrals */
+  size_t n_weights;
+} conic_weight_error;
+
+#define CONIC_ANY_ID 0xFFFFFFFEu
+
+typedef struct conic_reference {
+  int width, height;
+  conic_oracle_question question;
+  double *planes[CONIC_N_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
+  uint8_t *unstable;              /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
+  uint32_t *tied_id;              /* CONIC_NO_ID; or the splat that is as near as the id's but for rounding, which is
+                                     as good an id; or CONIC_ANY_ID where there are several */
+  double white;                   /* 2^exposure, by which rgba is multiplied */
+  size_t covered_pixels, unstable_pixels;
+  size_t undecided_ids; /* pixels with CONIC_ANY_ID: their ids are not compared */
+  size_t unstable_by_reason[CONIC_N_UNSTABLE_REASONS];
+  conic_weight_error weight_error; /* for the exact question; else zero */
+} conic_reference;
+
+/* Computes the reference picture of `splats` (with tangent axes); `options` as for conic_render, `tile` and
+ * `splat_length` are not looked at. All planes are there. On success the caller owns *reference; on failure it is
+ * empty. Takes microseconds per splat and pixel for the method's question, some hundred times that for the exact one;
+ * reports progress as "verify". The result is the same for any number of threads. Errors: ARGUMENT, MEMORY,
+ * CANCELLED. */
+CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_splats *splats,
+                                           const conic_camera *camera, const conic_render_options *options,
+                                           conic_oracle_question question, conic_reference *reference);
+
+CONIC_API void conic_reference_release(conic_context *context, conic_reference *reference);
+
+/* How an image compares with a reference, on the stable pixels. */
+typedef struct conic_verdict_plane {
+  int is_compared;      /* the image has the plane */
+  double max_abs, p999; /* Z's is relative; that of rgba (before its exposure), albedo and weight is relative where
+                           they are above 1. The percentile is over covered pixels. NaN counts as infinite */
+  double bound;         /* what max_abs may be; NaN where there is none */
+} conic_verdict_plane;
+
+typedef struct conic_verdict {
+  conic_verdict_plane planes[CONIC_N_PLANES];
+  size_t compared_pixels, unstable_pixels, covered_pixels;
+  double unstable_limit; /* share of the covered pixels that may be unstable */
+  int pass;              /* every bound and the limit are kept */
+} conic_verdict;
+
+/* Compares `image`, of the reference's size, with it: against the bounds of docs/oracle.md where the question was the
+ * method's; the exact question has no bounds, and everything passes. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference,
+                                            const conic_image *image, conic_verdict *verdict);
+
+/* One splat, alone and without hand-overs, given in camera space: its centre and axes. */
+typedef struct conic_oracle_splat {
+  double center[3], tangent_u[3], tangent_v[3];
+} conic_oracle_splat;
+
+/* What the method's bare formula and the exact kernel give for a splat at a place of the screen. */
+typedef struct conic_oracle_sample {
+  int covers;           /* q is below the support, and what else the formula asks */
+  double q;             /* the formula's squared distance in standard deviations */
+  double weight, exact; /* of the unit-peak kernel; 0 where it is below any bound */
+  double inverse_depth, plane_inverse_depth;
+  double quadrature; /* the last change of `exact` under refinement */
+} conic_oracle_sample;
+
+/* Evaluates the formula of options->method at `n` places (x, y), in pixels as the camera's. Of the options the method,
+ * the kernel, the prefilter and near_z count; a splat that reaches near_z has no footprint on the screen and is
+ * ARGUMENT, as is one without a plane. */
+CONIC_API conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat *splat,
+                                          const conic_camera *camera, const conic_render_options *options,
+                                          const double (*places)[2], size_t n, conic_oracle_sample *samples);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

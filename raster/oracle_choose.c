@@ -1,0 +1,66 @@
+/* Which formula draws a splat: "Which splats" and "Which formula, in this order" of docs/picture.md. */
+#include "raster/oracle_splat.h"
+
+oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z) {
+  oracle_view view = {*camera, near_z, options->kernel};
+  view.cutoff = (double)options->kernel.cutoff;
+  double limit = view.cutoff;
+  if (options->kernel.type == CONIC_KERNEL_CONFETTI)
+    limit = oracle_min(limit, (double)options->kernel.b);
+  view.support = limit * limit;
+  view.prefilter = (double)options->prefilter;
+  view.reach_px = view.cutoff * sqrt(view.prefilter);
+  view.method = (int)options->method;
+  view.cull_back = options->cull_back;
+  return view;
+}
+
+/* How many pixels the plane's inverse depth needs from the disc's far end to its near (or the near plane's). */
+static double band_px(const oracle_view *view, const oracle_placed *s, double reach, const double normal[3]) {
+  double far_iz = 1.0 / (s->p[2] + reach), near_iz = 1.0 / oracle_max(view->near_z, s->p[2] - reach);
+  double gx = normal[0] / view->camera.fx, gy = normal[1] / view->camera.fy;
+  double steepness = sqrt(gx * gx + gy * gy);
+  return steepness > 0.0 ? (near_iz - far_iz) * fabs(oracle_dot(normal, s->p)) / steepness : INFINITY;
+}
+
+void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double answers[ORACLE_N_QUESTIONS]) {
+  double normal[3], reach = view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]);
+  oracle_cross(s->tu, s->tv, normal);
+  double facing = oracle_dot(s->p, normal);
+  answers[ORACLE_IS_BEHIND] = view->near_z - (s->p[2] + reach);
+  answers[ORACLE_IS_BACK] = facing;
+  answers[ORACLE_REACHES_NEAR] = reach - (s->p[2] - view->near_z);
+  answers[ORACLE_IS_BAND_NARROW] = view->cutoff - band_px(view, s, reach, normal);
+  answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = -1.0;
+  answers[ORACLE_HAS_NO_PLANE] = -oracle_length(normal);
+  if (!view->prefilter && answers[ORACLE_REACHES_NEAR] < 0.0)
+    answers[ORACLE_HAS_NO_PLANE] = -fabs(facing);
+  oracle_shape shape;
+  if (s->p[2] > reach && conic_oracle_shape(view, s, ORACLE_CONIC, &shape)) {
+    oracle_symmetric r = shape.variance;
+    r.xx -= view->prefilter;
+    r.yy -= view->prefilter;
+    answers[ORACLE_IS_THIN] = 0.5 - sqrt(oracle_lesser_eigenvalue(r));
+    answers[ORACLE_IS_CLOSE] = reach / s->p[2] - 0.25;
+  }
+}
+
+void conic_oracle_answer(const double answers[ORACLE_N_QUESTIONS], int is_so[ORACLE_N_QUESTIONS]) {
+  for (int i = 0; i < ORACLE_N_QUESTIONS; i++) /* on the very border, as the page has it */
+    is_so[i] =
+        i == ORACLE_IS_BACK || i == ORACLE_IS_THIN || i == ORACLE_IS_BAND_NARROW ? answers[i] > 0.0 : answers[i] >= 0.0;
+}
+
+oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
+  if (is_so[ORACLE_IS_BEHIND] || is_so[ORACLE_HAS_NO_PLANE] || (view->cull_back && is_so[ORACLE_IS_BACK]))
+    return ORACLE_NOT_DRAWN;
+  if (is_so[ORACLE_REACHES_NEAR])
+    return is_so[ORACLE_IS_BAND_NARROW] ? ORACLE_SEGMENT : ORACLE_RAY;
+  if (view->method == 2) /* affine: thin or not, the variance of the centre's Jacobian */
+    return ORACLE_AFFINE;
+  if (is_so[ORACLE_IS_THIN])
+    return ORACLE_CONIC;
+  if (view->method == CONIC_METHOD_RAY || is_so[ORACLE_IS_CLOSE])
+    return ORACLE_RAY;
+  return ORACLE_CONIC;
+}

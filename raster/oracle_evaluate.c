@@ -1,0 +1,150 @@
+/* A shape's value at a pixel, and what single precision may make of it. */
+#include "raster/oracle_splat.h"
+
+double conic_oracle_kernel(const conic_kernel *kernel, double q) {
+  double r = sqrt(q), power = 1.0;
+  switch (kernel->type) {
+  case CONIC_KERNEL_CONFETTI:
+    if (!(r < (double)kernel->b))
+      return 0.0;
+    for (int i = 0; i < kernel->n; i++)
+      power *= r / (double)kernel->b;
+    return conic_oracle_exp(-(double)kernel->a * power / (1.0 - power));
+  case CONIC_KERNEL_HAT:
+    return oracle_max(1.0 - r / (double)kernel->cutoff, 0.0);
+  case CONIC_KERNEL_BOX:
+    return r < (double)kernel->cutoff ? 1.0 : 0.0;
+  default:
+    return conic_oracle_exp(-0.5 * q);
+  }
+}
+
+static double clamp_to(const double range[2], double x) {
+  return oracle_min(oracle_max(x, range[0]), range[1]);
+}
+
+/* The ray formula's parameters and derivatives at a place of the screen. */
+typedef struct ray_parameters {
+  double u[2], iz, jacobian[2][2];
+  oracle_symmetric spread; /* S = I + h·JJᵀ */
+} ray_parameters;
+
+static ray_parameters find_parameters(const oracle_view *view, const oracle_shape *shape, double x, double y) {
+  ray_parameters at;
+  const double(*rows)[3] = shape->from_screen;
+  at.iz = rows[0][2] * x + rows[1][2] * y + rows[2][2];
+  for (int i = 0; i < 2; i++) {
+    at.u[i] = (rows[0][i] * x + rows[1][i] * y + rows[2][i]) / at.iz;
+    for (int j = 0; j < 2; j++)
+      at.jacobian[i][j] = (rows[j][i] - at.u[i] * rows[j][2]) / at.iz;
+  }
+  const double(*jacobian)[2] = (const double(*)[2])at.jacobian;
+  double h = view->prefilter;
+  at.spread.xx = 1.0 + h * (jacobian[0][0] * jacobian[0][0] + jacobian[0][1] * jacobian[0][1]);
+  at.spread.xy = h * (jacobian[0][0] * jacobian[1][0] + jacobian[0][1] * jacobian[1][1]);
+  at.spread.yy = 1.0 + h * (jacobian[1][0] * jacobian[1][0] + jacobian[1][1] * jacobian[1][1]);
+  return at;
+}
+
+static double gradient_length(const oracle_shape *shape) {
+  return sqrt(shape->gradient[0] * shape->gradient[0] + shape->gradient[1] * shape->gradient[1]);
+}
+
+static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                         double values[ORACLE_N_VALUES]) {
+  ray_parameters at = find_parameters(view, shape, x, y);
+  double q = oracle_form(oracle_inverse(at.spread), at.u), widened = gradient_length(shape) * view->reach_px;
+  values[ORACLE_MARGIN_Q] = view->support - q;
+  values[ORACLE_MARGIN_FRONT] = at.iz;
+  values[ORACLE_MARGIN_FAR] = at.iz - (shape->range[0] - widened - ORACLE_RANGE_SLACK * shape->range[0]);
+  values[ORACLE_MARGIN_NEAR] =
+      oracle_min(1.0 / view->near_z, shape->range[1] + widened) + ORACLE_RANGE_SLACK * shape->range[1] - at.iz;
+  values[ORACLE_MARGIN_LEFT] = x - shape->box[0][0];
+  values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
+  values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
+  values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
+  values[ORACLE_WEIGHT] = conic_oracle_kernel(&view->kernel, q) / sqrt(oracle_determinant(at.spread));
+  values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
+  values[ORACLE_IZ_PLANE] = at.iz;
+}
+
+void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                           double values[ORACLE_N_VALUES]) {
+  if (shape->formula == ORACLE_RAY) {
+    evaluate_ray(view, shape, x, y, values);
+    return;
+  }
+  double offset[2] = {x - shape->center[0], y - shape->center[1]};
+  double q = oracle_form(shape->inverse, offset);
+  for (int i = 0; i < ORACLE_N_MARGINS; i++)
+    values[i] = 1.0;
+  values[ORACLE_MARGIN_Q] = view->support - q;
+  values[ORACLE_WEIGHT] = shape->amplitude * conic_oracle_kernel(&view->kernel, q);
+  values[ORACLE_IZ] =
+      clamp_to(shape->range, shape->center_iz + shape->slope[0] * offset[0] + shape->slope[1] * offset[1]);
+  values[ORACLE_IZ_PLANE] = shape->center_iz + shape->gradient[0] * offset[0] + shape->gradient[1] * offset[1];
+}
+
+/* V is held to a few roundings of its own entries, and so are the pixel's offset and what is summed from them. */
+static void round_ellipse(const oracle_shape *shape, const double offset[2], const double values[ORACLE_N_VALUES],
+                          double errors[ORACLE_N_VALUES]) {
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  double pull[2];
+  oracle_apply(shape->inverse, offset, pull);
+  double spread = fabs(pull[0]) * sqrt(shape->variance.xx) + fabs(pull[1]) * sqrt(shape->variance.yy);
+  errors[ORACLE_MARGIN_Q] = unit * (spread * spread + fabs(pull[0] * offset[0]) + fabs(pull[1] * offset[1]));
+  errors[ORACLE_IZ] = unit * (shape->center_iz + fabs(shape->slope[0] * offset[0]) + fabs(shape->slope[1] * offset[1]));
+  errors[ORACLE_IZ_PLANE] =
+      unit * (shape->center_iz + fabs(shape->gradient[0] * offset[0]) + fabs(shape->gradient[1] * offset[1]));
+  errors[ORACLE_WEIGHT] = values[ORACLE_WEIGHT] * unit;
+}
+
+/* The middle of what of the box is on the screen. */
+static double middle(const oracle_shape *shape, int axis, int size_px) {
+  double low = oracle_min(oracle_max(shape->box[0][axis], 0.0), (double)size_px);
+  double high = oracle_min(oracle_max(shape->box[1][axis], 0.0), (double)size_px);
+  return 0.5 * (low + high);
+}
+
+/* U, V and iz are sums over the offset from the splat's place, each rounded; J and S follow from them. */
+static void round_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                      const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  const double(*rows)[3] = shape->from_screen;
+  ray_parameters at = find_parameters(view, shape, x, y);
+  double reach_x = fabs(x - middle(shape, 0, view->camera.width));
+  double reach_y = fabs(y - middle(shape, 1, view->camera.height));
+  double sums[3], pull[2], error = 0.0;
+  for (int i = 0; i < 3; i++)
+    sums[i] = fabs(rows[0][i]) * reach_x + fabs(rows[1][i]) * reach_y + (i < 2 ? fabs(at.u[i] * at.iz) : fabs(at.iz));
+  oracle_apply(oracle_inverse(at.spread), at.u, pull);
+  for (int i = 0; i < 2; i++) {
+    double u_error = (sums[i] + fabs(at.u[i]) * sums[2]) / fabs(at.iz);
+    error += 2.0 * fabs(pull[i]) * u_error;
+  }
+  double spread = fabs(pull[0]) * sqrt(at.spread.xx) + fabs(pull[1]) * sqrt(at.spread.yy);
+  errors[ORACLE_MARGIN_Q] = unit * (error + 2.0 * spread * spread * (1.0 + sums[2] / fabs(at.iz)));
+  for (int i = ORACLE_MARGIN_FRONT; i <= ORACLE_MARGIN_NEAR; i++)
+    errors[i] = unit * (sums[2] + gradient_length(shape) * view->reach_px);
+  for (int i = ORACLE_MARGIN_LEFT; i <= ORACLE_MARGIN_BOTTOM; i++)
+    errors[i] = unit * (reach_x + reach_y);
+  errors[ORACLE_IZ] = errors[ORACLE_IZ_PLANE] = unit * sums[2];
+  errors[ORACLE_WEIGHT] = values[ORACLE_WEIGHT] * unit * (1.0 + 2.0 * sums[2] / fabs(at.iz));
+}
+
+void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                           const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
+  for (int i = 0; i < ORACLE_N_VALUES; i++)
+    errors[i] = 0.0;
+  if (shape->formula == ORACLE_RAY)
+    round_ray(view, shape, x, y, values, errors);
+  else {
+    double offset[2] = {x - shape->center[0], y - shape->center[1]};
+    round_ellipse(shape, offset, values, errors);
+  }
+  /* What is wrong in q is wrong in the kernel's value. */
+  double q = view->support - values[ORACLE_MARGIN_Q], here = conic_oracle_kernel(&view->kernel, q);
+  double change = here - conic_oracle_kernel(&view->kernel, q + errors[ORACLE_MARGIN_Q]);
+  if (here > 0.0)
+    errors[ORACLE_WEIGHT] += values[ORACLE_WEIGHT] * fabs(change / here);
+}
