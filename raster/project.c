@@ -127,7 +127,7 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
-static conic_verdict project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+static conic_outcome project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
   conic_box *box = s->box;
@@ -158,7 +158,7 @@ static conic_verdict project_variance(const splat_setup *s, const tangents *t, c
 }
 
 /* Wholly before near: the usual path, in float. */
-static conic_verdict project_before_near(splat_setup *s, const float tu[3], const float tv[3]) {
+static conic_outcome project_before_near(splat_setup *s, const float tu[3], const float tv[3]) {
   const conic_view *view = s->view;
   float inverse_z = (float)s->inverse_z, fx = (float)view->fx, fy = (float)view->fy;
   float x = (float)(s->p[0] * s->inverse_z), y = (float)(s->p[1] * s->inverse_z);
@@ -185,7 +185,7 @@ static conic_verdict project_before_near(splat_setup *s, const float tu[3], cons
   return project_variance(s, &t, &k);
 }
 
-static conic_verdict project_across_near(splat_setup *s) {
+static conic_outcome project_across_near(splat_setup *s) {
   conic_disc disc;
   fill_disc(s, &disc);
   s->along_ray = disc.determinant > 0.0 ? 1.0f : disc.determinant < 0.0 ? -1.0f : 0.0f;
@@ -251,7 +251,7 @@ static int is_finite_record(const conic_footprint *footprint, const conic_ray *r
   return sum == 0.0f;
 }
 
-static conic_verdict project_splat(splat_setup *s) {
+static conic_outcome project_splat(splat_setup *s) {
   const conic_view *view = s->view;
   float tu[3], tv[3], normal[3], longer;
   move_center(view, s->splats, s->i, s->p);
@@ -262,25 +262,25 @@ static conic_verdict project_splat(splat_setup *s) {
     return CONIC_SKIPPED;
   if (!(s->p[2] + (double)reach_z > view->near_z))
     return CONIC_CULLED;
-  conic_verdict verdict;
+  conic_outcome outcome;
   s->footprint->amplitude = 1.0f;
   s->inverse_z = 1.0 / s->p[2];
   s->reach = (float)((double)reach_z * s->inverse_z);
   s->nearest = (float)((s->p[2] - (double)reach_z) * s->inverse_z);
   s->farthest = (float)((s->p[2] + (double)reach_z) * s->inverse_z);
   if (s->p[2] - (double)reach_z > view->near_z)
-    verdict = project_before_near(s, tu, tv);
+    outcome = project_before_near(s, tu, tv);
   else
-    verdict = project_across_near(s);
-  if (verdict >= CONIC_CULLED)
-    return verdict;
+    outcome = project_across_near(s);
+  if (outcome >= CONIC_CULLED)
+    return outcome;
   if (!world_normal(s->splats, s->i, normal, &longer))
     return CONIC_SKIPPED;
-  if (verdict == CONIC_DRAWN_SEGMENT)
+  if (outcome == CONIC_DRAWN_SEGMENT)
     s->footprint->amplitude = 0.0f;
   set_weighing(s, longer);
   set_surface(s, normal);
-  return is_finite_record(s->footprint, s->ray, s->surface) ? verdict : CONIC_SKIPPED;
+  return is_finite_record(s->footprint, s->ray, s->surface) ? outcome : CONIC_SKIPPED;
 }
 
 void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
@@ -290,16 +290,16 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   s.box = &projected->boxes[chunk->first + chunk->n_drawn];
   s.surface = &projected->surfaces[chunk->first + chunk->n_drawn];
   s.ray = &projected->rays[chunk->first + chunk->n_rays];
-  conic_verdict verdict = project_splat(&s);
-  if (verdict == CONIC_CULLED) {
+  conic_outcome outcome = project_splat(&s);
+  if (outcome == CONIC_CULLED) {
     chunk->n_culled++;
-  } else if (verdict == CONIC_SKIPPED) {
+  } else if (outcome == CONIC_SKIPPED) {
     chunk->n_skipped++;
   } else {
-    if (verdict == CONIC_DRAWN_RAY)
+    if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
-    int is_own = verdict == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
-                                            : verdict == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+    int is_own = outcome == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
+                                            : outcome == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
     chunk->n_fallback += !is_own;
     chunk->n_drawn++;
   }

@@ -37,7 +37,7 @@ static void pixels_between(double low, double high, int size, uint16_t *begin, u
 }
 
 /* The clipped disc's box, widened by what the prefilter adds; its middle becomes the reference pixel. */
-static conic_verdict set_box(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+static conic_outcome set_box(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                              conic_box *box) {
   const double along_x[2] = {1.0, 0.0}, along_y[2] = {0.0, 1.0};
   conic_screen_point left, right, top, bottom;
@@ -70,14 +70,14 @@ static double gradient_length(const conic_view *view, const conic_disc *disc) {
   return sqrt(gx * gx + gy * gy);
 }
 
-conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                 conic_box *box, conic_ray *ray) {
   double m_u[3], m_v[3];
   if (disc->determinant == 0.0)
     return CONIC_SKIPPED;
-  conic_verdict verdict = set_box(view, disc, footprint, box);
-  if (verdict != CONIC_DRAWN_RAY)
-    return verdict;
+  conic_outcome outcome = set_box(view, disc, footprint, box);
+  if (outcome != CONIC_DRAWN_RAY)
+    return outcome;
   set_range(view, disc, footprint);
   /* M⁻¹ has the columns t_v × p, p × t_u, t_u × t_v over the determinant. */
   cross(disc->tv, disc->p, m_u);
@@ -101,7 +101,7 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
 
 /* The clipped disc seen from its own plane: a segment, whose variance is that of a splat with its ends on the outline.
  */
-static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+static conic_outcome project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                      conic_box *box) {
   conic_screen_point a, b;
   double gx = disc->n[0] / view->fx, gy = disc->n[1] / view->fy, g = sqrt(gx * gx + gy * gy);
@@ -145,7 +145,7 @@ static conic_verdict project_segment(const conic_view *view, const conic_disc *d
   return CONIC_DRAWN_SEGMENT;
 }
 
-conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+conic_outcome conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                  conic_box *box, conic_ray *ray) {
   /* Edge-on is, as elsewhere, less than half a pixel per standard deviation: here, of the band on the screen in which
    * the plane's inverse depth runs from the disc's far to its near end. */

@@ -81,13 +81,13 @@ void conic_project_chunk(const conic_view *view, const conic_splats *splats, siz
                          conic_projected *projected);
 
 /* What became of a splat. */
-typedef enum conic_verdict {
+typedef enum conic_outcome {
   CONIC_DRAWN_VARIANCE, /* by a variance on the screen: the dual conic's, or the centre's Jacobian's */
   CONIC_DRAWN_RAY,      /* by the exact ray–splat parameter */
   CONIC_DRAWN_SEGMENT,  /* edge-on and reaching the near plane: by the variance of a segment */
   CONIC_CULLED,
   CONIC_SKIPPED
-} conic_verdict;
+} conic_outcome;
 
 /* A splat in camera space, in double, for the paths that float cannot walk. */
 typedef struct conic_disc {
@@ -98,12 +98,12 @@ typedef struct conic_disc {
 
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
-conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                 conic_box *box, conic_ray *ray);
 
 /* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
  * is 0). */
-conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+conic_outcome conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
                                  conic_box *box, conic_ray *ray);
 
 #endif
