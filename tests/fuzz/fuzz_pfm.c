@@ -1,5 +1,5 @@
 #include "tests/fuzz/fuzz_image.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
-  return fuzz_image(bytes, n_bytes, "P", 1);
+  return fuzz_image(bytes, n_bytes, n_bytes > 1 && bytes[1] == 'f' ? "Pf" : "PF", 2);
 }
