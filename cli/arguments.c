@@ -93,6 +93,15 @@ int cli_parse_vector(const char *text, double vector[3]) {
   return 1;
 }
 
+int cli_parse_length(const char *text, void *length) {
+  cli_length *parsed = length;
+  const char *end;
+  if (!parse_decimal(text, &end, &parsed->value) || !(parsed->value >= 0.0) || !(parsed->value < 1e30))
+    return 0;
+  parsed->is_in_spacings = *end == 'x';
+  return end[parsed->is_in_spacings] == '\0';
+}
+
 static int parse_size(const char *text, int size[2]) {
   char width[16];
   const char *cross = strchr(text, 'x');
@@ -130,6 +139,9 @@ static int refuse_text(const cli_session *session, const cli_option *option, con
   size_t used = 0;
   for (int i = 0; option->choices && option->choices[i] && used < sizeof words; i++)
     used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? ", " : "", option->choices[i]);
+  if (option->type == CLI_PARSED)
+    return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s: %s", session->command, dashes(option),
+                     option->name, text, option->argument, option->help);
   return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, dashes(option), option->name,
                    text, used ? words : option->argument);
 }

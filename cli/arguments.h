@@ -34,6 +34,15 @@ typedef struct cli_option {
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
 
+/* A length: in world units, or with an x behind it ("0.5x") in median sample spacings of the scene. */
+typedef struct cli_length {
+  double value;
+  int is_in_spacings;
+} cli_length;
+
+/* Parses a length that is not negative into a cli_length: a `parse` for CLI_PARSED. 0 where it is none. */
+int cli_parse_length(const char *text, void *length);
+
 /* Parses "X,Y,Z" whole; 0 where it is not. */
 int cli_parse_vector(const char *text, double vector[3]);
 

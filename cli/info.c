@@ -47,20 +47,17 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   return CLI_DONE;
 }
 
-/* The kind by content, so that a wrong ending does not mislead: what is neither of the two is left to the model's
- * reader. */
-static const char *find_kind(const char *path) {
+/* Told by content, so that a wrong ending does not mislead. A pipe, which can be read only once, is a model. */
+static int is_exr(const char *path) {
   unsigned char head[4] = {0, 0, 0, 0};
   struct stat found;
   int is_file = strcmp(path, "-") != 0 && stat(path, &found) == 0 && S_ISREG(found.st_mode);
-  FILE *file = is_file ? fopen(path, "rb") : NULL; /* a pipe can be read only once */
+  FILE *file = is_file ? fopen(path, "rb") : NULL;
   if (!file)
-    return "ply";
+    return 0;
   size_t n = fread(head, 1, sizeof head, file);
   fclose(file);
-  if (n == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0)
-    return "exr";
-  return n >= 3 && memcmp(head, "ply", 3) == 0 ? "ply" : "obj";
+  return n == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0;
 }
 
 static void find_size(info_job *job) {
@@ -123,13 +120,13 @@ static int has_image(const info_job *job) {
 }
 
 static int read_file(cli_session *session, info_job *job) {
-  job->kind = find_kind(job->path);
+  int is_image = is_exr(job->path);
   find_size(job);
-  conic_status status = strcmp(job->kind, "exr") == 0
-                            ? conic_image_read(session->context, job->path, &job->image)
-                            : conic_model_read(session->context, job->path, NULL, &job->model);
+  conic_status status = is_image ? conic_image_read(session->context, job->path, &job->image)
+                                 : conic_model_read(session->context, job->path, NULL, &job->model);
   if (status != CONIC_OK)
     return cli_exit_of(status);
+  job->kind = is_image ? "exr" : conic_model_kind_name(job->model.kind);
   if (!has_image(job))
     job->n_finite = conic_splats_bounds(&job->model.points, job->minimum, job->maximum);
   if (job->is_check && has_image(job))
@@ -279,6 +276,7 @@ static int report(cli_session *session, const info_job *job) {
 static int run(cli_session *session, int argc, char **argv) {
   info_job job;
   memset(&job, 0, sizeof job);
+  job.path = "-"; /* until the arguments name one */
   int exit_code = parse(session, argc, argv, &job);
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);

@@ -36,12 +36,12 @@ static int find_scene(const char *name, conic_scene_type *type) {
   const char *nearest = NULL;
   char names[256];
   for (int i = 0; i < CONIC_N_SCENES; i++) {
-    const char *known = conic_scene_name((conic_scene_type)i);
-    if (strcmp(name, known) == 0) {
+    const char *candidate = conic_scene_name((conic_scene_type)i);
+    if (strcmp(name, candidate) == 0) {
       *type = (conic_scene_type)i;
       return CLI_DONE;
     }
-    nearest = cli_nearer_word(name, nearest, known);
+    nearest = cli_nearer_word(name, nearest, candidate);
   }
   if (nearest)
     return cli_usage("make: unknown scene %s; did you mean %s?", name, nearest);

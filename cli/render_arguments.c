@@ -5,14 +5,14 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 /* Options whose words are checked after all have been read. */
 typedef struct raw_options {
-  int size[2], is_size_given;
+  int size[2], is_size_given, is_framing_given;
   const char *device;
   int isa;
   double cutoff, prefilter;
@@ -36,12 +36,6 @@ static int parse_turntable(const char *text, void *value) {
   job->is_turntable = 1;
   job->n_frames = (int)n;
   return 1;
-}
-
-static int parse_number(const char *text, double *number) {
-  char *end;
-  *number = strtod(text, &end);
-  return *text && !*end && *number * 0.0 == 0.0;
 }
 
 /* gauss, hat, box, or confetti:A,B,N. */
@@ -68,12 +62,17 @@ static int parse_kernel(const char *text, void *value) {
 }
 
 static int parse_epsilon(const char *text, void *value) {
-  double *epsilon = value;
+  cli_length *epsilon = value;
   if (strcmp(text, "auto") == 0) {
-    *epsilon = -1.0;
+    epsilon->value = -1.0;
     return 1;
   }
-  return parse_number(text, epsilon) && *epsilon >= 0.0;
+  return cli_parse_length(text, value);
+}
+
+static int parse_near(const char *text, void *value) {
+  const cli_length *near_z = value;
+  return cli_parse_length(text, value) && near_z->value > 0.0;
 }
 
 /* x, -y, … or X,Y,Z. */
@@ -149,12 +148,13 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
     return cli_usage("%s: no input; see conic help %s", command, command);
   if (job->camera_path && raw->is_size_given)
     return cli_usage("%s: --size is the camera file's; give one of both", command);
+  if (job->camera_path && (raw->is_framing_given || job->is_up_given))
+    return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
+                     command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile % 4)
     return cli_usage("%s: --tile takes a multiple of 4", command);
-  if (raw->isa > 1)
-    return cli_error(CLI_RESOURCE, "--isa %s: this build has only scalar code", isa_words[raw->isa]);
   if (strncmp(raw->device, "opencl", 6) == 0)
     return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
   if (strcmp(raw->device, "cpu") != 0)
@@ -166,9 +166,13 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
   if (job->n_outputs == 0)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
-  for (int i = 0; i < job->n_outputs && job->is_turntable; i++)
+  for (int i = 0; i < job->n_outputs; i++) { /* now, and not after the work */
+    const char *slash = strrchr(job->outputs[i], '/'), *dot = strrchr(slash ? slash : job->outputs[i], '.');
     if (strcmp(job->outputs[i], "-") == 0)
-      return cli_usage("render: a turntable cannot go to standard output");
+      return cli_usage("render: a picture cannot go to standard output");
+    if (!dot || !dot[1])
+      return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
+  }
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
   return cli_check_outputs(session, job->outputs, job->n_outputs);
@@ -181,6 +185,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
+  job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
@@ -213,23 +218,29 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
-      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6},
-      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90},
-      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9},
-      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6},
-      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y]", .parse = parse_up},
-      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray [conic]",
+      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90,
+       .is_given = &raw.is_framing_given},
+      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
+       .is_given = &raw.is_framing_given},
+      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
+       .is_given = &job->is_up_given},
+      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
        .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
        10000},
-      {"epsilon", CLI_PARSED, &o->epsilon, "E", "depth tolerance along the ray, or auto [auto]",
-       .parse = parse_epsilon},
+      {"epsilon", CLI_PARSED, &job->epsilon, "E",
+       "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
-      {"near", CLI_NUMBER, &o->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]", 1e-30, 1e30},
+      {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
+       .parse = parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = shade_words},
       {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
        .parse = parse_light},
@@ -241,7 +252,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
-      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto or scalar; changes no bit [auto]", .choices = isa_words},
+      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = isa_words},
   };
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
@@ -251,6 +263,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
+  o->isa = (conic_isa)raw.isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];

@@ -3,7 +3,6 @@
 #define CLI_RENDER_JOB_H
 
 #include "cli/arguments.h"
-#include "cli/session.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -15,12 +14,14 @@ typedef struct cli_render_job {
   int n_outputs;
   const char *camera_path; /* null: framed */
   conic_framing framing;
+  int is_up_given;
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   int repeat;
   unsigned planes; /* bits 1 << conic_plane */
   int n_neighbours;
-  conic_render_options options;
+  conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
+  cli_length epsilon, near_z;   /* below 0: automatic */
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */

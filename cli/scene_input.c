@@ -3,9 +3,30 @@
 
 #include "cli/render_job.h"
 
+/* Whether the box can be framed: the camera's numbers then stay well within those that drawing takes. */
+static int is_in_reach(const double low[3], const double high[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(low[axis] > -1e20 && high[axis] < 1e20))
+      return 0;
+  return 1;
+}
+
+static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
+  double low[3], high[3];
+  const char *why = NULL;
+  if (conic_splats_bounds(&model->points, low, high) == 0)
+    why = model->points.count ? "no point is finite" : "it holds no points";
+  else if (!job->camera_path && !is_in_reach(low, high))
+    why = "a point is farther out than 1e20";
+  if (!why)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: cannot be drawn: %s", path, why);
+  return CONIC_ERROR_INPUT;
+}
+
 /* Reads an input, and gives its points axes where it has none. */
 static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
-                               double *estimate_seconds) {
+                               conic_model_kind *kind, double *estimate_seconds) {
   conic_model model;
   conic_read_options read_options;
   conic_estimate_options estimate_options;
@@ -17,12 +38,9 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
   conic_status status = conic_model_read(session->context, path, &read_options, &model);
   if (status != CONIC_OK)
     return status;
-  double low[3], high[3], start = cli_seconds();
-  if (conic_splats_bounds(&model.points, low, high) == 0) {
-    cli_error(CLI_INPUT, "%s: nothing to draw: %s", path,
-              model.points.count ? "no point is finite" : "it holds no points");
-    status = CONIC_ERROR_INPUT;
-  }
+  *kind = model.kind;
+  double start = cli_seconds();
+  status = check_extent(job, path, &model);
   if (status == CONIC_OK)
     status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
   if (status == CONIC_OK && splats->count == 0) {
@@ -37,20 +55,42 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
 
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats) {
   double start = cli_seconds(), estimate_seconds = 0.0;
+  int n_las = 0;
   memset(splats, 0, sizeof *splats);
   for (int i = 0; i < job->n_inputs; i++) {
-    conic_status status = read_input(session, job, job->inputs[i], splats, &estimate_seconds);
+    conic_model_kind kind;
+    conic_status status = read_input(session, job, job->inputs[i], splats, &kind, &estimate_seconds);
     if (status != CONIC_OK)
       return status;
+    n_las += kind == CONIC_MODEL_LAS;
+  }
+  if (n_las == job->n_inputs && !job->is_up_given) { /* surveys have heights in z */
+    job->framing.up[0] = job->framing.up[1] = 0.0;
+    job->framing.up[2] = 1.0;
   }
   job->read_ms = 1e3 * (cli_seconds() - start - estimate_seconds);
   job->estimate_ms = 1e3 * estimate_seconds;
   return CONIC_OK;
 }
 
+/* Lengths in spacings become world units. */
+static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
+  double spacing = 1.0;
+  conic_status status = CONIC_OK;
+  if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
+    status = conic_splats_spacing(session->context, splats, &spacing);
+  if (job->epsilon.value >= 0.0)
+    job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
+  if (job->near_z.value >= 0.0)
+    job->options.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
+  return status;
+}
+
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
-  conic_status status = conic_splats_length(session->context, splats, &job->options.splat_length);
+  conic_status status = resolve_lengths(session, job, splats);
+  if (status == CONIC_OK)
+    status = conic_splats_length(session->context, splats, &job->options.splat_length);
   if (status == CONIC_OK && job->options.near_z == 0.0)
     job->options.near_z = conic_default_near(splats);
   job->estimate_ms += 1e3 * (cli_seconds() - start);

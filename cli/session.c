@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -13,7 +14,8 @@
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
 
-static volatile sig_atomic_t is_interrupted;
+/* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
+static atomic_llong interrupted_at_ms;
 
 double cli_seconds(void) {
   struct timespec now;
@@ -37,10 +39,14 @@ unsigned long long cli_peak_rss_bytes(void) {
   return kibibytes * 1024;
 }
 
+/* One line, whatever the names in it hold. */
 static void print_message(const char *label, const char *format, va_list arguments) {
-  fprintf(stderr, "conic: %s", label);
-  vfprintf(stderr, format, arguments);
-  fputc('\n', stderr);
+  char message[2048];
+  vsnprintf(message, sizeof message, format, arguments);
+  for (char *c = message; *c; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7F)
+      *c = '?';
+  fprintf(stderr, "conic: %s%s\n", label, message);
 }
 
 int cli_usage(const char *format, ...) {
@@ -142,7 +148,7 @@ static int on_progress(void *cookie, const char *task, double fraction) {
     show_progress(session, task, fraction);
     pthread_mutex_unlock(&screen);
   }
-  return is_interrupted;
+  return atomic_load(&interrupted_at_ms) != 0;
 }
 
 static void on_log(void *cookie, conic_log_level level, const char *message) {
@@ -156,20 +162,29 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
   pthread_mutex_unlock(&screen);
 }
 
+/* Signals that come together are one wish to stop: a terminal, timeout and service managers signal the process and then
+ * its group, and so reach it twice. */
+static const long long one_wish_ms = 300;
+
+/* The first signal asks the work to stop, so that it removes what it has half written; a later one kills. */
 static void on_interrupt(int signal_number) {
-  (void)signal_number;
-  is_interrupted = 1;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  long long now_ms = (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000 + 1, first_ms = 0;
+  if (atomic_compare_exchange_strong(&interrupted_at_ms, &first_ms, now_ms) || now_ms - first_ms < one_wish_ms)
+    return;
+  signal(signal_number, SIG_DFL);
+  raise(signal_number); /* takes effect when the handler returns */
 }
 
-/* The first signal asks the work to stop, so that it removes what it has half written; the second kills. A signal that
- * whoever started the program has turned off stays off. */
+/* A signal that whoever started the program has turned off stays off. */
 static void catch_signal(int signal_number) {
   struct sigaction action;
   if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
     return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_interrupt;
-  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
+  action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(signal_number, &action, NULL);
 }
@@ -187,6 +202,7 @@ int cli_session_open(cli_session *session) {
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   catch_signal(SIGINT);
   catch_signal(SIGTERM);
+  signal(SIGXFSZ, SIG_IGN); /* a file that may not grow further is a failed write, after which is cleaned up */
   return CLI_DONE;
 }
 

@@ -29,12 +29,12 @@ int cli_word_distance(const char *a, const char *b) {
   return cost[n_a][n_b];
 }
 
-const char *cli_nearer_word(const char *word, const char *best, const char *name) {
-  int tolerated = (int)strlen(name) / 3 + 1;
-  int distance = cli_word_distance(word, name);
-  if (strlen(word) >= 3 && strncmp(word, name, strlen(word)) == 0)
+const char *cli_nearer_word(const char *word, const char *best, const char *candidate) {
+  int tolerated = (int)strlen(candidate) / 3 + 1;
+  int distance = cli_word_distance(word, candidate);
+  if (strlen(word) >= 3 && strncmp(word, candidate, strlen(word)) == 0)
     distance = 1; /* an abbreviation */
-  if (distance > tolerated || distance >= (int)strlen(name))
+  if (distance > tolerated || distance >= (int)strlen(candidate))
     return best;
-  return best && cli_word_distance(word, best) <= distance ? best : name;
+  return best && cli_word_distance(word, best) <= distance ? best : candidate;
 }

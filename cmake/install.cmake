@@ -17,11 +17,6 @@ endforeach()
 if(TARGET OpenEXR::OpenEXRCore)
   set(static_openexr "find_dependency(OpenEXR CONFIG)")
 endif()
-if(TARGET OpenImageIO::OpenImageIO)
-  set(static_openimageio
-    "include(\${CMAKE_CURRENT_LIST_DIR}/openimageio.cmake)\n  find_dependency(OpenImageIO CONFIG)")
-  install(FILES cmake/openimageio.cmake DESTINATION ${package_folder})
-endif()
 configure_package_config_file(cmake/conic-config.cmake.in ${CMAKE_BINARY_DIR}/package/conic-config.cmake
   INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/conic-config-version.cmake COMPATIBILITY SameMinorVersion)
@@ -30,14 +25,12 @@ install(FILES ${CMAKE_BINARY_DIR}/package/conic-config.cmake ${CMAKE_BINARY_DIR}
 
 # For pkg-config --static the private libraries stand by their files, so that who links the shared library needs none
 # of their packages.
-set(private_libraries "-pthread -lm")
-foreach(library OpenEXR::OpenEXRCore OpenImageIO::OpenImageIO)
-  if(TARGET ${library})
-    string(APPEND private_libraries " $<TARGET_LINKER_FILE:${library}>")
-  endif()
-endforeach()
-if(TARGET OpenImageIO::OpenImageIO)
-  string(APPEND private_libraries " -lstdc++")
+set(private_libraries "-pthread -ldl -lm")
+if(TARGET OpenEXR::OpenEXRCore)
+  string(APPEND private_libraries " $<TARGET_LINKER_FILE:OpenEXR::OpenEXRCore>")
+endif()
+if(TARGET conic_openimageio)
+  string(APPEND private_libraries " -Wl,-rpath,\${libdir}/conic")
 endif()
 file(RELATIVE_PATH prefix_from_package /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" prefix_from_package ${prefix_from_package})

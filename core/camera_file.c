@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "conic/camera.h"
@@ -22,15 +23,18 @@ static conic_status read_size(conic_json *json, int *size) {
   return CONIC_OK;
 }
 
-static conic_status read_finite(conic_json *json, double *value) {
+/* What a camera may be is what drawing takes. */
+static const double largest_pixel_value = 1e12, largest_matrix_value = 1e30;
+
+static conic_status read_bounded(conic_json *json, double limit, double *value) {
   conic_status status = conic_json_number(json, value);
-  if (status == CONIC_OK && !(*value - *value == 0.0))
+  if (status == CONIC_OK && !(fabs(*value) < limit))
     return conic_json_wrong(json, "a number is too large");
   return status;
 }
 
 static conic_status read_focal_length(conic_json *json, double *value) {
-  conic_status status = read_finite(json, value);
+  conic_status status = read_bounded(json, largest_pixel_value, value);
   if (status == CONIC_OK && !(*value > 0.0))
     return conic_json_wrong(json, "focal lengths are above 0");
   return status;
@@ -42,7 +46,7 @@ static conic_status read_row(conic_json *json, double row[4]) {
   while (conic_json_next_item(json)) {
     if (n == 4)
       return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
-    read_finite(json, &row[n++]);
+    read_bounded(json, largest_matrix_value, &row[n++]);
   }
   return n == 4 ? json->status : conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
 }
@@ -53,7 +57,7 @@ static conic_status check_matrix(conic_json *json, double rows[4][4]) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       double dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1] + rows[i][2] * rows[j][2];
-      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) <= rotation_tolerance))
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < rotation_tolerance))
         return conic_json_wrong(json, "world_to_camera is no rotation and translation: its rows are not orthonormal");
     }
   double determinant = rows[0][0] * (rows[1][1] * rows[2][2] - rows[1][2] * rows[2][1]) -
@@ -90,9 +94,9 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
   case FY:
     return read_focal_length(json, &camera->fy);
   case CX:
-    return read_finite(json, &camera->cx);
+    return read_bounded(json, largest_pixel_value, &camera->cx);
   case CY:
-    return read_finite(json, &camera->cy);
+    return read_bounded(json, largest_pixel_value, &camera->cy);
   case MATRIX:
     return read_matrix(json, camera->cam_from_world);
   case N_KEYS:
@@ -102,7 +106,7 @@ static conic_status read_value(conic_json *json, camera_key key, conic_camera *c
 }
 
 static conic_status read_camera(conic_json *json, conic_camera *camera) {
-  char key[CONIC_JSON_KEY_ROOM], missing[64] = "the camera lacks ";
+  char key[CONIC_JSON_KEY_ROOM], missing[64];
   int is_given[N_KEYS] = {0};
   conic_json_begin_object(json);
   while (conic_json_next_member(json, key)) {
@@ -115,8 +119,10 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
   }
   conic_json_end(json);
   for (int i = 0; i < N_KEYS; i++)
-    if (!is_given[i])
-      return conic_json_wrong(json, strcat(missing, key_names[i]));
+    if (!is_given[i]) {
+      snprintf(missing, sizeof missing, "the camera lacks %s", key_names[i]);
+      return conic_json_wrong(json, missing);
+    }
   return json->status;
 }
 

@@ -121,11 +121,19 @@ void conic_memory_release(conic_context *context, void *pointer) {
   context->options.release(context->options.allocator_cookie, raw);
 }
 
+/* A message is one line. Names and words out of files may hold what ends lines, or what terminals obey. */
+static void blank_controls(char *message) {
+  for (char *c = message; *c; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7F)
+      *c = '?';
+}
+
 static void log_arguments(conic_context *context, conic_log_level level, const char *format, va_list arguments) {
   char message[1024];
   if (!context || !context->options.log)
     return;
   vsnprintf(message, sizeof message, format, arguments);
+  blank_controls(message);
   context->options.log(context->options.log_cookie, level, message);
 }
 

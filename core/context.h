@@ -13,7 +13,7 @@ struct conic_context {
   conic_pool *pool;
 };
 
-/* Starts the threads beside the calling one; fewer where the system gives fewer. Errors: MEMORY. */
+/* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */
 conic_status conic_pool_create(conic_context *context, conic_pool **pool);
 void conic_pool_destroy(conic_context *context, conic_pool *pool);
 

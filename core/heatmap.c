@@ -35,7 +35,7 @@ static void paint(float position, float pixel[4]) {
 static double pixel_difference(const float *a, const float *b) {
   double largest = 0.0;
   for (int c = 0; c < 4; c++) {
-    if (memcmp(&a[c], &b[c], sizeof *a) == 0)
+    if (conic_same_bits(a[c], b[c]))
       continue;
     double difference = fabs((double)a[c] - (double)b[c]);
     if (!(difference <= largest))

@@ -1,6 +1,7 @@
 #include "conic/image.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 #include "core/image.h"
 #include "core/memory.h"
@@ -18,6 +19,16 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {
   return (int)plane >= 0 && plane < CONIC_N_PLANES ? &descriptions[plane] : NULL;
+}
+
+conic_status conic_image_check_size(conic_context *context, const char *path, int width, int height,
+                                    size_t pixel_bytes) {
+  struct stat found;
+  uint64_t image_bytes = (uint64_t)width * (uint64_t)height * pixel_bytes;
+  if (stat(path, &found) != 0 || !S_ISREG(found.st_mode) || image_bytes >> 16 <= (uint64_t)found.st_size)
+    return CONIC_OK;
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: %d × %d pixels cannot be in a file of %lld bytes (at byte %lld)",
+                    path, width, height, (long long)found.st_size, (long long)found.st_size);
 }
 
 conic_status conic_image_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *image) {

@@ -31,6 +31,7 @@ typedef struct exr_reader {
   conic_image *image;
   exr_decode_pipeline_t *pipelines; /* one a thread */
   atomic_int result;
+  atomic_ullong failed_bytes; /* what the chunk that could not be decoded is unpacked to */
 } exr_reader;
 
 static exr_target find_target(const exr_reader *reader, const char *name) {
@@ -89,7 +90,7 @@ static exr_result_t read_layout(exr_reader *reader) {
     if (result == EXR_ERR_SUCCESS && reader->lines_per_chunk < 1)
       result = EXR_ERR_INVALID_ATTR;
     if (result == EXR_ERR_SUCCESS)
-      reader->n_chunks = (size_t)((height - 1) / reader->lines_per_chunk + 1);
+      reader->n_chunks = (size_t)((height - 1) / reader->lines_per_chunk) + 1;
   } else if (result == EXR_ERR_SUCCESS) {
     result = exr_get_tile_sizes(reader->file, 0, 0, 0, &reader->tile_width, &reader->tile_height);
     if (result == EXR_ERR_SUCCESS && (reader->tile_width < 1 || reader->tile_height < 1))
@@ -136,7 +137,7 @@ static void point_channels(const exr_reader *reader, exr_decode_pipeline_t *pipe
 static void decode_chunk(void *data, size_t i_item, int i_thread) {
   exr_reader *reader = data;
   exr_decode_pipeline_t *pipeline = &reader->pipelines[i_thread];
-  exr_chunk_info_t info;
+  exr_chunk_info_t info = {0};
   int x, y, is_new = !pipeline->context;
   if (atomic_load(&reader->result) != EXR_ERR_SUCCESS)
     return;
@@ -152,8 +153,20 @@ static void decode_chunk(void *data, size_t i_item, int i_thread) {
   }
   if (result == EXR_ERR_SUCCESS)
     result = exr_decoding_run(reader->file, 0, pipeline);
-  if (result != EXR_ERR_SUCCESS)
+  if (result != EXR_ERR_SUCCESS) {
+    atomic_store(&reader->failed_bytes, info.unpacked_size);
     atomic_store(&reader->result, result);
+  }
+}
+
+/* Some decoders say that memory is out where it is data that run past their room. Then there is memory. Errors: INPUT,
+ * MEMORY. */
+static conic_status doubt_memory(conic_context *context, const exr_reader *reader) {
+  void *room = conic_memory_allocate(context, 4, (size_t)atomic_load(&reader->failed_bytes));
+  if (!room)
+    return CONIC_ERROR_MEMORY;
+  conic_memory_release(context, room);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: its data do not fit its size", reader->stream.path);
 }
 
 static conic_status read_chunks(conic_context *context, exr_reader *reader) {
@@ -167,6 +180,8 @@ static conic_status read_chunks(conic_context *context, exr_reader *reader) {
       exr_decoding_destroy(reader->file, &reader->pipelines[i]);
   conic_memory_release(context, reader->pipelines);
   exr_result_t result = atomic_load(&reader->result);
+  if (result == EXR_ERR_OUT_OF_MEMORY)
+    return doubt_memory(context, reader);
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&reader->stream, result, "read", CONIC_ERROR_INPUT);
 }
 
@@ -224,8 +239,13 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
   conic_status status = choose_planes(context, reader, &planes, &has_alpha);
   if (status != CONIC_OK)
     return status;
-  status = conic_image_allocate(context, reader->window.max.x - reader->window.min.x + 1,
-                                reader->window.max.y - reader->window.min.y + 1, planes, reader->image);
+  int width = reader->window.max.x - reader->window.min.x + 1, height = reader->window.max.y - reader->window.min.y + 1;
+  size_t pixel_bytes = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    pixel_bytes += planes >> i & 1 ? 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels : 0;
+  status = conic_image_check_size(context, reader->stream.path, width, height, pixel_bytes);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, width, height, planes, reader->image);
   if (status != CONIC_OK)
     return status == CONIC_ERROR_ARGUMENT ? CONIC_ERROR_INPUT : status;
   status = read_chunks(context, reader);
@@ -248,6 +268,7 @@ conic_status conic_exr_read(conic_context *context, const char *path, conic_imag
   conic_exr_stream_init(&reader.stream, context, path, file, &settings);
   reader.image = image;
   atomic_init(&reader.result, EXR_ERR_SUCCESS);
+  atomic_init(&reader.failed_bytes, 0);
   exr_result_t result = exr_start_read(&reader.file, path, &settings);
   conic_status status = result == EXR_ERR_SUCCESS ? read_part(context, &reader)
                                                   : conic_exr_fail(&reader.stream, result, "read", CONIC_ERROR_INPUT);

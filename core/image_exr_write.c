@@ -90,7 +90,7 @@ static const uint8_t *find_channel(const conic_image *image, const char *name, i
     for (int c = 0; image->planes[i] && c < plane->n_channels; c++)
       if (strcmp(plane->channels[c], name) == 0) {
         *pixel_bytes = plane->n_channels * 4;
-        return (const uint8_t *)image->planes[i] + c * 4;
+        return (const uint8_t *)image->planes[i] + (size_t)c * 4;
       }
   }
   return NULL;

@@ -20,7 +20,7 @@ static const char *ending_of(const char *path) {
 /* Compares ASCII letters without case; the C library's way depends on the locale. */
 static int is_ending(const char *ending, const char *lower_case) {
   for (; *ending && *lower_case; ending++, lower_case++) {
-    char c = *ending >= 'A' && *ending <= 'Z' ? (char)(*ending - 'A' + 'a') : *ending;
+    int c = *ending >= 'A' && *ending <= 'Z' ? *ending - 'A' + 'a' : *ending;
     if (c != *lower_case)
       return 0;
   }
@@ -69,7 +69,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   if (error)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(error));
   if (n == 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is empty", path);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", path);
   if (n == 4 && memcmp(start, "\x76\x2f\x31\x01", 4) == 0)
     return conic_exr_read(context, path, image);
   if (start[0] == 'P' && (start[1] == 'F' || start[1] == 'f'))

@@ -3,14 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/message.h"
-
-#if CONIC_HAVE_OPENIMAGEIO
-
 #include "core/file.h"
 #include "core/image.h"
 #include "core/image_samples.h"
 #include "core/memory.h"
+#include "core/message.h"
 #include "core/openimageio_bridge.h"
 
 /* OpenImageIO writes EXR too, but would leave out all but rgba. */
@@ -34,15 +31,15 @@ static int take_bytes(void *cookie, const void *bytes, size_t n_bytes) {
   return fwrite(bytes, 1, n_bytes, cookie) == n_bytes;
 }
 
-static conic_status write_samples(conic_context *context, const char *path, const conic_bridge_picture *picture,
-                                  const void *samples) {
+static conic_status write_samples(conic_context *context, const conic_bridge *bridge, const char *path,
+                                  const conic_bridge_picture *picture, const void *samples) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);
-  conic_bridge_result result = conic_bridge_write(path, picture, samples, take_bytes, stream, message);
+  conic_bridge_result result = bridge->write(path, picture, samples, take_bytes, stream, message);
   if (result == CONIC_BRIDGE_OK || ferror(stream))
     return conic_output_commit(output); /* which also says what is wrong with the stream */
   conic_output_abandon(output);
@@ -54,7 +51,10 @@ static conic_status write_samples(conic_context *context, const char *path, cons
 conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
   conic_bridge_writer writer;
-  conic_bridge_result result = conic_bridge_find_writer(path, &writer, message);
+  const conic_bridge *bridge = conic_bridge_load(message);
+  if (!bridge)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
+  conic_bridge_result result = bridge->find_writer(path, &writer, message);
   if (result == CONIC_BRIDGE_MEMORY)
     return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
   if (result != CONIC_BRIDGE_OK)
@@ -66,18 +66,19 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   conic_samples_layout layout = choose_layout(&writer);
   conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
                                   layout.is_straight};
-  void *samples =
-      conic_memory_allocate(context, conic_image_pixels(image), (size_t)(layout.n_channels * layout.sample_bytes));
+  void *samples = conic_memory_allocate(context, conic_image_pixels(image),
+                                        (size_t)layout.n_channels * (size_t)layout.sample_bytes);
   if (!samples)
     return CONIC_ERROR_MEMORY;
   conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
-  conic_status status = write_samples(context, path, &picture, samples);
+  conic_status status = write_samples(context, bridge, path, &picture, samples);
   conic_memory_release(context, samples);
   return status;
 }
 
 typedef struct reading {
   conic_context *context;
+  const char *path;
   conic_status status;
   void *samples;
 } reading;
@@ -86,54 +87,19 @@ static void *make_room(void *cookie, const conic_bridge_picture *picture) {
   reading *work = cookie;
   if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
       picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
-    work->status = CONIC_ERROR_INPUT;
+    work->status =
+        conic_fail(work->context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used",
+                   work->path, picture->width, picture->height, picture->n_channels);
     return NULL;
   }
   size_t pixel_bytes = (size_t)picture->n_channels * (size_t)picture->sample_bytes;
+  work->status = conic_image_check_size(work->context, work->path, picture->width, picture->height, pixel_bytes);
+  if (work->status != CONIC_OK)
+    return NULL;
   work->samples = conic_memory_allocate(work->context, (size_t)picture->width * (size_t)picture->height, pixel_bytes);
   if (!work->samples)
     work->status = CONIC_ERROR_MEMORY;
   return work->samples;
-}
-
-/* The samples and the picture's layout, or why not. */
-static conic_status read_samples(conic_context *context, const char *path, conic_bridge_picture *picture,
-                                 reading *work) {
-  char message[CONIC_BRIDGE_MESSAGE] = "";
-  conic_bridge_result result = conic_bridge_read(path, picture, make_room, work, message);
-  if (result == CONIC_BRIDGE_OK)
-    return CONIC_OK;
-  if (work->status == CONIC_ERROR_INPUT)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used", path,
-                      picture->width, picture->height, picture->n_channels);
-  if (work->status == CONIC_ERROR_MEMORY)
-    return CONIC_ERROR_MEMORY; /* which is logged */
-  if (result == CONIC_BRIDGE_MEMORY)
-    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
-  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
-}
-
-conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
-  conic_bridge_picture picture = {0};
-  reading work = {.context = context, .status = CONIC_OK};
-  conic_status status = read_samples(context, path, &picture, &work);
-  if (status == CONIC_OK)
-    status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
-  if (status == CONIC_OK) {
-    conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
-    conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
-                          image->planes[CONIC_PLANE_RGBA]);
-  }
-  conic_memory_release(context, work.samples);
-  return status;
-}
-
-#else
-
-conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
-  (void)image;
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
-                    "%s: cannot write: this build is without OpenImageIO and writes no such format", path);
 }
 
 /* Whether the file begins as an image of a well-known format does: then it is the build that lacks something. */
@@ -155,12 +121,36 @@ static int is_known_image(const char *path) {
   return 0;
 }
 
-conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
-  (void)image;
-  if (is_known_image(path))
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: this build is without the library for it",
-                      path);
-  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
+/* The samples and the picture's layout, or why not. */
+static conic_status read_samples(conic_context *context, const char *path, conic_bridge_picture *picture,
+                                 reading *work) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  const conic_bridge *bridge = conic_bridge_load(message);
+  if (!bridge && is_known_image(path))
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: %s", path, message);
+  if (!bridge)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
+  conic_bridge_result result = bridge->read(path, picture, make_room, work, message);
+  if (result == CONIC_BRIDGE_OK)
+    return CONIC_OK;
+  if (work->status != CONIC_OK)
+    return work->status; /* which is logged */
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
 }
 
-#endif
+conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
+  conic_bridge_picture picture = {0};
+  reading work = {.context = context, .path = path, .status = CONIC_OK};
+  conic_status status = read_samples(context, path, &picture, &work);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
+  if (status == CONIC_OK) {
+    conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
+    conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
+                          image->planes[CONIC_PLANE_RGBA]);
+  }
+  conic_memory_release(context, work.samples);
+  return status;
+}

@@ -153,8 +153,8 @@ static conic_status read_file(conic_context *context, const char *path, FILE *fi
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the scale is not a number other than 0 (line 3)", path);
   int is_grey = magic[1] == 'f';
   if (!is_long_enough(file, size[0], size[1], is_grey ? 1 : 3))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is too short for %d × %d pixels", path, size[0],
-                      size[1]);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is too short for %d × %d pixels (at byte %lld)", path,
+                      size[0], size[1], (long long)ftello(file));
   conic_status status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
   if (status != CONIC_OK)
     return status;

@@ -118,7 +118,8 @@ void conic_samples_from_rgba(conic_context *context, const float *rgba, int widt
 
 void conic_samples_to_rgba(conic_context *context, const void *samples, int width, int height,
                            conic_samples_layout layout, float *rgba) {
-  conversion work = {.layout = layout, .width = (size_t)width, .rgba = rgba, .samples = (void *)samples};
+  conversion work = {.layout = layout, .width = (size_t)width, .samples = (void *)samples};
+  work.rgba = rgba;
   fill_tables(&work.tables);
   conic_parallel_for(context, (size_t)height, decode_row, &work);
 }

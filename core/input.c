@@ -75,7 +75,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
       continue;
     if (n < 0)
       return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %llu)", input->name,
-                        strerror(errno), (unsigned long long)(input->window_offset + input->filled));
+                        strerror(errno), (unsigned long long)input->window_offset + input->filled);
     input->filled += (size_t)n;
     input->is_at_end = n == 0;
   }
@@ -113,8 +113,8 @@ static size_t continuation(const conic_input *input, const char *c, const char *
   return end - c >= 3 && c[1] == '\r' && c[2] == '\n' ? 3 : 0;
 }
 
-static int is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+static int is_blank(const conic_input *input, char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || (c == ',' && input->has_commas);
 }
 
 /* To the next byte that is neither blank nor continuation. */
@@ -124,7 +124,7 @@ static conic_status skip_blanks(conic_input *input) {
     if (status != CONIC_OK)
       return status;
     const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
-    while (c < end && is_blank(*c))
+    while (c < end && is_blank(input, *c))
       c++;
     input->next = (size_t)(c - (const char *)input->window);
     size_t continued = c < end ? continuation(input, c, end) : 0;
@@ -142,7 +142,7 @@ conic_status conic_input_word(conic_input *input, const char **word, size_t *len
     return status;
   const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
   *word = c;
-  while (c < end && *c != '\n' && !is_blank(*c) && !continuation(input, c, end))
+  while (c < end && *c != '\n' && !is_blank(input, *c) && !continuation(input, c, end))
     c++;
   *length = (size_t)(c - *word);
   if (*length > CONIC_INPUT_LONGEST_WORD)

@@ -23,6 +23,7 @@ typedef struct conic_input {
   uint64_t line;           /* of the next byte, from 1; counted by the functions for text only */
   int is_at_end;           /* nothing follows the window's bytes */
   int continues_lines;     /* text: a line that ends with \ goes on in the next */
+  int has_commas;          /* text: commas part words as blanks do */
 } conic_input;
 
 /* Opens PATH ("-" is standard input) for reading; `path` must outlive *input. On success the caller ends it with
@@ -54,7 +55,8 @@ uint64_t conic_input_remaining_bytes(const conic_input *input);
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
 
 /* The next word of the line and past it; *length 0 where the line (or file) ends. Valid until the next call. Words are
- * parted by blanks and carriage returns. Errors: as fill, and INPUT (longer than CONIC_INPUT_LONGEST_WORD). */
+ * parted by blanks, carriage returns and, with has_commas, commas. Errors: as fill, and INPUT (longer than
+ * CONIC_INPUT_LONGEST_WORD). */
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 
 /* To the start of the next line; *is_done where the file ends before one. Errors: as fill. */

@@ -32,6 +32,8 @@ static conic_status read_all(conic_json *json, conic_input *input) {
     n += available;
     input->next += available;
   }
+  if (n == 0)
+    return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: the file is empty (line 1)", json->name);
   json->next = json->text;
   json->end = json->text + n;
   return CONIC_OK;

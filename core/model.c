@@ -3,15 +3,22 @@
 #include <string.h>
 
 #include "core/input.h"
+#include "core/las.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/obj.h"
 #include "core/ply_read.h"
+#include "core/xyz.h"
 
 void conic_read_options_init(conic_read_options *options) {
   memset(options, 0, sizeof *options);
   options->size = sizeof *options;
   options->cutoff = 1.5f;
+}
+
+const char *conic_model_kind_name(conic_model_kind kind) {
+  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
 void conic_model_release(conic_context *context, conic_model *model) {
@@ -31,7 +38,6 @@ static const signature other_kinds[] = {
     {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
     {"a PNG image", "\x89PNG", 4},
     {"a JPEG image", "\xff\xd8\xff", 3},
-    {"a LAS point cloud", "LASF", 4},
     {"a binary glTF file", "glTF", 4},
     {"a gzip archive", "\x1f\x8b", 2},
     {"a ZIP archive", "PK\x03\x04", 4},
@@ -69,28 +75,70 @@ static int is_obj(const char *bytes, size_t n) {
   return 0;
 }
 
-/* By content; then by the ending; then by content that is less certain. */
-static conic_status read_by_kind(conic_input *input, const char *path, const conic_read_options *options,
-                                 conic_model *model) {
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
-  const char *bytes = (const char *)conic_input_bytes(input);
-  size_t n = conic_input_available(input);
-  if (status != CONIC_OK)
-    return status;
+static conic_status refuse(const conic_input *input, const char *bytes, size_t n) {
   if (n == 0)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
-  if (is_ply(bytes, n))
-    return conic_ply_read(input, options, model);
   for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds; i++)
     if (n >= other_kinds[i].n_bytes && memcmp(bytes, other_kinds[i].bytes, other_kinds[i].n_bytes) == 0)
-      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: this is %s, no PLY or OBJ file (at byte 0)",
+      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: this is %s, no PLY, OBJ, XYZ or LAS file (at byte 0)",
                         input->name, other_kinds[i].kind);
-  if (has_ending(path, ".ply"))
+  return CONIC_OK;
+}
+
+/* By content; then by the ending; then by content that is less certain. */
+static conic_status find_kind(const conic_input *input, const char *path, conic_model_kind *kind) {
+  const char *bytes = (const char *)conic_input_bytes(input);
+  size_t n = conic_input_available(input);
+  conic_status status = refuse(input, bytes, n);
+  if (status != CONIC_OK)
+    return status;
+  if (is_ply(bytes, n))
+    *kind = CONIC_MODEL_PLY;
+  else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
+    *kind = CONIC_MODEL_LAS;
+  else if (has_ending(path, ".ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
-  if (has_ending(path, ".obj") || is_obj(bytes, n))
-    return conic_obj_read(input, model);
-  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: neither a PLY nor an OBJ file (at byte 0)", input->name);
+  else if (has_ending(path, ".las") || has_ending(path, ".laz"))
+    return conic_fail(input->context, CONIC_ERROR_INPUT,
+                      "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
+  else if (has_ending(path, ".obj"))
+    *kind = CONIC_MODEL_OBJ;
+  else if (has_ending(path, ".xyz") || has_ending(path, ".pts"))
+    *kind = CONIC_MODEL_XYZ;
+  else if (is_obj(bytes, n))
+    *kind = CONIC_MODEL_OBJ;
+  else if (conic_xyz_is_likely(bytes, n))
+    *kind = CONIC_MODEL_XYZ;
+  else
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no PLY, OBJ, XYZ or LAS file (at byte 0)", input->name);
+  return CONIC_OK;
+}
+
+static conic_status read_by_kind(conic_input *input, const char *path, const conic_read_options *options,
+                                 conic_model *model) {
+  conic_model_kind kind = CONIC_MODEL_PLY;
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  if (status == CONIC_OK)
+    status = find_kind(input, path, &kind);
+  if (status != CONIC_OK)
+    return status;
+  switch (kind) {
+  case CONIC_MODEL_PLY:
+    status = conic_ply_read(input, options, model);
+    break;
+  case CONIC_MODEL_OBJ:
+    status = conic_obj_read(input, model);
+    break;
+  case CONIC_MODEL_XYZ:
+    status = conic_xyz_read(input, model);
+    break;
+  case CONIC_MODEL_LAS:
+    status = conic_las_read(input, model);
+    break;
+  }
+  model->kind = kind;
+  return status;
 }
 
 conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,

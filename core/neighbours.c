@@ -69,7 +69,9 @@ static void search_leaf(search *s, size_t i_leaf) {
 
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2) {
-  search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, slots, distances2};
+  search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, NULL, NULL};
+  s.slots = slots;
+  s.distances2 = distances2;
   struct {
     size_t i_node;
     double distance2;

@@ -285,7 +285,10 @@ static size_t lay_out(char *text, int is_negative, const char *digits, int n, in
       *c++ = '0';
   }
   for (int i = 0; i < n || i <= point; i++) {
-    *c++ = i < n ? digits[i] : '0';
+    char digit = '0';
+    if (i < n)
+      digit = digits[i];
+    *c++ = digit;
     if (i == point && i + 1 < n)
       *c++ = '.';
   }
@@ -361,7 +364,7 @@ static size_t print_float_fast(char text[CONIC_NUMBER_ROOM], float value) {
 }
 
 size_t conic_number_print_float(char text[CONIC_NUMBER_ROOM], float value) {
-  double again;
+  double again = 0.0;
   size_t n = print_special(text, (double)value);
   if (n == 0)
     n = print_float_fast(text, value);

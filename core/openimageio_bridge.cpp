@@ -1,4 +1,5 @@
-// The bridge to OpenImageIO, the one C++ file. It moves samples and decides nothing about colour.
+// The bridge to OpenImageIO, the one C++ file and a module of its own. It moves samples and decides nothing about
+// colour.
 #include "core/openimageio_bridge.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -10,6 +11,9 @@
 #include <new>
 #include <string>
 #include <vector>
+
+#include "conic/export.h"
+#include "conic/version.h"
 
 namespace {
 
@@ -68,9 +72,21 @@ OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &
   return spec;
 }
 
-} // namespace
+// All samples at once, but the rows of a TIFF one by one: of several at a time its reader takes those that cannot be
+// decompressed for good.
+bool read_samples(OIIO::ImageInput &input, OIIO::TypeDesc type, void *samples) {
+  const OIIO::ImageSpec spec = input.spec();
+  if (std::strcmp(input.format_name(), "tiff") != 0 || spec.tile_width > 0)
+    return input.read_image(0, 0, 0, spec.nchannels, type, samples);
+  const size_t row_bytes = size_t(spec.width) * size_t(spec.nchannels) * type.size();
+  for (int y = 0; y < spec.height; y++)
+    if (!input.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, 0, 0, spec.nchannels, type,
+                              static_cast<char *>(samples) + size_t(y) * row_bytes))
+      return false;
+  return true;
+}
 
-extern "C" conic_bridge_result conic_bridge_find_writer(const char *path, conic_bridge_writer *writer, char *message) {
+conic_bridge_result find_writer(const char *path, conic_bridge_writer *writer, char *message) {
   return guarded(message, [&] {
     auto output = OIIO::ImageOutput::create(path);
     if (!output) {
@@ -87,10 +103,8 @@ extern "C" conic_bridge_result conic_bridge_find_writer(const char *path, conic_
   });
 }
 
-extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_bridge_picture *picture,
-                                                  const void *samples,
-                                                  int (*take)(void *cookie, const void *bytes, size_t n_bytes),
-                                                  void *cookie, char *message) {
+conic_bridge_result write(const char *path, const conic_bridge_picture *picture, const void *samples,
+                          int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie, char *message) {
   return guarded(message, [&] {
     OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(path);
@@ -110,9 +124,9 @@ extern "C" conic_bridge_result conic_bridge_write(const char *path, const conic_
   });
 }
 
-extern "C" conic_bridge_result conic_bridge_read(const char *path, conic_bridge_picture *picture,
-                                                 void *(*make_room)(void *cookie, const conic_bridge_picture *picture),
-                                                 void *cookie, char *message) {
+conic_bridge_result read(const char *path, conic_bridge_picture *picture,
+                         void *(*make_room)(void *cookie, const conic_bridge_picture *picture), void *cookie,
+                         char *message) {
   return guarded(message, [&] {
     OIIO::ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1); // straight colour stays straight
@@ -130,9 +144,21 @@ extern "C" conic_bridge_result conic_bridge_read(const char *path, conic_bridge_
     void *room = make_room(cookie, picture);
     if (!room)
       return CONIC_BRIDGE_MEMORY;
-    if (!input->read_image(0, 0, 0, spec.nchannels, type_of(picture->sample_bytes), room))
+    // Some readers go on after an error, and have only noted it.
+    if (!read_samples(*input, type_of(picture->sample_bytes), room) || input->has_error())
       return fail(message, input->geterror());
     input->close();
     return CONIC_BRIDGE_OK;
   });
+}
+
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+
+} // namespace
+
+extern "C" {
+CONIC_API extern const conic_bridge conic_openimageio_bridge;
+const conic_bridge conic_openimageio_bridge = {
+    TEXT(CONIC_VERSION_MAJOR) "." TEXT(CONIC_VERSION_MINOR) "." TEXT(CONIC_VERSION_PATCH), find_writer, write, read};
 }

@@ -150,10 +150,11 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
     return CONIC_ERROR_MEMORY;
   reader->source = &source;
   reader->builder = &builder;
-  reader->properties = header->properties + vertices->first_property;
   conic_status status = conic_ply_layout_find(input, header, vertices, options->cutoff, &reader->layout);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, &builder);
+  }
   if (status == CONIC_OK)
     status = read_elements(reader, header, vertices);
   conic_memory_release(input->context, reader);

@@ -123,7 +123,7 @@ conic_status conic_ply_read_value(conic_ply_source *source, conic_ply_type type,
 
 conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_ply_property *property,
                                         uint64_t *length) {
-  double value;
+  double value = 0.0;
   conic_status status = conic_ply_read_value(source, property->count_type, &value);
   if (status != CONIC_OK)
     return status;

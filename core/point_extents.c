@@ -9,7 +9,7 @@
 #include "core/voronoi_cell.h"
 
 /* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
-#define CELL_RADIUS 1.35
+#define CELL_RADIUS 1.5
 /* The ellipse around a cell reaches no farther than this many of its radii: one that kept the ratio of a long cell
  * would point far out of it. */
 #define GREATEST_REACH 1.1
@@ -18,7 +18,7 @@
 #define GREATEST_SLOPE 0.866
 #define LEAST_COSINE (-0.3)
 /* A spacing is at most this many times the median of the neighbours'. */
-#define GREATEST_GROWTH 1.25
+#define GREATEST_GROWTH 1.35
 /* A point is isolated where its nearest neighbour is farther than this many times the median of the neighbours'
  * spacings; its outline then is half such a spacing. */
 #define ISOLATION 4.0
@@ -94,7 +94,9 @@ static void space_slots(void *data, size_t begin, size_t end) {
 
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings) {
-  spacing_work work = {neighbourhood, spacings};
+  spacing_work work;
+  work.neighbourhood = neighbourhood;
+  work.spacings = spacings;
   return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
 }
 

@@ -15,8 +15,9 @@ static void place(const conic_scene *scene, uint64_t i, conic_surface_point *poi
   uint64_t count = scene->options.count, edge = exact_root(count);
   double u, v;
   if (edge) {
-    u = ((double)(i % edge) + 0.5) / (double)edge;
-    v = ((double)(i / edge) + 0.5) / (double)edge;
+    uint64_t row = i / edge, column = i % edge;
+    u = ((double)column + 0.5) / (double)edge;
+    v = ((double)row + 0.5) / (double)edge;
   } else {
     conic_scene_golden(i, count, &v, &u);
   }

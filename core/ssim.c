@@ -46,7 +46,7 @@ static void encode_row(const color_work *work, int channel, size_t y) {
   const float *b = (const float *)work->b->planes[CONIC_PLANE_RGBA] + first;
   for (size_t x = 0; x < work->width; x++) {
     buffers->a[x] = encode(a[4 * x]);
-    buffers->b[x] = memcmp(&a[4 * x], &b[4 * x], sizeof *a) == 0 ? buffers->a[x] : encode(b[4 * x]);
+    buffers->b[x] = conic_same_bits(a[4 * x], b[4 * x]) ? buffers->a[x] : encode(b[4 * x]);
   }
 }
 

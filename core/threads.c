@@ -75,6 +75,7 @@ conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
       break;
     made->n_workers++;
   }
+  context->options.threads = made->n_workers + 1; /* those that there are */
   *pool = made;
   return CONIC_OK;
 }

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "core/openimageio_bridge.h"
+
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)
 
@@ -11,9 +13,6 @@ const char *conic_version(void) {
 
 #ifndef CONIC_HAVE_OPENEXR
 #define CONIC_HAVE_OPENEXR 0
-#endif
-#ifndef CONIC_HAVE_OPENIMAGEIO
-#define CONIC_HAVE_OPENIMAGEIO 0
 #endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
@@ -26,11 +25,14 @@ const char *conic_version(void) {
 #endif
 
 static const conic_feature features[] = {
-    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", CONIC_HAVE_OPENIMAGEIO},
-    {"OpenCL", CONIC_HAVE_OPENCL},   {"zstd", CONIC_HAVE_ZSTD},
-    {"CURL", CONIC_HAVE_CURL},
+    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", 1},        {"OpenCL", CONIC_HAVE_OPENCL},
+    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL},
 };
+static const conic_feature without_openimageio = {"OpenImageIO", 0};
+enum { I_OPENIMAGEIO = 1 };
 
 const conic_feature *conic_feature_at(int i) {
+  if (i == I_OPENIMAGEIO && !conic_bridge_is_there())
+    return &without_openimageio;
   return i >= 0 && (size_t)i < sizeof features / sizeof features[0] ? &features[i] : NULL;
 }

@@ -2,14 +2,19 @@
 
 #include <string.h>
 
-/* The tiles that a footprint's box touches. */
+/* The tiles that a box touches. */
 typedef struct tile_range {
   int x_begin, x_end, y_begin, y_end;
 } tile_range;
 
-static tile_range tiles_of(const conic_bins *bins, const conic_footprint *footprint) {
-  tile_range range = {footprint->x_begin / bins->tile, (footprint->x_end - 1) / bins->tile + 1,
-                      footprint->y_begin / bins->tile, (footprint->y_end - 1) / bins->tile + 1};
+/* pixel / tile by a multiplication: exact for pixels below 65,536 and tiles up to 256. */
+static int tile_of(const conic_bins *bins, unsigned pixel) {
+  return (int)((pixel * bins->reciprocal) >> 32);
+}
+
+static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
+  tile_range range = {tile_of(bins, box->x_begin), tile_of(bins, box->x_end - 1u) + 1, tile_of(bins, box->y_begin),
+                      tile_of(bins, box->y_end - 1u) + 1};
   return range;
 }
 
@@ -18,7 +23,7 @@ void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t
   uint32_t *counts = bins->counts + i_chunk * bins->n_tiles;
   memset(counts, 0, bins->n_tiles * sizeof *counts);
   for (size_t i = 0; i < chunk->n_drawn; i++) {
-    tile_range range = tiles_of(bins, &projected->footprints[chunk->first + i]);
+    tile_range range = tiles_of(bins, &projected->boxes[chunk->first + i]);
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++)
         counts[y * bins->n_tiles_x + x]++;
@@ -46,7 +51,7 @@ void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t 
   const conic_chunk *chunk = &projected->chunks[i_chunk];
   uint32_t *next = bins->counts + i_chunk * bins->n_tiles;
   for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++) {
-    tile_range range = tiles_of(bins, &projected->footprints[i]);
+    tile_range range = tiles_of(bins, &projected->boxes[i]);
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++) {
         size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;

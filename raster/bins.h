@@ -5,7 +5,8 @@
 #include "raster/projected.h"
 
 typedef struct conic_bins {
-  int tile; /* edge in pixels */
+  int tile;            /* edge in pixels */
+  uint64_t reciprocal; /* ⌈2³² / tile⌉ */
   int n_tiles_x, n_tiles_y;
   size_t n_tiles;
   uint32_t *counts;     /* [chunk][tile]: first how many, then where the chunk's next entry goes */

@@ -11,7 +11,6 @@ typedef struct conic_row {
   float q_rest;       /* (s3·dy)² */
   float iz_offset;    /* iz0 + iz_dy·dy */
   float plane_offset; /* iz0 + plane_dy·dy */
-  float u, v;         /* rays: U and V at dx = 0 */
 } conic_row;
 
 typedef struct conic_fragment {
@@ -35,7 +34,6 @@ static inline conic_row conic_row_begin(const conic_footprint *footprint, float 
   row.q_rest = minor * minor;
   row.iz_offset = footprint->iz0 + footprint->iz_dy * dy;
   row.plane_offset = footprint->iz0 + footprint->plane_dy * dy;
-  row.u = row.v = 0.0f;
   return row;
 }
 
@@ -89,39 +87,18 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
   return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
 }
 
-/* What is the same for all rows of a footprint in a window of pixels. */
-typedef struct conic_span {
-  const conic_footprint *footprint;
-  int x_begin, x_end;
-  float from, to; /* the first and last pixel, from the reference */
-  float inverse_s1;
-} conic_span;
-
-static inline conic_span conic_span_begin(const conic_footprint *footprint, int x_begin, int x_end) {
-  conic_span span = {
-      footprint,           x_begin, x_end, (float)(x_begin - footprint->x), (float)(x_end - 1 - footprint->x),
-      1.0f / footprint->s1};
-  return span;
-}
-
-/* Pixels [begin, end) of a row, within the window, that may have q < support; a hair more, since every pixel is tested.
- */
-static inline void conic_row_span(const conic_span *span, const conic_row *row, float support, int *begin, int *end) {
-  const conic_footprint *footprint = span->footprint;
-  float rest = support - row->q_rest;
-  *begin = *end = span->x_begin;
-  if (!(rest > 0.0f))
-    return;
-  float half = sqrtf(rest) * span->inverse_s1, middle = -row->q_offset * span->inverse_s1;
-  float slack = 0.02f + 1e-5f * (fabsf(middle) + half);
-  float low = (middle - half) - slack - footprint->dx0, high = (middle + half) + slack - footprint->dx0;
-  low = low > span->from ? low : span->from;
-  high = high < span->to ? high : span->to;
-  if (low <= high) {
-    int first = footprint->x + (int)low, last = footprint->x + (int)high;
-    *begin = first > span->x_begin ? first : span->x_begin; /* far from the reference, a float skips integers */
-    *end = last < span->x_end - 1 ? last + 1 : span->x_end;
-  }
+/* The splat at a pixel: 1 where it covers it. */
+static inline int conic_fragment_at(const conic_view *view, const conic_projected *projected,
+                                    const conic_footprint *footprint, int x, int y, conic_fragment *fragment) {
+  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  if (footprint->s3 == 0.0f)
+    return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
+  conic_row row = conic_row_begin(footprint, dy);
+  fragment->q = conic_row_q(footprint, &row, dx);
+  fragment->iz = conic_row_iz(footprint, &row, dx);
+  fragment->plane_iz = row.plane_offset + footprint->plane_dx * dx;
+  fragment->scale = 1.0f;
+  return fragment->q < view->support;
 }
 
 #endif

@@ -1,82 +1,253 @@
-/* Four pixels at a time, in the compiler's vector types: every lane does exactly what the scalar code would, so that
- * nothing here changes a bit. A mask has all bits set in a lane that holds, none in one that does not. */
+/* Lanes: several pixels at a time, as wide as the instruction set that the including file is compiled for. Every lane
+ * does exactly what scalar code would, so that no width changes a bit.
+ *
+ * A block is 4 rows of CONIC_BLOCK_COLUMNS pixels, column by column: lane l is column l / 4, row l % 4. Floats take + -
+ * × ÷ as they are. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: where a is not a number, b. */
 #ifndef RASTER_LANES_H
 #define RASTER_LANES_H
 
 #include <stdint.h>
 #include <string.h>
 
+#if defined(__AVX512F__) || defined(__AVX2__) || defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#if defined(__AVX512F__)
+#define CONIC_LANES 16
+#elif defined(__AVX2__)
+#define CONIC_LANES 8
+#else
 #define CONIC_LANES 4
+#endif
 
-typedef float conic_floats __attribute__((vector_size(4 * CONIC_LANES)));
-typedef int32_t conic_mask __attribute__((vector_size(4 * CONIC_LANES)));
-typedef uint32_t conic_indices __attribute__((vector_size(4 * CONIC_LANES)));
+#define CONIC_BLOCK_ROWS 4
+#define CONIC_BLOCK_COLUMNS (CONIC_LANES / CONIC_BLOCK_ROWS)
 
-static inline conic_floats conic_load(const float *from) {
-  conic_floats lanes;
-  memcpy(&lanes, from, sizeof lanes);
-  return lanes;
+#define CONIC_INLINE static inline __attribute__((always_inline))
+
+typedef float lanes __attribute__((vector_size(4 * CONIC_LANES)));
+typedef int32_t int_lanes __attribute__((vector_size(4 * CONIC_LANES)));
+typedef uint32_t index_lanes __attribute__((vector_size(4 * CONIC_LANES)));
+
+CONIC_INLINE lanes lanes_load(const float *from) {
+  lanes value;
+  memcpy(&value, from, sizeof value);
+  return value;
 }
 
-static inline void conic_store(float *to, conic_floats lanes) {
-  memcpy(to, &lanes, sizeof lanes);
+CONIC_INLINE void lanes_store(float *to, lanes value) {
+  memcpy(to, &value, sizeof value);
 }
 
-static inline conic_indices conic_load_indices(const uint32_t *from) {
-  conic_indices lanes;
-  memcpy(&lanes, from, sizeof lanes);
-  return lanes;
+CONIC_INLINE index_lanes lanes_load_indices(const uint32_t *from) {
+  index_lanes value;
+  memcpy(&value, from, sizeof value);
+  return value;
 }
 
-static inline void conic_store_indices(uint32_t *to, conic_indices lanes) {
-  memcpy(to, &lanes, sizeof lanes);
+CONIC_INLINE void lanes_store_indices(uint32_t *to, index_lanes value) {
+  memcpy(to, &value, sizeof value);
 }
 
-static inline conic_floats conic_splat_lanes(float value) {
-  return (conic_floats){value, value, value, value};
+CONIC_INLINE lanes lanes_of(float value) {
+  return value - (lanes){0};
 }
 
-static inline conic_indices conic_index_lanes(uint32_t value) {
-  return (conic_indices){value, value, value, value};
+CONIC_INLINE index_lanes lanes_of_index(uint32_t value) {
+  return value - (index_lanes){0};
 }
 
-/* mask ? yes : no, lane by lane. */
-static inline conic_floats conic_select(conic_mask mask, conic_floats yes, conic_floats no) {
-  return (conic_floats)((mask & (conic_mask)yes) | (~mask & (conic_mask)no));
+CONIC_INLINE int_lanes lanes_of_int(int32_t value) {
+  return value - (int_lanes){0};
 }
 
-static inline conic_indices conic_select_indices(conic_mask mask, conic_indices yes, conic_indices no) {
-  return ((conic_indices)mask & yes) | (~(conic_indices)mask & no);
+#if defined(__AVX512F__)
+
+typedef __mmask16 lanes_mask;
+
+CONIC_INLINE lanes_mask lanes_less(lanes a, lanes b) {
+  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
 }
 
-static inline int conic_any(conic_mask mask) {
-  uint64_t halves[2];
-  memcpy(halves, &mask, sizeof halves);
-  return (halves[0] | halves[1]) != 0;
+CONIC_INLINE lanes_mask lanes_at_least(lanes a, lanes b) {
+  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GE_OQ);
 }
 
-/* How many lanes hold. */
-static inline unsigned conic_count_lanes(conic_mask mask) {
-  unsigned n = 0;
-  for (int i = 0; i < CONIC_LANES; i++)
-    n += (unsigned)mask[i] & 1u;
-  return n;
+CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
+  return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
+}
+
+CONIC_INLINE lanes lanes_select(lanes_mask mask, lanes yes, lanes no) {
+  return (lanes)_mm512_mask_blend_ps(mask, (__m512)no, (__m512)yes);
+}
+
+CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, index_lanes no) {
+  return (index_lanes)_mm512_mask_blend_epi32(mask, (__m512i)no, (__m512i)yes);
+}
+
+/* value where the mask holds, else +0. */
+CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
+  return (lanes)_mm512_maskz_mov_ps(mask, (__m512)value);
+}
+
+/* value + 1 where the mask holds. */
+CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
+  return (index_lanes)_mm512_mask_add_epi32((__m512i)value, mask, (__m512i)value, _mm512_set1_epi32(1));
+}
+
+CONIC_INLINE int lanes_any(lanes_mask mask) {
+  return mask != 0;
+}
+
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)__builtin_popcount(mask);
+}
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return (lanes)_mm512_max_ps((__m512)a, (__m512)b);
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
+}
+
+CONIC_INLINE lanes lanes_sqrt(lanes a) {
+  return (lanes)_mm512_sqrt_ps((__m512)a);
+}
+
+#else
+
+typedef int_lanes lanes_mask;
+
+CONIC_INLINE lanes_mask lanes_less(lanes a, lanes b) {
+  return a < b;
+}
+
+CONIC_INLINE lanes_mask lanes_at_least(lanes a, lanes b) {
+  return a >= b;
+}
+
+CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
+  return a < b;
+}
+
+CONIC_INLINE lanes lanes_select(lanes_mask mask, lanes yes, lanes no) {
+  return (lanes)((mask & (int_lanes)yes) | (~mask & (int_lanes)no));
+}
+
+CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, index_lanes no) {
+  return ((index_lanes)mask & yes) | (~(index_lanes)mask & no);
+}
+
+/* value where the mask holds, else +0. */
+CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
+  return (lanes)(mask & (int_lanes)value);
+}
+
+/* value + 1 where the mask holds. */
+CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
+  return value - (index_lanes)mask;
+}
+
+#if defined(__AVX2__)
+
+CONIC_INLINE int lanes_any(lanes_mask mask) {
+  return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+}
+
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)__builtin_popcount((unsigned)_mm256_movemask_ps((__m256)mask));
+}
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
+}
+
+CONIC_INLINE lanes lanes_sqrt(lanes a) {
+  return (lanes)_mm256_sqrt_ps((__m256)a);
+}
+
+#elif defined(__SSE2__)
+
+CONIC_INLINE int lanes_any(lanes_mask mask) {
+  return _mm_movemask_ps((__m128)mask) != 0;
+}
+
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  unsigned bits = (unsigned)_mm_movemask_ps((__m128)mask);
+  return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* how many bits, for each of 16 patterns */
+}
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return (lanes)_mm_max_ps((__m128)a, (__m128)b);
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return (lanes)_mm_min_ps((__m128)a, (__m128)b);
+}
+
+CONIC_INLINE lanes lanes_sqrt(lanes a) {
+  return (lanes)_mm_sqrt_ps((__m128)a);
+}
+
+#else
+
+CONIC_INLINE int lanes_any(lanes_mask mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
+  return (unsigned)-(mask[0] + mask[1] + mask[2] + mask[3]);
+}
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return lanes_select(a > b, a, b);
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return lanes_select(a < b, a, b);
+}
+
+CONIC_INLINE lanes lanes_sqrt(lanes a) {
+  return (lanes){__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
+}
+
+#endif
+#endif
+
+/* 0, 0, 0, 0, 1, 1, 1, 1, … and 0, 1, 2, 3, 0, 1, 2, 3, …: a lane's place in its block. */
+CONIC_INLINE int_lanes lanes_columns(void) {
+  int_lanes columns;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    columns[lane] = lane / CONIC_BLOCK_ROWS;
+  return columns;
+}
+
+CONIC_INLINE int_lanes lanes_rows(void) {
+  int_lanes rows;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    rows[lane] = lane % CONIC_BLOCK_ROWS;
+  return rows;
 }
 
 /* conic_exp_negative (core/kernel.h) in every lane: the same operations in the same order. */
-static inline conic_floats conic_exp_negative_lanes(conic_floats x) {
-  conic_floats least = conic_splat_lanes(-80.0f);
-  x = conic_select(x > least, x, least);
-  conic_mask k = __builtin_convertvector(x * 0x1.715476p+0f - 0.5f, conic_mask);
-  conic_floats k_float = __builtin_convertvector(k, conic_floats);
-  conic_floats r = (x - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
-  conic_floats p = conic_splat_lanes(0x1.6a23cap-10f);
+CONIC_INLINE lanes lanes_exp_negative(lanes x) {
+  x = lanes_max(x, lanes_of(-80.0f));
+  int_lanes k = __builtin_convertvector(x * 0x1.715476p+0f - 0.5f, int_lanes);
+  lanes k_float = __builtin_convertvector(k, lanes);
+  lanes r = (x - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
+  lanes p = lanes_of(0x1.6a23cap-10f);
   p = p * r + 0x1.123a20p-7f;
   p = p * r + 0x1.5558f2p-5f;
   p = p * r + 0x1.555492p-3f;
   p = p * r + 0x1.fffffcp-2f;
   p = (p * (r * r) + r) + 1.0f;
-  return (conic_floats)((conic_mask)p + k * (1 << 23));
+  return (lanes)((int_lanes)p + k * (1 << 23));
 }
 
 #endif

@@ -19,6 +19,7 @@ typedef struct splat_setup {
   float nearest, farthest; /* 1 - reach and 1 + reach, rounded from double: the difference may nearly vanish */
   float along_ray;         /* p·(t_u × t_v), up to a positive factor: below 0 the splat faces the viewer */
   conic_footprint *footprint;
+  conic_box *box;
   conic_ray *ray;
   conic_surface *surface;
 } splat_setup;
@@ -95,6 +96,12 @@ static projected_kernel dual_conic(const tangents *t, float cutoff, float w) {
   return k;
 }
 
+/* The Jacobian at the centre (HQP §3.4 with its Eq. 3.27 corrected): what the dual conic becomes for a vanishing
+ * outline, F_g = 0 and w = 1. */
+static projected_kernel jacobian_at_center(const tangents *t) {
+  return dual_conic(t, 0.0f, 1.0f);
+}
+
 /* The smaller eigenvalue of R' is below ¼ px²: edge-on or tiny. */
 static int is_thin(const projected_kernel *k) {
   float trace = k->rxx + k->ryy, difference = k->rxx - k->ryy;
@@ -120,9 +127,10 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
-static conic_verdict project_conic(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+static conic_verdict project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
+  conic_box *box = s->box;
   float h = view->prefilter;
   float vxx = k->rxx + h, vyy = k->ryy + h;
   float determinant = (k->root_determinant * k->root_determinant + h * (k->rxx + k->ryy)) + h * h;
@@ -130,9 +138,9 @@ static conic_verdict project_conic(const splat_setup *s, const tangents *t, cons
     return CONIC_SKIPPED;
   double x_t = (view->cx + view->fx * (s->p[0] * s->inverse_z)) + (double)k->shift_x;
   double y_t = (view->cy + view->fy * (s->p[1] * s->inverse_z)) + (double)k->shift_y;
-  pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &footprint->x_begin, &footprint->x_end);
-  pixel_range(y_t, view->cutoff * sqrtf(vyy), view->height, &footprint->y_begin, &footprint->y_end);
-  if (footprint->x_begin >= footprint->x_end || footprint->y_begin >= footprint->y_end)
+  pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &box->x_begin, &box->x_end);
+  pixel_range(y_t, view->cutoff * sqrtf(vyy), view->height, &box->y_begin, &box->y_end);
+  if (conic_box_is_empty(box))
     return CONIC_CULLED;
   /* A centre that is off the screen by more than this has lost its fraction anyway. */
   x_t = x_t > -1e9 ? x_t < 1e9 ? x_t : 1e9 : -1e9;
@@ -146,7 +154,7 @@ static conic_verdict project_conic(const splat_setup *s, const tangents *t, cons
   footprint->s3 = 1.0f / sqrtf(vyy);
   footprint->amplitude = k->root_determinant / sqrtf(determinant);
   set_depth(s, t, k, vxx, vyy, determinant);
-  return CONIC_DRAWN_CONIC;
+  return CONIC_DRAWN_VARIANCE;
 }
 
 /* Wholly before near: the usual path, in float. */
@@ -164,13 +172,17 @@ static conic_verdict project_before_near(splat_setup *s, const float tu[3], cons
   s->along_ray = t.ux * t.vy - t.uy * t.vx;
   if (view->cull_back && s->along_ray > 0.0f)
     return CONIC_CULLED;
+  if (view->method == CONIC_METHOD_AFFINE) {
+    projected_kernel affine = jacobian_at_center(&t);
+    return project_variance(s, &t, &affine);
+  }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
   if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k)) {
     conic_disc disc;
     fill_disc(s, &disc);
-    return conic_project_ray(view, &disc, s->footprint, s->ray);
+    return conic_project_ray(view, &disc, s->footprint, s->box, s->ray);
   }
-  return project_conic(s, &t, &k);
+  return project_variance(s, &t, &k);
 }
 
 static conic_verdict project_across_near(splat_setup *s) {
@@ -179,7 +191,7 @@ static conic_verdict project_across_near(splat_setup *s) {
   s->along_ray = disc.determinant > 0.0 ? 1.0f : disc.determinant < 0.0 ? -1.0f : 0.0f;
   if (s->view->cull_back && disc.determinant > 0.0)
     return CONIC_CULLED;
-  return conic_project_near(s->view, &disc, s->footprint, s->ray);
+  return conic_project_near(s->view, &disc, s->footprint, s->box, s->ray);
 }
 
 /* The unit normal in the world, and the length of the longer axis. 0 where there is no normal. */
@@ -250,8 +262,6 @@ static conic_verdict project_splat(splat_setup *s) {
     return CONIC_SKIPPED;
   if (!(s->p[2] + (double)reach_z > view->near_z))
     return CONIC_CULLED;
-  if (!world_normal(s->splats, s->i, normal, &longer))
-    return CONIC_SKIPPED;
   conic_verdict verdict;
   s->footprint->amplitude = 1.0f;
   s->inverse_z = 1.0 / s->p[2];
@@ -264,6 +274,8 @@ static conic_verdict project_splat(splat_setup *s) {
     verdict = project_across_near(s);
   if (verdict >= CONIC_CULLED)
     return verdict;
+  if (!world_normal(s->splats, s->i, normal, &longer))
+    return CONIC_SKIPPED;
   if (verdict == CONIC_DRAWN_SEGMENT)
     s->footprint->amplitude = 0.0f;
   set_weighing(s, longer);
@@ -271,30 +283,40 @@ static conic_verdict project_splat(splat_setup *s) {
   return is_finite_record(s->footprint, s->ray, s->surface) ? verdict : CONIC_SKIPPED;
 }
 
+void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
+                       conic_chunk *chunk) {
+  splat_setup s = {.view = view, .splats = splats, .i = i};
+  s.footprint = &projected->footprints[chunk->first + chunk->n_drawn];
+  s.box = &projected->boxes[chunk->first + chunk->n_drawn];
+  s.surface = &projected->surfaces[chunk->first + chunk->n_drawn];
+  s.ray = &projected->rays[chunk->first + chunk->n_rays];
+  conic_verdict verdict = project_splat(&s);
+  if (verdict == CONIC_CULLED) {
+    chunk->n_culled++;
+  } else if (verdict == CONIC_SKIPPED) {
+    chunk->n_skipped++;
+  } else {
+    if (verdict == CONIC_DRAWN_RAY)
+      s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
+    int is_own = verdict == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
+                                            : verdict == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+    chunk->n_fallback += !is_own;
+    chunk->n_drawn++;
+  }
+}
+
+size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
+  conic_chunk *chunk = &projected->chunks[i_chunk];
+  size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
+  memset(chunk, 0, sizeof *chunk);
+  chunk->first = first < splats->count ? first : splats->count;
+  return end < splats->count ? end : splats->count;
+}
+
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
-  if (end > splats->count)
-    end = splats->count;
-  memset(chunk, 0, sizeof *chunk);
-  chunk->first = first;
-  splat_setup s = {.view = view, .splats = splats};
-  for (s.i = first; s.i < end; s.i++) {
-    s.footprint = &projected->footprints[first + chunk->n_drawn];
-    s.surface = &projected->surfaces[first + chunk->n_drawn];
-    s.ray = &projected->rays[first + chunk->n_rays];
-    conic_verdict verdict = project_splat(&s);
-    if (verdict == CONIC_CULLED) {
-      chunk->n_culled++;
-    } else if (verdict == CONIC_SKIPPED) {
-      chunk->n_skipped++;
-    } else {
-      if (verdict == CONIC_DRAWN_RAY)
-        s.footprint->i_ray = (uint32_t)(first + chunk->n_rays++);
-      if ((verdict == CONIC_DRAWN_RAY) != (view->method == CONIC_METHOD_RAY))
-        chunk->n_fallback++;
-      chunk->n_drawn++;
-    }
-  }
+  size_t end = conic_chunk_begin(splats, i_chunk, projected);
+  for (size_t i = chunk->first; i < end; i++)
+    conic_project_one(view, splats, i, projected, chunk);
 }

@@ -36,23 +36,20 @@ static void pixels_between(double low, double high, int size, uint16_t *begin, u
   }
 }
 
-static int is_empty(const conic_footprint *footprint) {
-  return footprint->x_begin >= footprint->x_end || footprint->y_begin >= footprint->y_end;
-}
-
 /* The clipped disc's box, widened by what the prefilter adds; its middle becomes the reference pixel. */
-static conic_verdict set_box(const conic_view *view, const conic_disc *disc, conic_footprint *footprint) {
+static conic_verdict set_box(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                             conic_box *box) {
   const double along_x[2] = {1.0, 0.0}, along_y[2] = {0.0, 1.0};
   conic_screen_point left, right, top, bottom;
   if (!conic_clip_disc(view, disc, along_x, &left, &right) || !conic_clip_disc(view, disc, along_y, &top, &bottom))
     return CONIC_CULLED;
   double growth = (double)view->growth_px;
-  pixels_between(left.x_px - growth, right.x_px + growth, view->width, &footprint->x_begin, &footprint->x_end);
-  pixels_between(top.y_px - growth, bottom.y_px + growth, view->height, &footprint->y_begin, &footprint->y_end);
-  if (is_empty(footprint))
+  pixels_between(left.x_px - growth, right.x_px + growth, view->width, &box->x_begin, &box->x_end);
+  pixels_between(top.y_px - growth, bottom.y_px + growth, view->height, &box->y_begin, &box->y_end);
+  if (conic_box_is_empty(box))
     return CONIC_CULLED;
-  footprint->x = (footprint->x_begin + footprint->x_end) / 2;
-  footprint->y = (footprint->y_begin + footprint->y_end) / 2;
+  footprint->x = (box->x_begin + box->x_end) / 2;
+  footprint->y = (box->y_begin + box->y_end) / 2;
   footprint->dx0 = footprint->dy0 = 0.0f;
   return CONIC_DRAWN_RAY;
 }
@@ -74,11 +71,11 @@ static double gradient_length(const conic_view *view, const conic_disc *disc) {
 }
 
 conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                conic_ray *ray) {
+                                conic_box *box, conic_ray *ray) {
   double m_u[3], m_v[3];
   if (disc->determinant == 0.0)
     return CONIC_SKIPPED;
-  conic_verdict verdict = set_box(view, disc, footprint);
+  conic_verdict verdict = set_box(view, disc, footprint, box);
   if (verdict != CONIC_DRAWN_RAY)
     return verdict;
   set_range(view, disc, footprint);
@@ -104,7 +101,8 @@ conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, 
 
 /* The clipped disc seen from its own plane: a segment, whose variance is that of a splat with its ends on the outline.
  */
-static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint) {
+static conic_verdict project_segment(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
+                                     conic_box *box) {
   conic_screen_point a, b;
   double gx = disc->n[0] / view->fx, gy = disc->n[1] / view->fy, g = sqrt(gx * gx + gy * gy);
   const double along_line[2] = {g > 0.0 ? -gy / g : 1.0, g > 0.0 ? gx / g : 0.0};
@@ -123,9 +121,9 @@ static conic_verdict project_segment(const conic_view *view, const conic_disc *d
   double determinant = h * (variance + h), vyy = ryy + h;
   double x_t = 0.5 * (a.x_px + b.x_px), y_t = 0.5 * (a.y_px + b.y_px);
   double half_x = cutoff * sqrt(rxx + h), half_y = cutoff * sqrt(vyy);
-  pixels_between(x_t - half_x - 1.0, x_t + half_x + 1.0, view->width, &footprint->x_begin, &footprint->x_end);
-  pixels_between(y_t - half_y - 1.0, y_t + half_y + 1.0, view->height, &footprint->y_begin, &footprint->y_end);
-  if (is_empty(footprint))
+  pixels_between(x_t - half_x - 1.0, x_t + half_x + 1.0, view->width, &box->x_begin, &box->x_end);
+  pixels_between(y_t - half_y - 1.0, y_t + half_y + 1.0, view->height, &box->y_begin, &box->y_end);
+  if (conic_box_is_empty(box))
     return CONIC_CULLED;
   /* The reference is the pixel of the image nearest the middle, which may be far outside. */
   double x = floor(x_t), y = floor(y_t);
@@ -148,12 +146,12 @@ static conic_verdict project_segment(const conic_view *view, const conic_disc *d
 }
 
 conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                 conic_ray *ray) {
+                                 conic_box *box, conic_ray *ray) {
   /* Edge-on is, as elsewhere, less than half a pixel per standard deviation: here, of the band on the screen in which
    * the plane's inverse depth runs from the disc's far to its near end. */
   set_range(view, disc, footprint);
   double range = (double)footprint->iz_near - (double)footprint->iz_far;
   if (range * fabs(disc->determinant) < (double)view->cutoff * gradient_length(view, disc))
-    return project_segment(view, disc, footprint);
-  return conic_project_ray(view, disc, footprint, ray);
+    return project_segment(view, disc, footprint, box);
+  return conic_project_ray(view, disc, footprint, box, ray);
 }

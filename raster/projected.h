@@ -24,10 +24,18 @@ typedef struct conic_footprint {
   float iz0, iz_dx, iz_dy;
   float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
   float iz_far, iz_near;
-  float nearness;                          /* s = 1 / (1 + ε/‖p‖) */
-  float amplitude;                         /* A·opacity */
-  uint16_t x_begin, x_end, y_begin, y_end; /* pixels that may be covered, within the image */
+  float nearness;  /* s = 1 / (1 + ε/‖p‖) */
+  float amplitude; /* A·opacity */
 } conic_footprint;
+
+/* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. */
+typedef struct conic_box {
+  uint16_t x_begin, x_end, y_begin, y_end;
+} conic_box;
+
+static inline int conic_box_is_empty(const conic_box *box) {
+  return box->x_begin >= box->x_end || box->y_begin >= box->y_end;
+}
 
 /* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel. */
 typedef struct conic_ray {
@@ -56,19 +64,27 @@ typedef struct conic_projected {
   size_t n_chunks, chunk_size;
   conic_chunk *chunks;
   conic_footprint *footprints;
+  conic_box *boxes;
   conic_surface *surfaces;
   conic_ray *rays;
 } conic_projected;
 
-/* Projects the splats of chunk i_chunk. */
+/* Empties chunk i_chunk and sets its `first`; returns the splat after its last. */
+size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected);
+
+/* Projects splat i, the next of its chunk, and appends it to the chunk where it is drawn. */
+void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
+                       conic_chunk *chunk);
+
+/* Projects the splats of chunk i_chunk: the plain C reference of the kernel table's `project`. */
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected);
 
 /* What became of a splat. */
 typedef enum conic_verdict {
-  CONIC_DRAWN_CONIC,   /* by the dual conic's variance */
-  CONIC_DRAWN_RAY,     /* by the exact ray–splat parameter */
-  CONIC_DRAWN_SEGMENT, /* edge-on and reaching the near plane: by the variance of a segment */
+  CONIC_DRAWN_VARIANCE, /* by a variance on the screen: the dual conic's, or the centre's Jacobian's */
+  CONIC_DRAWN_RAY,      /* by the exact ray–splat parameter */
+  CONIC_DRAWN_SEGMENT,  /* edge-on and reaching the near plane: by the variance of a segment */
   CONIC_CULLED,
   CONIC_SKIPPED
 } conic_verdict;
@@ -83,11 +99,11 @@ typedef struct conic_disc {
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
 conic_verdict conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                conic_ray *ray);
+                                conic_box *box, conic_ray *ray);
 
 /* The same for a disc that reaches the near plane, which may turn out to stand edge-on (DRAWN_SEGMENT: the amplitude
  * is 0). */
 conic_verdict conic_project_near(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,
-                                 conic_ray *ray);
+                                 conic_box *box, conic_ray *ray);
 
 #endif

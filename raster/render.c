@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "raster/tile.h"
+#include "raster/tile_kernels.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
 typedef struct kept {
@@ -23,7 +23,7 @@ typedef struct tile_times {
 
 struct conic_renderer {
   conic_context *context;
-  kept footprints, surfaces, rays, chunks, counts, tile_begin, references, planes, times;
+  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, references, planes, times;
 };
 
 /* One frame on its way through the stages. */
@@ -34,6 +34,7 @@ typedef struct frame {
   conic_projected projected;
   conic_bins bins;
   conic_finish finish;
+  const conic_tile_kernels *kernels;
   conic_image *image;
   char *planes; /* one tile's planes a thread */
   size_t planes_bytes;
@@ -50,7 +51,7 @@ static double seconds_now(void) {
 }
 
 const char *conic_method_name(conic_method method) {
-  static const char *const names[CONIC_N_METHODS] = {"conic", "ray"};
+  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine"};
   return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 
@@ -79,8 +80,9 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
-  kept *all[] = {&renderer->footprints, &renderer->surfaces,   &renderer->rays,   &renderer->chunks, &renderer->counts,
-                 &renderer->tile_begin, &renderer->references, &renderer->planes, &renderer->times};
+  kept *all[] = {&renderer->footprints, &renderer->boxes,  &renderer->surfaces,   &renderer->rays,
+                 &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->references,
+                 &renderer->planes,     &renderer->times};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   conic_memory_release(renderer->context, renderer);
@@ -113,12 +115,13 @@ static conic_status plan_chunks(frame *f) {
   projected->chunk_size = (n + n_chunks - 1) / n_chunks;
   projected->chunks = room(renderer, &renderer->chunks, n_chunks, sizeof *projected->chunks);
   projected->footprints = room(renderer, &renderer->footprints, n, sizeof *projected->footprints);
+  projected->boxes = room(renderer, &renderer->boxes, n, sizeof *projected->boxes);
   projected->surfaces = room(renderer, &renderer->surfaces, n, sizeof *projected->surfaces);
   projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
   bins->counts = room(renderer, &renderer->counts, n_chunks * bins->n_tiles, sizeof *bins->counts);
   bins->tile_begin = room(renderer, &renderer->tile_begin, bins->n_tiles * 3 + 1, sizeof *bins->tile_begin);
-  if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays || !bins->counts ||
-      !bins->tile_begin)
+  if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays ||
+      !bins->counts || !bins->tile_begin)
     return CONIC_ERROR_MEMORY;
   f->n_fragments = (uint64_t *)(bins->tile_begin + bins->n_tiles + 1);
   f->n_covered = f->n_fragments + bins->n_tiles;
@@ -129,6 +132,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   conic_renderer *renderer = f->renderer;
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
+  f->bins.reciprocal = ((UINT64_C(1) << 32) + (unsigned)tile - 1) / (unsigned)tile;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
@@ -144,7 +148,7 @@ static conic_status plan_tiles(frame *f, int tile) {
 static void project_task(void *data, size_t i_chunk, int i_thread) {
   frame *f = data;
   (void)i_thread;
-  conic_project_chunk(&f->view, f->splats, i_chunk, &f->projected);
+  f->kernels->project(&f->view, f->splats, i_chunk, &f->projected);
 }
 
 static void count_task(void *data, size_t i_chunk, int i_thread) {
@@ -169,6 +173,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
+  tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
   conic_tile_clear(tile, bins->tile, f->planes + (size_t)i_thread * f->planes_bytes);
 }
 
@@ -189,14 +194,17 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   conic_tile tile;
   double start = seconds_now();
   begin_tile(f, i_tile, i_thread, &tile);
-  conic_tile_visibility(&tile, nearest_only);
+  if (nearest_only)
+    f->kernels->nearest(&tile);
+  else
+    f->kernels->visibility(&tile);
   double seen = seconds_now();
   if (nearest_only)
     conic_tile_take_nearest(&tile);
   else
-    conic_tile_accumulate(&tile);
+    f->kernels->accumulate(&tile);
   double summed = seconds_now();
-  conic_tile_resolve(&tile, &f->finish, f->image);
+  f->kernels->resolve(&tile, &f->finish, f->image);
   f->times[i_thread].visibility += seen - start;
   f->times[i_thread].accumulate += summed - seen;
   f->times[i_thread].resolve += seconds_now() - summed;
@@ -244,7 +252,8 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   }
   statistics->splats_in = f->splats->count;
   statistics->splats_by_method[CONIC_METHOD_RAY] = n_rays;
-  statistics->splats_by_method[CONIC_METHOD_CONIC] = statistics->splats_drawn - n_rays;
+  conic_method by_variance = options->method == CONIC_METHOD_AFFINE ? CONIC_METHOD_AFFINE : CONIC_METHOD_CONIC;
+  statistics->splats_by_method[by_variance] = statistics->splats_drawn - n_rays;
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
@@ -254,6 +263,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
   statistics->threads = conic_context_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
+  statistics->isa = f->kernels->name;
 }
 
 double conic_default_near(const conic_splats *splats) {
@@ -283,15 +293,16 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
   for (int i = 0; i < 3; i++) {
     length_squared += options->light[i] * options->light[i];
     for (int j = 0; j < 3; j++)
-      finish->world_from_cam[i][j] = camera->cam_from_world[j][i];
+      finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
   }
   if (options->has_light && !(length_squared > 1e-200 && length_squared < 1e200))
     return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
   for (int i = 0; options->has_light && i < 3; i++)
     finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
-  finish->needs_viewer =
-      options->shading == CONIC_SHADE_PHONG || (options->shading != CONIC_SHADE_NONE && !options->has_light);
   finish->exposure = conic_exposure_factor(options->exposure);
+  for (int i = 0; options->has_background && i < 3; i++)
+    finish->background[i] = options->background[i] * finish->exposure;
+  finish->background[3] = options->has_background ? 1.0f : 0.0f;
   return CONIC_OK;
 }
 
@@ -324,7 +335,10 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
                       "render: an argument is null, or the options were not initialised");
   if (image->width != camera->width || image->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
-  frame f = {.renderer = renderer, .splats = splats, .image = image};
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .kernels = conic_tile_kernels_of(options->isa)};
+  if (!f.kernels)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
+                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
   conic_status status = measure_scene(context, splats, options, &near_z, &splat_length);
   if (status == CONIC_OK)
     status = conic_view_init(context, splats, camera, options, near_z, splat_length, &f.view);

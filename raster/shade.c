@@ -1,8 +1,4 @@
-#include "raster/tile.h"
-
-/* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
- * the scans and meshes: the darkest side stays readable and white does not burn out. */
-static const float ambient = 0.05f, diffuse = 0.75f, specular = 0.15f;
+#include "raster/resolve.h"
 
 static float dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -32,12 +28,12 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
   }
   const float *light = options->has_light ? finish->light : viewer;
   float towards_light = dot(normal, light), glossy = 0.0f;
-  float lit = ambient + diffuse * at_least_zero(dot(mean_normal, light));
+  float lit = CONIC_AMBIENT + CONIC_DIFFUSE * at_least_zero(dot(mean_normal, light));
   if (options->shading == CONIC_SHADE_PHONG && towards_light > 0.0f) {
     float reflected[3];
     for (int i = 0; i < 3; i++)
       reflected[i] = 2.0f * towards_light * normal[i] - light[i];
-    glossy = specular * gloss(at_least_zero(dot(reflected, viewer))) * dot(mean_normal, mean_normal);
+    glossy = CONIC_SPECULAR * gloss(at_least_zero(dot(reflected, viewer))) * dot(mean_normal, mean_normal);
   }
   for (int i = 0; i < 3; i++)
     shaded[i] = albedo[i] * lit + glossy;

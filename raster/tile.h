@@ -10,7 +10,8 @@
 /* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
 #define CONIC_LEAST_WEIGHT 0x1p-60f
 
-/* The planes of one tile, row by row. Splats are named by their footprint. */
+/* The planes of one tile, in bands of four rows; a band lies column by column (conic_tile_place). Tiny splats so need
+ * few vectors, whatever their width. Splats are named by their footprint. */
 typedef struct conic_tile_planes {
   float *threshold;  /* max of s·iz over what covers the pixel; 0: nothing does */
   float *nearest_iz; /* the largest iz among the visible splats, and whose it is */
@@ -29,9 +30,10 @@ typedef struct conic_tile {
   const conic_projected *projected;
   const uint32_t *references;
   size_t n_references;
-  int stride;                         /* from row to row of the planes: the edge, and room for a few pixels past it */
+  int stride;                         /* columns of a band: the edge, and room for a vector past it */
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   conic_tile_planes planes;
+  int keeps_indices;               /* the image wants counts or ids: nearest and count are kept too */
   uint64_t n_fragments, n_covered; /* found by visibility, and by resolving */
 } conic_tile;
 
@@ -41,30 +43,13 @@ size_t conic_tile_bytes(int edge);
 /* Points the planes into `memory`, of conic_tile_bytes, and empties what the passes add to. */
 void conic_tile_clear(conic_tile *tile, int edge, void *memory);
 
-/* Pass 1: threshold. With `nearest_only`, nearest_iz and nearest instead: the splat that wins alone. */
-void conic_tile_visibility(conic_tile *tile, int nearest_only);
-
-/* Pass 2: sums over the visible splats, in file order. */
-void conic_tile_accumulate(conic_tile *tile);
+/* Where a pixel of the image is in the tile's planes. */
+static inline size_t conic_tile_place(const conic_tile *tile, int x, int y) {
+  size_t row = (size_t)(y - tile->y_begin), column = (size_t)(x - tile->x_begin);
+  return (row / 4 * (size_t)tile->stride + column) * 4 + row % 4;
+}
 
 /* In place of pass 2 where the nearest splat wins: its colour, normal and weight. */
 void conic_tile_take_nearest(conic_tile *tile);
-
-/* How a frame's pixels are finished. */
-typedef struct conic_finish {
-  const conic_render_options *options;
-  double world_from_cam[3][3]; /* for the direction to the viewer */
-  float light[3];              /* unit, towards the light; unused with a headlight */
-  float exposure;              /* factor */
-  int needs_viewer;            /* shading asks for the direction to the viewer */
-} conic_finish;
-
-/* Pass 3: normalises, shades, and writes the tile's pixels of every plane that the image has. */
-void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
-
-/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
- * weighted mean of the splats' unit normals, whose length says how far they agree. */
-void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
-                 const float viewer[3], float shaded[3]);
 
 #endif

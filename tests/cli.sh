@@ -80,6 +80,11 @@ run_wrong 2 '' make sphere -n 10
 run_wrong 2 '' render
 run_wrong 2 '' diff one.pfm
 run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+# What cannot be written is said before anything is read
+run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'needs an ending' render absent.ply -o outputs/a
+run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
+run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
 no_files_but
 
 # Inputs that cannot be used
@@ -138,6 +143,20 @@ grep -q '"points": 2000' out || fail "info does not count"
 # A run that is stopped leaves nothing behind
 timeout --preserve-status --signal TERM --kill-after 60 1 "$conic" make sphere -n 2G -o outputs/a.ply > out 2> err
 [[ $? -eq 4 ]] || fail "a stopped run: exit code"
+no_files_but
+
+# Nor when the signal comes twice at once, as from a terminal or from timeout; a later second one kills
+"$conic" make sphere -n 2G -o outputs/a.ply > out 2> err &
+process=$!
+for ((i = 0; i < 600; i++)); do # until it writes: only then are signals caught
+  [[ -z $(ls -A outputs) ]] || break
+  sleep 0.1
+done
+kill -TERM $process
+sleep 0.01
+kill -TERM $process 2> /dev/null
+wait $process
+[[ $? -eq 4 ]] || fail "a run that is stopped twice: exit code"
 no_files_but
 
 [[ $failures -eq 0 ]]

@@ -22,6 +22,8 @@ mv "$work/first" "$work/prefix"
 library_folder=$(dirname "$(find "$work/prefix" -name libconic.so)")
 export LD_LIBRARY_PATH=$library_folder
 
+module=$library_folder/conic/conic-openimageio.so # where OpenImageIO was there to build it
+
 not_black() { # PFM: some byte behind the header is not zero
   [[ -s $1 && $(tail -c +64 "$1" | tr -d '\000' | wc -c) -gt 0 ]]
 }
@@ -42,7 +44,6 @@ add_executable(shared "$source_folder/examples/minimal.c")
 target_link_libraries(shared conic::conic m)
 option(STATIC "" OFF)
 if(STATIC)
-  enable_language(CXX)
   find_package(conic 0.1 REQUIRED COMPONENTS static)
   add_executable(static "$source_folder/examples/minimal.c")
   target_link_libraries(static conic::static)
@@ -61,6 +62,7 @@ build_package() { # NAME, CMake settings …
 draw() { # PROGRAM
   "$1" "$1.pfm" || { echo "$1 failed"; exit 1; }
   not_black "$1.pfm" || { echo "$1 drew a black picture"; exit 1; }
+  [[ ! -e $module ]] || "$1" "$1.png" || { echo "$1 does not find $module"; exit 1; }
 }
 
 build_package by_package
@@ -82,3 +84,27 @@ fi
 
 "$work/prefix/bin/conic" --version > "$work/version"
 grep -q "^conic " "$work/version"
+
+# The program finds the module where it stands now, through a link too, and says so where it is missing or not conic's.
+if [[ -e $module ]]; then
+  program=$work/linked
+  ln -s "$work/prefix/bin/conic" "$program"
+  has_module() { "$program" --version | grep -q '^In this build:.*OpenImageIO'; }
+  draw_png() { "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.png"; }
+  refuses_png() { # WHAT the message says
+    local code=0
+    draw_png 2> "$work/message" || code=$?
+    [[ $code -eq 4 ]] && grep -q "plane.png: cannot write: .*$1" "$work/message" && return
+    echo "code $code: $(cat "$work/message")"
+    exit 1
+  }
+  "$program" make plane -n 100 -o "$work/plane.ply"
+  has_module
+  draw_png
+  echo "no library" > "$module"
+  refuses_png conic-openimageio.so
+  rm "$module"
+  ! has_module
+  refuses_png conic-openimageio.so
+  "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
+fi

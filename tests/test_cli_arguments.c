@@ -141,11 +141,20 @@ static void check_outputs(void) {
   CHECK(cli_check_outputs(&session, different, 2) == CLI_USAGE);
 }
 
+static void test_lengths(void) {
+  cli_length length;
+  CHECK(cli_parse_length("0.5x", &length) && length.value == 0.5 && length.is_in_spacings);
+  CHECK(cli_parse_length("2", &length) && length.value == 2.0 && !length.is_in_spacings);
+  CHECK(!cli_parse_length("x", &length) && !cli_parse_length("2y", &length) && !cli_parse_length("2xx", &length));
+  CHECK(!cli_parse_length("-1", &length) && !cli_parse_length("", &length) && !cli_parse_length("nan", &length));
+}
+
 int main(void) {
   check_understood();
   check_counts();
   check_refused();
   check_nearest();
   check_outputs();
+  test_lengths();
   return check_result();
 }

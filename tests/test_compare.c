@@ -252,7 +252,7 @@ static void test_heatmap(conic_context *context) {
   CHECK_OK(conic_image_heatmap(context, &a, &b, &map));
   check_pixel(&map, 0, 0, 0, 0);
   check_pixel(&map, 1, 0, 0, 1);
-  check_pixel(&map, 2, 1, 0.5, 0);
+  check_pixel(&map, 2, 1, 0.5f, 0);
   check_pixel(&map, 3, 1, 1, 1);
   check_pixel(&map, 4, 1, 1, 1);
   check_pixel(&map, 5, 0, 0, 1);

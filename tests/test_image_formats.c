@@ -117,7 +117,7 @@ static void test_hdr(conic_context *context) {
   conic_image back = write_and_read(context, "a.hdr", &image);
   const float *b = back.planes[CONIC_PLANE_RGBA];
   for (int i = 0; b && i < 64 * 64; i++) {
-    double largest = fmax(a[4 * i], fmax(a[4 * i + 1], a[4 * i + 2]));
+    double largest = (double)fmaxf(a[4 * i], fmaxf(a[4 * i + 1], a[4 * i + 2]));
     for (int c = 0; c < 3; c++)
       CHECK_NEAR(a[4 * i + c], b[4 * i + c], largest / 128.0);
     CHECK(b[4 * i + 3] == 1.0f);

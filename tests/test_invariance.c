@@ -1,5 +1,6 @@
 /* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
  * And every plane is defined on every pixel. */
+#include "raster/tile_kernels.h"
 #include "tests/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {
@@ -39,8 +40,38 @@ static void fill(fixture *f, int scene) {
   if (scene == 0)
     fill_hostile(f, 4000);
   else {
-    f->camera.cam_from_world[2][3] = 2.2;
-    fixture_scene(f, scene == 1 ? CONIC_SCENE_KNOT : CONIC_SCENE_GYROID, 30000);
+    f->camera.cam_from_world[2][3] = scene == 1 ? 2.2 : 1.2; /* from outside, and from inside the tube */
+    fixture_scene(f, scene == 1 ? CONIC_SCENE_KNOT : CONIC_SCENE_TORUS, scene == 1 ? 20000 : 6000);
+  }
+}
+
+/* Every instruction set that this machine has draws the same picture, and counts the same. */
+static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_PLANES]) {
+  conic_render_statistics counted = f->statistics;
+  for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
+    uint64_t hashes[CONIC_N_PLANES];
+    if (!conic_tile_kernels_of((conic_isa)isa))
+      continue;
+    f->options.isa = (conic_isa)isa;
+    fixture_render(f);
+    hash_all(f, hashes);
+    CHECK(memcmp(expected, hashes, sizeof hashes) == 0);
+    CHECK(strcmp(f->statistics.isa, conic_isa_name((conic_isa)isa)) == 0);
+    CHECK(counted.splats_culled == f->statistics.splats_culled && counted.splats_drawn == f->statistics.splats_drawn);
+    CHECK(counted.splats_fallback == f->statistics.splats_fallback && counted.fragments == f->statistics.fragments);
+    CHECK(counted.pixels_covered == f->statistics.pixels_covered);
+  }
+  f->options.isa = CONIC_ISA_AUTO;
+}
+
+/* A plane is the same whatever other planes are asked for beside it. */
+static void check_planes_alone(fixture *f, const uint64_t expected[CONIC_N_PLANES]) {
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+    conic_image image;
+    CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, 1u << plane, &image));
+    CHECK_OK(conic_render(f->renderer, &f->splats, &f->camera, &f->options, &image, NULL));
+    CHECK(conic_image_hash(&image, (conic_plane)plane) == expected[plane]);
+    conic_image_release(f->context, &image);
   }
 }
 
@@ -60,24 +91,27 @@ static void check_defined(const fixture *f) {
 }
 
 int main(void) {
-  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 8};
-  uint64_t reference[3][2][2][CONIC_N_PLANES];
+  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 12};
+  uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
     for (int scene = 0; scene < 3; scene++) {
       fill(&f, scene);
-      for (int variant = 0; variant < 4; variant++)
-        for (int i_tile = 0; i_tile < 4; i_tile++) {
-          uint64_t hashes[CONIC_N_PLANES], *expected = reference[scene][variant / 2][variant % 2];
+      for (int variant = 0; variant < 2 * CONIC_N_METHODS; variant++)
+        for (int i_tile = 0; i_tile < (t == 0 ? 4 : 2); i_tile++) {
+          uint64_t hashes[CONIC_N_PLANES],
+              *expected = reference[scene][variant / CONIC_N_METHODS][variant % CONIC_N_METHODS];
           f.options.tile = tiles[i_tile];
-          f.options.passes = variant / 2 ? 1 : 3;
-          f.options.method = variant % 2 ? CONIC_METHOD_RAY : CONIC_METHOD_CONIC;
+          f.options.passes = variant / CONIC_N_METHODS ? 1 : 3;
+          f.options.method = (conic_method)(variant % CONIC_N_METHODS);
           f.options.shading = CONIC_SHADE_PHONG;
           fixture_render(&f);
           hash_all(&f, hashes);
           if (t == 0 && i_tile == 0) {
             memcpy(expected, hashes, sizeof hashes);
             check_defined(&f);
+            check_instruction_sets(&f, expected);
+            check_planes_alone(&f, expected);
             CHECK(f.statistics.pixels_covered > 1000);
           } else
             CHECK(memcmp(expected, hashes, sizeof hashes) == 0);

@@ -64,7 +64,7 @@ static size_t search_all(size_t n, const char *is_first, const double query[3], 
 
 static void check_query(const conic_neighbours *tree, const char *is_first, const double query[3], size_t except,
                         size_t k, double limit2) {
-  size_t expected[MAX_K];
+  size_t expected[MAX_K] = {0};
   uint32_t slots[MAX_K];
   double distances2[MAX_K];
   uint32_t except_slot = except < tree->n_points ? tree->slot_of_point[except] : CONIC_NO_SLOT;
@@ -134,6 +134,27 @@ static void check_threads(void) {
   }
 }
 
+/* On a square grid the eight nearest lie within √2 spacings: √(π·2/8) of one. */
+static void test_median_spacing(void) {
+  conic_context *context = check_context(2);
+  conic_splats splats;
+  double spacing;
+  CHECK_OK(conic_splats_allocate(context, 10000, 0, &splats));
+  for (size_t i = 0; i < 10000; i++) {
+    splats.position[0][i] = 0.25f * (float)(i % 100);
+    splats.position[1][i] = 0.25f * (float)(i / 100);
+    splats.position[2][i] = 7.0f;
+  }
+  CHECK_OK(conic_splats_spacing(context, &splats, &spacing));
+  CHECK_NEAR(spacing, 0.25 * sqrt(3.14159265358979 * 2.0 / 8.0), 1e-12);
+  splats.count = 1;
+  CHECK_OK(conic_splats_spacing(context, &splats, &spacing));
+  CHECK(spacing == 0.0);
+  splats.count = 10000;
+  conic_splats_release(context, &splats);
+  conic_context_destroy(context);
+}
+
 int main(void) {
   conic_context *context = check_context(2);
   fill_random(MAX_POINTS, 2.0);
@@ -166,5 +187,6 @@ int main(void) {
   check_set(context, 100, 6);
   conic_context_destroy(context);
   check_threads();
+  test_median_spacing();
   return check_result();
 }

@@ -78,8 +78,8 @@ static void test_content_tells(void) {
   CHECK(model.points.count == 1);
   conic_model_release(context, &model);
   unlink(path);
-  path = files_write("numbers.txt", "1 2 3\n");
-  files_check_failed("text", conic_model_read(context, path, NULL, &model), "neither a PLY nor an OBJ", "byte 0",
+  path = files_write("words.txt", "one two three\n");
+  files_check_failed("text", conic_model_read(context, path, NULL, &model), "no PLY, OBJ, XYZ or LAS", "byte 0",
                      (const char *)NULL);
   unlink(path);
   path = files_write_bytes("image.obj", "\x89PNG....", 8);

@@ -410,6 +410,8 @@ static void test_wrong_headers(void) {
   check_fails(ASCII "element vertex 1\nproperty float\n", "a property line is", "line 4");
   check_fails(ASCII "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", "lack x, y or z",
               "line 3");
+  check_fails(ASCII "element vertex 4\nend_header\n", "lack x, y or z", "line 3");
+  check_fails(ASCII "element vertex 4\nelement face 4\nend_header\n", "lack x, y or z", "line 3");
   check_fails(ASCII "element point 1\n" XYZ "end_header\n0 0 0\n", "no element 'vertex'", "line 7");
   check_fails(ASCII "element vertex 4294967295\n" XYZ "end_header\n0 0 0\n", "too many", "line 3");
   check_fails(ASCII "element vertex 4000000000\n" XYZ "end_header\n0 0 0\n", "too short for the 4000000000", "line 3");

@@ -12,10 +12,22 @@
 extern "C" {
 #endif
 
+/* The formats that models are read from. */
+typedef enum conic_model_kind {
+  CONIC_MODEL_PLY = 0,
+  CONIC_MODEL_OBJ = 1,
+  CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS */
+  CONIC_MODEL_LAS = 3
+} conic_model_kind;
+
+/* "ply", "obj" …; null for a number that is no kind. */
+CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
+
 typedef struct conic_model {
   conic_splats points;      /* vertices, raw points or splats */
   size_t n_triangles;       /* 0 for a set of points */
   uint32_t (*triangles)[3]; /* vertex indices, each below points.count; polygons and strips are triangulated */
+  conic_model_kind kind;    /* of the file that was read */
 } conic_model;
 
 typedef struct conic_read_options {
@@ -27,12 +39,12 @@ typedef struct conic_read_options {
 
 CONIC_API void conic_read_options_init(conic_read_options *options);
 
-/* Reads a model; "-" is standard input (PLY only). The format is told by the content first, then by the name's ending.
- * Integer colours of a PLY and all colours of an OBJ are decoded from sRGB, float colours of a PLY are taken as linear.
- * Positions that a float cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ) are kept from the
- * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on
- * failure it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the
- * defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
+/* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/formats.md); "-" is standard input. The format is told by the
+ * content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
+ * sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double or 32-bit integer in a
+ * PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the origin; else the origin
+ * is zero. On success the caller owns *model and releases it; on failure it is empty and the log says file, line or
+ * byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 

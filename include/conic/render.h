@@ -20,10 +20,11 @@ extern "C" {
 /* How a splat is projected and weighed. */
 typedef enum conic_method {
   CONIC_METHOD_CONIC = 0, /* EWA with the conic whose outline at the cutoff is the exact projection (PAS) */
-  CONIC_METHOD_RAY = 1    /* exact ray–splat parameter, the pixel's filter mapped into the splat at the pixel */
+  CONIC_METHOD_RAY = 1,   /* exact ray–splat parameter, the pixel's filter mapped into the splat at the pixel */
+  CONIC_METHOD_AFFINE = 2 /* EWA with the Jacobian at the splat's centre (HQP §3.4) */
 } conic_method;
 
-#define CONIC_N_METHODS 2
+#define CONIC_N_METHODS 3
 
 /* "conic", "ray" …; null for a number that is no method. */
 CONIC_API const char *conic_method_name(conic_method method);
@@ -48,6 +49,24 @@ typedef enum conic_shading {
   CONIC_SHADE_PHONG = 2    /* ambient, diffuse and a highlight */
 } conic_shading;
 
+/* Which instructions the hot loops use; none changes a bit of the image. */
+typedef enum conic_isa {
+  CONIC_ISA_AUTO = 0, /* the widest that this machine has */
+  CONIC_ISA_SCALAR = 1,
+  CONIC_ISA_SSE2 = 2,
+  CONIC_ISA_AVX2 = 3,
+  CONIC_ISA_AVX512 = 4,
+  CONIC_ISA_NEON = 5
+} conic_isa;
+
+#define CONIC_N_ISAS 6
+
+/* "auto", "scalar", "sse2" …; null for a number that is none. */
+CONIC_API const char *conic_isa_name(conic_isa isa);
+
+/* What `auto` stands for here. */
+CONIC_API conic_isa conic_isa_best(void);
+
 typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */
   conic_method method;
@@ -65,6 +84,7 @@ typedef struct conic_render_options {
   float background[3]; /* linear RGB behind the picture, which then is opaque */
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
   int tile;            /* tile edge in pixels, a multiple of 4 from 8 to 256; changes no bit of the image */
+  conic_isa isa;
 } conic_render_options;
 
 /* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
@@ -88,6 +108,7 @@ typedef struct conic_render_statistics {
   double epsilon; /* c of the automatic ε, or the fixed ε */
   int epsilon_is_fixed;
   int threads, tile;
+  const char *isa;              /* what the hot loops used; static */
   conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
 } conic_render_statistics;
 
@@ -103,7 +124,7 @@ CONIC_API void conic_renderer_destroy(conic_renderer *renderer);
 
 /* Draws `splats` (with tangent axes) into the planes that `image` has; its size must be the camera's. `statistics` may
  * be null. Splats that cannot be drawn are counted, never an error; with none at all the image is empty.
- * Errors: ARGUMENT, MEMORY, CANCELLED; the image's contents are then undefined. */
+ * Errors: ARGUMENT, UNSUPPORTED (the instruction set), MEMORY, CANCELLED; the image's contents are then undefined. */
 CONIC_API conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                     const conic_render_options *options, conic_image *image,
                                     conic_render_statistics *statistics);

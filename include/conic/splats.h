@@ -72,6 +72,11 @@ CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[
  * the scale of the automatic ε (docs/picture.md). 0 where there is none. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length);
 
+/* The median sample spacing in world units: √(area a point), from each point's eight nearest neighbours. A unit for
+ * lengths that fits any scan. 0 where there are not two points apart. Errors: ARGUMENT (over 2³² - 2 points), MEMORY.
+ */
+CONIC_API conic_status conic_splats_spacing(conic_context *context, const conic_splats *splats, double *spacing);
+
 #ifdef __cplusplus
 }
 #endif

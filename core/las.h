@@ -1,0 +1,17 @@
+/* The LAS reader: versions 1.0 to 1.4, uncompressed, point formats 0 to 3 and 6 to 8.
+ *
+ * Positions are the file's integers times its scale; what the first point and the offset give in double is the origin,
+ * so that map coordinates lose nothing. Colours are meant to have 16 bits, yet many programs store 8-bit codes: the
+ * largest value of the whole file tells (core/raw_colors.h). Everything else of a point, variable-length records and
+ * whatever follows the points is passed over. */
+#ifndef CORE_LAS_H
+#define CORE_LAS_H
+
+#include "conic/model.h"
+#include "core/input.h"
+
+/* Reads a model from the start of the file. On failure *model is for the caller to release. Errors: INPUT, MEMORY,
+ * CANCELLED. */
+conic_status conic_las_read(conic_input *input, conic_model *model);
+
+#endif

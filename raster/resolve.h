@@ -1,0 +1,40 @@
+/* Pass 3: normalising, shading, and writing a tile's pixels to the planes that the image has. */
+#ifndef RASTER_RESOLVE_H
+#define RASTER_RESOLVE_H
+
+#include "raster/tile.h"
+
+/* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
+ * the scans and meshes: the darkest side stays readable and white does not burn out. */
+#define CONIC_AMBIENT 0.05f
+#define CONIC_DIFFUSE 0.75f
+#define CONIC_SPECULAR 0.15f
+
+/* How a frame's pixels are finished. */
+typedef struct conic_finish {
+  const conic_render_options *options;
+  float world_from_cam[3][3]; /* for the direction to the viewer */
+  float light[3];             /* unit, towards the light; unused with a headlight */
+  float exposure;             /* factor */
+  float background[4];        /* of an uncovered pixel: rgba, exposed */
+} conic_finish;
+
+/* The directions of a tile's columns and rows of pixels: d = (x, y, 1). */
+typedef struct conic_tile_rays {
+  float x[256 + 4], y[256 + 4];
+} conic_tile_rays;
+
+void conic_tile_rays_init(const conic_tile *tile, conic_tile_rays *rays);
+
+/* The plain C reference of the slot `resolve`: everything, a pixel at a time. */
+void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
+
+/* The planes that name splats or ask one for its depth: Z, count, id. */
+void conic_tile_resolve_indices(conic_tile *tile, conic_image *image);
+
+/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
+ * weighted mean of the splats' unit normals, whose length says how far they agree. */
+void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
+                 const float viewer[3], float shaded[3]);
+
+#endif

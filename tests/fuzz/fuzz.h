@@ -1,0 +1,89 @@
+/* What the fuzz targets share: the input as a file that exists in memory only, and a context that says nothing. */
+#ifndef TESTS_FUZZ_FUZZ_H
+#define TESTS_FUZZ_FUZZ_H
+
+/* For memfd_create. */
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE
+#endif
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "conic/conic.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes);
+
+#define FUZZ_CHECK(condition)                                                                                          \
+  do {                                                                                                                 \
+    if (!(condition)) {                                                                                                \
+      fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition);                                          \
+      abort();                                                                                                         \
+    }                                                                                                                  \
+  } while (0)
+
+typedef struct fuzz_input {
+  conic_context *context;
+  int descriptor;
+  char path[32];
+} fuzz_input;
+
+static int fuzz_n_messages;
+
+static inline void fuzz_log(void *cookie, conic_log_level level, const char *message) {
+  (void)cookie;
+  fuzz_n_messages += level == CONIC_LOG_ERROR;
+  for (const char *c = message; *c; c++)
+    FUZZ_CHECK((unsigned char)*c >= 0x20);
+}
+
+/* One context serves all runs: it keeps nothing of them. */
+static inline fuzz_input fuzz_open(const uint8_t *bytes, size_t n_bytes) {
+  static conic_context *context;
+  fuzz_input input;
+  if (!context) {
+    conic_context_options options;
+    conic_context_options_init(&options);
+    options.log = fuzz_log;
+    options.threads = 1;
+    options.max_allocation_bytes = (size_t)1 << 30;
+    FUZZ_CHECK(conic_context_create(&options, &context) == CONIC_OK);
+  }
+  input.context = context;
+  input.descriptor = memfd_create("fuzz", MFD_CLOEXEC);
+  FUZZ_CHECK(input.descriptor >= 0);
+  FUZZ_CHECK(n_bytes == 0 || write(input.descriptor, bytes, n_bytes) == (ssize_t)n_bytes);
+  snprintf(input.path, sizeof input.path, "/proc/self/fd/%d", input.descriptor);
+  fuzz_n_messages = 0;
+  return input;
+}
+
+/* A reader says once why it fails, and nothing where it does not; and bad input is never anything else. */
+static inline void fuzz_close(fuzz_input *input, conic_status status, int may_be_unsupported) {
+  FUZZ_CHECK(fuzz_n_messages == (status != CONIC_OK));
+  FUZZ_CHECK(status == CONIC_OK || status == CONIC_ERROR_INPUT ||
+             (status == CONIC_ERROR_UNSUPPORTED && may_be_unsupported));
+  close(input->descriptor);
+}
+
+/* The models' targets differ in their seeds, and in what the bytes begin with: a target keeps to its own reader. */
+static inline int fuzz_model(const uint8_t *bytes, size_t n_bytes, conic_model_kind kind) {
+  conic_model model;
+  double low[3], high[3];
+  fuzz_input input = fuzz_open(bytes, n_bytes);
+  conic_status status = conic_model_read(input.context, input.path, NULL, &model);
+  int is_mine = status == CONIC_OK && model.kind == kind;
+  for (size_t i = 0; i < model.n_triangles; i++)
+    for (int corner = 0; corner < 3; corner++)
+      FUZZ_CHECK(model.triangles[i][corner] < model.points.count);
+  conic_splats_bounds(&model.points, low, high);
+  conic_model_release(input.context, &model);
+  fuzz_close(&input, status, 0);
+  return is_mine || status != CONIC_OK ? 0 : -1; /* -1: not kept in the corpus */
+}
+
+#endif

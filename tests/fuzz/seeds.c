@@ -1,0 +1,28 @@
+/* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
+#include "tests/seeds.h"
+
+static void write_seed(const char *folder, const seed *from) {
+  char path[4096];
+  snprintf(path, sizeof path, "%s/%s", folder, from->target);
+  mkdir(path, 0777);
+  snprintf(path, sizeof path, "%s/%s/%s", folder, from->target, from->name);
+  FILE *file = fopen(path, "wb");
+  if (!file || fwrite(from->bytes, 1, from->n_bytes, file) != from->n_bytes || fclose(file) != 0) {
+    perror(path);
+    exit(1);
+  }
+}
+
+int main(int argc, char **argv) {
+  if (argc != 2) {
+    fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
+    return 2;
+  }
+  conic_context *context = files_context();
+  seed_set *set = seeds_make(context);
+  for (int i = 0; i < set->n; i++)
+    write_seed(argv[1], &set->seeds[i]);
+  seeds_release(set);
+  files_end(context);
+  return check_result();
+}

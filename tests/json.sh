@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Runs the commands of docs/json.md: each must give the keys of the sample below it, no more and no fewer; and among
+# them are those that scripts rely on.
+set -euo pipefail
+
+source_folder=$1
+program=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+conic() {
+  "$program" "$@"
+}
+
+# The paths of all keys of a JSON text on standard input that is laid out as conic does: `ms.read` …
+keys() {
+  perl -ne '
+    next unless /^( *)"([^"]+)": (.*)/;
+    my $depth = length($1) / 2 - 1;
+    @path = (@path[0 .. $depth - 1], $2);
+    print join(".", @path), "\n";' | sort
+}
+
+# Splits the page: N.sh is the command of a section, N.json its sample, N.name its heading.
+perl -ne '
+  if (/^## (.*)/) { $n++; open $to, ">", "$n.name"; print $to "$1\n"; close $to; }
+  elsif (/^```(sh|json)/) { open $to, ">", "$n.$1"; $is_open = 1; }
+  elsif (/^```/) { close $to; $is_open = 0; }
+  elsif ($is_open) { print $to $_; }' "$source_folder/docs/json.md"
+
+declare -A wanted=(
+  [make]="points_in points_out seconds.read seconds.work seconds.write seconds.total points_per_s peak_rss_bytes
+    skipped.nan skipped.zero skipped.duplicate skipped.isolated skipped.failed"
+  [render]="splats_in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered overdraw method
+    methods.conic device isa threads tile epsilon_mode epsilon near primitives.splats clouds_culled hash.rgba hash.Z
+    ms.read ms.estimate ms.lod ms.setup ms.bin ms.visibility ms.accumulate ms.resolve ms.write ms.frame ms.total
+    ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes"
+  [diff]="identical max_abs rmse psnr ssim flip differing_pixels largest_hole planes.rgba.max_abs planes.rgba.rmse"
+  [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
+)
+wanted[prepare]=${wanted[make]}
+
+if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
+  echo "skipped: the samples are of EXR files, which this build has not"
+  exit 77
+fi
+for ((n = 1; ; n++)); do
+  [[ -e $n.sh ]] || break
+  name=$(cat $n.name)
+  # shellcheck disable=SC1090 # the command of the page
+  source $n.sh > $n.out 2> err < /dev/null || [[ $? -eq 1 && $name == diff ]] || fail "$name: $(cat err)"
+  keys < $n.json > $n.sample
+  keys < $n.out > $n.keys
+  [[ $(wc -l < $n.sample) -ge 5 ]] || fail "$name: no sample"
+  diff $n.sample $n.keys || fail "$name: the page's keys (<) are not those of the run (>)"
+  for key in ${wanted[$name]:-}; do
+    grep -qxF "$key" $n.keys || fail "$name: no $key"
+  done
+  unset "wanted[$name]"
+done
+[[ ${#wanted[@]} -eq 0 ]] || fail "no sample of ${!wanted[*]}"
+[[ $failures -eq 0 ]]

@@ -1,0 +1,219 @@
+/* The largest weight error of the methods' bare formulas (no hand-overs) within the footprint, against the exactly
+ * projected kernel, numerically convolved with the pixel's Gaussian of 1 px². All in double, apart from the renderer:
+ * this is about the methods, not about their implementation. The figures are those of docs/accuracy.md. */
+#include "tests/check.h"
+
+static const double pi = 3.14159265358979324, prefilter = 1.0;
+
+/* A splat at distance 1 from the eye, 25° off the axis, its normal leaning away from the view ray by `tilt`. */
+typedef struct setting {
+  double focal_px, cutoff;
+  double p[3], tu[3], tv[3];
+} setting;
+
+typedef struct variance {
+  double x, y; /* centre, px from the principal point */
+  double xx, xy, yy;
+  double root; /* √|R'| */
+} variance;
+
+static void cross(const double a[3], const double b[3], double c[3]) {
+  for (int i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void scale_to(double v[3], double length) {
+  double norm = sqrt(dot(v, v));
+  for (int i = 0; i < 3; i++)
+    v[i] *= length / norm;
+}
+
+static setting make_setting(double focal_px, double size, double tilt, double cutoff) {
+  setting s = {.focal_px = focal_px, .cutoff = cutoff, .p = {sin(pi * 25.0 / 180.0), 0.0, cos(pi * 25.0 / 180.0)}};
+  const double up[3] = {0, 1, 0}, helper[3] = {0.3, 1.0, 0.2};
+  double a[3], b[3], n[3];
+  cross(up, s.p, a);
+  scale_to(a, 1.0);
+  cross(s.p, a, b);
+  for (int i = 0; i < 3; i++)
+    n[i] = cos(tilt) * s.p[i] + sin(tilt) * (a[i] * cos(0.6) + b[i] * sin(0.6));
+  cross(n, helper, s.tu);
+  scale_to(s.tu, size);
+  cross(n, s.tu, s.tv);
+  return s;
+}
+
+static double normal_times(const setting *s, const double d[3]) {
+  double n[3];
+  cross(s->tu, s->tv, n);
+  return dot(n, d);
+}
+
+/* Heckbert's affine mapping: exact at the centre. */
+static variance affine_variance(const setting *s) {
+  const double *p = s->p, *t[2] = {s->tu, s->tv};
+  variance v = {s->focal_px * p[0] / p[2], s->focal_px * p[1] / p[2], 0, 0, 0, 0};
+  for (int k = 0; k < 2; k++) {
+    double jx = s->focal_px * (t[k][0] - p[0] / p[2] * t[k][2]) / p[2];
+    double jy = s->focal_px * (t[k][1] - p[1] / p[2] * t[k][2]) / p[2];
+    v.xx += jx * jx;
+    v.xy += jx * jy;
+    v.yy += jy * jy;
+  }
+  v.root = s->focal_px * s->focal_px * fabs(normal_times(s, p)) / (p[2] * p[2] * p[2]);
+  return v;
+}
+
+/* PAS: exact on the outline. From the dual conic D = Σ t tᵀ - p pᵀ/F². */
+static variance conic_variance(const setting *s) {
+  double dual[3][3], f = s->focal_px, squared = s->cutoff * s->cutoff;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      dual[i][j] = s->tu[i] * s->tu[j] + s->tv[i] * s->tv[j] - s->p[i] * s->p[j] / squared;
+  double x = dual[0][2] / dual[2][2], y = dual[1][2] / dual[2][2];
+  variance v = {f * x, f * y, 0, 0, 0, 0};
+  v.xx = f * f * (x * x - dual[0][0] / dual[2][2]) / squared;
+  v.xy = f * f * (x * y - dual[0][1] / dual[2][2]) / squared;
+  v.yy = f * f * (y * y - dual[1][1] / dual[2][2]) / squared;
+  double hz_squared = s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2];
+  v.root = f * f * fabs(normal_times(s, s->p)) / pow(s->p[2] * s->p[2] - squared * hz_squared, 1.5);
+  return v;
+}
+
+static double ewa_weight(const variance *r, double x, double y) {
+  double xx = r->xx + prefilter, yy = r->yy + prefilter, det = xx * yy - r->xy * r->xy, dx = x - r->x, dy = y - r->y;
+  double q = (yy * dx * dx - 2.0 * r->xy * dx * dy + xx * dy * dy) / det;
+  return r->root / sqrt(det) * exp(-0.5 * q);
+}
+
+/* u = x·M⁻¹, dehomogenised; 0 where the plane is behind the eye. */
+static int parameter_at(const setting *s, double x, double y, double u[2]) {
+  double d[3] = {x / s->focal_px, y / s->focal_px, 1.0}, m_u[3], m_v[3];
+  cross(s->tv, s->p, m_u);
+  cross(s->p, s->tu, m_v);
+  double w = normal_times(s, d);
+  u[0] = dot(d, m_u) / w;
+  u[1] = dot(d, m_v) / w;
+  return w / normal_times(s, s->p) > 0.0;
+}
+
+static double ray_weight(const setting *s, double x, double y) {
+  double u[2], right[2], left[2], down[2], up[2], j[2][2], step = 1e-4;
+  if (!parameter_at(s, x, y, u))
+    return 0.0;
+  parameter_at(s, x + step, y, right);
+  parameter_at(s, x - step, y, left);
+  parameter_at(s, x, y + step, down);
+  parameter_at(s, x, y - step, up);
+  for (int i = 0; i < 2; i++) {
+    j[i][0] = (right[i] - left[i]) / (2.0 * step);
+    j[i][1] = (down[i] - up[i]) / (2.0 * step);
+  }
+  double uu = 1.0 + prefilter * (j[0][0] * j[0][0] + j[0][1] * j[0][1]);
+  double vv = 1.0 + prefilter * (j[1][0] * j[1][0] + j[1][1] * j[1][1]);
+  double uv = prefilter * (j[0][0] * j[1][0] + j[0][1] * j[1][1]), det = uu * vv - uv * uv;
+  double q = (vv * u[0] * u[0] - 2.0 * uv * u[0] * u[1] + uu * u[1] * u[1]) / det;
+  return exp(-0.5 * q) / sqrt(det);
+}
+
+/* The untruncated kernel under the pixel's Gaussian. The grid lies along the projected axes; the trapezoid rule on a
+ * product of Gaussians is exact to e^(-2π²(σ/step)²), here with steps of `fineness` standard deviations of the product.
+ */
+static double exact_weight(const setting *s, const variance *r, double x, double y, double fineness) {
+  double half = 0.5 * atan2(2.0 * r->xy, r->xx - r->yy), c = cos(half), sn = sin(half);
+  double major = c * c * r->xx + 2.0 * c * sn * r->xy + sn * sn * r->yy;
+  double minor = r->xx + r->yy - major, sum = 0.0;
+  double step_a = fineness * sqrt(major * prefilter / (major + prefilter));
+  double step_b = fineness * sqrt(minor * prefilter / (minor + prefilter));
+  int n_a = (int)(6.5 * sqrt(prefilter) / step_a), n_b = (int)(6.5 * sqrt(prefilter) / step_b);
+  for (int i = -n_a; i <= n_a; i++)
+    for (int k = -n_b; k <= n_b; k++) {
+      double a = i * step_a, b = k * step_b, u[2];
+      if (parameter_at(s, x + c * a - sn * b, y + sn * a + c * b, u))
+        sum += exp(-0.5 * (u[0] * u[0] + u[1] * u[1]) - 0.5 * (a * a + b * b) / prefilter);
+    }
+  return sum * step_a * step_b / (2.0 * pi * prefilter);
+}
+
+typedef struct errors {
+  double affine, conic, ray;
+  int n_compared;
+} errors;
+
+static errors worst_errors(double focal_px, double size, double tilt_deg, double cutoff) {
+  setting s = make_setting(focal_px, size, pi * tilt_deg / 180.0, cutoff);
+  variance affine = affine_variance(&s), conic = conic_variance(&s);
+  errors worst = {0, 0, 0, 0};
+  double half_x = cutoff * sqrt(conic.xx + prefilter), half_y = cutoff * sqrt(conic.yy + prefilter);
+  for (int j = 0; j <= 40; j++)
+    for (int i = 0; i <= 40; i++) {
+      double x = conic.x + half_x * (i - 20) / 20.0, y = conic.y + half_y * (j - 20) / 20.0;
+      double exact = exact_weight(&s, &affine, x, y, 0.9);
+      if (exact <= 0.3 * exp(-0.5 * cutoff * cutoff))
+        continue;
+      worst.n_compared++;
+      worst.affine = fmax(worst.affine, fabs(ewa_weight(&affine, x, y) - exact));
+      worst.conic = fmax(worst.conic, fabs(ewa_weight(&conic, x, y) - exact));
+      worst.ray = fmax(worst.ray, fabs(ray_weight(&s, x, y) - exact));
+      if (i % 10 == 5 && j % 10 == 5)
+        CHECK_NEAR(exact, exact_weight(&s, &affine, x, y, 0.45), 1e-6);
+    }
+  return worst;
+}
+
+typedef struct known {
+  double size, tilt_deg, cutoff, affine, conic, ray;
+} known;
+
+static const known table[] = {
+    {0.003, 60, 1.5, 1.9e-3, 5.1e-4, 5.7e-4}, {0.003, 85, 1.5, 1.6e-4, 4e-5, 2.4e-3},
+    {0.01, 60, 1.5, 1.1e-2, 7.9e-3, 5.2e-4},  {0.01, 60, 3.0, 1.1e-2, 4.6e-2, 5.2e-4},
+    {0.03, 60, 1.5, 3.7e-2, 3.1e-2, 2.6e-4},  {0.03, 60, 3.0, 3.7e-2, 1.6e-1, 2.6e-4},
+    {0.1, 60, 1.5, 1.3e-1, 1.1e-1, 1.0e-4},   {0.1, 60, 3.0, 1.3e-1, 5.1e-1, 1.0e-4},
+    {0.1, 85, 1.5, 1.2e-1, 9.3e-2, 2.8e-3},
+};
+
+/* Two figures, as the table has them. */
+static void check_figure(double measured, double expected) {
+  CHECK_NEAR(measured, expected, 0.05 * expected + 0.5e-6);
+}
+
+static void test_table(void) {
+  printf("%6s %5s %4s %10s %10s %10s\n", "size", "tilt", "F_g", "affine", "conic", "ray");
+  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+    const known *k = &table[i];
+    errors found = worst_errors(500.0, k->size, k->tilt_deg, k->cutoff);
+    printf("%6g %5g %4g %10.2e %10.2e %10.2e\n", k->size, k->tilt_deg, k->cutoff, found.affine, found.conic, found.ray);
+    check_figure(found.affine, k->affine);
+    check_figure(found.conic, k->conic);
+    check_figure(found.ray, k->ray);
+  }
+}
+
+/* Everything else of the grid, at both focal lengths: the best of the three stays under a bound. */
+static void test_grid(void) {
+  static const double focals[] = {500, 2000}, sizes[] = {0.003, 0.01, 0.03, 0.1}, tilts[] = {0, 60, 85},
+                      cutoffs[] = {1.5, 3};
+  double worst_best = 0.0;
+  for (int f = 0; f < 2; f++)
+    for (int i = 0; i < 24; i++) {
+      double size = sizes[i / 6], tilt = tilts[i / 2 % 3], cutoff = cutoffs[i % 2];
+      errors found = worst_errors(focals[f], size, tilt, cutoff);
+      printf("focal %g: %6g %5g %4g %10.2e %10.2e %10.2e (%d)\n", focals[f], size, tilt, cutoff, found.affine,
+             found.conic, found.ray, found.n_compared);
+      CHECK(found.n_compared > 250);
+      worst_best = fmax(worst_best, fmin(found.ray, fmin(found.affine, found.conic)));
+    }
+  printf("best of the three: at most %.2e\n", worst_best);
+  CHECK(worst_best <= 4e-3);
+}
+
+int main(void) {
+  test_table();
+  test_grid();
+  return check_result();
+}
