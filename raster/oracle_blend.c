@@ -74,12 +74,12 @@ static unsigned doubt_precision(const oracle_fragment *f, size_t n, const oracle
     const oracle_splat *splat = f[i].candidate->splat;
     if (!f[i].is_visible)
       continue;
-    double share = f[i].weight_error / pixel->weight;
+    double share = f[i].weight_spread / pixel->weight;
     double color_step = share * difference(splat->color, pixel->albedo);
     double normal_step = share * difference(splat->normal, pixel->mean_normal);
     color += color_step * color_step;
     normal += normal_step * normal_step;
-    weight += f[i].weight_error * f[i].weight_error;
+    weight += f[i].weight_spread * f[i].weight_spread;
     if (splat->is_facing_unsure && 2.0 * f[i].weight > ORACLE_NORMAL_BOUND * shortness * pixel->weight)
       doubt |= 1u << CONIC_UNSTABLE_FACING;
   }

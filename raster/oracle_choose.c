@@ -33,7 +33,7 @@ void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double an
   answers[ORACLE_IS_BAND_NARROW] = view->cutoff - band_px(view, s, reach, normal);
   answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = -1.0;
   answers[ORACLE_HAS_NO_PLANE] = -oracle_length(normal);
-  if (!view->prefilter && answers[ORACLE_REACHES_NEAR] < 0.0)
+  if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0)
     answers[ORACLE_HAS_NO_PLANE] = -fabs(facing);
   oracle_shape shape;
   if (s->p[2] > reach && conic_oracle_shape(view, s, ORACLE_CONIC, &shape)) {

@@ -17,17 +17,22 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
                              conic_oracle_shape(view, &splat->placed, splat->others[i], &candidate->others[i]);
 }
 
-/* What the inputs' rounding and the evaluation's own may add up to: every disturbed splat the worst way at once. */
+/* What the inputs' rounding and the evaluation's own may add up to: every disturbed splat the worst way at once. For
+ * the weight also `spread`, what they come to where they are independent. */
 static void find_errors(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
-                        const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
+                        const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES], double *spread) {
   conic_oracle_rounding(view, &candidate->shape, x, y, values, errors);
+  double squares = errors[ORACLE_WEIGHT] * errors[ORACLE_WEIGHT];
   for (int i = 0; i < candidate->n_disturbed; i++) {
     double disturbed[ORACLE_N_VALUES];
     if (candidate->is_disturbed[i])
       conic_oracle_evaluate(view, &candidate->disturbed[i], x, y, disturbed);
     for (int j = 0; j < ORACLE_N_VALUES; j++)
       errors[j] += candidate->is_disturbed[i] ? fabs(disturbed[j] - values[j]) : INFINITY;
+    double step = candidate->is_disturbed[i] ? disturbed[ORACLE_WEIGHT] - values[ORACLE_WEIGHT] : INFINITY;
+    squares += step * step;
   }
+  *spread = sqrt(squares);
   for (int j = 0; j < ORACLE_N_VALUES; j++)
     if (!oracle_is_finite(errors[j]))
       errors[j] = INFINITY;
@@ -72,10 +77,12 @@ static void set_depths(const oracle_splat *splat, const oracle_shape *shape, con
   fragment->z_error = oracle_max(1.0 / low - fragment->z, fragment->z - 1.0 / high) + slack * fragment->z;
 }
 
-static void set_weight(const oracle_splat *splat, double weight, double error, oracle_fragment *fragment) {
+static void set_weight(const oracle_splat *splat, double weight, double error, double spread,
+                       oracle_fragment *fragment) {
   const double floor_weight = 0x1p-60;
   fragment->weight = oracle_max(weight * splat->opacity, floor_weight);
   fragment->weight_error = error * fabs(splat->opacity);
+  fragment->weight_spread = spread * fabs(splat->opacity);
 }
 
 /* What another formula would make of the pixel: if it covers it, the splat's coverage and depth are in doubt. */
@@ -105,7 +112,7 @@ static int doubt_formula(const oracle_view *view, const oracle_candidate *candid
 int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
                           oracle_fragment *fragment) {
   const oracle_splat *splat = candidate->splat;
-  double errors[ORACLE_N_VALUES];
+  double errors[ORACLE_N_VALUES], spread = 0.0;
   int covers = 0;
   unsigned doubt = 0;
   if (candidate->is_drawn) {
@@ -113,13 +120,13 @@ int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candi
     /* Twice the cutoff's square away nothing is in doubt. */
     if (fragment->values[ORACLE_MARGIN_Q] > -view->support) {
       covers = conic_oracle_covers(fragment->values);
-      find_errors(view, candidate, x, y, fragment->values, errors);
+      find_errors(view, candidate, x, y, fragment->values, errors, &spread);
       doubt = doubt_coverage(fragment->values, errors);
     }
   }
   if (covers || doubt) {
     set_depths(splat, &candidate->shape, fragment->values, errors, fragment);
-    set_weight(splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], fragment);
+    set_weight(splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], spread, fragment);
   }
   fragment->covers = covers;
   if (splat->n_others && (doubt_formula(view, candidate, x, y, fragment) || covers))

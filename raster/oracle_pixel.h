@@ -32,7 +32,7 @@ typedef struct oracle_fragment {
   int covers, is_visible;
   oracle_interval seen, hides; /* max(iz, iz_plane), s·min(iz, iz_plane) */
   double iz, iz_error;
-  double weight, weight_error; /* opacity and floor in */
+  double weight, weight_error, weight_spread; /* opacity and floor in */
   double z, z_error;
 } oracle_fragment;
 

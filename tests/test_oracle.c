@@ -79,7 +79,7 @@ static void test_depth(conic_context *context) {
 
 /* The convolution once more, as a plain sum over the splat's own plane. */
 static double sum_over_plane(const conic_oracle_splat *s, const conic_camera *c, const double place[2], double h) {
-  const double step = 0.01;
+  const double step = 0.02;
   double sum = 0.0;
   for (double u = -7.0; u <= 7.0; u += step)
     for (double v = -7.0; v <= 7.0; v += step) {
@@ -221,6 +221,19 @@ static void test_edge_on(fixture *f) {
           (float)(0.02 * (double)f->splats.position[c][i] + lift * 0.02 * (double)f->splats.tangent_v[c][i]);
   }
   check_agreement(f, "edge-on", 1.0);
+}
+
+/* Anything at all, special values among it. */
+static void test_hostile(fixture *f) {
+  static const float specials[] = {NAN, INFINITY, -INFINITY, 0.0f, -0.0f, 1e-42f, 1e-20f, 1e5f};
+  uint64_t state = 42;
+  fixture_camera(f, 160, 120, 110.0);
+  fill_random(f, 1500, -0.5, 4.0, 1e-3, 1.0, 1e-3);
+  for (size_t i = 0; i < f->splats.count; i += 3) {
+    float *arrays[] = {f->splats.position[i % 3], f->splats.tangent_u[i % 3], f->splats.tangent_v[i % 3]};
+    arrays[(i / 3) % 3][i] = specials[(int)(fixture_random(&state) * 8.0)];
+  }
+  check_agreement(f, "hostile", 0.02);
 }
 
 /* The options that change what a pixel holds. */
@@ -368,6 +381,7 @@ int main(void) {
   test_exact(f.context);
   test_hard_scenes(&f);
   test_edge_on(&f);
+  test_hostile(&f);
   test_options(&f);
   test_frontal_wall(&f);
   test_planted(&f);

@@ -45,7 +45,7 @@ typedef enum conic_unstable_reason {
 CONIC_API const char *conic_unstable_reason_name(conic_unstable_reason reason);
 
 /* How the method's weights differ from the exact ones, over all pairs of a splat and a pixel that it covers and where
- * it is visible. The percentiles are good to 4 %. */
+ * it is visible. The percentiles are good to 6 %. */
 typedef struct conic_weight_error {
   double max_abs, p999;             /* of the weights of unit-peak kernels, opacity left out */
   double max_of_peak, p999_of_peak; /* relative to the splat's peak, the amplitude at its centre */
