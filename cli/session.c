@@ -164,7 +164,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
 
 /* Signals that come together are one wish to stop: a terminal, timeout and service managers signal the process and then
  * its group, and so reach it twice. */
-static const long long one_wish_ms = 300;
+static const long long one_wish_ms = 1000;
 
 /* The first signal asks the work to stop, so that it removes what it has half written; a later one kills. */
 static void on_interrupt(int signal_number) {
