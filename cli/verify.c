@@ -15,7 +15,7 @@ typedef struct verify_job {
 
   conic_image image;
   conic_reference reference;
-  conic_verdict verdict;
+  conic_oracle_verdict verdict;
   double render_ms, oracle_ms;
 } verify_job;
 
@@ -83,7 +83,7 @@ static void report_planes(cli_json *json, const verify_job *job) {
 }
 
 static void report_pixels(cli_json *json, const verify_job *job) {
-  const conic_verdict *verdict = &job->verdict;
+  const conic_oracle_verdict *verdict = &job->verdict;
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
@@ -127,7 +127,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
 }
 
 static void print_unstable(const verify_job *job) {
-  const conic_verdict *verdict = &job->verdict;
+  const conic_oracle_verdict *verdict = &job->verdict;
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
   printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
          100.0 * (double)verdict->unstable_pixels / covered);
@@ -143,7 +143,7 @@ static void print_unstable(const verify_job *job) {
 
 static void print_result(const verify_job *job) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
-    const conic_verdict_plane *plane = &job->verdict.planes[i];
+    const conic_oracle_plane_verdict *plane = &job->verdict.planes[i];
     if (!plane->is_compared)
       continue;
     printf("%-9s max %-12.4g p99.9 %-12.4g", conic_plane_describe((conic_plane)i)->name, plane->max_abs, plane->p999);

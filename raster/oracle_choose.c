@@ -56,7 +56,7 @@ oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORAC
     return ORACLE_NOT_DRAWN;
   if (is_so[ORACLE_REACHES_NEAR])
     return is_so[ORACLE_IS_BAND_NARROW] ? ORACLE_SEGMENT : ORACLE_RAY;
-  if (view->method == 2) /* affine: thin or not, the variance of the centre's Jacobian */
+  if (view->method == CONIC_METHOD_AFFINE) /* thin or not, the variance of the centre's Jacobian */
     return ORACLE_AFFINE;
   if (is_so[ORACLE_IS_THIN])
     return ORACLE_CONIC;

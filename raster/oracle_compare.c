@@ -61,7 +61,7 @@ static double difference(const conic_reference *reference, const conic_image *im
 }
 
 static void compare_plane(const conic_reference *reference, const conic_image *image, conic_plane plane, double *errors,
-                          conic_verdict_plane *verdict) {
+                          conic_oracle_plane_verdict *verdict) {
   size_t n_pixels = (size_t)reference->width * (size_t)reference->height, n = 0;
   verdict->is_compared = 1;
   for (size_t i = 0; i < n_pixels; i++) {
@@ -77,7 +77,7 @@ static void compare_plane(const conic_reference *reference, const conic_image *i
 }
 
 conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference, const conic_image *image,
-                                  conic_verdict *verdict) {
+                                  conic_oracle_verdict *verdict) {
   memset(verdict, 0, sizeof *verdict);
   if (image->width != reference->width || image->height != reference->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
@@ -94,7 +94,7 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
   verdict->compared_pixels = n_pixels - reference->unstable_pixels;
   verdict->pass = is_exact || (double)reference->unstable_pixels <= unstable_limit * (double)reference->covered_pixels;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
-    conic_verdict_plane *plane = &verdict->planes[i];
+    conic_oracle_plane_verdict *plane = &verdict->planes[i];
     plane->bound = is_exact ? NAN : bounds[i];
     if (!image->planes[i])
       continue;

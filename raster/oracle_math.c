@@ -11,9 +11,12 @@ double conic_oracle_exp(double x) {
     return INFINITY;
   double k = floor(x * 1.4426950408889634074 + 0.5);
   double r = (x - k * 0x1.62e42fefa0000p-1) - k * 0x1.cf79abc9e3b39p-40;
+  static const double one_over[] = {0.0,        1.0,        1.0 / 2.0,  1.0 / 3.0,  1.0 / 4.0,
+                                    1.0 / 5.0,  1.0 / 6.0,  1.0 / 7.0,  1.0 / 8.0,  1.0 / 9.0,
+                                    1.0 / 10.0, 1.0 / 11.0, 1.0 / 12.0, 1.0 / 13.0, 1.0 / 14.0};
   double sum = 1.0;
   for (int n = 14; n > 0; n--)
-    sum = 1.0 + sum * r / (double)n;
+    sum = 1.0 + (sum * r) * one_over[n];
   uint64_t bits = (uint64_t)((int64_t)k + 1023) << 52;
   double power;
   memcpy(&power, &bits, sizeof power);

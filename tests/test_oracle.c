@@ -127,7 +127,7 @@ static void test_exact(conic_context *context) {
 
 typedef struct outcome {
   conic_reference reference;
-  conic_verdict verdict;
+  conic_oracle_verdict verdict;
 } outcome;
 
 static outcome examine(fixture *f) {

@@ -81,24 +81,24 @@ CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_s
 CONIC_API void conic_reference_release(conic_context *context, conic_reference *reference);
 
 /* How an image compares with a reference, on the stable pixels. */
-typedef struct conic_verdict_plane {
+typedef struct conic_oracle_plane_verdict {
   int is_compared;      /* the image has the plane */
   double max_abs, p999; /* Z's is relative; that of rgba (before its exposure), albedo and weight is relative where
                            they are above 1. The percentile is over covered pixels. NaN counts as infinite */
   double bound;         /* what max_abs may be; NaN where there is none */
-} conic_verdict_plane;
+} conic_oracle_plane_verdict;
 
-typedef struct conic_verdict {
-  conic_verdict_plane planes[CONIC_N_PLANES];
+typedef struct conic_oracle_verdict {
+  conic_oracle_plane_verdict planes[CONIC_N_PLANES];
   size_t compared_pixels, unstable_pixels, covered_pixels;
   double unstable_limit; /* share of the covered pixels that may be unstable */
   int pass;              /* every bound and the limit are kept */
-} conic_verdict;
+} conic_oracle_verdict;
 
 /* Compares `image`, of the reference's size, with it: against the bounds of docs/oracle.md where the question was the
  * method's; the exact question has no bounds, and everything passes. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference,
-                                            const conic_image *image, conic_verdict *verdict);
+                                            const conic_image *image, conic_oracle_verdict *verdict);
 
 /* One splat, alone and without hand-overs, given in camera space: its centre and axes. */
 typedef struct conic_oracle_splat {
