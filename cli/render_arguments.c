@@ -193,7 +193,7 @@ void cli_scene_defaults(cli_render_job *job) {
 /* The command's own options, then those of the scene. */
 static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
                      int argc, char **argv, cli_render_job *job) {
-  cli_option *table = calloc((size_t)(n_own + n_scene), sizeof *table);
+  cli_option *table = calloc((size_t)n_own + (size_t)n_scene, sizeof *table);
   job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
   int answer = CLI_RESOURCE;
   if (table && job->inputs) {

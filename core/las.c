@@ -110,16 +110,16 @@ static conic_status check_format(las_reader *reader) {
 
 static conic_status read_scale(las_reader *reader) {
   for (int axis = 0; axis < 3; axis++) {
-    int at = AT_SCALE + 8 * axis;
-    reader->scale[axis] = double_at(reader, at);
-    reader->offset[axis] = double_at(reader, AT_OFFSET + 8 * axis);
+    int at_scale = AT_SCALE + 8 * axis, at_offset = AT_OFFSET + 8 * axis;
+    reader->scale[axis] = double_at(reader, at_scale);
+    reader->offset[axis] = double_at(reader, at_offset);
     if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
-      return wrong(reader, "a scale is zero or not finite", (uint64_t)at);
+      return wrong(reader, "a scale is zero or not finite", (uint64_t)at_scale);
     if (!(reader->offset[axis] - reader->offset[axis] == 0.0))
-      return wrong(reader, "an offset is not finite", (uint64_t)(AT_OFFSET + 8 * axis));
+      return wrong(reader, "an offset is not finite", (uint64_t)at_offset);
     double farthest = fabs(reader->scale[axis]) * 0x1p31 + fabs(reader->offset[axis]);
     if (!(farthest - farthest == 0.0))
-      return wrong(reader, "a scale is too large", (uint64_t)at);
+      return wrong(reader, "a scale is too large", (uint64_t)at_scale);
   }
   return CONIC_OK;
 }

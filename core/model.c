@@ -89,6 +89,7 @@ static conic_status refuse(const conic_input *input, const char *bytes, size_t n
 static conic_status find_kind(const conic_input *input, const char *path, conic_model_kind *kind) {
   const char *bytes = (const char *)conic_input_bytes(input);
   size_t n = conic_input_available(input);
+  int is_xyz_name = has_ending(path, ".xyz") || has_ending(path, ".pts");
   conic_status status = refuse(input, bytes, n);
   if (status != CONIC_OK)
     return status;
@@ -102,13 +103,9 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   else if (has_ending(path, ".las") || has_ending(path, ".laz"))
     return conic_fail(input->context, CONIC_ERROR_INPUT,
                       "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
-  else if (has_ending(path, ".obj"))
+  else if (has_ending(path, ".obj") || (!is_xyz_name && is_obj(bytes, n)))
     *kind = CONIC_MODEL_OBJ;
-  else if (has_ending(path, ".xyz") || has_ending(path, ".pts"))
-    *kind = CONIC_MODEL_XYZ;
-  else if (is_obj(bytes, n))
-    *kind = CONIC_MODEL_OBJ;
-  else if (conic_xyz_is_likely(bytes, n))
+  else if (is_xyz_name || conic_xyz_is_likely(bytes, n))
     *kind = CONIC_MODEL_XYZ;
   else
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no PLY, OBJ, XYZ or LAS file (at byte 0)", input->name);

@@ -74,7 +74,7 @@ OIIO::ImageSpec spec_of(const conic_bridge_picture &picture, const std::string &
 
 // All samples at once, but the rows of a TIFF one by one: of several at a time its reader takes those that cannot be
 // decompressed for good.
-bool read_samples(OIIO::ImageInput &input, OIIO::TypeDesc type, void *samples) {
+bool read_samples(OIIO::ImageInput &input, const OIIO::TypeDesc &type, void *samples) {
   const OIIO::ImageSpec spec = input.spec();
   if (std::strcmp(input.format_name(), "tiff") != 0 || spec.tile_width > 0)
     return input.read_image(0, 0, 0, spec.nchannels, type, samples);

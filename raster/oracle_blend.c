@@ -34,7 +34,11 @@ static double together(double a, double b) {
 /* Copies of a splat are equal however they are computed; so are the depths of discs across the line of sight. */
 static int are_copies(const oracle_fragment *a, const oracle_fragment *b) {
   const oracle_splat *first = a->candidate->splat, *second = b->candidate->splat;
-  return memcmp(&first->placed, &second->placed, sizeof first->placed) == 0 && first->opacity == second->opacity;
+  const oracle_placed *one = &first->placed, *other = &second->placed;
+  for (int axis = 0; axis < 3; axis++)
+    if (one->p[axis] != other->p[axis] || one->tu[axis] != other->tu[axis] || one->tv[axis] != other->tv[axis])
+      return 0;
+  return first->opacity == second->opacity;
 }
 static int are_level(const oracle_fragment *a, const oracle_fragment *b) {
   const double *first = a->candidate->shape.range, *second = b->candidate->shape.range;

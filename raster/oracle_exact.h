@@ -12,7 +12,7 @@ typedef struct oracle_exact {
   int is_center_in_front;
 } oracle_exact;
 
-void conic_oracle_exact(const oracle_view *view, const oracle_placed *placed, oracle_exact *exact);
+void conic_oracle_exact(const oracle_view *view, const oracle_placed *s, oracle_exact *exact);
 
 /* The weight at a place, and the change that the last refinement of the integral made. */
 double conic_oracle_exact_weight(const oracle_view *view, const oracle_exact *exact, double x, double y,

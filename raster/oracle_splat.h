@@ -54,7 +54,7 @@ enum {
   ORACLE_N_QUESTIONS
 };
 
-void conic_oracle_ask(const oracle_view *view, const oracle_placed *placed, double answers[ORACLE_N_QUESTIONS]);
+void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double answers[ORACLE_N_QUESTIONS]);
 /* The answers themselves: 1 for yes. */
 void conic_oracle_answer(const double answers[ORACLE_N_QUESTIONS], int is_so[ORACLE_N_QUESTIONS]);
 oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]);
@@ -75,8 +75,7 @@ typedef struct oracle_shape {
 } oracle_shape;
 
 /* Sets up `formula` for the splat; 0 where it cannot be (not finite). */
-int conic_oracle_shape(const oracle_view *view, const oracle_placed *placed, oracle_formula formula,
-                       oracle_shape *shape);
+int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_formula formula, oracle_shape *shape);
 
 /* By how much of itself the ray formula's range of inverse depth is widened: docs/picture.md, Ray. */
 #define ORACLE_RANGE_SLACK 0x1p-20
@@ -121,7 +120,7 @@ double conic_oracle_kernel(const conic_kernel *kernel, double q);
 typedef struct oracle_extreme {
   double place[2], along, inverse_depth;
 } oracle_extreme;
-int conic_oracle_extremes(const oracle_view *view, const oracle_placed *placed, const double e[2],
+int conic_oracle_extremes(const oracle_view *view, const oracle_placed *s, const double e[2],
                           oracle_extreme extremes[2]);
 
 #endif

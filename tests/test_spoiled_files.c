@@ -170,7 +170,7 @@ static void test_no_file(conic_context *context, const seed *from) {
 
 /* Other people's decoders, where they are in the build: a cut picture must not pass for a whole one, nor damaged data
  * for sound ones where the format has check sums. */
-static void test_foreign(conic_context *writing, conic_context *context, const char *target, int has_sums) {
+static void test_foreign(conic_context *writing, conic_context *reading, const char *target, int has_sums) {
   seed_set set = {.n = 0};
   seeds_picture(&set, writing, target, 1u << CONIC_PLANE_RGBA);
   if (set.n == 0) {
@@ -178,12 +178,12 @@ static void test_foreign(conic_context *writing, conic_context *context, const c
     return;
   }
   seed *from = &set.seeds[0];
-  test_cut(context, from);
-  test_replaced(context, from);
+  test_cut(reading, from);
+  test_replaced(reading, from);
   if (has_sums) {
     size_t middle = from->n_bytes - 40; /* within the compressed samples, which come last */
     from->bytes[middle] ^= 0x55;
-    CHECK(!check(context, from, from->bytes, from->n_bytes));
+    CHECK(!check(reading, from, from->bytes, from->n_bytes));
   }
   free(from->bytes);
 }

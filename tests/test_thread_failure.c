@@ -7,12 +7,14 @@
 /* The linker sends calls of pthread_create here (tests/CMakeLists.txt). */
 static int n_threads_left;
 
+/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl*): the linker's names */
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument);
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument);
 
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument) {
   return n_threads_left-- > 0 ? __real_pthread_create(thread, attributes, start, argument) : EAGAIN;
 }
+/* NOLINTEND(bugprone-reserved-identifier,cert-dcl*) */
 
 static uint64_t draw(int n_threads_given) {
   uint64_t hash = 0;
