@@ -13,7 +13,7 @@ static int compare_frames(const void *a, const void *b) {
 /* Each time's own median over the frames. */
 static double median_of(conic_render_statistics *frames, size_t n, size_t offset) {
   for (size_t i = 0; i < n; i++) /* sorted by the frame's time, so each other time takes its turn there */
-    memcpy(&frames[i].ms.frame, (const char *)&frames[i].ms + offset, sizeof(double));
+    memmove(&frames[i].ms.frame, (const char *)&frames[i].ms + offset, sizeof(double));
   qsort(frames, n, sizeof *frames, compare_frames);
   return n % 2 ? frames[n / 2].ms.frame : 0.5 * (frames[n / 2 - 1].ms.frame + frames[n / 2].ms.frame);
 }

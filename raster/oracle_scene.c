@@ -24,7 +24,7 @@ static void rotate(const conic_camera *camera, const double v[3], double result[
     result[i] = oracle_dot(camera->cam_from_world[i], v);
 }
 
-/* The splat's inputs in the world; 0 where one is not finite. */
+/* The splat's inputs in the world; 0 where one is not finite, or past what picture.md allows. */
 static int read_splat(const conic_splats *splats, size_t i, oracle_placed *world, oracle_splat *splat) {
   read_axis(splats->position, i, world->p);
   read_axis(splats->tangent_u, i, world->tu);
@@ -36,7 +36,10 @@ static int read_splat(const conic_splats *splats, size_t i, oracle_placed *world
     splat->color[c] = splats->color[0] ? (double)splats->color[c][i] : 1.0;
     sum += world->p[c] + world->tu[c] + world->tv[c] + splat->color[c];
   }
-  return oracle_is_finite(sum);
+  for (int c = 0; c < 3; c++)
+    if (fabs(splat->color[c]) > 1e18)
+      return 0;
+  return oracle_is_finite(sum) && splat->opacity <= 1e6;
 }
 
 /* 1e-4 × the diagonal of the box of the finite centres, as if that were 1 where it is 0. */

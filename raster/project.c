@@ -127,6 +127,12 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
+static conic_outcome project_by_ray(const splat_setup *s) {
+  conic_disc disc;
+  fill_disc(s, &disc);
+  return conic_project_ray(s->view, &disc, s->footprint, s->box, s->ray);
+}
+
 static conic_outcome project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
@@ -136,6 +142,8 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
   float determinant = (k->root_determinant * k->root_determinant + h * (k->rxx + k->ryy)) + h * h;
   if (!(determinant > 0.0f))
     return CONIC_SKIPPED;
+  if (!(determinant * 0.0f == 0.0f)) /* wider than float can square: in double, where both formulas agree */
+    return project_by_ray(s);
   double x_t = (view->cx + view->fx * (s->p[0] * s->inverse_z)) + (double)k->shift_x;
   double y_t = (view->cy + view->fy * (s->p[1] * s->inverse_z)) + (double)k->shift_y;
   pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &box->x_begin, &box->x_end);
@@ -177,11 +185,8 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
     return project_variance(s, &t, &affine);
   }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
-  if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k)) {
-    conic_disc disc;
-    fill_disc(s, &disc);
-    return conic_project_ray(view, &disc, s->footprint, s->box, s->ray);
-  }
+  if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k))
+    return project_by_ray(s);
   return project_variance(s, &t, &k);
 }
 
@@ -235,6 +240,16 @@ static void set_weighing(const splat_setup *s, float longer) {
     s->footprint->amplitude *= s->splats->opacity[s->i];
 }
 
+/* Opacity and colour within what the sums of a pixel can hold. */
+static int is_in_range(const conic_splats *splats, size_t i) {
+  if (splats->opacity && !(splats->opacity[i] <= CONIC_GREATEST_OPACITY))
+    return 0;
+  for (int axis = 0; axis < 3; axis++)
+    if (splats->color[axis] && !(fabsf(splats->color[axis][i]) <= CONIC_GREATEST_COLOR))
+      return 0;
+  return 1;
+}
+
 /* Sums of x·0: NaN as soon as one of the record's fields is not finite. */
 static int is_finite_record(const conic_footprint *footprint, const conic_ray *ray, const conic_surface *surface) {
   float sum = (footprint->dx0 + footprint->dy0) * 0.0f;
@@ -274,7 +289,7 @@ static conic_outcome project_splat(splat_setup *s) {
     outcome = project_across_near(s);
   if (outcome >= CONIC_CULLED)
     return outcome;
-  if (!world_normal(s->splats, s->i, normal, &longer))
+  if (!world_normal(s->splats, s->i, normal, &longer) || !is_in_range(s->splats, s->i))
     return CONIC_SKIPPED;
   if (outcome == CONIC_DRAWN_SEGMENT)
     s->footprint->amplitude = 0.0f;

@@ -173,7 +173,7 @@ CONIC_INLINE void cull_off_screen(group *g) {
   }
 }
 
-/* world_normal of project.c. Returns what is not finite. */
+/* world_normal of project.c. Returns 0, but NaN where the normal is not finite. */
 CONIC_INLINE lanes world_normals(group *g) {
   lanes u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -212,7 +212,8 @@ CONIC_INLINE lanes finite_or_zero(lanes value) {
   return lanes_keep(lanes_at_least(value * 0.0f, lanes_of(0.0f)), value);
 }
 
-/* Everything of the records but places and boxes; returns NaN in lanes with a field that is not finite. */
+/* Everything of the records but places and boxes; returns 0, but NaN or less in lanes
+ * with a field that is not finite or out of range. */
 CONIC_INLINE lanes finish_records(group *g, records *r) {
   const conic_view *view = g->view;
   lanes inverse_z = lanes_load(g->inverse_z_float), not_finite = world_normals(g);
@@ -229,8 +230,11 @@ CONIC_INLINE lanes finish_records(group *g, records *r) {
   lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * g->longer), lanes_of(view->epsilon_cap));
   lanes distance = lanes_load(g->distance);
   lanes nearness = lanes_keep(lanes_less(lanes_of(0.0f), distance), 1.0f / (1.0f + epsilon / distance));
-  if (g->splats->opacity)
-    amplitude *= lanes_load(g->splats->opacity + g->first);
+  if (g->splats->opacity) {
+    lanes opacity = lanes_load(g->splats->opacity + g->first);
+    amplitude *= opacity;
+    not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_OPACITY), opacity), lanes_of(1.0f));
+  }
   not_finite += (lanes_load(g->fraction[0]) + lanes_load(g->fraction[1])) * 0.0f;
   not_finite += s1 * 0.0f + s2 * 0.0f + s3 * 0.0f + iz0 * 0.0f + iz_dx * 0.0f + iz_dy * 0.0f;
   not_finite += iz_far * 0.0f + iz_near * 0.0f + nearness * 0.0f + amplitude * 0.0f;
@@ -251,6 +255,7 @@ CONIC_INLINE lanes finish_records(group *g, records *r) {
     lanes_store(r->color[axis], color);
     lanes_store(r->normal[axis], g->normal[axis]);
     not_finite += color * 0.0f;
+    not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_COLOR), absolute(color)), lanes_of(1.0f));
   }
   return not_finite;
 }
@@ -303,6 +308,7 @@ CONIC_INLINE void set_up_group(group *g, records *r) {
   }
   widen(g);
   move_state(g, lanes_less(lanes_of(0.0f), g->determinant), 0, GROUP_SKIPPED);
+  move_state(g, lanes_at_least(g->determinant * 0.0f, lanes_of(0.0f)), 0, GROUP_UNUSUAL);
   place(g, 0, view->cx, view->fx, view->width);
   place(g, 1, view->cy, view->fy, view->height);
   cull_off_screen(g);

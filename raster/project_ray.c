@@ -134,6 +134,8 @@ static conic_outcome project_segment(const conic_view *view, const conic_disc *d
   footprint->s1 = (float)sqrt(vyy / determinant);
   footprint->s2 = (float)(-rxy / sqrt(vyy * determinant));
   footprint->s3 = (float)(1.0 / sqrt(vyy));
+  if (!(footprint->s3 > 0.0f)) /* 0 would mean a ray */
+    return CONIC_SKIPPED;
   double slope = length > 0.0 ? (1.0 / b.z - 1.0 / a.z) / length : 0.0;
   double shrunk = slope * variance / (variance + h);
   footprint->iz0 = (float)(0.5 / a.z + 0.5 / b.z);

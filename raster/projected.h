@@ -51,6 +51,10 @@ typedef struct conic_surface {
   uint32_t index;  /* in the splat set */
 } conic_surface;
 
+/* A splat with more opacity, or a colour beyond this, is skipped: no sum of 2³² of them overflows. */
+#define CONIC_GREATEST_OPACITY 1e6f
+#define CONIC_GREATEST_COLOR 1e18f
+
 /* A chunk of consecutive splats, projected and compacted. */
 typedef struct conic_chunk {
   size_t first, n_drawn; /* its splats are at first … first + n_drawn in the arrays below */

@@ -23,7 +23,7 @@ typedef struct tile_times {
 
 struct conic_renderer {
   conic_context *context;
-  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, references, planes, times;
+  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, planes, times;
 };
 
 /* One frame on its way through the stages. */
@@ -81,8 +81,8 @@ void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
   kept *all[] = {&renderer->footprints, &renderer->boxes,  &renderer->surfaces,   &renderer->rays,
-                 &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->references,
-                 &renderer->planes,     &renderer->times};
+                 &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->tile_counts,
+                 &renderer->references, &renderer->planes, &renderer->times};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   conic_memory_release(renderer->context, renderer);
@@ -119,11 +119,11 @@ static conic_status plan_chunks(frame *f) {
   projected->surfaces = room(renderer, &renderer->surfaces, n, sizeof *projected->surfaces);
   projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
   bins->counts = room(renderer, &renderer->counts, n_chunks * bins->n_tiles, sizeof *bins->counts);
-  bins->tile_begin = room(renderer, &renderer->tile_begin, bins->n_tiles * 3 + 1, sizeof *bins->tile_begin);
+  f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
+  bins->tile_begin = room(renderer, &renderer->tile_begin, bins->n_tiles + 1, sizeof *bins->tile_begin);
   if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays ||
-      !bins->counts || !bins->tile_begin)
+      !bins->counts || !bins->tile_begin || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
-  f->n_fragments = (uint64_t *)(bins->tile_begin + bins->n_tiles + 1);
   f->n_covered = f->n_fragments + bins->n_tiles;
   return CONIC_OK;
 }

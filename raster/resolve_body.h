@@ -73,7 +73,8 @@ CONIC_INLINE void finish_block(const conic_tile *tile, const conic_finish *finis
   lanes_mask has_direction = lanes_less(zero, norm);
   for (int axis = 0; axis < 3; axis++)
     block->normal[axis] = lanes_keep(has_direction, mean_normal[axis] / norm);
-  mend_normals(tile, at, covered & lanes_at_least(zero, norm), block->normal);
+  mend_normals(tile, at, covered & lanes_less(lanes_keep(has_direction, lanes_of(1.0f)), lanes_of(1.0f)),
+               block->normal);
   if (options->shading == CONIC_SHADE_NONE)
     memcpy(shaded, block->albedo, sizeof shaded);
   else {

@@ -13,7 +13,7 @@
 /* The planes of one tile, in bands of four rows; a band lies column by column (conic_tile_place). Tiny splats so need
  * few vectors, whatever their width. Splats are named by their footprint. */
 typedef struct conic_tile_planes {
-  float *threshold;  /* max of s·iz over what covers the pixel; 0: nothing does */
+  float *threshold;  /* max of s·min(iz, iz_plane) over what covers the pixel, at least 0 */
   float *nearest_iz; /* the largest iz among the visible splats, and whose it is */
   uint32_t *nearest;
   float *weight;               /* Σ w */

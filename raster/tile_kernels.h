@@ -13,13 +13,13 @@ typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
   /* Set-up: the splats of a chunk, compacted, in order. */
   void (*project)(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
-  /* Pass 1: threshold. */
+  /* Pass 1: threshold, and n_fragments. */
   void (*visibility)(conic_tile *tile);
   /* Pass 1 where the nearest splat wins alone: nearest_iz and nearest; the first of equals. */
   void (*nearest)(conic_tile *tile);
   /* Pass 2: sums over the visible splats, the heaviest and the nearest of them. */
   void (*accumulate)(conic_tile *tile);
-  /* Pass 3: the image's pixels, and n_fragments and n_covered. */
+  /* Pass 3: the image's pixels, and n_covered. */
   void (*resolve)(conic_tile *tile, const conic_finish *finish, conic_image *image);
 } conic_tile_kernels;
 

@@ -50,6 +50,9 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
     return "the method is unknown";
   if (!(options->near_z >= 0.0) || !(options->epsilon < 1e30) || !(fabs(options->exposure) <= 100.0))
     return "near, epsilon or exposure is out of range";
+  for (int i = 0; i < 3; i++)
+    if (options->has_background && !(fabsf(options->background[i]) <= 1e18f))
+      return "the background is out of range";
   return NULL;
 }
 
