@@ -2,25 +2,7 @@
 # The program as its users and their scripts rely on it: help, exit codes, messages, and nothing half-written.
 set -uo pipefail
 
-conic=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# Runs conic; its output is then in `out` and `err`. run EXIT_CODE ARGUMENTS …
-run() {
-  local wanted=$1 got
-  shift
-  "$conic" "$@" > out 2> err < /dev/null
-  got=$?
-  [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 err)"
-}
+source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
 # The same for a run that must fail: one line on standard error, in the one form; nothing on standard output.
 run_wrong() { # EXIT_CODE, PATTERN, ARGUMENTS …
   local pattern=$2

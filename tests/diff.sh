@@ -2,23 +2,11 @@
 # conic diff: exit codes, statistics, heat maps; and EXR files as other programs write and read them.
 set -uo pipefail
 
-conic=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
+source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
 
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-# run EXIT_CODE ARGUMENTS …: runs conic diff; its output is then in `out` and `err`.
-run() {
-  local wanted=$1 got
-  shift
-  "$conic" diff "$@" > out 2> err < /dev/null
-  got=$?
-  [[ $got -eq $wanted ]] || fail "conic diff $*: exit code $got instead of $wanted: $(head -c 300 err)"
+# run_diff EXIT_CODE ARGUMENTS …
+run_diff() {
+  run "$1" diff "${@:2}"
 }
 has() { # PATTERN: in the output
   grep -qe "$1" out || fail "no \"$1\" in: $(head -c 600 out)"
@@ -38,28 +26,28 @@ pfm tall.pfm 1 2 $half $one
 head -c 15 a.pfm > short.pfm
 
 # Without limits
-run 0 a.pfm same.pfm
+run_diff 0 a.pfm same.pfm
 has '^identical$'
-run 1 a.pfm b.pfm
+run_diff 1 a.pfm b.pfm
 has '^differing pixels  1 of 2$'
-run 1 a.pfm tall.pfm
+run_diff 1 a.pfm tall.pfm
 has '^different sizes: 2x1 and 1x2$'
-run 0 nan.pfm nan.pfm
-run 1 a.pfm b.pfm --quiet
+run_diff 0 nan.pfm nan.pfm
+run_diff 1 a.pfm b.pfm --quiet
 [[ ! -s out && ! -s err ]] || fail "--quiet prints"
 
 # With limits: the difference is 0.5, and the PSNR 10 log10(2 / (1 - 0.735358)²) = 14.556 dB
-run 0 a.pfm b.pfm --max-abs 0.5
-run 1 a.pfm b.pfm --max-abs 0.49
-run 0 a.pfm b.pfm --min-psnr 14.55
-run 1 a.pfm b.pfm --min-psnr 14.56
-run 1 a.pfm b.pfm --max-abs 0.5 --min-psnr 14.56
-run 0 a.pfm same.pfm --max-abs 0 --min-psnr 200
-run 1 a.pfm tall.pfm --max-abs 100 --min-psnr 0
-run 1 a.pfm nan.pfm --max-abs 1e30
+run_diff 0 a.pfm b.pfm --max-abs 0.5
+run_diff 1 a.pfm b.pfm --max-abs 0.49
+run_diff 0 a.pfm b.pfm --min-psnr 14.55
+run_diff 1 a.pfm b.pfm --min-psnr 14.56
+run_diff 1 a.pfm b.pfm --max-abs 0.5 --min-psnr 14.56
+run_diff 0 a.pfm same.pfm --max-abs 0 --min-psnr 200
+run_diff 1 a.pfm tall.pfm --max-abs 100 --min-psnr 0
+run_diff 1 a.pfm nan.pfm --max-abs 1e30
 
 # Statistics
-run 1 a.pfm b.pfm --json -
+run_diff 1 a.pfm b.pfm --json -
 for key in identical max_abs rmse psnr ssim flip differing_pixels largest_hole planes; do
   grep -q "^  \"$key\": " out || fail "no $key in the statistics"
 done
@@ -69,15 +57,15 @@ has '"flip": null'
 has '"differing_pixels": 1,'
 has '"largest_hole": 0,'
 has '^    "rgba": {'
-run 0 a.pfm same.pfm --json a.json
+run_diff 0 a.pfm same.pfm --json a.json
 cp a.json out
 has '"identical": true'
 has '"max_abs": 0,'
 has '"psnr": null'
 has '"ssim": 1,'
-run 1 a.pfm nan.pfm --json -
+run_diff 1 a.pfm nan.pfm --json -
 has '"max_abs": null'
-run 1 a.pfm tall.pfm --json -
+run_diff 1 a.pfm tall.pfm --json -
 has '"max_abs": null'
 has '"planes": {}'
 if command -v python3 > /dev/null; then
@@ -85,23 +73,23 @@ if command -v python3 > /dev/null; then
 fi
 
 # Heat maps
-run 1 a.pfm b.pfm --heatmap h.pfm
+run_diff 1 a.pfm b.pfm --heatmap h.pfm
 [[ $(head -c 7 h.pfm | tr '\n' ' ') == 'PF 2 1 ' ]] || fail "no heat map"
-run 1 a.pfm tall.pfm --heatmap none.pfm
+run_diff 1 a.pfm tall.pfm --heatmap none.pfm
 [[ ! -e none.pfm ]] || fail "a heat map of different sizes"
 grep -q '^conic: warning: none.pfm: ' err || fail "silent about the missing heat map"
 
 # What fails
-run 2 a.pfm
-run 2 a.pfm b.pfm tall.pfm
-run 2 a.pfm b.pfm --max-abs nonsense
-run 2 a.pfm b.pfm --max-abs -1
-run 2 a.pfm b.pfm --heatmap h.nosuchformat2 --json h.nosuchformat2
-run 3 absent.pfm a.pfm
-run 3 a.pfm absent.pfm
-run 3 short.pfm a.pfm
-run 4 a.pfm b.pfm --heatmap missing/h.pfm
-run 4 a.pfm b.pfm --json missing/h.json
+run_diff 2 a.pfm
+run_diff 2 a.pfm b.pfm tall.pfm
+run_diff 2 a.pfm b.pfm --max-abs nonsense
+run_diff 2 a.pfm b.pfm --max-abs -1
+run_diff 2 a.pfm b.pfm --heatmap h.nosuchformat2 --json h.nosuchformat2
+run_diff 3 absent.pfm a.pfm
+run_diff 3 a.pfm absent.pfm
+run_diff 3 short.pfm a.pfm
+run_diff 4 a.pfm b.pfm --heatmap missing/h.pfm
+run_diff 4 a.pfm b.pfm --json missing/h.json
 [[ $(wc -l < err) -eq 1 ]] || fail "more than one line of error"
 
 # Other programs' EXR files
@@ -112,31 +100,31 @@ if "$conic" --version | grep -q '^In this build:.*OpenEXR' && command -v oiiotoo
     '--ch R,G,B,A=1' '--ch B,A=1,G,R --scanline'; do
     # shellcheck disable=SC2086
     oiiotool a.exr $how -o b.exr
-    run 0 a.exr b.exr --max-abs 0.001 --min-psnr 60
+    run_diff 0 a.exr b.exr --max-abs 0.001 --min-psnr 60
   done
   oiiotool a.exr -d half -o b.exr
-  run 1 a.exr b.exr # rounded, so the test would see a difference
+  run_diff 1 a.exr b.exr # rounded, so the test would see a difference
   oiiotool a.exr --ch R --chnames Y -o y.exr
   oiiotool a.exr --ch R,R,R --chnames R,G,B -o grey.exr
-  run 0 y.exr grey.exr
+  run_diff 0 y.exr grey.exr
   oiiotool a.exr --ch R,G,B,R --chnames R,G,B,unknown -o more.exr
-  run 0 a.exr more.exr --verbose
+  run_diff 0 a.exr more.exr --verbose
   grep -q 'channel unknown is ignored' err || fail "silent about a channel"
 
   # Ours in their eyes
-  run 1 a.exr b.exr --heatmap ours.exr
+  run_diff 1 a.exr b.exr --heatmap ours.exr
   oiiotool --info -v ours.exr > out
   has '75 x   53, 4 channel, float openexr'
   has 'channel list: R, G, B, A$'
   has 'compression: "zip"'
   oiiotool ours.exr --compression none -o theirs.exr
   idiff ours.exr theirs.exr > out || fail "idiff: $(cat out)"
-  run 0 ours.exr theirs.exr
-  run 1 a.exr b.exr --heatmap ours.png
+  run_diff 0 ours.exr theirs.exr
+  run_diff 1 a.exr b.exr --heatmap ours.png
   oiiotool --info -v ours.png > out
   has '75 x   53, 4 channel, uint8 png'
   has 'oiio:ColorSpace: "sRGB"'
-  run 0 ours.exr ours.png --max-abs 0.005 --min-psnr 50
+  run_diff 0 ours.exr ours.png --max-abs 0.005 --min-psnr 50
 else
   echo "skipped: other programs' EXR files, as oiiotool or this build's OpenEXR is missing"
 fi

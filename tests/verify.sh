@@ -2,24 +2,7 @@
 # conic verify: exit codes, statistics, and that it sees what is wrong.
 set -uo pipefail
 
-conic=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-# run EXIT_CODE ARGUMENTS …: runs conic; its output is then in `out` and `err`.
-run() {
-  local wanted=$1 got
-  shift
-  "$conic" "$@" > out 2> err < /dev/null
-  got=$?
-  [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 out err)"
-}
+source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
 has() { # PATTERN: in the output
   grep -qe "$1" out || fail "no \"$1\" in: $(head -c 1500 out)"
 }

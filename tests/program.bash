@@ -1,0 +1,22 @@
+# What the tests of the program share: sourced with the script's own arguments, it moves to an empty folder that goes away
+# with the script. $conic is the program, $failures what `fail` has counted.
+
+conic=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# Runs conic; its output is then in `out` and `err`. run EXIT_CODE ARGUMENTS …
+run() {
+  local wanted=$1 got
+  shift
+  "$conic" "$@" > out 2> err < /dev/null
+  got=$?
+  [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 out err)"
+}
