@@ -101,6 +101,7 @@ CONIC_INLINE void look_at(const conic_view *view, const lanes position[3], const
 /* The screen's side of a group. */
 typedef struct group_screen {
   lanes bx, by, inverse_w, rxx, rxy, ryy, root, vxx, vyy, determinant;
+  lanes_mask by_ray;
   lanes shift[2], half_width[2], center[2], fraction[2];
   int_lanes begin[2], end[2];
 } group_screen;
@@ -121,7 +122,7 @@ CONIC_INLINE void dual_conic_lanes(const group_splats *g, float cutoff, lanes w,
   s->inverse_w = inverse_w;
 }
 
-/* Where the ray formula may be due; conic_project_one decides. */
+/* Where the ray formula is due: neither edge-on nor tiny. */
 CONIC_INLINE lanes_mask wants_ray(const conic_view *view, const group_splats *g, const group_screen *s) {
   lanes_mask reaches = lanes_at_least(g->reach, lanes_of(0.25f));
   if (view->method != CONIC_METHOD_RAY && !lanes_any(reaches))
@@ -140,20 +141,30 @@ CONIC_INLINE void widen(const conic_view *view, group_screen *s) {
   s->determinant = (s->root * s->root + h * (s->rxx + s->ryy)) + h * h;
   s->half_width[0] = view->cutoff * lanes_sqrt(s->vxx);
   s->half_width[1] = view->cutoff * lanes_sqrt(s->vyy);
+  if (!lanes_any(s->by_ray))
+    return;
+  lanes outline[2] = {view->cutoff * lanes_sqrt(s->rxx) + view->growth_px,
+                      view->cutoff * lanes_sqrt(s->ryy) + view->growth_px};
+  for (int axis = 0; axis < 2; axis++)
+    s->half_width[axis] = lanes_select(s->by_ray, outline[axis], s->half_width[axis]);
 }
 
-/* The footprint's centre and box along one axis, as pixel_range of project.c; an empty box has its begin not before its
- * end. */
+/* The footprint's reference and box along one axis, as pixel_range of project.c; an empty box has its begin not before
+ * its end. A ray's reference is the projected p, a variance's its own centre. */
 CONIC_INLINE void place(const group_splats *g, int axis, double principal, double focal, int size, group_screen *s) {
   doubles center, low, high, fraction;
   half_doubles zero = half_of_value(0.0), limit = half_of_value((double)size);
+  lanes to_reference = lanes_select(s->by_ray, lanes_of(0.0f), s->shift[axis]);
+  /* In double a factor of 1.0001: not as float times 1 and a float's 1.0001. */
+  lanes is_ray = lanes_keep(s->by_ray, lanes_of(1.0f));
   for (int half = 0; half < 2; half++) {
-    half_doubles reach = half_of(s->half_width[axis], half) * 1.0001 + 0.01;
-    half_doubles middle =
-        (principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half])) + half_of(s->shift[axis], half);
+    half_doubles ray = half_of(is_ray, half), half_width = half_of(s->half_width[axis], half);
+    half_doubles reach = half_width * (1.0001 - ray * (1.0001 - 1.0)) + (0.01 - ray * 0.01);
+    half_doubles p = principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half]);
+    half_doubles middle = p + half_of(s->shift[axis], half), reference = p + half_of(to_reference, half);
     low.half[half] = half_min(half_max(middle - reach + 0.5, zero), limit);
     high.half[half] = half_max(half_min(middle + reach + 0.5, limit), zero);
-    center.half[half] = half_min(half_max(middle, half_of_value(-1e9)), half_of_value(1e9));
+    center.half[half] = half_min(half_max(reference, half_of_value(-1e9)), half_of_value(1e9));
   }
   s->begin[axis] = lanes_truncate(&low);
   s->end[axis] = lanes_truncate(&high);
@@ -192,7 +203,7 @@ CONIC_INLINE lanes finite_or_zero(lanes value) {
 
 /* The finished records of a group, field by field as they lie in memory. */
 typedef struct records {
-  lanes footprint[16], surface[8];
+  lanes footprint[16], surface[8], ray[12];
 } records;
 
 CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, lanes longer, records *r) {
@@ -221,9 +232,43 @@ CONIC_INLINE lanes set_surfaces(const batch *from, size_t at, const lanes normal
   return not_finite;
 }
 
+/* project_ray_before_near of project.c: the ray's record, and what is other in the footprint's. Its i_ray is set when
+ * it is written. */
+CONIC_INLINE void set_rays(const group_splats *g, const group_screen *s, records *r, float growth_px,
+                           float greatest_iz) {
+  lanes zero = lanes_of(0.0f), scale = g->inverse_z_float / g->area;
+  lanes plane_dx = r->footprint[10], plane_dy = r->footprint[11], far = r->footprint[12], near = r->footprint[13];
+  const lanes of_ray[16] = {[7] = g->inverse_z_float, [8] = plane_dx, [9] = plane_dy, [15] = lanes_of(1.0f)};
+  lanes widening = lanes_sqrt(plane_dx * plane_dx + plane_dy * plane_dy) * growth_px;
+  lanes high = lanes_min(near + widening, lanes_of(greatest_iz));
+  for (int field = 4; field < 16; field++)
+    if (field < 10 || field == 15)
+      r->footprint[field] = lanes_select(s->by_ray, of_ray[field], r->footprint[field]);
+  r->ray[0] = r->ray[3] = zero;
+  r->ray[1] = scale * g->vy;
+  r->ray[2] = -(scale * g->vx);
+  r->ray[4] = -(scale * g->uy);
+  r->ray[5] = scale * g->ux;
+  r->ray[6] = lanes_max((far - widening) - 0x1p-20f * far, zero);
+  r->ray[7] = high + 0x1p-20f * near;
+  for (int axis = 0; axis < 2; axis++) {
+    r->ray[8 + 2 * axis] = (__builtin_convertvector(s->begin[axis], lanes) - s->center[axis]) + s->fraction[axis];
+    r->ray[9 + 2 * axis] = (__builtin_convertvector(s->end[axis] - 1, lanes) - s->center[axis]) + s->fraction[axis];
+  }
+}
+
+/* Returns 0, but NaN where the ray's record is not finite. */
+CONIC_INLINE lanes check_rays(const group_screen *s, const records *r) {
+  lanes not_finite = lanes_of(0.0f);
+  for (int field = 0; field < 8 && lanes_any(s->by_ray); field++)
+    not_finite += lanes_keep(s->by_ray, r->ray[field] * 0.0f);
+  return not_finite;
+}
+
 /* Everything but nearness and the surface; in the order of conic_footprint. Returns 0, but NaN in lanes with a field
  * that is not finite. */
-CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, records *r) {
+CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, float growth_px, float greatest_iz,
+                                  records *r) {
   lanes inverse_z = g->inverse_z_float, not_finite = (s->fraction[0] + s->fraction[1]) * 0.0f;
   lanes factor = -inverse_z * (s->inverse_w * s->inverse_w), rgx = factor * s->bx, rgy = factor * s->by;
   r->footprint[0] = s->center[0];
@@ -241,6 +286,8 @@ CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, 
   r->footprint[12] = inverse_z / g->farthest;
   r->footprint[13] = inverse_z / g->nearest;
   r->footprint[15] = s->root / lanes_sqrt(s->determinant);
+  if (lanes_any(s->by_ray))
+    set_rays(g, s, r, growth_px, greatest_iz);
   for (int field = 4; field < 14; field++)
     not_finite += r->footprint[field] * 0.0f;
   return not_finite;
@@ -265,34 +312,35 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
   verdict.unusual = lanes_not(g.usual | g.behind);
   if (view->cull_back)
     verdict.usual &= lanes_not(lanes_less(lanes_of(0.0f), g.area));
+  s->by_ray = lanes_not(lanes_at_least(lanes_of(0.0f), lanes_of(0.0f)));
   if (view->method == CONIC_METHOD_AFFINE)
     dual_conic_lanes(&g, 0.0f, lanes_of(1.0f), s);
   else {
     dual_conic_lanes(&g, view->cutoff, g.nearest * g.farthest, s);
-    lanes_mask by_ray = verdict.usual & wants_ray(view, &g, s);
-    verdict.unusual |= by_ray;
-    verdict.usual &= lanes_not(by_ray);
+    s->by_ray = verdict.usual & wants_ray(view, &g, s);
   }
   widen(view, s);
-  lanes_mask has_area = lanes_less(lanes_of(0.0f), s->determinant);
+  lanes_mask has_area = s->by_ray | lanes_less(lanes_of(0.0f), s->determinant);
   verdict.skipped = verdict.usual & lanes_not(has_area);
   verdict.usual &= has_area;
   place(&g, 0, view->cx, view->fx, view->width, s);
   place(&g, 1, view->cy, view->fy, view->height, s);
   lanes_mask on_screen = lanes_less_int(s->begin[0], s->end[0]) & lanes_less_int(s->begin[1], s->end[1]);
-  lanes_mask squares = lanes_at_least(s->determinant * 0.0f, lanes_of(0.0f));
-  lanes not_finite = world_normals(tu, tv, g.area, normal, &longer) + set_footprints(&g, s, r);
+  lanes_mask squares = s->by_ray | lanes_at_least(s->determinant * 0.0f, lanes_of(0.0f));
+  lanes not_finite = world_normals(tu, tv, g.area, normal, &longer) +
+                     set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
   set_nearness(view, &g, longer, r);
   lanes opacity = lanes_load(from->columns[OPACITY] + at);
   r->footprint[15] *= opacity;
   not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_OPACITY), opacity), lanes_of(1.0f));
   not_finite += r->footprint[14] * 0.0f + r->footprint[15] * 0.0f;
-  not_finite += set_surfaces(from, at, normal, r);
+  not_finite += set_surfaces(from, at, normal, r) + check_rays(s, r);
   /* A determinant that float cannot hold is not culled by a box of float's; conic_project_one takes it on. */
   lanes_mask odd = verdict.usual & lanes_not(squares & lanes_at_least(not_finite, lanes_of(0.0f))) &
                    (on_screen | lanes_not(squares));
   verdict.unusual |= odd;
   verdict.usual &= on_screen & lanes_not(odd);
+  s->by_ray &= verdict.usual;
   return verdict;
 }
 
@@ -309,10 +357,24 @@ CONIC_INLINE void write_boxes(const group_screen *s, unsigned drawn, conic_box *
   }
 }
 
+/* Appends the rays' records and lets their footprints point to them. */
+static __attribute__((noinline)) void write_rays(records *r, unsigned by_ray, conic_projected *projected,
+                                                 conic_chunk *chunk) {
+  size_t at = chunk->first + chunk->n_rays;
+  index_lanes i_ray = (index_lanes)r->footprint[4];
+  for (int lane = 0; by_ray >> lane; lane++)
+    if (by_ray >> lane & 1)
+      i_ray[lane] = (uint32_t)(chunk->first + chunk->n_rays++);
+  r->footprint[4] = (lanes)i_ray;
+  lanes_store_records(r->ray, 12, by_ray, (float *)(void *)&projected->rays[at]);
+}
+
 /* Appends the drawn lanes' records. */
-CONIC_INLINE void write_records(const group_screen *s, const records *r, unsigned drawn, conic_projected *projected,
+CONIC_INLINE void write_records(const group_screen *s, records *r, unsigned drawn, conic_projected *projected,
                                 conic_chunk *chunk) {
   size_t at = chunk->first + chunk->n_drawn;
+  if (__builtin_expect(lanes_any(s->by_ray), 0))
+    write_rays(r, lanes_bits(s->by_ray) & drawn, projected, chunk);
   for (size_t line = 0; line < CONIC_LANES; line++)
     __builtin_prefetch((char *)&projected->footprints[at + CONIC_LANES] + 64 * line, 1);
   for (size_t line = 0; line < CONIC_LANES / 2; line++)
@@ -325,7 +387,7 @@ CONIC_INLINE void write_records(const group_screen *s, const records *r, unsigne
 
 /* A group with lanes that are not usual: lane by lane, in order. */
 static __attribute__((noinline)) void take_mixed(const conic_view *view, const conic_splats *splats,
-                                                 const uint32_t *index, const group_screen *s, const records *r,
+                                                 const uint32_t *index, const group_screen *s, records *r,
                                                  unsigned usual, unsigned unusual, conic_projected *projected,
                                                  conic_chunk *chunk) {
   for (int lane = 0; lane < CONIC_LANES; lane++) {
@@ -344,8 +406,9 @@ CONIC_INLINE void project_group(const conic_view *view, const conic_splats *spla
   unsigned all = (1u << CONIC_LANES) - 1, valid = from->n - at < CONIC_LANES ? (1u << (from->n - at)) - 1 : all;
   unsigned usual = lanes_bits(verdict.usual) & valid, unusual = lanes_bits(verdict.unusual) & valid;
   unsigned skipped = lanes_bits(verdict.skipped) & valid;
-  if (view->method == CONIC_METHOD_RAY)
-    chunk->n_fallback += (size_t)__builtin_popcount(usual);
+  unsigned by_ray = lanes_bits(s.by_ray) & valid,
+           fallback = view->method == CONIC_METHOD_RAY ? usual & ~by_ray : by_ray;
+  chunk->n_fallback += (size_t)__builtin_popcount(fallback);
   chunk->n_skipped += (size_t)__builtin_popcount(skipped);
   chunk->n_culled += (size_t)__builtin_popcount(valid & ~(usual | unusual | skipped));
   if (__builtin_expect(unusual != 0, 0))
