@@ -214,6 +214,19 @@ static kernel_kind kind_of(const conic_kernel *kernel) {
   return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
 }
 
+/* conic_kernel_value of core/kernel.h, for kernels that are no Gaussian. */
+CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
+  if (kernel->type == CONIC_KERNEL_HAT)
+    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
+  if (kernel->type == CONIC_KERNEL_BOX)
+    return lanes_of(1.0f);
+  lanes r = lanes_sqrt(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  lanes rest = 1.0f - power;
+  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
+}
+
 /* conic_final_weight in every lane; 0 in those that are not visible. */
 CONIC_INLINE lanes weigh(const conic_view *view, const conic_footprint *footprint, lanes q, lanes scale,
                          lanes_mask visible, kernel_kind kind) {
@@ -222,9 +235,8 @@ CONIC_INLINE lanes weigh(const conic_view *view, const conic_footprint *footprin
     kernel = lanes_gauss_narrow(q);
   else if (kind == KERNEL_GAUSS)
     kernel = lanes_exp_negative(-0.5f * q);
-  else
-    for (int lane = 0; lane < CONIC_LANES; lane++) /* beyond the support, a kernel need not have a value */
-      kernel[lane] = conic_kernel_value(&view->kernel, q[lane] < view->support ? q[lane] : 0.0f);
+  else /* beyond the support, a kernel need not have a value */
+    kernel = other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
   lanes weight = (footprint->amplitude * scale) * kernel;
   return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
 }
