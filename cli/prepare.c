@@ -22,6 +22,7 @@ typedef struct prepare_job {
 
 /* Makes normals of a set's axes, so that its sizes can be found anew. */
 static void forget_axes(conic_context *context, conic_splats *splats) {
+  splats->n_clips = 0; /* lines in units of the old axes */
   for (size_t i = 0; i < splats->count; i++) {
     double u[3], v[3], normal[3], length2 = 0.0;
     for (int axis = 0; axis < 3; axis++) {
@@ -110,6 +111,7 @@ static int write_statistics(prepare_job *job, double total_seconds) {
   cli_json_count(json, "duplicate", job->repairs.duplicate);
   cli_json_count(json, "isolated", job->repairs.isolated);
   cli_json_count(json, "failed", job->repairs.failed);
+  cli_json_count(json, "clip", job->repairs.clip);
   cli_json_close(json);
   return cli_json_finish(file);
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/clip.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/normals.h"
@@ -179,6 +180,17 @@ static void count_repairs(const conic_estimate *estimate, conic_repairs *repairs
   repairs->zero = count_zero(estimate);
 }
 
+static int has_new_axes(const void *cookie, uint32_t splat) {
+  return ((const conic_estimate *)cookie)->states[splat] != CONIC_POINT_KEPT;
+}
+
+/* Lines are given in units of the axes: with others they mean nothing. Returns how many records were wrong. */
+static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
+  size_t n_wrong = conic_splats_repair_clips(points), n = points->n_clips;
+  conic_clip_filter(points, has_new_axes, estimate);
+  return n_wrong + n - points->n_clips;
+}
+
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
  */
 static void hand_over(conic_estimate *estimate, conic_model *model) {
@@ -230,7 +242,7 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
 
 conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
-  conic_repairs counted = {0, 0, 0, 0, 0};
+  conic_repairs counted = {0, 0, 0, 0, 0, 0};
   if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
       options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: wrong options (6 to %d neighbours, a cutoff above 0)",
@@ -242,6 +254,7 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
     status = estimate_model(context, options, &estimate, &counted);
   if (status == CONIC_OK) {
     count_repairs(&estimate, &counted);
+    counted.clip = drop_clips(&estimate, &model->points);
     hand_over(&estimate, model);
     if (repairs)
       *repairs = counted;

@@ -57,6 +57,7 @@ typedef struct conic_repairs {
   size_t duplicate; /* coincident with an earlier point: kept, but no neighbour of it */
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
+  size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -90,7 +91,8 @@ typedef struct conic_write_options {
   size_t size;                 /* sizeof(conic_write_options), set by the init function */
   conic_ply_encoding encoding; /* binary little endian by default */
   int double_positions;        /* write positions as double; also done when the first batch's origin is not zero */
-  int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long */
+  int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long,
+                                  and not in a file with clip lines, which need the axes */
   float cutoff;                /* F_g, for that radius */
 } conic_write_options;
 
