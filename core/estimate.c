@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "core/clip.h"
+#include "core/features.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/normals.h"
+#include "core/trigonometry.h"
 
 void conic_estimate_options_init(conic_estimate_options *options) {
   memset(options, 0, sizeof *options);
@@ -240,13 +242,9 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
   return status;
 }
 
-conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
   conic_repairs counted = {0, 0, 0, 0, 0, 0};
-  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
-      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: wrong options (6 to %d neighbours, a cutoff above 0)",
-                      CONIC_MAX_NEIGHBOURS);
   conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}};
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
   conic_status status = CONIC_ERROR_MEMORY;
@@ -265,4 +263,54 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   }
   conic_memory_release(context, estimate.states);
   return status;
+}
+
+/* A mesh with creases: its copy, split there, takes its place when all is done. */
+static conic_status estimate_split(conic_context *context, const conic_estimate_options *options, double cosine,
+                                   conic_model *model, conic_repairs *repairs) {
+  conic_model split;
+  conic_creases creases;
+  conic_status status = conic_creases_split(context, cosine, model, &split, &creases);
+  if (status != CONIC_OK)
+    return status;
+  status = estimate_plain(context, options, &split, repairs);
+  if (status == CONIC_OK)
+    status = conic_creases_clip(context, &creases, (double)options->cutoff, &split);
+  conic_creases_release(context, &creases);
+  conic_model_release(context, status == CONIC_OK ? model : &split);
+  if (status == CONIC_OK)
+    *model = split;
+  return status;
+}
+
+/* Points: their splats are made as ever, in a copy, and then sharpened. */
+static conic_status estimate_sharp_points(conic_context *context, const conic_estimate_options *options, double cosine,
+                                          conic_model *model, conic_repairs *repairs) {
+  conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
+  memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  conic_status status = conic_splats_append(context, &copy.points, &model->points);
+  if (status == CONIC_OK)
+    status = estimate_plain(context, options, &copy, repairs);
+  if (status == CONIC_OK && copy.points.n_clips == 0)
+    status = conic_features_in_points(context, cosine, options, &copy.points);
+  conic_splats_release(context, status == CONIC_OK ? &model->points : &copy.points);
+  if (status == CONIC_OK)
+    model->points = copy.points;
+  return status;
+}
+
+conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+                                   conic_repairs *repairs) {
+  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
+      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
+      !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
+                      CONIC_MAX_NEIGHBOURS);
+  double cosine = conic_cos(conic_radians(options->feature_angle_deg));
+  if (options->feature_angle_deg == 0.0 || model->points.count == 0)
+    return estimate_plain(context, options, model, repairs);
+  if (model->n_triangles && !model->points.tangent_u[0])
+    return estimate_split(context, options, cosine, model, repairs);
+  return estimate_sharp_points(context, options, cosine, model, repairs);
 }

@@ -5,6 +5,7 @@
 #include "core/clip.h"
 #include "core/memory.h"
 #include "core/message.h"
+#include "core/splats.h"
 
 /* The set's arrays in one list, so that what is done to one is done to all. */
 enum { N_ARRAYS = 16 };
@@ -134,6 +135,23 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
   }
   conic_splats_release(context, splats);
   *splats = joined;
+  return CONIC_OK;
+}
+
+conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
+                                 size_t count, conic_splats *gathered) {
+  conic_splats listed = *from;
+  float **to[N_ARRAYS], **old[N_ARRAYS];
+  unsigned fields = conic_splats_fields(from) & ~(unsigned)CONIC_SPLATS_CLIPS;
+  conic_status status = conic_splats_allocate(context, count, fields, gathered);
+  if (status != CONIC_OK)
+    return status;
+  list_arrays(gathered, to);
+  list_arrays(&listed, old);
+  for (int i_array = 0; i_array < N_ARRAYS; i_array++)
+    for (size_t i = 0; *to[i_array] && i < count; i++)
+      (*to[i_array])[i] = (*old[i_array])[sources[i]];
+  memcpy(gathered->origin, from->origin, sizeof gathered->origin);
   return CONIC_OK;
 }
 

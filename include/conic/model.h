@@ -64,6 +64,10 @@ typedef struct conic_estimate_options {
   size_t size;      /* sizeof(conic_estimate_options), set by the init function */
   int n_neighbours; /* k, 6 to 64 */
   float cutoff;     /* F_g: the estimated outline is F_g standard deviations */
+
+  /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
+   * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
+  double feature_angle_deg;
 } conic_estimate_options;
 
 CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
