@@ -94,37 +94,63 @@ static void fit_slots(void *data, size_t begin, size_t end) {
     fit_small(s, slot, &s->small[slot]);
 }
 
-/* Whether the place at -d from the plane's slot lies in the plane. */
-static int is_in_plane(const slot_plane *plane, const double d[3]) {
-  double normal[3], spacing = (double)plane->spacing;
+/* How far the place at -d from the plane's slot is from the plane. */
+static double height_over(const slot_plane *plane, const double d[3]) {
+  double normal[3];
   normal_of(plane, normal);
+  return fabs(dot(normal, d));
+}
+
+/* Whether that place lies in the plane. */
+static int is_in_plane(const slot_plane *plane, const double d[3]) {
+  double spacing = (double)plane->spacing;
   double own = IN_PLANE * spacing, rough = IN_ROUGH * (double)plane->roughness * spacing;
   rough = rough < 0.3 * spacing ? rough : 0.3 * spacing;
-  return fabs(dot(normal, d)) <= (own > rough ? own : rough);
+  return height_over(plane, d) <= (own > rough ? own : rough);
+}
+
+/* How rough the splat's own plane is, among all the neighbours. */
+static double wide_roughness(const search *s, size_t slot, const double normal[3]) {
+  const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
+  double across = 0.0, all = 0.0;
+  for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
+    double d[3];
+    from_to(s, slot, list[i], d);
+    across += dot(normal, d) * dot(normal, d);
+    all += dot(d, d);
+  }
+  return all > 0.0 ? sqrt(across / all) : 0.0;
 }
 
 /* The plane that a slot's splat is to lie in: that of its axes, where it is flat; else the flattest about. */
 static void choose_plane(const search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   const slot_plane *flattest = &s->small[slot];
-  double own[3], best[3];
+  const float *outward = s->neighbourhood->normals[slot]; /* where it is flat, the splat's own normal is sure */
+  double own[3], best[3], least = (double)flattest->roughness;
   *plane = s->small[slot];
   for (int axis = 0; axis < 3; axis++)
     own[axis] = (double)s->neighbourhood->normals[slot][axis];
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double d[3];
     from_to(s, slot, list[i], d);
-    if (s->small[list[i]].roughness < flattest->roughness && is_in_plane(&s->small[list[i]], d))
-      flattest = &s->small[list[i]];
+    const slot_plane *other = &s->small[list[i]];
+    double misfit = (double)other->roughness + height_over(other, d) / (double)other->spacing;
+    if (!(misfit < least) || !is_in_plane(other, d))
+      continue;
+    least = misfit;
+    flattest = other;
+    outward = s->neighbourhood->normals[list[i]];
   }
-  if ((double)s->small[slot].roughness > 2.0 * (double)flattest->roughness + FLATTER) {
+  double narrow = (double)s->small[slot].roughness, wide = wide_roughness(s, slot, own);
+  if ((narrow > wide ? narrow : wide) > 2.0 * (double)flattest->roughness + FLATTER) {
     memcpy(plane->normal, flattest->normal, sizeof plane->normal);
     plane->roughness = flattest->roughness;
     plane->is_turned = 1;
   } else if (dot(own, own) > 0.0)
     memcpy(plane->normal, s->neighbourhood->normals[slot], sizeof plane->normal);
   normal_of(plane, best);
-  if (dot(best, own) < 0.0)
+  if (best[0] * (double)outward[0] + best[1] * (double)outward[1] + best[2] * (double)outward[2] < 0.0)
     for (int axis = 0; axis < 3; axis++)
       plane->normal[axis] = -plane->normal[axis];
 }
@@ -140,6 +166,9 @@ typedef struct place {
   size_t slot, point;
   double normal[3], u[3], v[3]; /* u and v: of length 1 */
   double spacing, radius;       /* of the outline */
+  size_t n_places;              /* the neighbours in the same plane, half way to them */
+  double places[CONIC_MAX_NEIGHBOURS][2];
+  double middle[2]; /* of these: says which side is the splat's own, if it lies on a crease */
 } place;
 
 static double axis_length(float *const axes[3], size_t i) {
@@ -159,21 +188,25 @@ static place place_of(const search *s, size_t slot) {
   return p;
 }
 
-/* Where the neighbour's plane meets the slot's: the line keeps the slot's own side. In units of the unit axes. */
+/* Where the neighbour's plane meets the slot's: the line keeps the slot's own side, on which its like are. In units of
+ * the unit axes. */
 static int meet(const search *s, const place *p, size_t mate, double line[3]) {
   double normal[3], d[3];
   normal_of(&s->final[mate], normal);
   from_to(s, mate, p->slot, d);
   if (fabs(dot(normal, p->normal)) >= s->cosine)
     return 0;
+  line[0] = dot(normal, p->u);
+  line[1] = dot(normal, p->v);
   line[2] = dot(normal, d);
-  double side = line[2] < 0.0 ? -1.0 : 1.0;
-  line[0] = side * dot(normal, p->u);
-  line[1] = side * dot(normal, p->v);
-  line[2] *= side;
+  if (line[0] * p->middle[0] + line[1] * p->middle[1] + line[2] < 0.0)
+    for (int i = 0; i < 3; i++)
+      line[i] = -line[i];
   double length = sqrt(line[0] * line[0] + line[1] * line[1]);
   for (int i = 0; i < 3; i++)
     line[i] /= length;
+  /* What the planes may be off by, both sides overlap by. */
+  line[2] += 0.5 * p->spacing * ((double)s->final[mate].roughness + (double)s->final[p->slot].roughness);
   return length > 0.0;
 }
 
@@ -185,7 +218,7 @@ static double find_lines(const search *s, const place *p, double reach, conic_cl
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double line[3], d[3];
     from_to(s, p->slot, list[i], d);
-    if (s->final[list[i]].roughness > 0.25f || !meet(s, p, list[i], line) || line[2] > sqrt(dot(d, d)))
+    if (s->final[list[i]].roughness > 0.25f || !meet(s, p, list[i], line) || fabs(line[2]) > sqrt(dot(d, d)))
       continue;
     nearest = line[2] < nearest ? line[2] : nearest;
     conic_clip_choice_add(choice, line, reach);
@@ -194,9 +227,9 @@ static double find_lines(const search *s, const place *p, double reach, conic_cl
 }
 
 /* The neighbours in the same plane: a crease leaves them whole. */
-static size_t find_places(const search *s, const place *p, double (*places)[2]) {
+static void find_places(const search *s, place *p) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, p->slot);
-  size_t n = 0;
+  p->n_places = 0;
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double d[3], normal[3];
     from_to(s, p->slot, list[i], d);
@@ -204,10 +237,12 @@ static size_t find_places(const search *s, const place *p, double (*places)[2]) 
     if (fabs(dot(normal, p->normal)) < s->cosine || !is_in_plane(&s->final[p->slot], d) ||
         dot(d, d) > 6.25 * p->spacing * p->spacing)
       continue;
-    places[n][0] = 0.5 * dot(d, p->u);
-    places[n++][1] = 0.5 * dot(d, p->v);
+    double *at = p->places[p->n_places++];
+    at[0] = 0.5 * dot(d, p->u);
+    at[1] = 0.5 * dot(d, p->v);
+    for (int k = 0; k < 2; k++)
+      p->middle[k] += at[k] / (double)s->neighbourhood->n_neighbours;
   }
-  return n;
 }
 
 /* Writes the splat anew as a circle in its plane, and its lines in units of that. */
@@ -236,15 +271,14 @@ static void scale_lines(const search *s, const place *p, conic_clip *clip) {
 static void clip_slot(const search *s, size_t slot) {
   place p = place_of(s, slot);
   conic_clip_choice choice = {.n = 0};
-  double places[CONIC_MAX_NEIGHBOURS][2];
   conic_clip *clip = &s->clips[slot];
   *clip = (conic_clip){.splat = (uint32_t)p.point};
   if (!(p.radius > 0.0) || !(p.radius * 0.0 == 0.0)) /* no splat */
     return;
   double reach = REACH * p.radius, border = BORDER * p.spacing;
+  find_places(s, &p);
   double nearest = find_lines(s, &p, reach > border ? reach : border, &choice);
-  size_t n_places = find_places(s, &p, places);
-  int is_clipped = conic_clip_choose(&choice, (const double(*)[2])places, n_places, 0.2, clip);
+  int is_clipped = conic_clip_choose(&choice, (const double(*)[2])p.places, p.n_places, 0.2, clip);
   if (!is_clipped)
     clip->n_lines = 0;
   double radius = p.radius;
