@@ -14,7 +14,7 @@
 /* Neighbours that a small plane is fitted to, and of which the spacing is told. */
 enum { FEW = 9 };
 /* A neighbour's plane is flatter than one's own where it is rough by less than half of it and this. */
-#define FLATTER 0.03
+#define FLATTER 0.01
 /* A point lies in a plane that it is nearer to than this many spacings, or than this many times the plane's own
  * roughness. */
 #define IN_PLANE 0.15
@@ -363,8 +363,13 @@ static conic_status run(conic_context *context, search *s, conic_neighbourhood *
     status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.0, 0.6);
   if (status == CONIC_OK)
     status = conic_slots_for(context, n, fit_slots, s, 0.6, 0.8);
-  if (status == CONIC_OK)
-    status = conic_slots_for(context, n, choose_planes, s, 0.8, 0.9);
+  /* Twice, so that a clean plane also reaches the tip where three faces meet, from beyond the nearest neighbours. */
+  for (int pass = 0; status == CONIC_OK && pass < 2; pass++) {
+    slot_plane *chosen = s->final;
+    s->final = pass ? s->small : s->final;
+    s->small = pass ? chosen : s->small;
+    status = conic_slots_for(context, n, choose_planes, s, 0.8 + 0.05 * pass, 0.85 + 0.05 * pass);
+  }
   if (status == CONIC_OK)
     status = conic_slots_for(context, n, clip_slots, s, 0.9, 1.0);
   if (status == CONIC_OK)

@@ -162,12 +162,12 @@ static void edges_at(const conic_scene *scene, uint64_t i, const double position
 }
 
 const conic_scene_kind conic_scene_cube = {.name = "cube",
-                                           .summary = "edge 1, sharp by clip lines; from 100 splats on",
+                                           .summary = "edge 1, sharp by clip lines; from 60 splats on",
                                            .prepare = prepare,
                                            .place = place,
                                            .edges = edges_at};
 const conic_scene_kind conic_scene_corner = {.name = "corner",
-                                             .summary = "a cube without an octant: concave edges and corners too",
+                                             .summary = "a cube without an octant: concave edges too; from 220 on",
                                              .prepare = prepare,
                                              .place = place,
                                              .edges = edges_at};
