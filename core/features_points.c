@@ -286,7 +286,8 @@ static void clip_slot(const search *s, size_t slot) {
     double least = sqrt(nearest * nearest + 1.5 * p.spacing * p.spacing);
     radius = radius > least ? radius : least;
   }
-  if (s->final[slot].is_turned || radius > p.radius)
+  int is_near_crease = nearest < HUGE_VAL; /* else it was turned by noise or a slight bend, and stays as it was */
+  if ((s->final[slot].is_turned && is_near_crease) || radius > p.radius)
     write_circle(s, &p, radius);
   scale_lines(s, &p, clip);
 }

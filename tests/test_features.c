@@ -83,7 +83,7 @@ static void test_cube_mesh(fixture *f, int n) {
   f->splats = mesh.points;
   memset(&mesh.points, 0, sizeof mesh.points);
   conic_model_release(f->context, &mesh);
-  solid_check(f, 0, 1e-3, 1.0 / 256.0 + 1e-2, 12.0);
+  solid_check(f, 0, 1e-3, 1.0 / 256.0 + 1e-2, 25.0);
 }
 
 /* Without creases nothing changes, and with an angle that no edge has neither. */
