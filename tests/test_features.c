@@ -1,6 +1,7 @@
 /* Sharp features: creases of meshes and of points become clip lines, without holes along them, and nothing sticks out.
  */
 #include "conic/model.h"
+#include "core/memory.h"
 #include "tests/solid.h"
 
 static conic_estimate_options options_of(double angle_deg) {
@@ -13,20 +14,8 @@ static conic_estimate_options options_of(double angle_deg) {
 static void begin_mesh(conic_context *context, size_t n_points, size_t n_triangles, conic_model *mesh) {
   memset(mesh, 0, sizeof *mesh);
   CHECK_OK(conic_splats_allocate(context, n_points, 0, &mesh->points));
-  mesh->triangles = malloc(n_triangles * sizeof *mesh->triangles);
+  mesh->triangles = conic_memory_allocate(context, n_triangles, sizeof *mesh->triangles);
   mesh->points.count = 0;
-}
-
-/* The library releases triangles that it has allocated: these are handed to it in a model of its own. */
-static void own_triangles(conic_context *context, conic_model *mesh) {
-  conic_splats carrier;
-  size_t n_floats = 3 * mesh->n_triangles;
-  CHECK_OK(conic_splats_allocate(context, n_floats, CONIC_SPLATS_OPACITIES, &carrier));
-  memcpy(carrier.opacity, mesh->triangles, n_floats * sizeof(float));
-  free(mesh->triangles);
-  mesh->triangles = (uint32_t(*)[3])(void *)carrier.opacity;
-  carrier.opacity = NULL;
-  conic_splats_release(context, &carrier);
 }
 
 static uint32_t vertex_at(conic_model *mesh, double x, double y, double z) {
@@ -63,7 +52,6 @@ static void make_cube(conic_context *context, int n, conic_model *mesh) {
           triangle[face < 3 ? 1 : 2] = corners[2 + t];
         }
       }
-  own_triangles(context, mesh);
 }
 
 static void test_cube_mesh(fixture *f, int n) {
@@ -161,23 +149,20 @@ static void test_smooth_points(conic_context *context) {
 }
 
 static void test_threads(conic_scene_type type) {
-  conic_splats splats[2];
+  conic_context *contexts[2] = {check_context(1), check_context(5)};
+  conic_model models[2];
   conic_estimate_options options = options_of(40.0);
   for (int i = 0; i < 2; i++) {
-    conic_context *context = check_context(i ? 5 : 1);
-    conic_model model;
-    scan(context, type, 5000, &model);
-    CHECK_OK(conic_model_to_splats(context, &options, &model, NULL));
-    splats[i] = model.points;
-    if (i) {
-      CHECK(splats[0].n_clips == splats[1].n_clips);
-      CHECK(memcmp(splats[0].clips, splats[1].clips, splats[1].n_clips * sizeof(conic_clip)) == 0);
-      CHECK(memcmp(splats[0].tangent_u[0], splats[1].tangent_u[0], 5000 * sizeof(float)) == 0);
-      conic_splats_release(context, &splats[0]);
-      conic_splats_release(context, &splats[1]);
-    }
-    if (i) /* the sets may be released through either */
-      conic_context_destroy(context);
+    scan(contexts[i], type, 5000, &models[i]);
+    CHECK_OK(conic_model_to_splats(contexts[i], &options, &models[i], NULL));
+  }
+  const conic_splats *a = &models[0].points, *b = &models[1].points;
+  CHECK(a->n_clips == b->n_clips && memcmp(a->clips, b->clips, a->n_clips * sizeof(conic_clip)) == 0);
+  for (int axis = 0; axis < 3; axis++)
+    CHECK(memcmp(a->tangent_u[axis], b->tangent_u[axis], 5000 * sizeof(float)) == 0);
+  for (int i = 0; i < 2; i++) {
+    conic_model_release(contexts[i], &models[i]);
+    conic_context_destroy(contexts[i]);
   }
 }
 
@@ -200,7 +185,6 @@ static void test_hostile(conic_context *context) {
       for (int corner = 0; corner < 3; corner++) /* degenerate, doubled, with several at an edge */
         model.triangles[i][corner] = (uint32_t)(fixture_random(&state) * (double)n);
     model.n_triangles = n_triangles;
-    own_triangles(context, &model);
     conic_status status = conic_model_to_splats(context, &options, &model, NULL);
     CHECK(status == CONIC_OK && model.points.count >= n);
     CHECK(conic_splats_repair_clips(&model.points) == 0);
