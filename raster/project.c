@@ -153,8 +153,8 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
   /* A centre that is off the screen by more than this has lost its fraction anyway. */
   x_t = x_t > -1e9 ? x_t < 1e9 ? x_t : 1e9 : -1e9;
   y_t = y_t > -1e9 ? y_t < 1e9 ? y_t : 1e9 : -1e9;
-  footprint->x = (int32_t)x_t;
-  footprint->y = (int32_t)y_t;
+  footprint->x = (float)(int32_t)x_t;
+  footprint->y = (float)(int32_t)y_t;
   footprint->dx0 = (float)(((double)footprint->x + 0.5) - x_t);
   footprint->dy0 = (float)(((double)footprint->y + 0.5) - y_t);
   footprint->s1 = sqrtf(vyy / determinant);
@@ -227,6 +227,7 @@ static void set_surface(const splat_setup *s, const float normal[3]) {
     surface->color[axis] = splats->color[axis] ? splats->color[axis][s->i] : 1.0f;
   }
   surface->index = (uint32_t)s->i;
+  surface->unused = 0;
 }
 
 /* ε-offset along the ray, and the opacity. */
