@@ -260,6 +260,31 @@ static void drop_clips(fixture *f) {
   f->splats.n_clips = 0;
 }
 
+/* Every instruction set clips the same pixels. */
+static void test_isas(fixture *f, conic_method method, int passes) {
+  uint64_t state = 23, hashes[CONIC_N_PLANES];
+  fill_wild(f, &state, 3000);
+  fixture_camera(f, 203, 151, 120.0);
+  f->options.method = method;
+  f->options.passes = passes;
+  for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
+    f->options.isa = (conic_isa)isa;
+    conic_image_release(f->context, &f->image);
+    CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &f->image));
+    conic_status status = conic_render(f->renderer, &f->splats, &f->camera, &f->options, &f->image, NULL);
+    CHECK(status == CONIC_OK || (isa != CONIC_ISA_SCALAR && status == CONIC_ERROR_UNSUPPORTED));
+    for (int plane = 0; status == CONIC_OK && plane < CONIC_N_PLANES; plane++) {
+      uint64_t hash = conic_image_hash(&f->image, (conic_plane)plane);
+      CHECK(isa == CONIC_ISA_SCALAR || hash == hashes[plane]);
+      if (isa == CONIC_ISA_SCALAR)
+        hashes[plane] = hash;
+    }
+  }
+  drop_clips(f);
+  f->options.passes = 3;
+  f->options.isa = CONIC_ISA_AUTO;
+}
+
 static void test_oracle(fixture *f, conic_method method) {
   uint64_t state = 11;
   fill_wild(f, &state, 300);
@@ -336,12 +361,14 @@ int main(void) {
   test_hand_made(context);
   files_end(context);
   fixture f = fixture_open(2);
-  f.options.isa = CONIC_ISA_SCALAR;
+  f.options.isa = CONIC_ISA_AUTO;
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     test_half_planes(&f, (conic_method)method, CONIC_CLIP_AND, 1);
     test_half_planes(&f, (conic_method)method, CONIC_CLIP_AND, 2);
     test_half_planes(&f, (conic_method)method, CONIC_CLIP_OR, 2);
     test_oracle(&f, (conic_method)method);
+    test_isas(&f, (conic_method)method, 3);
+    test_isas(&f, (conic_method)method, 1);
   }
   f.options.method = CONIC_METHOD_CONIC;
   test_overlap(&f);

@@ -237,7 +237,7 @@ static void test_fandisk(fixture *f, const char *source_folder) {
 
 int main(int argc, char **argv) {
   fixture f = fixture_open(2);
-  f.options.isa = CONIC_ISA_SCALAR;
+  f.options.isa = CONIC_ISA_AUTO;
   test_cube_mesh(&f, 1);
   test_cube_mesh(&f, 4);
   test_cube_mesh(&f, 15);
