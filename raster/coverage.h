@@ -4,6 +4,7 @@
 #define RASTER_COVERAGE_H
 
 #include "raster/band.h"
+#include "raster/clip_lines.h"
 
 /* A splat on one row of pixels. */
 typedef struct conic_row {
@@ -93,6 +94,8 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
 static inline int conic_fragment_at(const conic_view *view, const conic_projected *projected,
                                     const conic_footprint *footprint, int x, int y, conic_fragment *fragment) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  if (conic_is_clipped(footprint) && !conic_clip_keeps(&projected->clips[footprint - projected->footprints], dx, dy))
+    return 0;
   if (footprint->s3 == 0.0f)
     return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   conic_row row = conic_row_begin(footprint, dy);

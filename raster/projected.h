@@ -12,7 +12,8 @@
  * their precision depends neither on the place on the screen nor on the tile. q  = (s1·dx + s2·dy)² + (s3·dy)², the
  * Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded quadratic has; covered where q < support
  *   iz = iz0 + iz_dy·dy + iz_dx·dx, clamped to [iz_far, iz_near]: inverse depth
- * Where s3 is 0 the splat is drawn by the exact ray–splat parameter, with the coefficients of rays[i_ray]. */
+ * The sign of s3 says whether the splat has clip lines (raster/clip_lines.h). Where s3 is 0 the splat is drawn by the
+ * exact ray–splat parameter, with the coefficients of rays[i_ray]. */
 typedef struct conic_footprint {
   float x, y; /* whole numbers */
   float dx0, dy0;
@@ -74,6 +75,7 @@ typedef struct conic_projected {
   conic_box *boxes;
   conic_surface *surfaces;
   conic_ray *rays;
+  struct conic_clip_record *clips; /* of the footprints that are marked; null where the set has no clip lines */
 } conic_projected;
 
 /* Empties chunk i_chunk and sets its `first`; returns the splat after its last. */

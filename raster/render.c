@@ -10,6 +10,7 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "raster/bins.h"
+#include "raster/clip_lines.h"
 #include "raster/tile.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
@@ -25,7 +26,8 @@ typedef struct tile_times {
 
 struct conic_renderer {
   conic_context *context;
-  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, words, scratch, times;
+  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, words, scratch, times,
+      clips;
 };
 
 /* One frame on its way through the stages. */
@@ -84,7 +86,8 @@ void conic_renderer_destroy(conic_renderer *renderer) {
     return;
   kept *all[] = {&renderer->footprints, &renderer->boxes,  &renderer->surfaces,   &renderer->rays,
                  &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->references, &renderer->words,  &renderer->scratch,    &renderer->times};
+                 &renderer->references, &renderer->words,  &renderer->scratch,    &renderer->times,
+                 &renderer->clips};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   conic_memory_release(renderer->context, renderer);
@@ -126,6 +129,11 @@ static conic_status plan_chunks(frame *f) {
   if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays ||
       !bins->counts || !bins->tile_begin || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
+  projected->clips = NULL;
+  if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
+    projected->clips = room(renderer, &renderer->clips, n, sizeof *projected->clips);
+  if (f->splats->n_clips && n && !projected->clips)
+    return CONIC_ERROR_MEMORY;
   f->n_covered = f->n_fragments + bins->n_tiles;
   return CONIC_OK;
 }
@@ -149,6 +157,8 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   frame *f = data;
   (void)i_thread;
   f->kernels->project(&f->view, f->splats, i_chunk, &f->projected);
+  if (f->projected.clips)
+    conic_clip_chunk(&f->view, f->splats, i_chunk, &f->projected);
 }
 
 static void count_task(void *data, size_t i_chunk, int i_thread) {

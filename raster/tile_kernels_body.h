@@ -103,6 +103,14 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   f->scale = 1.0f / lanes_sqrt(determinant);
 }
 
+/* conic_clip_keeps, lane by lane. */
+CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+  lanes zero = lanes_of(0.0f);
+  lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
+  lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
+  return clip->is_or ? first | second : first & second;
+}
+
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
  * compiler can tell. */
 typedef struct sources {
@@ -111,24 +119,28 @@ typedef struct sources {
   const conic_footprint *footprints;
   const conic_surface *surfaces;
   const conic_ray *rays;
+  const conic_clip_record *clips;
   const uint32_t *indices, *words;
   size_t n;
 } sources;
 
 CONIC_INLINE sources sources_of(const conic_band *band) {
   const conic_projected *projected = band->projected;
-  return (sources){band->view,      band->view->support, projected->footprints, projected->surfaces,
-                   projected->rays, band->indices,       band->words,           band->n};
+  return (sources){band->view,          band->view->support, projected->footprints,
+                   projected->surfaces, projected->rays,     projected->clips,
+                   band->indices,       band->words,         band->n};
 }
 
-/* A splat's fragments at the pixels x. */
+/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. */
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const rows_of_splat *rows, lanes x,
-                           lanes_mask inside, int is_ray, fragments *f) {
+                           lanes_mask inside, int is_special, fragments *f) {
   lanes dx = (x - footprint->x) + footprint->dx0;
-  if (is_ray)
+  if (is_special && footprint->s3 == 0.0f)
     ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
   else
     ellipse_fragments(footprint, rows, from->support, dx, f);
+  if (is_special && conic_is_clipped(footprint))
+    f->covered &= clip_keeps(&from->clips[footprint - from->footprints], dx, rows->dy);
   f->covered &= inside;
 }
 
@@ -147,20 +159,20 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
 
 /* Raises a part's thresholds and writes its fragments to the place; returns which are covered. */
 CONIC_INLINE unsigned pass_part(const conic_footprint *footprint, const fragments *f, conic_kept *kept, size_t place,
-                                size_t at, int is_ray) {
+                                size_t at, int is_special) {
   lanes offset_iz = lanes_keep(f->covered, footprint->nearness * lanes_min(f->plane_iz, f->iz));
   lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
   lanes_store(kept->fragments[place].q + at, f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
-  if (is_ray)
+  if (is_special)
     lanes_store(kept->scale[place] + at, f->scale);
   return lanes_count(f->covered);
 }
 
 /* One splat in the blocks that its word names; returns how many pixels it covers. */
 CONIC_INLINE unsigned pass_splat(conic_band *band, const sources *from, const sites *s, size_t i, size_t room,
-                                 int is_ray) {
+                                 int is_special) {
   const conic_footprint *footprint = &from->footprints[from->indices[i]];
   uint32_t columns = from->words[i] & 0xffff;
   int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
@@ -174,8 +186,8 @@ CONIC_INLINE unsigned pass_splat(conic_band *band, const sources *from, const si
     kept->footprint[place] = from->indices[i];
     for (int part = 0; part < CONIC_PARTS; part++) {
       int at = block * CONIC_PARTS + part;
-      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_ray, &f);
-      n_covered += pass_part(footprint, &f, kept, place, (size_t)part * CONIC_LANES, is_ray);
+      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
+      n_covered += pass_part(footprint, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
     }
     n_fragments += n_covered;
     if (place < room)
@@ -197,7 +209,7 @@ static void visibility(conic_band *band) {
     memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
   for (size_t i = 0; i < from.n; i++) {
     prefetch_footprint(&from, i);
-    if (__builtin_expect(from.footprints[from.indices[i]].s3 != 0.0f, 1))
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_splat(band, &from, &s, i, room, 0);
     else
       n_fragments += pass_splat(band, &from, &s, i, room, 1);
@@ -301,7 +313,7 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, 
       continue;
     const conic_footprint *footprint = &from.footprints[from.indices[i]];
     rows_of_splat rows = begin_rows(footprint, s->y);
-    evaluate(&from, footprint, &rows, s->x[at], s->inside[at], footprint->s3 == 0.0f, &f);
+    evaluate(&from, footprint, &rows, s->x[at], s->inside[at], !(footprint->s3 > 0.0f), &f);
     lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
     if (!lanes_any(visible))
       continue;
@@ -367,7 +379,7 @@ CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_n
                                                                  lanes_load_indices(kept->footprint + at)));
 }
 
-CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_ray) {
+CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_special) {
   const conic_footprint *footprint = &from->footprints[from->indices[i]];
   uint32_t columns = from->words[i] & 0xffff;
   int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
@@ -378,7 +390,7 @@ CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const 
     fragments f;
     for (int part = 0; part < CONIC_PARTS; part++) {
       int at = block * CONIC_PARTS + part;
-      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_ray, &f);
+      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
       keep_nearest(&f, from->indices[i], &band->nearest[block], (size_t)part * CONIC_LANES);
       n_covered += lanes_count(f.covered);
     }
@@ -425,7 +437,7 @@ static void nearest(conic_band *band) {
   memset(band->nearest, 0, (size_t)band->n_blocks * sizeof *band->nearest);
   for (size_t i = 0; i < from.n; i++) {
     prefetch_footprint(&from, i);
-    if (__builtin_expect(from.footprints[from.indices[i]].s3 != 0.0f, 1))
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_nearest(band, &from, &s, i, 0);
     else
       n_fragments += pass_nearest(band, &from, &s, i, 1);
