@@ -33,7 +33,8 @@ void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double an
   answers[ORACLE_IS_BAND_NARROW] = view->cutoff - band_px(view, s, reach, normal);
   answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = -1.0;
   answers[ORACLE_HAS_NO_PLANE] = -oracle_length(normal);
-  if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0)
+  int is_dot = view->method == CONIC_METHOD_DISC || view->method == CONIC_METHOD_POINT; /* those have an area always */
+  if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0 && !is_dot)
     answers[ORACLE_HAS_NO_PLANE] = -fabs(facing);
   oracle_shape shape;
   if (s->p[2] > reach && conic_oracle_shape(view, s, ORACLE_CONIC, &shape)) {
@@ -56,6 +57,10 @@ oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORAC
     return ORACLE_NOT_DRAWN;
   if (is_so[ORACLE_REACHES_NEAR])
     return is_so[ORACLE_IS_BAND_NARROW] ? ORACLE_SEGMENT : ORACLE_RAY;
+  if (view->method == CONIC_METHOD_DISC)
+    return ORACLE_DISC;
+  if (view->method == CONIC_METHOD_POINT)
+    return ORACLE_POINT;
   if (view->method == CONIC_METHOD_AFFINE) /* thin or not, the variance of the centre's Jacobian */
     return ORACLE_AFFINE;
   if (is_so[ORACLE_IS_THIN])

@@ -5,9 +5,12 @@
 #include "raster/oracle_exact.h"
 
 static oracle_formula formula_of(conic_method method) {
-  if (method == CONIC_METHOD_CONIC)
-    return ORACLE_CONIC;
-  return method == CONIC_METHOD_RAY ? ORACLE_RAY : ORACLE_AFFINE;
+  static const oracle_formula formulas[CONIC_N_METHODS] = {[CONIC_METHOD_CONIC] = ORACLE_CONIC,
+                                                           [CONIC_METHOD_RAY] = ORACLE_RAY,
+                                                           [CONIC_METHOD_AFFINE] = ORACLE_AFFINE,
+                                                           [CONIC_METHOD_DISC] = ORACLE_DISC,
+                                                           [CONIC_METHOD_POINT] = ORACLE_POINT};
+  return formulas[method];
 }
 
 conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat *splat, const conic_camera *camera,

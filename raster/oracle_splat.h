@@ -39,7 +39,9 @@ typedef enum oracle_formula {
   ORACLE_CONIC,
   ORACLE_AFFINE,
   ORACLE_RAY,
-  ORACLE_SEGMENT
+  ORACLE_SEGMENT,
+  ORACLE_DISC,
+  ORACLE_POINT
 } oracle_formula;
 
 /* The questions that choose a formula; each is answered by the sign of a number: no where it is negative. */
@@ -65,8 +67,10 @@ typedef struct oracle_shape {
   double range[2];    /* of inverse depth: far end, near end */
   double box[2][2];   /* the widened box: minimum and maximum in x, y; of what the formula may cover */
   double gradient[2]; /* of the plane's inverse depth per pixel; zero where it is infinite */
-  /* conic, affine and segment */
-  double center[2], center_iz;
+  /* all; a ray's center is what its pixels are counted from, a point's the projected p, others' that of the ellipse */
+  double center[2];
+  /* all but ray */
+  double center_iz;
   oracle_symmetric variance, inverse; /* V and V⁻¹ */
   double slope[2];                    /* of iz: V⁻¹R′g */
   double amplitude;
@@ -79,6 +83,9 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
 
 /* By how much of itself the ray formula's range of inverse depth is widened: docs/picture.md, Ray. */
 #define ORACLE_RANGE_SLACK 0x1p-20
+
+/* Whether the disc's nearer end is beyond near. */
+int conic_oracle_is_before_near(const oracle_view *view, const oracle_placed *s);
 
 /* What a shape is at a pixel. A pixel is covered where none of the margins is negative, and those of q and in front of
  * the eye are positive. */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "raster/method.h"
+
 /* A splat in camera space, divided by p_z: x and y then are on the image plane at distance 1. */
 typedef struct tangents {
   float ux, uy, uz, vx, vy, vz;
@@ -220,6 +222,35 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
   return CONIC_DRAWN_VARIANCE;
 }
 
+/* Methods `disc` and `point`: a circle about the projected p, without tilt or depth of its own; or the pixel that holds
+ * p, which is the circle that just fits into it. */
+static conic_outcome project_dot(const splat_setup *s, const float tu[3], const float tv[3]) {
+  const conic_view *view = s->view;
+  conic_footprint *footprint = s->footprint;
+  int is_point = view->method == CONIC_METHOD_POINT;
+  float inverse_z = (float)s->inverse_z;
+  float u_length = sqrtf((tu[0] * tu[0] + tu[1] * tu[1]) + tu[2] * tu[2]);
+  float v_length = sqrtf((tv[0] * tv[0] + tv[1] * tv[1]) + tv[2] * tv[2]);
+  float radius = view->cutoff * ((u_length > v_length ? u_length : v_length) * (view->focal_px * inverse_z));
+  radius = is_point ? 0.5f : radius > 0.5f ? radius : 0.5f;
+  double x_p = view->cx + view->fx * (s->p[0] * s->inverse_z);
+  double y_p = view->cy + view->fy * (s->p[1] * s->inverse_z);
+  double reach = is_point ? 0.5 : a_hair_more(radius);
+  pixel_range(x_p, reach, view->width, &s->box->x_begin, &s->box->x_end);
+  pixel_range(y_p, reach, view->height, &s->box->y_begin, &s->box->y_end);
+  if (conic_box_is_empty(s->box))
+    return CONIC_CULLED;
+  set_reference(x_p, y_p, footprint);
+  if (is_point)
+    footprint->dx0 = footprint->dy0 = 0.0f;
+  footprint->s1 = footprint->s3 = view->cutoff / radius;
+  if (!(footprint->s3 > 0.0f)) /* 0 would mean a ray */
+    return CONIC_SKIPPED;
+  footprint->iz0 = footprint->iz_far = footprint->iz_near = inverse_z;
+  footprint->s2 = footprint->iz_dx = footprint->iz_dy = footprint->plane_dx = footprint->plane_dy = 0.0f;
+  return CONIC_DRAWN_DOT;
+}
+
 /* Wholly before near: the usual path, in float. */
 static conic_outcome project_before_near(splat_setup *s, const float tu[3], const float tv[3]) {
   const conic_view *view = s->view;
@@ -235,6 +266,8 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
   s->along_ray = t.ux * t.vy - t.uy * t.vx;
   if (view->cull_back && s->along_ray > 0.0f)
     return CONIC_CULLED;
+  if (conic_method_is_dot(view->method))
+    return project_dot(s, tu, tv);
   if (view->method == CONIC_METHOD_AFFINE) {
     projected_kernel affine = jacobian_at_center(&t);
     return project_variance(s, &t, &affine);
@@ -370,7 +403,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
     int is_own = outcome == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
-                                            : outcome == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+                                            : outcome != CONIC_DRAWN_SEGMENT && view->method != CONIC_METHOD_RAY;
     chunk->n_fallback += !is_own;
     chunk->n_drawn++;
   }

@@ -76,6 +76,7 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
   }
   view->fx = camera->fx;
   view->fy = camera->fy;
+  view->focal_px = (float)sqrt(camera->fx * camera->fy);
   view->cx = camera->cx;
   view->cy = camera->cy;
   view->near_z = near_z;

@@ -17,6 +17,7 @@ typedef struct conic_view {
   double translation[3];      /* of positions that are relative to the splat set's origin */
   float rotation_float[3][3]; /* for directions */
   double fx, fy, cx, cy;
+  float focal_px; /* √(fx·fy) */
   double near_z;
   conic_method method;
   conic_kernel kernel;
