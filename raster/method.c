@@ -2,7 +2,7 @@
 #include "raster/method.h"
 
 const char *conic_method_name(conic_method method) {
-  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc"};
+  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc", "auto"};
   return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 

@@ -96,9 +96,10 @@ static void answer_errors(const oracle_view *view, const oracle_placed *placed,
   errors[ORACLE_IS_BEHIND] = errors[ORACLE_REACHES_NEAR] = unit * (fabs(placed->p[2]) + reach + view->near_z);
   errors[ORACLE_IS_BAND_NARROW] = unit * view->cutoff;
   errors[ORACLE_IS_CLOSE] = unit;
+  errors[ORACLE_IS_COARSE] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_COARSE]));
   oracle_shape shape;
   if (conic_oracle_shape(view, placed, ORACLE_CONIC, &shape)) {
-    double sigma = oracle_max(0.5 - answers[ORACLE_IS_THIN], 0.25);
+    double sigma = oracle_max(view->thin_px - answers[ORACLE_IS_THIN], 0.5 * view->thin_px);
     errors[ORACLE_IS_THIN] = unit * oracle_greater_eigenvalue(shape.variance) / sigma;
   }
   for (int i = 0; i < ORACLE_N_INPUTS; i++) {

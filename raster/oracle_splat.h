@@ -22,9 +22,14 @@ typedef struct oracle_view {
   double support;   /* a pixel is covered where q is below this */
   double prefilter; /* h */
   double reach_px;  /* F_g·√h: by how much the prefilter widens an outline */
+  double thin_px;   /* below this smaller standard deviation a splat is not drawn by ray */
   int method;
   int cull_back;
 } oracle_view;
+
+/* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/picture.md, Auto. */
+#define ORACLE_AUTO_ERROR 4e-3
+#define ORACLE_AUTO_STEEPNESS 0.68
 
 /* A view of the options; `near_z` is taken as given. */
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z);
@@ -50,7 +55,8 @@ enum {
   ORACLE_IS_BACK,        /* faces away */
   ORACLE_REACHES_NEAR,   /* the disc reaches the near plane */
   ORACLE_IS_BAND_NARROW, /* … and stands edge-on */
-  ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel */
+  ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel, or what `auto` has for that */
+  ORACLE_IS_COARSE,      /* conic's weights may be off by more than `auto` allows */
   ORACLE_IS_CLOSE,       /* the disc is deep compared with its distance */
   ORACLE_HAS_NO_PLANE,   /* axes without a plane, or no area where nothing widens it */
   ORACLE_N_QUESTIONS

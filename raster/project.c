@@ -102,12 +102,30 @@ static projected_kernel jacobian_at_center(const tangents *t) {
   return dual_conic(t, 0.0f, 1.0f);
 }
 
-/* The smaller eigenvalue of R' is below ¼ px²: edge-on or tiny. */
-static int is_thin(const projected_kernel *k) {
+/* The smaller eigenvalue of R' is below the limit, ¼ px² for most methods: edge-on or tiny. */
+static int is_thin(const conic_view *view, const projected_kernel *k) {
   float trace = k->rxx + k->ryy, difference = k->rxx - k->ryy;
   float spread = sqrtf(difference * difference + 4.0f * (k->rxy * k->rxy));
   float smaller = 2.0f * (k->root_determinant * k->root_determinant) / (trace + spread);
-  return !(smaller >= 0.25f);
+  return !(smaller >= view->thin);
+}
+
+/* Whether conic's weights may be off by more than `auto` allows. Its centre is that of the outline and not the
+ * projected p: A·√(δᵀV⁻¹δ) bounds what that does. δᵀ adj(R') δ is (F_g·reach)²·|R'|, without the cancellation. */
+static int is_coarse(const splat_setup *s, const projected_kernel *k) {
+  const conic_view *view = s->view;
+  float h = view->prefilter, square = k->root_determinant * k->root_determinant;
+  float determinant = (square + h * (k->rxx + k->ryy)) + h * h, inverse = 1.0f / determinant;
+  float along = view->cutoff * s->reach;
+  float moved = (along * along) * square + h * (k->shift_x * k->shift_x + k->shift_y * k->shift_y);
+  return (square * inverse) * (moved * inverse) > view->auto_limit;
+}
+
+static int wants_ray(const splat_setup *s, const projected_kernel *k) {
+  conic_method method = s->view->method;
+  if (is_thin(s->view, k))
+    return 0;
+  return method == CONIC_METHOD_RAY || (method == CONIC_METHOD_AUTO ? is_coarse(s, k) : s->reach >= 0.25f);
 }
 
 static void set_depth(const splat_setup *s, const tangents *t, const projected_kernel *k, float vxx, float vyy,
@@ -273,7 +291,7 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
     return project_variance(s, &t, &affine);
   }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
-  if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k))
+  if (wants_ray(s, &k))
     return project_ray_before_near(s, &t, &k);
   return project_variance(s, &t, &k);
 }
@@ -402,8 +420,8 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else {
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
-    int is_own = outcome == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
-                                            : outcome != CONIC_DRAWN_SEGMENT && view->method != CONIC_METHOD_RAY;
+    int is_own = outcome == CONIC_DRAWN_RAY ? conic_method_has_rays(view->method)
+                                            : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
     chunk->n_fallback += !is_own;
     chunk->n_drawn++;
   }

@@ -123,16 +123,27 @@ CONIC_INLINE void dual_conic_lanes(const group_splats *g, float cutoff, lanes w,
   s->inverse_w = inverse_w;
 }
 
+/* is_coarse of project.c. */
+CONIC_INLINE lanes_mask are_coarse(const conic_view *view, const group_splats *g, const group_screen *s) {
+  float h = view->prefilter;
+  lanes square = s->root * s->root;
+  lanes determinant = (square + h * (s->rxx + s->ryy)) + h * h, inverse = 1.0f / determinant;
+  lanes along = view->cutoff * g->reach;
+  lanes moved = (along * along) * square + h * (s->shift[0] * s->shift[0] + s->shift[1] * s->shift[1]);
+  return lanes_less(lanes_of(view->auto_limit), (square * inverse) * (moved * inverse));
+}
+
 /* Where the ray formula is due: neither edge-on nor tiny. */
 CONIC_INLINE lanes_mask wants_ray(const conic_view *view, const group_splats *g, const group_screen *s) {
-  lanes_mask reaches = lanes_at_least(g->reach, lanes_of(0.25f));
-  if (view->method != CONIC_METHOD_RAY && !lanes_any(reaches))
-    return reaches;
+  lanes_mask wants =
+      view->method == CONIC_METHOD_AUTO ? are_coarse(view, g, s) : lanes_at_least(g->reach, lanes_of(0.25f));
+  if (view->method != CONIC_METHOD_RAY && !lanes_any(wants))
+    return wants;
   lanes trace = s->rxx + s->ryy, difference = s->rxx - s->ryy;
   lanes spread = lanes_sqrt(difference * difference + 4.0f * (s->rxy * s->rxy));
   lanes smaller = 2.0f * (s->root * s->root) / (trace + spread);
-  lanes_mask thick = lanes_at_least(smaller, lanes_of(0.25f));
-  return view->method == CONIC_METHOD_RAY ? thick : thick & reaches;
+  lanes_mask thick = lanes_at_least(smaller, lanes_of(view->thin));
+  return view->method == CONIC_METHOD_RAY ? thick : thick & wants;
 }
 
 CONIC_INLINE void widen(const conic_view *view, group_screen *s) {
@@ -446,7 +457,8 @@ CONIC_INLINE void project_group(const conic_view *view, const conic_splats *spla
   unsigned usual = lanes_bits(verdict.usual) & valid, unusual = lanes_bits(verdict.unusual) & valid;
   unsigned skipped = lanes_bits(verdict.skipped) & valid;
   unsigned by_ray = lanes_bits(s.by_ray) & valid,
-           fallback = view->method == CONIC_METHOD_RAY ? usual & ~by_ray : by_ray;
+           fallback = (conic_method_has_rays(view->method) ? 0 : by_ray) |
+                      (conic_method_has_ellipses(view->method) ? 0 : usual & ~by_ray);
   chunk->n_fallback += (size_t)__builtin_popcount(fallback);
   chunk->n_skipped += (size_t)__builtin_popcount(skipped);
   chunk->n_culled += (size_t)__builtin_popcount(valid & ~(usual | unusual | skipped));
