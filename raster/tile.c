@@ -31,8 +31,7 @@ static void select_band(const conic_tile *tile, const conic_tile_kernels *kernel
   uint32_t *indices = tile->scratch.band_indices[i_row % 2], *words = tile->scratch.band_words[i_row % 2];
   band->indices = indices;
   band->words = words;
-  band->n =
-      kernels->select(tile->references, tile->words, tile->n_references, UINT32_C(0x10000) << i_row, indices, words);
+  band->n = kernels->select(tile->references, tile->n_references, UINT32_C(0x10000) << i_row, indices, words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 

@@ -15,7 +15,7 @@ typedef struct conic_tile_scratch {
 typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
-  const uint32_t *references, *words; /* as in conic_bins */
+  const conic_reference *references;
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */

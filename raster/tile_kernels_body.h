@@ -31,19 +31,20 @@ CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
   }
 }
 
-static size_t select_indices(const uint32_t *indices, const uint32_t *words, size_t n, uint32_t mask,
-                             uint32_t *selected, uint32_t *selected_words) {
+static size_t select_references(const conic_reference *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
   size_t i = 0, n_selected = 0;
   for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
-    index_lanes word = lanes_load_indices(words + i);
+    index_lanes footprint, word;
+    lanes_load_pairs(&references[i].footprint, &footprint, &word);
     lanes_mask has = lanes_has_bits(word, mask);
-    lanes_append(selected_words + n_selected, has, word);
-    n_selected += lanes_append(selected + n_selected, has, lanes_load_indices(indices + i));
+    lanes_append(words + n_selected, has, word);
+    n_selected += lanes_append(footprints + n_selected, has, footprint);
   }
   for (; i < n; i++) {
-    selected[n_selected] = indices[i];
-    selected_words[n_selected] = words[i];
-    n_selected += (words[i] & mask) != 0;
+    footprints[n_selected] = references[i].footprint;
+    words[n_selected] = references[i].word;
+    n_selected += (references[i].word & mask) != 0;
   }
   return n_selected;
 }
@@ -384,7 +385,7 @@ CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_n
   lanes_store(kept->q + at, lanes_select(nearer, f->q, lanes_load(kept->q + at)));
   lanes_store(kept->scale + at, lanes_select(nearer, f->scale, lanes_load(kept->scale + at)));
   lanes_store_indices(kept->footprint + at, lanes_select_indices(nearer, lanes_of_index(i_footprint),
-                                                                 lanes_load_indices(kept->footprint + at)));
+                                                                    lanes_load_indices(kept->footprint + at)));
 }
 
 CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_special) {
@@ -458,4 +459,4 @@ static void nearest(conic_band *band) {
 #include "raster/project_body.h"
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME, project, select_indices, visibility, accumulate, nearest, resolve};
+const conic_tile_kernels TABLE = {NAME, project, select_references, visibility, accumulate, nearest, resolve};

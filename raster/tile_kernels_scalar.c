@@ -12,14 +12,14 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static size_t select_indices(const uint32_t *indices, const uint32_t *words, size_t n, uint32_t mask,
-                             uint32_t *selected, uint32_t *selected_words) {
+static size_t select_references(const conic_reference *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
   size_t n_selected = 0;
   for (size_t i = 0; i < n; i++) {
-    if (!(words[i] & mask))
+    if (!(references[i].word & mask))
       continue;
-    selected_words[n_selected] = words[i];
-    selected[n_selected++] = indices[i];
+    words[n_selected] = references[i].word;
+    footprints[n_selected++] = references[i].footprint;
   }
   return n_selected;
 }
@@ -184,4 +184,4 @@ static void nearest(conic_band *band) {
 }
 
 const conic_tile_kernels conic_tile_kernels_scalar = {
-    "scalar", conic_project_chunk, select_indices, visibility, accumulate, nearest, conic_band_resolve};
+    "scalar", conic_project_chunk, select_references, visibility, accumulate, nearest, conic_band_resolve};
