@@ -57,6 +57,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicSamples", NULL, (double)job->samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
   name_attribute(image, "conicCx", NULL, camera->cx);
@@ -101,7 +102,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = conic_render(renderer, splats, &camera, &job->options, image, &repeats[i]);
+    status = conic_render_samples(session->context, renderer, splats, &camera, &job->options, job->samples, image,
+                                  &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);

@@ -186,7 +186,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
   job->epsilon.value = job->near_z.value = -1.0;
-  job->n_frames = job->repeat = 1;
+  job->n_frames = job->repeat = job->samples = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
 
@@ -237,6 +237,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
+      {"samples", CLI_INT, &job->samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
+       CONIC_MAX_SAMPLES},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",

@@ -18,6 +18,7 @@ typedef struct cli_render_job {
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   int repeat;
+  int samples;     /* N × N a pixel */
   unsigned planes; /* bits 1 << conic_plane */
   int n_neighbours;
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */

@@ -92,7 +92,8 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
   verdict->covered_pixels = reference->covered_pixels;
   verdict->unstable_pixels = reference->unstable_pixels;
   verdict->compared_pixels = n_pixels - reference->unstable_pixels;
-  verdict->pass = is_exact || (double)reference->unstable_pixels <= unstable_limit * (double)reference->covered_pixels;
+  verdict->pass =
+      is_exact || (double)reference->unstable_samples <= unstable_limit * (double)reference->covered_samples;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     conic_oracle_plane_verdict *plane = &verdict->planes[i];
     plane->bound = is_exact ? NAN : bounds[i];
