@@ -100,7 +100,7 @@ typedef struct conic_oracle_plane_verdict {
 typedef struct conic_oracle_verdict {
   conic_oracle_plane_verdict planes[CONIC_N_PLANES];
   size_t compared_pixels, unstable_pixels, covered_pixels;
-  double unstable_limit; /* share of the covered pixels that may be unstable */
+  double unstable_limit; /* share of the covered pixels, or samples, that may be unstable */
   int pass;              /* every bound and the limit are kept */
 } conic_oracle_verdict;
 
