@@ -94,6 +94,26 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   return status;
 }
 
+/* --deep: the splats behind the picture's pixels. */
+static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                               const conic_camera *camera, const conic_image *image, int i_frame) {
+  conic_contributions *contributions;
+  double start = cli_seconds();
+  if (!job->deep_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->deep_path, i_frame);
+  conic_status status =
+      path ? conic_contributions_create(session->context, splats, camera, &job->options, &contributions)
+           : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    status = conic_contributions_write(contributions, path, image);
+    conic_contributions_destroy(contributions);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                  conic_renderer *renderer, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
@@ -108,7 +128,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
   describe(job, &camera, image);
-  return write_frame(session, job, image, i_frame);
+  status = write_frame(session, job, image, i_frame);
+  return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
 static void print_summary(const cli_session *session, const cli_render_job *job) {

@@ -162,20 +162,41 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
   return CLI_DONE;
 }
 
+/* Refused now, and not after the work. */
+static int check_output(const char *path) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  if (strcmp(path, "-") == 0)
+    return cli_usage("render: a picture cannot go to standard output");
+  if (!dot || !dot[1])
+    return cli_usage("%s: the name needs an ending, such as .exr", path);
+  return CLI_DONE;
+}
+
+static int check_deep(const cli_render_job *job) {
+  const char *dot = strrchr(job->deep_path, '.');
+  if (!dot || strcmp(dot, ".exr") != 0)
+    return cli_usage("%s: a deep image is an .exr", job->deep_path);
+  if (job->samples > 1)
+    return cli_usage("render: --deep lists the splats of pixels, not of --samples");
+  return CLI_DONE;
+}
+
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
-  if (job->n_outputs == 0)
+  const char *paths[CLI_MAX_OUTPUTS + 1];
+  int answer = CLI_DONE;
+  if (job->n_outputs == 0 && !job->deep_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
-  for (int i = 0; i < job->n_outputs; i++) { /* now, and not after the work */
-    const char *slash = strrchr(job->outputs[i], '/'), *dot = strrchr(slash ? slash : job->outputs[i], '.');
-    if (strcmp(job->outputs[i], "-") == 0)
-      return cli_usage("render: a picture cannot go to standard output");
-    if (!dot || !dot[1])
-      return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
-  }
+  for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
+    answer = check_output(paths[i] = job->outputs[i]);
+  paths[job->n_outputs] = job->deep_path;
+  if (answer == CLI_DONE && job->deep_path)
+    answer = check_deep(job);
+  if (answer != CLI_DONE)
+    return answer;
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  return cli_check_outputs(session, job->outputs, job->n_outputs);
+  return cli_check_outputs(session, paths, job->n_outputs + 1);
 }
 
 void cli_scene_defaults(cli_render_job *job) {
@@ -278,6 +299,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
+      {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };

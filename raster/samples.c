@@ -9,6 +9,7 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "raster/projected.h"
+#include "raster/scene_scale.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
@@ -200,15 +201,6 @@ static conic_status count_whole(conic_context *context, const conic_splats *spla
   return CONIC_OK;
 }
 
-/* What the bands must not find each for themselves. */
-static conic_status measure(conic_context *context, const conic_splats *splats, conic_render_options *options) {
-  if (!(options->near_z > 0.0))
-    options->near_z = conic_default_near(splats);
-  if (!(options->splat_length > 0.0) && options->epsilon < 0.0)
-    return conic_splats_length(context, splats, &options->splat_length);
-  return CONIC_OK;
-}
-
 static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_splats *splats,
                               const conic_camera *camera, const conic_render_options *options, reduction *r,
                               conic_render_statistics *sum) {
@@ -254,7 +246,7 @@ conic_status conic_render_samples(conic_context *context, conic_renderer *render
                       CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
   conic_render_options same = *options;
   reduction r = {.image = image, .samples = (size_t)samples};
-  conic_status status = measure(context, splats, &same);
+  conic_status status = conic_scene_scale(context, splats, &same);
   memset(&sum, 0, sizeof sum);
   int rows = band_rows(camera, samples);
   for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
