@@ -1,4 +1,5 @@
 /* Drawing the chart by gnuplot, a program that need not be there. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -9,11 +10,12 @@
 /* A figure: a file's name, the table's column of the error, and what the error is called. */
 typedef struct figure {
   const char *name, *error, *label;
+  int is_log; /* errors span decades */
 } figure;
 
 static const figure figures[] = {
-    {"chart-oracle", "oracle_rmse", "RMSE against the exact kernel"},
-    {"chart-scene", "scene_rmse", "RMSE against the surface"},
+    {"chart-oracle", "oracle_rmse", "RMSE against the exact kernel", 1},
+    {"chart-scene", "scene_rmse", "RMSE against the surface", 0},
 };
 
 enum { N_FIGURES = sizeof figures / sizeof figures[0] };
@@ -21,7 +23,8 @@ enum { N_FIGURES = sizeof figures / sizeof figures[0] };
 static void write_style(FILE *to) {
   static const char *const colors[] = {"#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910", "#555555"};
   static const int symbols[] = {7, 5, 9, 13}; /* a kernel: circle, square, triangle, diamond */
-  fputs("set datafile separator ','\nset datafile columnheaders\nset logscale xy\nset format y '10^{%T}'\nset grid lc "
+  fputs("set datafile separator ','\nset datafile columnheaders\nset logscale x\nset xtics (0.1, 0.2, 0.5, 1, 2, 5, "
+        "10, 20, 50, 100, 200, 500)\nset grid lc "
         "rgb '#dddddd' lt 1\n"
         "set border lc rgb '#666666'\nset xlabel 'ms a frame'\nset key outside right top\n",
         to);
@@ -51,6 +54,24 @@ static void write_front(FILE *to, int i_figure, int i_scene, const cli_chart_poi
     fprintf(to, "%.6g,%.6g\n", front[i]->ms, cli_chart_error_of(front[i], i_figure)->rmse);
   }
   fputs("END\n", to);
+}
+
+/* What the panel spans: its points, and a little around them. */
+static void write_ranges(FILE *to, int i_figure, int i_scene, const cli_chart_point *points, int n_points) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {0.0, 0.0};
+  for (int i = 0; i < n_points; i++) {
+    const cli_chart_error *error = cli_chart_error_of(&points[i], i_figure);
+    const double at[2] = {points[i].ms, error->rmse};
+    for (int k = 0; k < 2 && points[i].scene == &cli_chart_scenes[i_scene] && error->is_measured; k++) {
+      low[k] = at[k] < low[k] ? at[k] : low[k];
+      high[k] = at[k] > high[k] ? at[k] : high[k];
+    }
+  }
+  fprintf(to, "set xrange [%.6g:%.6g]\n", low[0] / 1.3, high[0] * 1.3);
+  if (figures[i_figure].is_log)
+    fprintf(to, "set logscale y\nset format y '10^{%%T}'\nset yrange [%.6g:%.6g]\n", low[1] / 2.0, high[1] * 2.0);
+  else
+    fprintf(to, "unset logscale y\nset format y '%%g'\nset yrange [0:%.6g]\n", high[1] * 1.1);
 }
 
 /* A panel: the front, then the points of each method and kernel; larger for larger cutoffs. */
@@ -90,8 +111,10 @@ int cli_chart_write_script(const char *folder, const cli_chart_point *points, in
               is_png ? "png" : "svg");
       fprintf(to, "set multiplot layout 2,2 title '%s over time: larger symbols are larger cutoffs'\n",
               figures[i].label);
-      for (int k = 0; k < CLI_N_CHART_SCENES; k++)
+      for (int k = 0; k < CLI_N_CHART_SCENES; k++) {
+        write_ranges(to, i, k, points, n_points);
         write_panel(to, i, k);
+      }
       fputs("unset multiplot\nset output\n", to);
     }
   return fclose(to) == 0;
