@@ -43,20 +43,21 @@ static conic_status project(conic_contributions *c) {
 }
 
 /* Adds one to `next` for every band that the footprint touches; with references, enters it at that place. */
-static void enter_bands(const conic_box *box, uint32_t i_footprint, size_t *next, uint32_t *references) {
-  size_t end = ((size_t)box->y_end + CONIC_CONTRIBUTION_BAND - 1) / CONIC_CONTRIBUTION_BAND;
-  for (size_t band = box->y_begin / CONIC_CONTRIBUTION_BAND; band < end; band++) {
+static void enter_bands(const conic_contributions *c, uint32_t i_footprint, size_t *next, uint32_t *references) {
+  conic_reach reach = conic_reach_of(c, i_footprint);
+  size_t end = ((size_t)reach.y_end + CONIC_CONTRIBUTION_BAND - 1) / CONIC_CONTRIBUTION_BAND;
+  for (size_t band = (size_t)reach.y_begin / CONIC_CONTRIBUTION_BAND; band < end; band++) {
     if (references)
       references[next[band]] = i_footprint;
     next[band]++;
   }
 }
 
-static void enter_all(const conic_projected *projected, size_t *next, uint32_t *references) {
-  for (size_t i_chunk = 0; i_chunk < projected->n_chunks; i_chunk++) {
-    const conic_chunk *chunk = &projected->chunks[i_chunk];
+static void enter_all(const conic_contributions *c, size_t *next, uint32_t *references) {
+  for (size_t i_chunk = 0; i_chunk < c->projected.n_chunks; i_chunk++) {
+    const conic_chunk *chunk = &c->projected.chunks[i_chunk];
     for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++)
-      enter_bands(&projected->boxes[i], (uint32_t)i, next, references);
+      enter_bands(c, (uint32_t)i, next, references);
   }
 }
 
@@ -66,7 +67,7 @@ static conic_status list_bands(conic_contributions *c) {
   if (!c->band_begin)
     return CONIC_ERROR_MEMORY;
   size_t *next = c->band_begin + 1; /* first how many, then where the next goes; in the end where a band ends */
-  enter_all(&c->projected, next, NULL);
+  enter_all(c, next, NULL);
   for (size_t band = 0; band < n_bands; band++) {
     size_t n = next[band];
     next[band] = total;
@@ -75,7 +76,7 @@ static conic_status list_bands(conic_contributions *c) {
   c->references = conic_memory_allocate(c->context, total, sizeof *c->references);
   if (!c->references)
     return CONIC_ERROR_MEMORY;
-  enter_all(&c->projected, next, c->references);
+  enter_all(c, next, c->references);
   return CONIC_OK;
 }
 
@@ -191,10 +192,10 @@ static int is_out_of_range(const conic_contributions *c, const conic_footprint *
 /* Splat i of the band at the pixel, before it is known what hides it; 0 where the pixel is not in its reach. */
 static int begin_contribution(const conic_contributions *c, uint32_t i_footprint, int x, int y,
                               conic_contribution *contribution) {
-  const conic_box *box = &c->projected.boxes[i_footprint];
   const conic_footprint *footprint = &c->projected.footprints[i_footprint];
+  conic_reach reach = conic_reach_of(c, i_footprint);
   conic_fragment fragment;
-  if (x < box->x_begin || x >= box->x_end || y < box->y_begin || y >= box->y_end)
+  if (x < reach.x_begin || x >= reach.x_end || y < reach.y_begin || y >= reach.y_end)
     return 0;
   if (conic_fragment_at(&c->view, &c->projected, footprint, x, y, &fragment)) {
     *contribution = conic_contribution_of(c, i_footprint, x, y, &fragment);

@@ -24,6 +24,20 @@ struct conic_contributions {
 conic_contribution conic_contribution_of(const conic_contributions *contributions, uint32_t i_footprint, int x, int y,
                                          const conic_fragment *fragment);
 
+/* The pixels that a footprint may cover: those of the blocks of 4 × 4 that its box meets, within the picture. */
+typedef struct conic_reach {
+  int x_begin, x_end, y_begin, y_end;
+} conic_reach;
+
+static inline conic_reach conic_reach_of(const conic_contributions *contributions, uint32_t i_footprint) {
+  const conic_box *box = &contributions->projected.boxes[i_footprint];
+  const conic_view *view = &contributions->view;
+  conic_reach reach = {box->x_begin / 4 * 4, (box->x_end + 3) / 4 * 4, box->y_begin / 4 * 4, (box->y_end + 3) / 4 * 4};
+  reach.x_end = reach.x_end < view->width ? reach.x_end : view->width;
+  reach.y_end = reach.y_end < view->height ? reach.y_end : view->height;
+  return reach;
+}
+
 /* By what a fragment hides others, and by what it is seen: docs/picture.md, "Visible". */
 static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
   return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);

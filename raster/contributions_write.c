@@ -6,7 +6,6 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "raster/contributions.h"
-#include "raster/tile.h"
 
 /* A line that a thread works out; what it holds serves line after line. */
 typedef struct line {
@@ -34,11 +33,11 @@ static void walk(const conic_contributions *c, line *l, visit_fragment *visit) {
   size_t band = (size_t)l->y / CONIC_CONTRIBUTION_BAND;
   for (size_t i = c->band_begin[band]; i < c->band_begin[band + 1]; i++) {
     uint32_t i_footprint = c->references[i];
-    const conic_box *box = &c->projected.boxes[i_footprint];
     const conic_footprint *footprint = &c->projected.footprints[i_footprint];
-    if (l->y < box->y_begin || l->y >= box->y_end)
+    conic_reach reach = conic_reach_of(c, i_footprint);
+    if (l->y < reach.y_begin || l->y >= reach.y_end)
       continue;
-    for (int x = box->x_begin; x < box->x_end; x++) {
+    for (int x = reach.x_begin; x < reach.x_end; x++) {
       conic_fragment fragment;
       if (conic_fragment_at(&c->view, &c->projected, footprint, x, l->y, &fragment))
         visit(c, l, i_footprint, x, &fragment);

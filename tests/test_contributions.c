@@ -55,7 +55,7 @@ static void check_pixel(const fixture *f, const sums *s, int x, int y) {
   CHECK(fixture_index(f, CONIC_PLANE_ID, x, y) == s->id);
   CHECK(*fixture_pixel(f, CONIC_PLANE_Z, x, y) == s->z);
   for (int axis = 0; axis < 3; axis++)
-    CHECK(albedo[axis] == (s->count ? s->color[axis] / s->weight : 0.0f));
+    CHECK_NEAR((double)albedo[axis], s->count ? (double)(s->color[axis] / s->weight) : 0.0, 1e-6);
 }
 
 /* The picture from its contributions; what there was of each verdict is added to `counts`. */
