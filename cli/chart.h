@@ -18,7 +18,7 @@ typedef struct cli_chart_point {
   const cli_chart_scene *scene;
   conic_method method;
   conic_kernel kernel;
-  double ms; /* a frame, the median */
+  double ms; /* a frame */
   size_t fragments;
   cli_chart_error oracle, truth; /* against the exact kernel, in a window; against the surface */
   double weight_max;             /* the largest error of a weight in that window */

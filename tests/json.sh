@@ -46,6 +46,7 @@ declare -A wanted=(
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z compared_pixels
     unstable_pixels covered_pixels undecided_ids unstable_limit unstable_by_reason.cutoff unstable_by_reason.visibility
     ms.render ms.oracle pass"
+  [chart]="scenes methods points seconds"
   [explain]="method pixel planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
   [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
 )
