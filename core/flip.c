@@ -17,8 +17,8 @@
 #define PIXELS_PER_DEGREE (3840.0 * CONIC_PI / 180.0)
 
 /* Three standard deviations of the widest filter, that of Cz, are 9.05 px; those of the features' 8.24 px. */
-enum { RADIUS = 10, FEATURE_RADIUS = 9, N_TAPS = 2 * RADIUS + 1 };
-enum { TILE_WIDTH = 256, TILE_HEIGHT = 64, PADDED_WIDTH = TILE_WIDTH + 2 * RADIUS };
+enum { RADIUS = 10, FEATURE_RADIUS = 9, HALO = 2 * RADIUS, N_TAPS = HALO + 1 };
+enum { TILE_WIDTH = 256, TILE_HEIGHT = 64, PADDED_WIDTH = TILE_WIDTH + HALO };
 
 /* What a row is filtered with: the eye's sensitivity to Y, Cx and Cz, whose filter is a sum of two Gaussians, and a
  * Gaussian with its first two derivatives, which finds edges and points in Y. */
@@ -265,17 +265,16 @@ static void compare_tile(void *data, size_t i_item, int i_thread) {
   size_t n = width - x < TILE_WIDTH ? width - x : TILE_WIDTH;
   size_t n_rows = height - y < TILE_HEIGHT ? height - y : TILE_HEIGHT;
   double sum = 0.0;
-  for (size_t i_row = 0; i_row < n_rows + 2 * RADIUS; i_row++) {
+  for (size_t i_row = 0; i_row < n_rows + HALO; i_row++) {
     for (int k = 0; k < 2; k++) {
-      load_row(work->images[k], (ptrdiff_t)x - RADIUS, (ptrdiff_t)(y + i_row) - RADIUS, n + 2 * RADIUS,
-               &buffers->tiles[k]);
+      load_row(work->images[k], (ptrdiff_t)x - RADIUS, (ptrdiff_t)(y + i_row) - RADIUS, n + HALO, &buffers->tiles[k]);
       filter_across(work, &buffers->tiles[k], i_row, n);
     }
-    if (i_row < 2 * RADIUS)
+    if (i_row < HALO)
       continue;
     for (int k = 0; k < 2; k++)
       filter_down(work, &buffers->tiles[k], i_row - 2 * RADIUS, n, buffers->sums[k]);
-    sum += finish_row(work, buffers, (y + i_row - 2 * RADIUS) * width + x, n);
+    sum += finish_row(work, buffers, (y + i_row - HALO) * width + x, n);
   }
   work->tile_sums[i_item] = sum;
 }
