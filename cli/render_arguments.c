@@ -273,7 +273,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
        .parse = parse_planes},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
-      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 256},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_words},

@@ -273,7 +273,7 @@ static void compare_tile(void *data, size_t i_item, int i_thread) {
     if (i_row < HALO)
       continue;
     for (int k = 0; k < 2; k++)
-      filter_down(work, &buffers->tiles[k], i_row - 2 * RADIUS, n, buffers->sums[k]);
+      filter_down(work, &buffers->tiles[k], i_row - HALO, n, buffers->sums[k]);
     sum += finish_row(work, buffers, (y + i_row - HALO) * width + x, n);
   }
   work->tile_sums[i_item] = sum;

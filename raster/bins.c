@@ -47,15 +47,31 @@ size_t conic_bins_place(conic_bins *bins, const conic_projected *projected) {
   return total;
 }
 
+/* Bits first … last of 16: blocks of a tile. */
+static uint32_t bits(int first, int last) {
+  return (UINT32_C(2) << last) - (UINT32_C(1) << first);
+}
+
+/* The blocks of a tile, along one axis, that the pixels begin … end - 1 meet. */
+static uint32_t blocks_met(int begin, int end, int tile_begin, int tile) {
+  int first = begin > tile_begin ? begin - tile_begin : 0;
+  int last = end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1;
+  return bits(first / 4, last / 4);
+}
+
 void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
   const conic_chunk *chunk = &projected->chunks[i_chunk];
   uint32_t *next = bins->counts + i_chunk * bins->n_tiles;
   for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++) {
-    tile_range range = tiles_of(bins, &projected->boxes[i]);
-    for (int y = range.y_begin; y < range.y_end; y++)
+    const conic_box *box = &projected->boxes[i];
+    tile_range range = tiles_of(bins, box);
+    for (int y = range.y_begin; y < range.y_end; y++) {
+      uint32_t rows = blocks_met(box->y_begin, box->y_end, y * bins->tile, bins->tile) << 16;
       for (int x = range.x_begin; x < range.x_end; x++) {
-        size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;
-        bins->references[bins->tile_begin[i_tile] + next[i_tile]++] = (uint32_t)i;
+        size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x, at = bins->tile_begin[i_tile] + next[i_tile]++;
+        bins->references[at] = (uint32_t)i;
+        bins->words[at] = rows | blocks_met(box->x_begin, box->x_end, x * bins->tile, bins->tile);
       }
+    }
   }
 }

@@ -12,6 +12,8 @@ typedef struct conic_bins {
   uint32_t *counts;     /* [chunk][tile]: first how many, then where the chunk's next entry goes */
   size_t *tile_begin;   /* [n_tiles + 1]: a tile's entries are references[tile_begin[t] … tile_begin[t + 1]) */
   uint32_t *references; /* indices of footprints */
+  uint32_t *words;      /* of each reference: bit c where its box meets column c of the tile's blocks of 4 × 4 pixels,
+                           bit 16 + r where it meets row r */
 } conic_bins;
 
 /* Counts the tiles of the chunk's footprints. */

@@ -24,6 +24,8 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_contributions *c = data;
   (void)i_thread;
   conic_project_chunk(&c->view, c->splats, i_chunk, &c->projected);
+  if (c->projected.clips)
+    conic_clip_chunk(&c->view, c->splats, i_chunk, &c->projected);
 }
 
 static conic_status project(conic_contributions *c) {
@@ -38,6 +40,11 @@ static conic_status project(conic_contributions *c) {
   projected->rays = conic_memory_allocate(c->context, n, sizeof *projected->rays);
   if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
+  if (c->splats->n_clips) {
+    projected->clips = conic_memory_allocate(c->context, n, sizeof *projected->clips);
+    if (!projected->clips)
+      return CONIC_ERROR_MEMORY;
+  }
   conic_parallel_for(c->context, projected->n_chunks, project_task, c);
   return CONIC_OK;
 }
@@ -110,8 +117,9 @@ conic_status conic_contributions_create(conic_context *context, const conic_spla
 void conic_contributions_destroy(conic_contributions *c) {
   if (!c)
     return;
-  void *all[] = {c->projected.chunks, c->projected.footprints, c->projected.boxes, c->projected.surfaces,
-                 c->projected.rays,   c->band_begin,           c->references,      c->list};
+  void *all[] = {c->projected.chunks,   c->projected.footprints, c->projected.boxes,
+                 c->projected.surfaces, c->projected.rays,       c->projected.clips,
+                 c->band_begin,         c->references,           c->list};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(c->context, all[i]);
   conic_memory_release(c->context, c);
@@ -179,12 +187,15 @@ conic_contribution conic_contribution_of(const conic_contributions *c, uint32_t 
                               .hides = conic_hiding_iz(footprint, fragment)};
 }
 
-/* Whether a ray, which does not cover the pixel, fails by its range of depths. */
+/* Whether what does not cover the pixel fails by its clip lines, or as a ray by its range of depths. */
 static int is_out_of_range(const conic_contributions *c, const conic_footprint *footprint, int x, int y) {
+  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  if (conic_is_clipped(footprint) &&
+      !conic_clip_keeps(&c->projected.clips[footprint - c->projected.footprints], dx, dy))
+    return 1;
   if (footprint->s3 != 0.0f)
     return 0;
   const conic_ray *ray = &c->projected.rays[footprint->i_ray];
-  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
   float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
   return !(iz > 0.0f && iz >= ray->iz_low && iz <= ray->iz_high);
 }

@@ -48,6 +48,7 @@ declare -A wanted=(
     ms.render ms.oracle pass"
   [chart]="scenes methods points seconds"
   [explain]="method pixel planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
+  [bench]="lines wrong_pictures peak_rss_bytes machine"
   [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
 )
 wanted[prepare]=${wanted[make]}

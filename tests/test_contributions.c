@@ -3,13 +3,16 @@
 
 #include "tests/fixture.h"
 
-enum { NEAR_KNOT, INSIDE_TORUS, N_SCENES };
+enum { NEAR_KNOT, INSIDE_TORUS, SHARP_CUBE, N_SCENES };
 
 static void fill(fixture *f, int scene) {
   fixture_camera(f, 90, 70, 60.0);
   f->options.near_z = 1e-3;
-  f->camera.cam_from_world[2][3] = scene == NEAR_KNOT ? 2.2 : 1.2;
-  fixture_scene(f, scene == NEAR_KNOT ? CONIC_SCENE_KNOT : CONIC_SCENE_TORUS, scene == NEAR_KNOT ? 6000 : 1500);
+  f->camera.cam_from_world[2][3] = scene == INSIDE_TORUS ? 1.2 : 2.2;
+  if (scene == SHARP_CUBE)
+    fixture_scene(f, CONIC_SCENE_CUBE, 3000);
+  else
+    fixture_scene(f, scene == NEAR_KNOT ? CONIC_SCENE_KNOT : CONIC_SCENE_TORUS, scene == NEAR_KNOT ? 6000 : 1500);
 }
 
 static conic_contributions *contributions_of(const fixture *f) {
@@ -308,6 +311,7 @@ int main(void) {
       test_projections(&f);
       CHECK(counts[CONIC_CONTRIBUTION_VISIBLE] > 1000 && counts[CONIC_CONTRIBUTION_HIDDEN] > 1000);
       CHECK(counts[CONIC_CONTRIBUTION_OUTSIDE] > 1000);
+      CHECK(scene != SHARP_CUBE || counts[CONIC_CONTRIBUTION_CLIPPED] > 100); /* splats end at the edges */
       CHECK(scene != INSIDE_TORUS || methods[i] != CONIC_METHOD_RAY || counts[CONIC_CONTRIBUTION_CLIPPED] > 0);
       f.options.passes = 1;
       test_sums(&f, counts);

@@ -46,7 +46,7 @@ typedef struct conic_projection {
 typedef enum conic_contribution_verdict {
   CONIC_CONTRIBUTION_VISIBLE = 0, /* it is blended */
   CONIC_CONTRIBUTION_HIDDEN = 1,  /* it covers the pixel, behind another; or is not the nearest, where one wins */
-  CONIC_CONTRIBUTION_CLIPPED = 2, /* its ellipse does, but the place is not on the disc: beyond its range of depths */
+  CONIC_CONTRIBUTION_CLIPPED = 2, /* beyond a clip line; or its ellipse covers it, but the place is beyond its depths */
   CONIC_CONTRIBUTION_OUTSIDE = 3  /* beyond the cutoff */
 } conic_contribution_verdict;
 

@@ -30,7 +30,7 @@ CONIC_API const char *conic_oracle_question_name(conic_oracle_question question)
 /* Why a pixel is unstable: a decision there is so close that a renderer in single precision may take it either way. */
 typedef enum conic_unstable_reason {
   CONIC_UNSTABLE_CUTOFF = 0,     /* whether a splat's footprint covers the pixel */
-  CONIC_UNSTABLE_CLIP = 1,       /* whether the ray formula's range of depths or its box does */
+  CONIC_UNSTABLE_CLIP = 1,       /* whether the ray formula's range of depths or its box does, or a clip line */
   CONIC_UNSTABLE_VISIBILITY = 2, /* whether a splat lies behind another */
   CONIC_UNSTABLE_FORMULA = 3,    /* which formula draws a splat, or whether it is drawn at all */
   CONIC_UNSTABLE_FACING = 4,     /* to which side a splat's normal points */
