@@ -171,8 +171,9 @@ static conic_status compare_truth(conic_context *context, const chart_view *view
 static conic_camera window_of(const conic_camera *camera, int edge) {
   conic_camera window = *camera;
   window.width = window.height = edge;
-  window.cx -= (double)((camera->width * 3) / 4 - edge / 2);
-  window.cy -= (double)(camera->height / 2 - edge / 2);
+  int left = camera->width * 3 / 4 - edge / 2, top = camera->height / 2 - edge / 2;
+  window.cx -= (double)left;
+  window.cy -= (double)top;
   return window;
 }
 
@@ -390,7 +391,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
-  if (exit_code == CLI_DONE)
+  if (exit_code == CLI_DONE && job->folder)
     exit_code = chart(job);
   free(job);
   return exit_code < 0 ? CLI_DONE : exit_code;

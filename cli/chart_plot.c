@@ -46,7 +46,7 @@ static void write_front(FILE *to, int i_figure, int i_scene, const cli_chart_poi
   for (int i = 0; i < n_points; i++)
     if (points[i].scene == &cli_chart_scenes[i_scene] && points[i].is_front[i_figure])
       front[n++] = &points[i];
-  qsort(front, n, sizeof *front, by_time);
+  qsort(front, n, sizeof front[0], by_time); /* NOLINT(bugprone-sizeof-expression): pointers are sorted */
   fprintf(to, "$front_%d_%d << END\nms,error\n", i_figure, i_scene);
   for (size_t i = 0; i < n; i++) {
     if (i)

@@ -15,7 +15,7 @@ const cli_chart_scene cli_chart_scenes[CLI_N_CHART_SCENES] = {
 };
 
 /* Rays along an edge of a pixel, and how many standard deviations of its Gaussian are averaged over. */
-enum { RAYS = 4, REACH = 3, N_WEIGHTS = 2 * RAYS * REACH };
+enum { RAYS = 4, REACH = 3, N_WEIGHTS = 2 * RAYS * REACH, MARGINS = 2 * REACH, N_ROWS = 2 * N_WEIGHTS };
 
 typedef struct ray {
   double from[3], direction[3]; /* world; direction of unit length */
@@ -137,7 +137,7 @@ static void fill(const cli_chart_scene *scene, const conic_camera *camera, float
                  conic_image *truth, unsigned char *is_inside) {
   float table[256];
   double weights[N_WEIGHTS], sum = 0.0;
-  int n = (camera->width + 2 * REACH) * RAYS;
+  size_t n = (size_t)(camera->width + MARGINS) * RAYS;
   conic_srgb_decode_table(table);
   for (int k = 0; k < N_WEIGHTS; k++) {
     double x = ((double)k + 0.5) / RAYS - REACH;
@@ -148,9 +148,9 @@ static void fill(const cli_chart_scene *scene, const conic_camera *camera, float
   for (int i = 0, done = 0; i < camera->height; i++) {
     memset(sums, 0, (size_t)camera->width * sizeof *sums);
     for (; done < i * RAYS + RAYS / 2 + N_WEIGHTS; done++)
-      cast_row(scene, camera, table, ((double)done + 0.5) / RAYS - REACH, n, rows + done % (2 * N_WEIGHTS) * n);
+      cast_row(scene, camera, table, ((double)done + 0.5) / RAYS - REACH, (int)n, rows + (size_t)done % N_ROWS * n);
     for (int k = 0; k < N_WEIGHTS; k++)
-      add_row(rows + (i * RAYS + RAYS / 2 + k) % (2 * N_WEIGHTS) * n, weights, weights[k], camera->width, sums);
+      add_row(rows + (size_t)(i * RAYS + RAYS / 2 + k) % N_ROWS * n, weights, weights[k], camera->width, sums);
     finish_row(scene, camera, table, i, sums,
                (float *)truth->planes[CONIC_PLANE_RGBA] + (size_t)4 * (size_t)i * (size_t)camera->width,
                is_inside + (size_t)i * (size_t)camera->width);
@@ -159,11 +159,11 @@ static void fill(const cli_chart_scene *scene, const conic_camera *camera, float
 
 conic_status cli_chart_truth(conic_context *context, const cli_chart_scene *scene, const conic_camera *camera,
                              conic_image *truth, unsigned char *is_inside) {
-  size_t n = ((size_t)camera->width + 2 * REACH) * RAYS;
+  size_t n = ((size_t)camera->width + MARGINS) * RAYS;
   conic_status status = conic_image_allocate(context, camera->width, camera->height, 1u << CONIC_PLANE_RGBA, truth);
   if (status != CONIC_OK)
     return status;
-  float(*rows)[4] = malloc(2 * N_WEIGHTS * n * sizeof *rows);
+  float(*rows)[4] = malloc(N_ROWS * n * sizeof *rows);
   double(*sums)[4] = malloc((size_t)camera->width * sizeof *sums);
   if (rows && sums)
     fill(scene, camera, rows, sums, truth, is_inside);

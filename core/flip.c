@@ -282,9 +282,10 @@ static void compare_tile(void *data, size_t i_item, int i_thread) {
 conic_status conic_compare_flip(conic_context *context, const conic_image *a, const conic_image *b, float *map,
                                 double *mean) {
   static const double green[3] = {0, 1, 0}, blue[3] = {0, 0, 1};
-  flip_work work = {.images = {a, b}, .map = map};
+  flip_work work = {.images = {a, b}};
   work.n_tiles_x = ((size_t)a->width + TILE_WIDTH - 1) / TILE_WIDTH;
   size_t n_tiles = work.n_tiles_x * (((size_t)a->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+  work.map = map;
   work.greatest = color_distance(green, blue);
   set_filters(work.weights);
   work.buffers = conic_memory_allocate(context, (size_t)conic_context_threads(context), sizeof *work.buffers);

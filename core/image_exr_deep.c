@@ -69,21 +69,21 @@ static conic_status begin(conic_deep_writer *writer, int height, uint32_t most_s
 }
 
 conic_status conic_deep_open(conic_context *context, const char *path, int width, int height, uint32_t most_samples,
-                             const conic_image *header, conic_deep_writer **opened) {
-  *opened = NULL;
-  conic_deep_writer *writer = conic_memory_allocate_zeroed(context, 1, sizeof *writer);
-  if (!writer)
+                             const conic_image *header, conic_deep_writer **writer) {
+  *writer = NULL;
+  conic_deep_writer *opened = conic_memory_allocate_zeroed(context, 1, sizeof *opened);
+  if (!opened)
     return CONIC_ERROR_MEMORY;
-  writer->context = context;
-  writer->width = width;
-  writer->path = path;
-  conic_status status = conic_output_open(context, path, &writer->output);
+  opened->context = context;
+  opened->width = width;
+  opened->path = path;
+  conic_status status = conic_output_open(context, path, &opened->output);
   if (status == CONIC_OK)
-    status = begin(writer, height, most_samples, header);
+    status = begin(opened, height, most_samples, header);
   if (status == CONIC_OK)
-    *opened = writer;
+    *writer = opened;
   else
-    conic_deep_abandon(writer);
+    conic_deep_abandon(opened);
   return status;
 }
 
