@@ -38,6 +38,7 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
   size_t place = band->n_kept[block];
   unsigned n_covered = 0;
   kept->footprint[place] = i_footprint;
+  kept->amplitude[place] = band->projected->footprints[i_footprint].amplitude;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
@@ -55,6 +56,9 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
 
 static void visibility(conic_band *band) {
   size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  band->has_special = 0;
+  for (size_t i = 0; i < band->n; i++)
+    band->has_special |= !(band->projected->footprints[band->indices[i]].s3 > 0.0f);
   for (int block = 0; block < band->n_blocks; block++) {
     memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
     band->n_kept[block] = 0;
