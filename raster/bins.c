@@ -71,7 +71,7 @@ static uint32_t blocks_met(int begin, int end, int tile_begin, int tile) {
 /* Appends a footprint to the list of tile (x, y). */
 static inline void refer(const conic_bins *bins, uint32_t *next, const conic_box *box, size_t i, int x, int y) {
   size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;
-  conic_reference *reference = &bins->references[bins->tile_begin[i_tile] + next[i_tile]++];
+  conic_tile_entry *reference = &bins->references[bins->tile_begin[i_tile] + next[i_tile]++];
   reference->footprint = (uint32_t)i;
   reference->word = blocks_met(box->x_begin, box->x_end, x * bins->tile, bins->tile) |
                     blocks_met(box->y_begin, box->y_end, y * bins->tile, bins->tile) << 16;

@@ -15,7 +15,7 @@ typedef struct conic_tile_scratch {
 typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
-  const conic_reference *references;
+  const conic_tile_entry *references;
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */

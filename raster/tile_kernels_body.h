@@ -31,7 +31,7 @@ CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
   }
 }
 
-static size_t select_references(const conic_reference *references, size_t n, uint32_t mask, uint32_t *footprints,
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
   size_t i = 0, n_selected = 0;
   for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
@@ -385,7 +385,7 @@ CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_n
   lanes_store(kept->q + at, lanes_select(nearer, f->q, lanes_load(kept->q + at)));
   lanes_store(kept->scale + at, lanes_select(nearer, f->scale, lanes_load(kept->scale + at)));
   lanes_store_indices(kept->footprint + at, lanes_select_indices(nearer, lanes_of_index(i_footprint),
-                                                                    lanes_load_indices(kept->footprint + at)));
+                                                                 lanes_load_indices(kept->footprint + at)));
 }
 
 CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_special) {

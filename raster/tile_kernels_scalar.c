@@ -12,7 +12,7 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static size_t select_references(const conic_reference *references, size_t n, uint32_t mask, uint32_t *footprints,
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
   size_t n_selected = 0;
   for (size_t i = 0; i < n; i++) {

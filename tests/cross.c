@@ -191,7 +191,7 @@ static void list_splats(desk *d) {
         box->y_begin >= band->y + CONIC_BLOCK_EDGE || box->y_end <= band->y)
       continue;
     d->words[band->n] = blocks_of(band, box) | (((uint32_t)k * 2654435761u) & UINT32_C(0xffff0000));
-    d->references[band->n] = (conic_reference){(uint32_t)k, d->words[band->n]};
+    d->references[band->n] = (conic_tile_entry){(uint32_t)k, d->words[band->n]};
     d->list[band->n++] = (uint32_t)k;
   }
 }

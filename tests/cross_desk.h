@@ -40,7 +40,7 @@ typedef struct desk {
   conic_chunk chunk;
   conic_projected projected;
   uint32_t *list, *words, *selected, *selected_words;
-  conic_reference *references;
+  conic_tile_entry *references;
   conic_band band;
   conic_tile_rays rays;
   conic_image image;
