@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "raster/stream.h"
 #include "raster/ticks.h"
 
 static size_t padded(size_t n) {
@@ -90,6 +91,7 @@ void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const 
     report->lists += conic_ticks() - start;
     draw_band(kernels, finish, &rays, &band, image, report);
   }
+  conic_stream_fence();
   report->n_fragments = band.n_fragments;
   report->n_covered = band.n_covered;
 }
