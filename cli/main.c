@@ -5,7 +5,8 @@
 #include "cli/command.h"
 #include "cli/suggest.h"
 
-static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_render, &cli_diff, &cli_info, &cli_verify};
+static const cli_command *const commands[] = {&cli_make, &cli_prepare, &cli_octree, &cli_render,
+                                              &cli_diff, &cli_info,    &cli_verify};
 
 enum { N_COMMANDS = sizeof commands / sizeof commands[0] };
 

@@ -173,6 +173,10 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     if (!dot || !dot[1])
       return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
   }
+  if (job->error_px > 0.0 && job->budget)
+    return cli_usage("render: --error and --budget are two ways to choose; give one of both");
+  if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
+    return cli_usage("render: --error and --budget need a single .cot as input (conic octree makes one)");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
   return cli_check_outputs(session, job->outputs, job->n_outputs);
@@ -277,6 +281,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"error", CLI_NUMBER, &job->error_px, "PX",
+       "of a .cot, no more splats than keep the error on the screen below this; 0: all [0]", 0, 65536},
+      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot, the N splats or fewer whose error is the least", 1,
+       4294967294.0},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);

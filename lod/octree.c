@@ -1,0 +1,236 @@
+#include "lod/octree.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+
+static const size_t chunk_nodes = 4096;
+
+void conic_octree_options_init(conic_octree_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->cutoff = 1.5f;
+}
+
+void conic_octree_destroy(conic_octree *octree) {
+  if (!octree)
+    return;
+  conic_context *context = octree->context;
+  conic_splats_release(context, &octree->owned);
+  conic_memory_release(context, octree->owned_index);
+  conic_memory_release(context, octree->owned_codes);
+  conic_memory_release(context, octree->owned_leaf_codes);
+  conic_splats_release(context, &octree->nodes);
+  float *arrays[] = {octree->radius,    octree->error,     octree->cone,
+                     octree->normal[0], octree->normal[1], octree->normal[2]};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    conic_memory_release(context, arrays[i]);
+  conic_memory_release(context, octree->end);
+  conic_memory_release(context, octree->first_leaf);
+  conic_mapping_close(context, &octree->mapping);
+  conic_memory_release(context, octree);
+}
+
+/* The nodes on the way from the root to the one that is looked at. */
+typedef struct open_node {
+  uint32_t i_node;
+  int n_left; /* inner children that are still to come */
+} open_node;
+
+/* The nodes that are complete get their end. Returns how many stay open. */
+static int close_nodes(conic_octree *octree, open_node *path, int depth, size_t next) {
+  while (depth > 0 && path[depth - 1].n_left == 0) {
+    octree->end[path[--depth].i_node] = (uint32_t)next;
+    if (depth > 0)
+      path[depth - 1].n_left--;
+  }
+  return depth;
+}
+
+const char *conic_octree_lay_out(conic_octree *octree) {
+  open_node path[CONIC_OCTREE_DEPTH];
+  size_t i_leaf = 0;
+  int depth = 0;
+  octree->n_levels = 0;
+  for (size_t i = 0; i < octree->n_nodes; i++) {
+    const uint8_t *code = octree->codes + i * CONIC_NODE_BYTES;
+    int n_direct = conic_code_n_direct(code), n_inner = conic_code_n_inner(code);
+    if (i > 0 && depth == 0)
+      return "nodes that hang on none";
+    if (n_direct + n_inner < 2 || n_direct + n_inner > CONIC_NODE_FANOUT)
+      return "a node with other than 2 to 8 children";
+    if (depth == CONIC_OCTREE_DEPTH)
+      return "more than 128 levels";
+    if ((size_t)n_direct > octree->n_leaves - i_leaf)
+      return "nodes with more leaves than there are";
+    octree->first_leaf[i] = (uint32_t)i_leaf;
+    i_leaf += (size_t)n_direct;
+    path[depth++] = (open_node){(uint32_t)i, n_inner};
+    octree->n_levels = depth > octree->n_levels ? depth : octree->n_levels;
+    depth = close_nodes(octree, path, depth, i + 1);
+  }
+  octree->first_leaf[octree->n_nodes] = (uint32_t)i_leaf;
+  if (depth > 0)
+    return "nodes that lack children";
+  if (octree->n_nodes ? i_leaf != octree->n_leaves : octree->n_leaves > 1)
+    return "leaves that hang on no node";
+  return NULL;
+}
+
+static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
+  conic_octree *octree = data;
+  size_t begin = i_chunk * chunk_nodes,
+         end = begin + chunk_nodes < octree->n_nodes ? begin + chunk_nodes : octree->n_nodes;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++) {
+    conic_node node;
+    double first[3];
+    conic_octree_place(octree, octree->first_leaf[i], first);
+    conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
+    for (int axis = 0; axis < 3; axis++) {
+      octree->nodes.position[axis][i] = node.position[axis];
+      octree->nodes.tangent_u[axis][i] = node.tangent_u[axis];
+      octree->nodes.tangent_v[axis][i] = node.tangent_v[axis];
+      octree->nodes.color[axis][i] = node.color[axis];
+      octree->normal[axis][i] = node.normal[axis];
+    }
+    octree->nodes.opacity[i] = node.opacity;
+    octree->radius[i] = node.radius;
+    octree->error[i] = node.error;
+    octree->cone[i] = node.cone;
+  }
+}
+
+conic_status conic_octree_decode(conic_octree *octree) {
+  conic_context *context = octree->context;
+  size_t n = octree->n_nodes;
+  float **arrays[] = {&octree->radius,    &octree->error,     &octree->cone,
+                      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
+  conic_status status = conic_splats_allocate(
+      context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES, &octree->nodes);
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays && status == CONIC_OK; i++) {
+    *arrays[i] = conic_memory_allocate(context, n, sizeof(float));
+    status = *arrays[i] ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  memcpy(octree->nodes.origin, octree->leaves.origin, sizeof octree->nodes.origin);
+  if (status == CONIC_OK)
+    conic_parallel_for(context, (n + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
+  return status;
+}
+
+static int compare_floats(const void *a, const void *b) {
+  const float *first = a, *second = b;
+  return (*first > *second) - (*first < *second);
+}
+
+/* Least, median, greatest. */
+static conic_status find_quantiles(const conic_octree *octree, const float *values, double quantiles[3]) {
+  size_t n = octree->n_nodes;
+  quantiles[0] = quantiles[1] = quantiles[2] = 0.0;
+  if (n == 0)
+    return CONIC_OK;
+  float *sorted = conic_memory_allocate(octree->context, n, sizeof *sorted);
+  if (!sorted)
+    return CONIC_ERROR_MEMORY;
+  memcpy(sorted, values, n * sizeof *sorted);
+  qsort(sorted, n, sizeof *sorted, compare_floats);
+  quantiles[0] = (double)sorted[0];
+  quantiles[1] = (double)sorted[(n - 1) / 2];
+  quantiles[2] = (double)sorted[n - 1];
+  conic_memory_release(octree->context, sorted);
+  return CONIC_OK;
+}
+
+/* A set of the two corners has the same box as the whole. */
+typedef struct box {
+  conic_splats corners;
+  float values[3][2];
+} box;
+
+static void make_box(const conic_octree *octree, box *b) {
+  memset(b, 0, sizeof *b);
+  b->corners.count = 2;
+  for (int axis = 0; axis < 3; axis++) {
+    b->values[axis][0] = octree->low[axis];
+    b->values[axis][1] = octree->high[axis];
+    b->corners.position[axis] = b->values[axis];
+    b->corners.origin[axis] = octree->leaves.origin[axis];
+  }
+}
+
+double conic_octree_near(const conic_octree *octree) {
+  box b;
+  make_box(octree, &b);
+  return conic_default_near(&b.corners);
+}
+
+conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info) {
+  box b;
+  memset(info, 0, sizeof *info);
+  info->n_points = octree->n_points;
+  info->n_leaves = octree->n_leaves;
+  info->n_nodes = octree->n_nodes;
+  info->n_levels = octree->n_levels;
+  info->is_quantized = octree->is_quantized;
+  info->cutoff = (float)octree->scale.cutoff;
+  info->splat_length = octree->splat_length;
+  info->position_error = octree->position_error;
+  info->n_bytes = conic_octree_file_bytes(octree);
+  make_box(octree, &b);
+  conic_splats_bounds(&b.corners, info->minimum, info->maximum);
+  info->near_z = conic_octree_near(octree);
+  conic_status status = find_quantiles(octree, octree->radius, info->radius);
+  return status == CONIC_OK ? find_quantiles(octree, octree->cone, info->cone) : status;
+}
+
+/* A splat that cannot be drawn. */
+static void blank(conic_splats *splats, size_t i) {
+  for (int axis = 0; axis < 3; axis++) {
+    splats->position[axis][i] = splats->tangent_u[axis][i] = splats->tangent_v[axis][i] = NAN;
+    if (splats->color[axis])
+      splats->color[axis][i] = 0.0f;
+  }
+  if (splats->opacity)
+    splats->opacity[i] = 0.0f;
+}
+
+typedef struct leaf_copy {
+  const conic_octree *octree;
+  conic_splats *splats;
+} leaf_copy;
+
+static void copy_leaves(void *data, size_t i_chunk, int i_thread) {
+  const leaf_copy *copy = data;
+  const conic_splats *from = &copy->octree->leaves;
+  conic_splats *to = copy->splats;
+  const uint32_t *index = copy->octree->index;
+  size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes < from->count ? begin + chunk_nodes : from->count;
+  (void)i_thread;
+  for (int axis = 0; axis < 3; axis++)
+    for (size_t i = begin; i < end; i++) {
+      to->position[axis][index[i]] = from->position[axis][i];
+      to->tangent_u[axis][index[i]] = from->tangent_u[axis][i];
+      to->tangent_v[axis][index[i]] = from->tangent_v[axis][i];
+      if (from->color[axis])
+        to->color[axis][index[i]] = from->color[axis][i];
+    }
+  for (size_t i = begin; i < end && from->opacity; i++)
+    to->opacity[index[i]] = from->opacity[i];
+}
+
+conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats) {
+  const conic_splats *leaves = &octree->leaves;
+  leaf_copy copy = {octree, splats};
+  conic_status status = conic_splats_allocate(octree->context, octree->n_points, conic_splats_fields(leaves), splats);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(splats->origin, leaves->origin, sizeof splats->origin);
+  for (size_t i = 0; leaves->count < octree->n_points && i < octree->n_points; i++) /* those that are not kept */
+    blank(splats, i);
+  conic_parallel_for(octree->context, (leaves->count + chunk_nodes - 1) / chunk_nodes, copy_leaves, &copy);
+  return CONIC_OK;
+}

@@ -1,0 +1,71 @@
+/* The octree's inside: what its parts hand to each other. */
+#ifndef LOD_OCTREE_H
+#define LOD_OCTREE_H
+
+#include "conic/octree.h"
+#include "lod/mapping.h"
+#include "lod/octree_code.h"
+
+/* No inner node is deeper; splitting at the mean gives up well before (lod/octree_split.c). */
+enum { CONIC_OCTREE_DEPTH = 128 };
+
+/* Subtrees with no more inner nodes than this are looked at whole. */
+enum { CONIC_OCTREE_BLOCK = 512 };
+
+/* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
+ * hang on it directly first, then those of each inner child in turn. */
+struct conic_octree {
+  conic_context *context;
+
+  size_t n_points, n_leaves, n_nodes;
+  conic_splats leaves; /* n_points of them: those of the hierarchy, then those that cannot be drawn */
+  uint32_t *index;     /* of each in the input */
+  uint8_t *codes;      /* CONIC_NODE_BYTES a node */
+
+  /* What the codes give. */
+  conic_splats nodes;
+  float *radius, *error, *normal[3], *cone;
+  uint32_t *end;        /* the node after the subtree */
+  uint32_t *first_leaf; /* n_nodes + 1 */
+  int n_levels;
+
+  conic_code_scale scale;
+  int is_quantized;
+  int has_color_codes;   /* every leaf's colour is that of an 8-bit sRGB code */
+  float low[3], high[3]; /* of the finite centres, from the origin */
+  double splat_length, position_error;
+  const unsigned char *leaf_codes; /* a quantised octree's leaves as its file has them */
+
+  /* Where all that lies: in memory of its own, or in the file's. What is not in memory of its own is null here. */
+  conic_splats owned;
+  uint32_t *owned_index;
+  unsigned char *owned_codes, *owned_leaf_codes;
+  conic_mapping mapping;
+};
+
+/* Fills in what the codes give, from the leaves. Errors: MEMORY. */
+conic_status conic_octree_decode(conic_octree *octree);
+
+/* What conic_default_near gives for the splats that it was built from. */
+double conic_octree_near(const conic_octree *octree);
+
+/* Whether all colours of a set are those of 8-bit codes. */
+int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats);
+
+/* The size of the file that holds it. */
+uint64_t conic_octree_file_bytes(const conic_octree *octree);
+
+/* Lays the codes' structure out: `end` and `first_leaf`. Returns what is wrong with it, or null. */
+const char *conic_octree_lay_out(conic_octree *octree);
+
+static inline int conic_octree_n_direct(const conic_octree *octree, size_t i_node) {
+  return conic_code_n_direct(octree->codes + i_node * CONIC_NODE_BYTES);
+}
+
+/* The position of leaf i, as the codes take it. */
+static inline void conic_octree_place(const conic_octree *octree, size_t i_leaf, double place[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    place[axis] = (double)octree->leaves.position[axis][i_leaf];
+}
+
+#endif
