@@ -33,7 +33,7 @@ typedef struct cli_render_job {
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
   double first_frame_ms;
-  double read_ms, estimate_ms, lod_ms, write_ms, total_ms;
+  double read_ms, estimate_ms, write_ms, total_ms;
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -49,8 +49,8 @@ void cli_scene_defaults(cli_render_job *job);
 int cli_lod_is_wanted(const cli_render_job *job);
 /* Opens the only input, an octree, into the job. */
 conic_status cli_lod_open(cli_session *session, cli_render_job *job);
-/* Chooses for a frame; job->lod_ms is what it took. */
-conic_status cli_lod_select(cli_session *session, cli_render_job *job, const conic_camera *camera);
+/* Chooses for a frame; *ms is what it took. */
+conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, double *ms);
 /* Ends both; fine where they never were. */
 void cli_lod_close(cli_session *session, cli_render_job *job);
 

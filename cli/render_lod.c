@@ -14,15 +14,14 @@ conic_status cli_lod_open(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-conic_status cli_lod_select(cli_session *session, cli_render_job *job, const conic_camera *camera) {
+conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, double *ms) {
   conic_selection_options options;
-  (void)session;
   conic_selection_options_init(&options);
   options.error_px = job->error_px;
   options.budget = job->budget;
   double start = cli_seconds();
   conic_status status = conic_octree_select(job->octree, camera, &job->options, &options, &job->selection);
-  job->lod_ms = 1e3 * (cli_seconds() - start);
+  *ms = 1e3 * (cli_seconds() - start);
   return status;
 }
 

@@ -51,7 +51,7 @@ static void report_times(cli_json *json, const cli_render_job *job) {
   cli_json_object(json, "ms");
   cli_json_number(json, "read", job->read_ms);
   cli_json_number(json, "estimate", job->estimate_ms);
-  cli_json_number(json, "lod", job->lod_ms);
+  cli_json_number(json, "lod", s->ms.lod);
   cli_json_number(json, "setup", s->ms.setup);
   cli_json_number(json, "bin", s->ms.bin);
   cli_json_number(json, "visibility", s->ms.visibility);

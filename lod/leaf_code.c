@@ -8,7 +8,10 @@
 #include "core/threads.h"
 
 /* Where in a leaf's bytes: */
-enum { AT_POSITION = 0, AT_NORMAL = 6, AT_DIRECTION = 9, AT_LENGTH = 10, AT_RATIO = 12, AT_REST = 13 };
+enum { AT_POSITION = 0, AT_NORMAL = 5, AT_DIRECTION = 8, AT_LENGTH = 9, AT_RATIO = 11, AT_REST = 12 };
+
+/* Of each coordinate; three are 5 bytes. */
+enum { POSITION_BITS = 13, POSITION_STEPS = (1 << POSITION_BITS) - 1 };
 
 enum { BLOCKS_A_TASK = 64 };
 
@@ -24,9 +27,9 @@ size_t conic_leaf_codes_bytes(size_t n_leaves, int has_colors, int has_opacities
   return count_blocks(n_leaves) * CONIC_LEAF_BLOCK_BYTES + n_leaves * conic_leaf_code_bytes(has_colors, has_opacities);
 }
 
-/* The box of a block: its low corner and the step of its positions, as little-endian floats. */
+/* The box of a block: its low corner and the steps of its positions, as little-endian floats. */
 typedef struct leaf_box {
-  float low[3], step;
+  float low[3], step[3];
 } leaf_box;
 
 static void put_float(unsigned char *to, float value) {
@@ -47,7 +50,6 @@ static float get_float(const unsigned char *from) {
 
 static leaf_box find_box(const conic_splats *leaves, size_t begin, size_t end) {
   leaf_box box;
-  double widest = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     const float *x = leaves->position[axis];
     float low = x[begin], high = x[begin];
@@ -56,20 +58,20 @@ static leaf_box find_box(const conic_splats *leaves, size_t begin, size_t end) {
       high = x[i] > high ? x[i] : high;
     }
     box.low[axis] = low;
-    widest = (double)high - (double)low > widest ? (double)high - (double)low : widest;
+    box.step[axis] = (float)(((double)high - (double)low) / POSITION_STEPS * (1.0 + 1e-6));
   }
-  box.step = (float)(widest / 65535.0 * (1.0 + 1e-6));
   return box;
 }
 
 static void encode_position(const leaf_box *box, const conic_splats *leaves, size_t i, unsigned char *code) {
+  uint64_t bits = 0;
   for (int axis = 0; axis < 3; axis++) {
     double from_low = (double)leaves->position[axis][i] - (double)box->low[axis];
-    double steps = box->step > 0.0f ? floor(from_low / (double)box->step + 0.5) : 0.0;
-    unsigned q = steps < 65535.0 ? (unsigned)steps : 65535u;
-    code[AT_POSITION + 2 * axis] = (unsigned char)q;
-    code[AT_POSITION + 2 * axis + 1] = (unsigned char)(q >> 8);
+    double steps = box->step[axis] > 0.0f ? floor(from_low / (double)box->step[axis] + 0.5) : 0.0;
+    bits |= (uint64_t)(steps < POSITION_STEPS ? steps : POSITION_STEPS) << POSITION_BITS * axis;
   }
+  for (int byte = 0; byte < 5; byte++)
+    code[AT_POSITION + byte] = (unsigned char)(bits >> 8 * byte);
 }
 
 static void encode_axes(const conic_code_scale *scale, const conic_splats *leaves, size_t i, unsigned char *code) {
@@ -111,14 +113,17 @@ static void decode_leaf(const conic_code_scale *scale, const leaf_box *box, cons
                         conic_splats *leaves, size_t i) {
   double normal[3], u[3], v[3], direction[2];
   const unsigned char *rest = code + AT_REST;
+  uint64_t bits = 0;
+  for (int byte = 0; byte < 5; byte++)
+    bits |= (uint64_t)code[AT_POSITION + byte] << 8 * byte;
   conic_code_normal_of(code + AT_NORMAL, normal);
   conic_tangent_basis(normal, u, v);
   conic_code_direction_of(code[AT_DIRECTION], direction);
   double longer = conic_code_length_of(scale, scale->length, (uint16_t)(code[AT_LENGTH] | code[AT_LENGTH + 1] << 8));
   double shorter = longer * (double)code[AT_RATIO] / 255.0;
   for (int axis = 0; axis < 3; axis++) {
-    double steps = (double)(code[AT_POSITION + 2 * axis] | code[AT_POSITION + 2 * axis + 1] << 8);
-    leaves->position[axis][i] = (float)((double)box->low[axis] + (double)box->step * steps);
+    double steps = (double)(bits >> POSITION_BITS * axis & POSITION_STEPS);
+    leaves->position[axis][i] = (float)((double)box->low[axis] + (double)box->step[axis] * steps);
     leaves->tangent_u[axis][i] = (float)(longer * (direction[0] * u[axis] + direction[1] * v[axis]));
     leaves->tangent_v[axis][i] = (float)(shorter * (direction[0] * v[axis] - direction[1] * u[axis]));
     if (leaves->color[0])
@@ -145,13 +150,15 @@ static void code_block(const leaf_job *job, size_t i_block) {
   end = end < leaves->count ? end : leaves->count;
   if (job->is_encoding) {
     box = find_box(leaves, begin, end);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
       put_float(head + 4 * axis, box.low[axis]);
-    put_float(head + 12, box.step);
+      put_float(head + 12 + 4 * axis, box.step[axis]);
+    }
   } else {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
       box.low[axis] = get_float(head + 4 * axis);
-    box.step = get_float(head + 12);
+      box.step[axis] = get_float(head + 12 + 4 * axis);
+    }
   }
   for (size_t i = begin; i < end; i++, code += n_bytes) {
     if (job->is_encoding) {

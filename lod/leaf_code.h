@@ -1,4 +1,4 @@
-/* The leaves of a quantised octree: 13 bytes each, 3 more with colours, 1 more with opacities, and 16 for every 64
+/* The leaves of a quantised octree: 12 bytes each, 3 more with colours, 1 more with opacities, and 24 for every 64
  * leaves, which share a box that their positions are counted in. Neighbours in the order of the tree are neighbours in
  * space, so the boxes are small. */
 #ifndef LOD_LEAF_CODE_H
@@ -7,7 +7,7 @@
 #include "conic/splats.h"
 #include "lod/octree_code.h"
 
-enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 16 };
+enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 24 };
 
 /* The bytes of one leaf, and of all: the blocks' first, then the leaves'. */
 size_t conic_leaf_code_bytes(int has_colors, int has_opacities);

@@ -24,9 +24,9 @@ void conic_octree_destroy(conic_octree *octree) {
   conic_memory_release(context, octree->owned_index);
   conic_memory_release(context, octree->owned_codes);
   conic_memory_release(context, octree->owned_leaf_codes);
-  conic_splats_release(context, &octree->nodes);
-  float *arrays[] = {octree->radius,    octree->error,     octree->cone,
-                     octree->normal[0], octree->normal[1], octree->normal[2]};
+  conic_memory_release(context, octree->drawn);
+  float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,   octree->error,
+                     octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2]};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
     conic_memory_release(context, arrays[i]);
   conic_memory_release(context, octree->end);
@@ -91,14 +91,17 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
     double first[3];
     conic_octree_place(octree, octree->first_leaf[i], first);
     conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
+    conic_drawn_node *drawn = &octree->drawn[i];
+    memset(drawn, 0, sizeof *drawn);
+    memcpy(drawn->position, node.position, sizeof drawn->position);
+    memcpy(drawn->tangent_u, node.tangent_u, sizeof drawn->tangent_u);
+    memcpy(drawn->tangent_v, node.tangent_v, sizeof drawn->tangent_v);
+    memcpy(drawn->color, node.color, sizeof drawn->color);
+    drawn->opacity = node.opacity;
     for (int axis = 0; axis < 3; axis++) {
-      octree->nodes.position[axis][i] = node.position[axis];
-      octree->nodes.tangent_u[axis][i] = node.tangent_u[axis];
-      octree->nodes.tangent_v[axis][i] = node.tangent_v[axis];
-      octree->nodes.color[axis][i] = node.color[axis];
+      octree->center[axis][i] = node.position[axis];
       octree->normal[axis][i] = node.normal[axis];
     }
-    octree->nodes.opacity[i] = node.opacity;
     octree->radius[i] = node.radius;
     octree->error[i] = node.error;
     octree->cone[i] = node.cone;
@@ -108,15 +111,14 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
 conic_status conic_octree_decode(conic_octree *octree) {
   conic_context *context = octree->context;
   size_t n = octree->n_nodes;
-  float **arrays[] = {&octree->radius,    &octree->error,     &octree->cone,
-                      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
-  conic_status status = conic_splats_allocate(
-      context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES, &octree->nodes);
+  float **arrays[] = {&octree->center[0], &octree->center[1], &octree->center[2], &octree->radius,   &octree->error,
+                      &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
+  octree->drawn = conic_memory_allocate(context, n, sizeof *octree->drawn);
+  conic_status status = octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays && status == CONIC_OK; i++) {
     *arrays[i] = conic_memory_allocate(context, n, sizeof(float));
     status = *arrays[i] ? CONIC_OK : CONIC_ERROR_MEMORY;
   }
-  memcpy(octree->nodes.origin, octree->leaves.origin, sizeof octree->nodes.origin);
   if (status == CONIC_OK)
     conic_parallel_for(context, (n + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
   return status;

@@ -10,7 +10,13 @@
 enum { CONIC_OCTREE_DEPTH = 128 };
 
 /* Subtrees with no more inner nodes than this are looked at whole. */
-enum { CONIC_OCTREE_BLOCK = 512 };
+enum { CONIC_OCTREE_BLOCK = 128 };
+
+/* What of an inner node is drawn: a line of the cache. */
+typedef struct conic_drawn_node {
+  float position[3], tangent_u[3], tangent_v[3], color[3], opacity;
+  float unused[3];
+} conic_drawn_node;
 
 /* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
  * hang on it directly first, then those of each inner child in turn. */
@@ -23,10 +29,10 @@ struct conic_octree {
   uint8_t *codes;      /* CONIC_NODE_BYTES a node */
 
   /* What the codes give. */
-  conic_splats nodes;
-  float *radius, *error, *normal[3], *cone;
-  uint32_t *end;        /* the node after the subtree */
-  uint32_t *first_leaf; /* n_nodes + 1 */
+  conic_drawn_node *drawn;
+  float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
+  uint32_t *end;                                        /* the node after the subtree */
+  uint32_t *first_leaf;                                 /* n_nodes + 1 */
   int n_levels;
 
   conic_code_scale scale;

@@ -25,6 +25,10 @@ static vector vector_at(float *const arrays[3], size_t i) {
   return (vector){(double)arrays[0][i], (double)arrays[1][i], (double)arrays[2][i]};
 }
 
+static vector vector_of(const float values[3]) {
+  return (vector){(double)values[0], (double)values[1], (double)values[2]};
+}
+
 static double dot(vector a, vector b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -44,10 +48,11 @@ enum { OUT_OF_ELLIPSE = 1, OUT_OF_SPHERE = 2, OUT_OF_CONE = 4, OUT_OF_ERROR = 8 
 
 /* Which bounds of node i leaf k breaks. Comparisons are such that what is not a number breaks them. */
 static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
-  const conic_splats *nodes = &octree->nodes, *leaves = &octree->leaves;
+  const conic_splats *leaves = &octree->leaves;
+  const conic_drawn_node *node = &octree->drawn[i];
   double cutoff = octree->scale.cutoff, uu, vv, uv;
-  vector center = vector_at(nodes->position, i), p = vector_at(leaves->position, k), n = vector_at(octree->normal, i);
-  vector node_u = vector_at(nodes->tangent_u, i), node_v = vector_at(nodes->tangent_v, i);
+  vector center = vector_of(node->position), p = vector_at(leaves->position, k), n = vector_at(octree->normal, i);
+  vector node_u = vector_of(node->tangent_u), node_v = vector_of(node->tangent_v);
   vector u = vector_at(leaves->tangent_u, k), v = vector_at(leaves->tangent_v, k), facing = cross(u, v);
   p = (vector){p.x - center.x, p.y - center.y, p.z - center.z};
   int broken = 0;
@@ -74,7 +79,7 @@ static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
 }
 
 static void check_node(const conic_octree *octree, size_t i, conic_octree_defects *found) {
-  vector u = vector_at(octree->nodes.tangent_u, i);
+  vector u = vector_of(octree->drawn[i].tangent_u);
   double reach = octree->scale.cutoff * sqrt(dot(u, u)), radius = (double)octree->radius[i];
   int broken = reach <= radius * (1.0 + hair) ? 0 : OUT_OF_SPHERE;
   if (!((double)octree->error[i] <= 2.0 * radius * (1.0 + hair)))

@@ -19,7 +19,9 @@ typedef struct scratch {
   size_t pixels_room;
   piece *pieces;
   size_t n_pieces, pieces_room;
-  uint32_t *sources; /* of each splat of the selection: a leaf, or NODE_BIT and a node */
+  uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or node_bit and a node */
+  size_t sources_room;
+  float *arrays; /* the selection's */
 } scratch;
 
 static const uint32_t node_bit = UINT32_C(1) << 31;
@@ -42,9 +44,8 @@ void conic_selection_options_init(conic_selection_options *options) {
 
 void conic_selection_release(conic_context *context, conic_selection *selection) {
   scratch *kept = selection->scratch;
-  conic_splats_release(context, &selection->splats);
-  conic_memory_release(context, selection->ids);
   if (kept) {
+    conic_memory_release(context, kept->arrays);
     conic_memory_release(context, kept->pixels);
     conic_memory_release(context, kept->pieces);
     conic_memory_release(context, kept->sources);
@@ -96,30 +97,26 @@ static conic_status list_pieces(selecting *s) {
   return status;
 }
 
-/* Counts what a block gives, or, with `sources`, lists it. */
-static void walk_block(const selecting *s, piece *block, uint32_t *sources) {
+/* Lists what a block gives, where its first leaf has its place: it gives no more than it has leaves. */
+static void walk_block(const selecting *s, piece *block) {
   const conic_octree *octree = s->octree;
   const float *pixels = s->scratch->pixels;
-  size_t count = 0, n_inner = 0, n_culled = 0;
+  uint32_t *const sources = s->scratch->sources + octree->first_leaf[block->begin], *next = sources;
   for (uint32_t i = block->begin; i < block->end;) {
     if (pixels[i] <= s->error_px) {
       int is_culled = pixels[i] < 0.0f;
-      if (sources && !is_culled)
-        sources[count] = node_bit | i;
-      count += (size_t)!is_culled;
-      n_inner += (size_t)!is_culled;
-      n_culled += (size_t)is_culled;
+      *next = node_bit | i;
+      next += !is_culled;
+      block->n_inner += (size_t)!is_culled;
+      block->n_culled += (size_t)is_culled;
       i = octree->end[i];
       continue;
     }
     uint32_t first = octree->first_leaf[i], last = octree->first_leaf[++i];
-    for (; first < last; first++, count++)
-      if (sources)
-        sources[count] = first;
+    while (first < last)
+      *next++ = first++;
   }
-  block->count = count;
-  block->n_inner = n_inner;
-  block->n_culled = n_culled;
+  block->count = (size_t)(next - sources);
 }
 
 static void count_task(void *data, size_t i_task, int i_thread) {
@@ -131,33 +128,45 @@ static void count_task(void *data, size_t i_task, int i_thread) {
     if (p->kind != PIECE_BLOCK)
       continue;
     conic_octree_measure(s->octree, &s->view, p->begin, p->end, s->scratch->pixels);
-    walk_block(s, p, NULL);
+    walk_block(s, p);
   }
 }
 
-/* to[k] = the leaves' or the nodes' value of each source. */
-static void gather(const uint32_t *sources, size_t n, const float *leaves, const float *nodes, float *to) {
-  const float *const from[2] = {leaves, nodes};
-  for (size_t k = 0; k < n; k++)
-    to[k] = from[sources[k] >> 31][sources[k] & ~node_bit];
-}
-
-static void gather_arrays(const selecting *s, size_t begin, size_t n) {
-  const conic_splats *leaves = &s->octree->leaves, *nodes = &s->octree->nodes;
-  conic_splats *to = &s->selection->splats;
-  const uint32_t *sources = s->scratch->sources + begin;
+static void put_leaf(const conic_splats *from, size_t i, conic_splats *to, size_t k) {
   for (int axis = 0; axis < 3; axis++) {
-    gather(sources, n, leaves->position[axis], nodes->position[axis], to->position[axis] + begin);
-    gather(sources, n, leaves->tangent_u[axis], nodes->tangent_u[axis], to->tangent_u[axis] + begin);
-    gather(sources, n, leaves->tangent_v[axis], nodes->tangent_v[axis], to->tangent_v[axis] + begin);
-    if (to->color[axis])
-      gather(sources, n, leaves->color[axis], nodes->color[axis], to->color[axis] + begin);
+    to->position[axis][k] = from->position[axis][i];
+    to->tangent_u[axis][k] = from->tangent_u[axis][i];
+    to->tangent_v[axis][k] = from->tangent_v[axis][i];
+    if (from->color[axis])
+      to->color[axis][k] = from->color[axis][i];
   }
+  to->opacity[k] = from->opacity ? from->opacity[i] : 1.0f;
+}
+
+static void put_node(const conic_drawn_node *from, conic_splats *to, size_t k) {
+  for (int axis = 0; axis < 3; axis++) {
+    to->position[axis][k] = from->position[axis];
+    to->tangent_u[axis][k] = from->tangent_u[axis];
+    to->tangent_v[axis][k] = from->tangent_v[axis];
+    if (to->color[axis])
+      to->color[axis][k] = from->color[axis];
+  }
+  to->opacity[k] = from->opacity;
+}
+
+/* Puts n splats at `begin` of the selection. */
+static void put_splats(const selecting *s, const uint32_t *sources, size_t begin, size_t n) {
+  const conic_octree *octree = s->octree;
+  const conic_splats leaves = octree->leaves;
+  conic_splats to = s->selection->splats;
   for (size_t k = 0; k < n; k++) {
-    uint32_t source = sources[k] & ~node_bit;
+    uint32_t i = sources[k] & ~node_bit;
     int is_node = sources[k] >> 31 != 0;
-    to->opacity[begin + k] = is_node ? nodes->opacity[source] : leaves->opacity ? leaves->opacity[source] : 1.0f;
-    s->selection->ids[begin + k] = is_node ? (uint32_t)s->octree->n_points + source : s->octree->index[source];
+    if (is_node)
+      put_node(&octree->drawn[i], &to, begin + k);
+    else
+      put_leaf(&leaves, i, &to, begin + k);
+    s->selection->ids[begin + k] = is_node ? (uint32_t)octree->n_points + i : octree->index[i];
   }
 }
 
@@ -166,23 +175,48 @@ static void fill_task(void *data, size_t i_task, int i_thread) {
   scratch *kept = s->scratch;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
   (void)i_thread;
-  end = end < kept->n_pieces ? end : kept->n_pieces;
-  for (size_t i = begin; i < end; i++) {
-    piece *p = &kept->pieces[i];
-    uint32_t *sources = kept->sources + p->place;
+  for (size_t i = begin; i < end && i < kept->n_pieces; i++) {
+    const piece *p = &kept->pieces[i];
     if (p->kind == PIECE_BLOCK)
-      walk_block(s, p, sources);
-    else
-      for (uint32_t k = p->begin; k < p->end; k++)
-        *sources++ = p->kind == PIECE_NODE ? node_bit | k : k;
+      put_splats(s, kept->sources + s->octree->first_leaf[p->begin], p->place, p->count);
+    for (uint32_t k = p->begin; k < p->end && p->kind != PIECE_BLOCK; k++) {
+      uint32_t source = p->kind == PIECE_NODE ? node_bit | k : k;
+      put_splats(s, &source, p->place + k - p->begin, 1);
+    }
   }
-  size_t first = kept->pieces[begin].place, last = kept->pieces[end - 1].place + kept->pieces[end - 1].count;
-  gather_arrays(s, first, last - first);
+}
+
+/* One block for all arrays, each a few lines of the cache further on in its page than the one before: at the same place
+ * in theirs, they would drive each other out of the cache. */
+static conic_status make_room(selecting *s, size_t room) {
+  enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 14 }; /* floats */
+  conic_context *context = s->octree->context;
+  conic_selection *selection = s->selection;
+  conic_splats *splats = &selection->splats;
+  size_t stride = (room + PAGE - 1) / PAGE * PAGE + SHIFT;
+  int n = 0;
+  conic_memory_release(context, s->scratch->arrays);
+  memset(splats, 0, sizeof *splats);
+  selection->ids = NULL;
+  selection->room = 0;
+  float *arrays = s->scratch->arrays = conic_memory_allocate(context, stride * N_ARRAYS, sizeof *arrays);
+  if (!arrays)
+    return CONIC_ERROR_MEMORY;
+  for (int axis = 0; axis < 3; axis++) {
+    splats->position[axis] = arrays + stride * (size_t)n++;
+    splats->tangent_u[axis] = arrays + stride * (size_t)n++;
+    splats->tangent_v[axis] = arrays + stride * (size_t)n++;
+    if (s->octree->leaves.color[0])
+      splats->color[axis] = arrays + stride * (size_t)n++;
+  }
+  splats->opacity = arrays + stride * (size_t)n++;
+  selection->ids = (uint32_t *)(arrays + stride * (size_t)n);
+  selection->room = room;
+  return CONIC_OK;
 }
 
 /* Gives every piece its place, and the selection room for all. */
 static conic_status place_pieces(selecting *s) {
-  conic_context *context = s->octree->context;
   conic_selection *selection = s->selection;
   size_t count = 0;
   selection->n_inner = 0;
@@ -194,19 +228,9 @@ static conic_status place_pieces(selecting *s) {
     selection->n_culled += p->n_culled;
   }
   if (count > selection->room || !selection->ids) {
-    size_t room = count + count / 4 + 1024; /* the next picture's may be a few more */
-    unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_OPACITIES |
-                      (s->octree->leaves.color[0] ? (unsigned)CONIC_SPLATS_COLORS : 0u);
-    conic_splats_release(context, &selection->splats);
-    conic_memory_release(context, selection->ids);
-    conic_memory_release(context, s->scratch->sources);
-    selection->room = 0;
-    selection->ids = conic_memory_allocate(context, room, sizeof *selection->ids);
-    s->scratch->sources = conic_memory_allocate(context, room, sizeof *s->scratch->sources);
-    conic_status status = conic_splats_allocate(context, room, fields, &selection->splats);
-    if (status != CONIC_OK || !selection->ids || !s->scratch->sources)
-      return CONIC_ERROR_MEMORY;
-    selection->room = room;
+    conic_status status = make_room(s, count + count / 4 + 1024); /* the next picture's may be a few more */
+    if (status != CONIC_OK)
+      return status;
   }
   selection->splats.count = count;
   memcpy(selection->splats.origin, s->octree->leaves.origin, sizeof selection->splats.origin);
@@ -226,18 +250,27 @@ static conic_status select_splats(selecting *s) {
   return status;
 }
 
+/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
+static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
+  if (*memory && *room >= count)
+    return CONIC_OK;
+  conic_memory_release(context, *memory);
+  *memory = conic_memory_allocate(context, count, size);
+  *room = *memory ? count : 0;
+  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
 static conic_status keep_scratch(const conic_octree *octree, conic_selection *selection) {
   if (!selection->scratch)
     selection->scratch = conic_memory_allocate_zeroed(octree->context, 1, sizeof(scratch));
   scratch *kept = selection->scratch;
   if (!kept)
     return CONIC_ERROR_MEMORY;
-  if (kept->pixels && kept->pixels_room >= octree->n_nodes)
-    return CONIC_OK;
-  conic_memory_release(octree->context, kept->pixels);
-  kept->pixels = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *kept->pixels);
-  kept->pixels_room = kept->pixels ? octree->n_nodes : 0;
-  return kept->pixels ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status =
+      keep_room(octree->context, (void **)&kept->pixels, &kept->pixels_room, octree->n_nodes, sizeof *kept->pixels);
+  return status == CONIC_OK ? keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
+                                        sizeof *kept->sources)
+                            : status;
 }
 
 static const char *what_is_wrong(const conic_octree *octree, const conic_camera *camera,

@@ -44,7 +44,7 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
  * and so does the way from the one to the other. */
 static void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
                            float *pixels) {
-  const float *x = octree->nodes.position[0], *y = octree->nodes.position[1], *z = octree->nodes.position[2];
+  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
   const float *radius = octree->radius, *error = octree->error;
   const conic_octree_view v = *view;
   for (size_t i = begin; i < end; i++) {
@@ -73,10 +73,10 @@ static void cull_backs(const conic_octree *octree, const conic_octree_view *view
   for (size_t i = begin; i < end; i++) {
     float to[3], along = 0.0f, square = 0.0f, sum = view->slack_offset;
     for (int axis = 0; axis < 3; axis++) {
-      to[axis] = octree->nodes.position[axis][i] - view->eye[axis];
+      to[axis] = octree->center[axis][i] - view->eye[axis];
       along += to[axis] * octree->normal[axis][i];
       square += to[axis] * to[axis];
-      sum += view->slack * fabsf(octree->nodes.position[axis][i]);
+      sum += view->slack * fabsf(octree->center[axis][i]);
     }
     /* α: half the angle under which the sphere is seen; θ: half the cone's. */
     float distance = sqrtf(square), sin_a = (octree->radius[i] + sum) / distance, cos_c = octree->cone[i];
