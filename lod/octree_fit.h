@@ -29,7 +29,7 @@ typedef struct conic_octree_disc {
 
 /* Where an ellipse is sampled: points of the unit disc, none of which is farther from all of them than the gap. */
 enum { CONIC_DISC_SAMPLES = 48 };
-#define CONIC_DISC_GAP 0.18
+#define CONIC_DISC_GAP 0.187
 typedef struct conic_disc_samples {
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES];
 } conic_disc_samples;
