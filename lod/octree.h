@@ -9,6 +9,10 @@
 /* No inner node is deeper; splitting at the mean gives up well before (lod/octree_split.c). */
 enum { CONIC_OCTREE_DEPTH = 128 };
 
+/* A quantised octree leaves out what cannot be drawn; were that more than this times what can, a small file would ask
+ * for much memory. */
+enum { CONIC_OCTREE_MOST_LEFT_OUT = 15 };
+
 /* Subtrees with no more inner nodes than this are looked at whole. */
 enum { CONIC_OCTREE_BLOCK = 128 };
 

@@ -178,6 +178,8 @@ static conic_status quantize(conic_octree *octree) {
   conic_context *context = octree->context;
   conic_splats *leaves = &octree->owned, before = {0};
   conic_status status = CONIC_OK;
+  if (octree->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > octree->n_leaves)
+    return conic_fail(context, CONIC_ERROR_INPUT, "octree: too few of the splats can be drawn for a quantised file");
   leaves->count = octree->n_leaves;
   size_t n_bytes = conic_leaf_codes_bytes(leaves->count, leaves->color[0] != NULL, leaves->opacity != NULL);
   octree->is_quantized = 1;

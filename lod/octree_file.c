@@ -278,6 +278,8 @@ static const char *check_header(const header *h) {
     return "unknown flags";
   if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
     return "counts that do not go together";
+  if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
+    return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
     return "a cutoff or colour scale out of range";
   if (!(h->length > 1e-60 && h->length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
