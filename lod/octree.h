@@ -65,6 +65,10 @@ int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_spl
 /* The size of the file that holds it. */
 uint64_t conic_octree_file_bytes(const conic_octree *octree);
 
+/* Makes the sums in a file's bytes right, where its header tells of arrays that are all there: for tests and fuzzing,
+ * which would else see no further than the sums. */
+void conic_octree_mend(unsigned char *bytes, size_t n_bytes);
+
 /* Lays the codes' structure out: `end` and `first_leaf`. Returns what is wrong with it, or null. */
 const char *conic_octree_lay_out(conic_octree *octree);
 

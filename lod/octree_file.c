@@ -332,6 +332,22 @@ static conic_status check_body(const conic_octree *octree, const char *path, con
   return CONIC_OK;
 }
 
+void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
+  header h;
+  transfer(&h, bytes, 0);
+  layout l = {0};
+  if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves)
+    l = lay_out_file(&h);
+  if (l.n > 0 && l.n_bytes == n_bytes) {
+    unsigned char sums[8 * MOST_ARRAYS];
+    for (int i = 0; i < l.n; i++)
+      put_bits(sums + 8 * i, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
+    h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
+    transfer(&h, bytes, 1);
+  }
+  put_bits(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
+}
+
 static void *array_at(const conic_octree *octree, const layout *l, int i) {
   return octree->mapping.bytes + l->arrays[i].offset;
 }

@@ -194,7 +194,8 @@ static conic_status fit_node(const fitter *f, size_t i, conic_octree_disc *parts
     for (n_parts = 0; n_parts < (int)(end - begin); n_parts++)
       parts[n_parts] = leaf_disc(octree, begin + (size_t)n_parts);
   double error = conic_octree_overshoot(&f->samples, &frame, major, parts, n_parts);
-  error = error > reach.height * hair ? error : reach.height * hair;
+  /* Twice the height, since a neighbour may be as far off to the other side: what gapes between them is the error. */
+  error = error > 2.0 * reach.height * hair ? error : 2.0 * reach.height * hair;
   node->disc = node_disc(&frame, major, conic_code_error(&octree->scale, error, radius, code));
   return status;
 }
