@@ -67,6 +67,7 @@ static bytes make_file(conic_context *context, size_t n, int quantize, int with_
   octree_check_sound(back);
   conic_octree_destroy(back);
   conic_octree_destroy(octree);
+  conic_splats_release(context, &splats);
   CHECK(unlink(path) == 0);
   return file;
 }
@@ -211,6 +212,7 @@ static void test_structure(conic_context *context) {
   free(file.at);
   CHECK(unlink(path) == 0);
   conic_octree_destroy(octree);
+  conic_splats_release(context, &splats);
 }
 
 int main(void) {
