@@ -217,9 +217,9 @@ void conic_code_extent(const conic_code_scale *scale, double *reach, double *rad
 }
 
 double conic_code_error(const conic_code_scale *scale, double error, double radius, uint8_t *code) {
-  int steps = 255;
-  while (steps > 0 && 2.0 * radius * scale->share[steps] < error)
-    steps--;
+  int steps = 0;
+  while (steps < 255 && 2.0 * radius * scale->share[steps + 1] >= error)
+    steps++;
   code[AT_ERROR] = (uint8_t)steps;
   return 2.0 * radius * scale->share[steps];
 }

@@ -40,6 +40,46 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* In the plane, stretched so that the node's ellipse is a circle: the leaf's centre, and its outline's greatest half
+ * axis, which is the greater singular value. */
+static void add_reach(double x, double y, const double u[2], const double v[2], double cutoff,
+                      conic_leaf_reach *reach) {
+  double square = x * x + y * y, sum = u[0] * u[0] + u[1] * u[1] + v[0] * v[0] + v[1] * v[1];
+  if (2.0 * (square + cutoff * cutoff * sum) <= reach->reach * reach->reach)
+    return; /* well inside: (a + b)² ≤ 2(a² + b²) */
+  double determinant = u[0] * v[1] - u[1] * v[0], discriminant = sum * sum - 4.0 * determinant * determinant;
+  double major = sqrt(0.5 * (sum + sqrt(discriminant > 0.0 ? discriminant : 0.0)));
+  double out = sqrt(square) + cutoff * major;
+  reach->reach = out > reach->reach ? out : reach->reach;
+}
+
+static void add_radius(const double p[3], const double u[3], const double v[3], double cutoff,
+                       conic_leaf_reach *reach) {
+  double square = dot(p, p), uu = dot(u, u), vv = dot(v, v);
+  if (2.0 * (square + cutoff * cutoff * (uu + vv)) <= reach->radius * reach->radius)
+    return;
+  double uv = dot(u, v), longest2 = 0.5 * (uu + vv + sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv));
+  double radius = sqrt(square) + cutoff * sqrt(longest2);
+  reach->radius = radius > reach->radius ? radius : reach->radius;
+}
+
+static void add_height(double z, double uz, double vz, double cutoff, conic_leaf_reach *reach) {
+  double square = cutoff * cutoff * (uz * uz + vz * vz);
+  if (2.0 * (z * z + square) <= reach->height * reach->height)
+    return;
+  double height = fabs(z) + sqrt(square);
+  reach->height = height > reach->height ? height : reach->height;
+}
+
+static void add_normal(const double u[3], const double v[3], const double n[3], conic_leaf_reach *reach) {
+  const double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double along = dot(normal, n), square = dot(normal, normal);
+  if (along > 0.0 && along * along > square * reach->cosine * fabs(reach->cosine))
+    return;
+  double cosine = along / sqrt(square);
+  reach->cosine = cosine < reach->cosine ? cosine : reach->cosine;
+}
+
 void conic_leaf_reach_add(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
                           const conic_node_frame *frame, conic_leaf_reach *reach) {
   const double across = 1.0 / frame->ratio;
@@ -50,28 +90,12 @@ void conic_leaf_reach_add(const conic_splats *leaves, size_t begin, size_t end, 
       u[axis] = (double)leaves->tangent_u[axis][i];
       v[axis] = (double)leaves->tangent_v[axis][i];
     }
-    /* In the plane, stretched so that the node's ellipse is a circle: the leaf's centre, and its outline's greatest
-     * half axis, the greater singular value. */
-    double x = dot(p, frame->u), y = dot(p, frame->v) * across;
-    double ux = dot(u, frame->u), uy = dot(u, frame->v) * across, vx = dot(v, frame->u), vy = dot(v, frame->v) * across;
-    double sum = ux * ux + uy * uy + vx * vx + vy * vy, determinant = ux * vy - uy * vx;
-    double discriminant = sum * sum - 4.0 * determinant * determinant;
-    double major = sqrt(0.5 * (sum + sqrt(discriminant > 0.0 ? discriminant : 0.0)));
-    double out = sqrt(x * x + y * y) + cutoff * major;
-    reach->reach = out > reach->reach ? out : reach->reach;
-
-    double uz = dot(u, frame->n), vz = dot(v, frame->n);
-    double height = fabs(dot(p, frame->n)) + cutoff * sqrt(uz * uz + vz * vz);
-    reach->height = height > reach->height ? height : reach->height;
-
-    double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
-    double longest2 = 0.5 * (uu + vv + sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv));
-    double radius = sqrt(dot(p, p)) + cutoff * sqrt(longest2);
-    reach->radius = radius > reach->radius ? radius : reach->radius;
-
-    double nx = u[1] * v[2] - u[2] * v[1], ny = u[2] * v[0] - u[0] * v[2], nz = u[0] * v[1] - u[1] * v[0];
-    double cosine = (nx * frame->n[0] + ny * frame->n[1] + nz * frame->n[2]) / sqrt(nx * nx + ny * ny + nz * nz);
-    reach->cosine = cosine < reach->cosine ? cosine : reach->cosine;
+    const double flat_u[2] = {dot(u, frame->u), dot(u, frame->v) * across};
+    const double flat_v[2] = {dot(v, frame->u), dot(v, frame->v) * across};
+    add_reach(dot(p, frame->u), dot(p, frame->v) * across, flat_u, flat_v, cutoff, reach);
+    add_radius(p, u, v, cutoff, reach);
+    add_height(dot(p, frame->n), dot(u, frame->n), dot(v, frame->n), cutoff, reach);
+    add_normal(u, v, frame->n, reach);
   }
 }
 

@@ -1,6 +1,8 @@
 /* Octrees. Their sums would stop nearly every input at the door, so each also comes in with its sums made right. */
-#include "lod/octree.h"
+/* First, for what it defines. */
 #include "tests/fuzz/fuzz.h"
+
+#include "lod/octree.h"
 
 enum { HEADER_BYTES = 256 };
 
