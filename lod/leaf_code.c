@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/color.h"
 #include "core/ellipse.h"
 #include "core/threads.h"
 
@@ -104,7 +103,7 @@ static void encode_axes(const conic_code_scale *scale, const conic_splats *leave
 static void encode_rest(const conic_code_scale *scale, const conic_splats *leaves, size_t i, unsigned char *code) {
   unsigned char *rest = code + AT_REST;
   for (int axis = 0; axis < 3 && leaves->color[0]; axis++)
-    *rest++ = conic_srgb_code(scale->steps, leaves->color[axis][i] / scale->color);
+    *rest++ = conic_code_srgb(scale, leaves->color[axis][i] / scale->color);
   if (leaves->opacity)
     *rest = conic_code_factor(scale, (double)leaves->opacity[i]);
 }

@@ -23,6 +23,9 @@ enum {
 
 enum { OCTAVE_STEPS = 1024 };
 
+/* The upper halves of the bits of 2^-14 and 1. */
+enum { FIRST_GUESS = 0x3880, LAST_GUESS = 0x3f80, GUESSES = LAST_GUESS - FIRST_GUESS };
+
 /* 2^exponent, which is within those of normal doubles. */
 static double power_of_two(int exponent) {
   uint64_t bits = (uint64_t)(1023 + exponent) << 52;
@@ -45,6 +48,12 @@ void conic_code_scale_init(double length, double cutoff, float color, conic_code
   scale->color = color;
   conic_srgb_decode_table(scale->colors);
   conic_srgb_thresholds(scale->steps);
+  for (uint32_t i = 0; i <= GUESSES; i++) {
+    uint32_t bits = (FIRST_GUESS + i) << 16;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    scale->guess[i] = conic_srgb_code(scale->steps, value);
+  }
   for (int i = 0; i < OCTAVE_STEPS; i++)
     scale->octave[i] = 1.0;
   for (int bit = OCTAVE_STEPS / 2; bit; bit /= 2) { /* 2^(1/2), 2^(1/4), … */
@@ -58,6 +67,17 @@ void conic_code_scale_init(double length, double cutoff, float color, conic_code
     scale->share[i] = power(scale, -i, 16);
     scale->factor[i] = i ? power(scale, i - 160, 16) : 0.0;
   }
+}
+
+uint8_t conic_code_srgb(const conic_code_scale *scale, float linear) {
+  uint32_t bits;
+  if (!(linear >= 0x1p-14f)) /* black goes on for longer; and what is no number is black */
+    return 0;
+  memcpy(&bits, &linear, sizeof bits);
+  uint8_t code = scale->guess[linear < 1.0f ? (bits >> 16) - FIRST_GUESS : GUESSES];
+  while (code < 255 && linear >= scale->steps[code])
+    code++;
+  return code;
 }
 
 uint16_t conic_code_length(const conic_code_scale *scale, double longest, double length) {
@@ -239,7 +259,7 @@ void conic_code_cone(double cosine, uint8_t *code) {
 
 void conic_code_color(const conic_code_scale *scale, const double color[3], double opacity, uint8_t *code) {
   for (int channel = 0; channel < 3; channel++)
-    code[AT_COLOR + channel] = conic_srgb_code(scale->steps, (float)(color[channel] / (double)scale->color));
+    code[AT_COLOR + channel] = conic_code_srgb(scale, (float)(color[channel] / (double)scale->color));
   code[AT_OPACITY] = conic_code_factor(scale, opacity);
 }
 

@@ -14,6 +14,7 @@ typedef struct conic_code_scale {
   float color;          /* the linear value of code 255, in each channel */
   float colors[256];    /* of the 8-bit codes */
   float steps[255];     /* thresholds between them */
+  uint8_t guess[1793];  /* a code not above that of any value with these upper 16 bits, from 2^-14 to 1 */
   double octave[1024];  /* 2^(i/1024) */
   double widening[256]; /* 2^(i/32): of the sphere's radius over the reach */
   double share[256];    /* 2^(-i/16): of the error in twice the radius */
@@ -64,6 +65,9 @@ void conic_code_children(int n_direct, int n_inner, uint8_t *code);
 int conic_code_n_direct(const uint8_t *code);
 int conic_code_n_inner(const uint8_t *code);
 void conic_code_decode(const conic_code_scale *scale, const double first[3], const uint8_t *code, conic_node *node);
+
+/* The 8-bit code of a linear value: conic_srgb_code, found faster. */
+uint8_t conic_code_srgb(const conic_code_scale *scale, float linear);
 
 /* Lengths up to `longest` in 16 bits, 1024 steps an octave; rounded up. */
 uint16_t conic_code_length(const conic_code_scale *scale, double longest, double length);

@@ -4,7 +4,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
@@ -148,7 +147,7 @@ int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_spl
   for (int channel = 0; channel < 3; channel++)
     for (size_t i = 0; i < splats->count; i++) {
       float value = splats->color[channel][i];
-      if (!(scale->colors[conic_srgb_code(scale->steps, value)] == value))
+      if (!(scale->colors[conic_code_srgb(scale, value)] == value))
         return 0;
     }
   return 1;
@@ -182,7 +181,7 @@ static conic_status encode_colors(const conic_octree *octree, unsigned char *cod
     if (!codes[channel])
       return CONIC_ERROR_MEMORY;
     for (size_t i = 0; i < octree->n_points; i++)
-      codes[channel][i] = conic_srgb_code(octree->scale.steps, octree->leaves.color[channel][i]);
+      codes[channel][i] = conic_code_srgb(&octree->scale, octree->leaves.color[channel][i]);
   }
   return CONIC_OK;
 }

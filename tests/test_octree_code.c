@@ -1,4 +1,5 @@
 /* What the bytes of nodes and leaves give back: near what was put in, and never on the wrong side of a bound. */
+#include "core/color.h"
 #include "lod/leaf_code.h"
 #include "lod/octree_fit.h"
 #include "tests/fixture.h"
@@ -46,6 +47,21 @@ static void test_directions(void) {
     CHECK(fabs(back[0] * sin(angle) - back[1] * cos(angle)) <
           0.0079); /* half a step of the tangent of half the angle */
   }
+}
+
+/* The same codes as core's, from below black to above white. */
+static void test_colors(void) {
+  conic_code_scale scale;
+  uint64_t state = 4;
+  conic_code_scale_init(64.0, 1.5, 1.0f, &scale);
+  for (int i = 0; i < 100000; i++) {
+    float linear = (float)exp(14.0 * fixture_random(&state) - 13.0);
+    linear = i < 255 ? scale.steps[i] : i < 510 ? nextafterf(scale.steps[i - 255], 0.0f) : linear;
+    CHECK(conic_code_srgb(&scale, linear) == conic_srgb_code(scale.steps, linear));
+  }
+  const float odd[] = {0.0f, -1.0f, NAN, INFINITY, -INFINITY, 1.0f, 1e-30f};
+  for (int i = 0; i < 7; i++)
+    CHECK(conic_code_srgb(&scale, odd[i]) == conic_srgb_code(scale.steps, odd[i]));
 }
 
 static void test_scales(void) {
@@ -166,6 +182,7 @@ static void test_leaves(void) {
 int main(void) {
   test_normals();
   test_directions();
+  test_colors();
   test_scales();
   test_nodes();
   test_samples();
