@@ -108,19 +108,26 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
   }
 }
 
-conic_status conic_octree_decode(conic_octree *octree) {
+static conic_status allocate_decoded(conic_octree *octree) {
   conic_context *context = octree->context;
-  size_t n = octree->n_nodes;
   float **arrays[] = {&octree->center[0], &octree->center[1], &octree->center[2], &octree->radius,   &octree->error,
                       &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
-  octree->drawn = conic_memory_allocate(context, n, sizeof *octree->drawn);
-  conic_status status = octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays && status == CONIC_OK; i++) {
-    *arrays[i] = conic_memory_allocate(context, n, sizeof(float));
-    status = *arrays[i] ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
+    *arrays[i] = conic_memory_allocate(context, octree->n_nodes, sizeof(float));
+    if (!*arrays[i])
+      return CONIC_ERROR_MEMORY;
   }
+  octree->drawn = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->drawn);
+  return octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_octree_decode(conic_octree *octree) {
+  if (octree->drawn)
+    return CONIC_OK;
+  conic_status status = allocate_decoded(octree);
   if (status == CONIC_OK)
-    conic_parallel_for(context, (n + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
+    conic_parallel_for(octree->context, (octree->n_nodes + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
   return status;
 }
 
@@ -130,21 +137,34 @@ static int compare_floats(const void *a, const void *b) {
 }
 
 /* Least, median, greatest. */
-static conic_status find_quantiles(const conic_octree *octree, const float *values, double quantiles[3]) {
+static void find_quantiles(float *values, size_t n, double quantiles[3]) {
+  qsort(values, n, sizeof *values, compare_floats);
+  quantiles[0] = n ? (double)values[0] : 0.0;
+  quantiles[1] = n ? (double)values[(n - 1) / 2] : 0.0;
+  quantiles[2] = n ? (double)values[n - 1] : 0.0;
+}
+
+/* Of all radii and cones, straight from the codes. */
+static conic_status find_spreads(const conic_octree *octree, conic_octree_info *info) {
   size_t n = octree->n_nodes;
-  quantiles[0] = quantiles[1] = quantiles[2] = 0.0;
-  if (n == 0)
-    return CONIC_OK;
-  float *sorted = conic_memory_allocate(octree->context, n, sizeof *sorted);
-  if (!sorted)
-    return CONIC_ERROR_MEMORY;
-  memcpy(sorted, values, n * sizeof *sorted);
-  qsort(sorted, n, sizeof *sorted, compare_floats);
-  quantiles[0] = (double)sorted[0];
-  quantiles[1] = (double)sorted[(n - 1) / 2];
-  quantiles[2] = (double)sorted[n - 1];
-  conic_memory_release(octree->context, sorted);
-  return CONIC_OK;
+  float *radii = conic_memory_allocate(octree->context, n, sizeof *radii);
+  float *cones = conic_memory_allocate(octree->context, n, sizeof *cones);
+  conic_status status = radii && cones ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    conic_node node;
+    double first[3];
+    conic_octree_place(octree, octree->first_leaf[i], first);
+    conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
+    radii[i] = node.radius;
+    cones[i] = node.cone;
+  }
+  if (status == CONIC_OK) {
+    find_quantiles(radii, n, info->radius);
+    find_quantiles(cones, n, info->cone);
+  }
+  conic_memory_release(octree->context, radii);
+  conic_memory_release(octree->context, cones);
+  return status;
 }
 
 /* A set of the two corners has the same box as the whole. */
@@ -185,8 +205,7 @@ conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info
   make_box(octree, &b);
   conic_splats_bounds(&b.corners, info->minimum, info->maximum);
   info->near_z = conic_octree_near(octree);
-  conic_status status = find_quantiles(octree, octree->radius, info->radius);
-  return status == CONIC_OK ? find_quantiles(octree, octree->cone, info->cone) : status;
+  return find_spreads(octree, info);
 }
 
 /* A splat that cannot be drawn. */

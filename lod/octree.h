@@ -32,7 +32,7 @@ struct conic_octree {
   uint32_t *index;     /* of each in the input */
   uint8_t *codes;      /* CONIC_NODE_BYTES a node */
 
-  /* What the codes give. */
+  /* What the codes give, once it is asked for. */
   conic_drawn_node *drawn;
   float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
   uint32_t *end;                                        /* the node after the subtree */
@@ -53,7 +53,8 @@ struct conic_octree {
   conic_mapping mapping;
 };
 
-/* Fills in what the codes give, from the leaves. Errors: MEMORY. */
+/* Fills in what the codes give, from the leaves, where that has not been done: who only builds and writes does without,
+ * which would else be two fifths of its memory. Errors: MEMORY. */
 conic_status conic_octree_decode(conic_octree *octree);
 
 /* What conic_default_near gives for the splats that it was built from. */

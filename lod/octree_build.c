@@ -247,9 +247,7 @@ static conic_status build(conic_octree *octree, const conic_octree_options *opti
   octree->has_color_codes = conic_octree_colors_are_codes(&octree->scale, &octree->leaves);
   if (status == CONIC_OK)
     status = lay_out(octree);
-  if (status == CONIC_OK)
-    status = conic_octree_fit(octree);
-  return status == CONIC_OK ? conic_octree_decode(octree) : status;
+  return status == CONIC_OK ? conic_octree_fit(octree) : status;
 }
 
 static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *options) {

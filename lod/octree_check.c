@@ -112,12 +112,17 @@ static size_t count_lost(const conic_octree *octree) {
   return n;
 }
 
-conic_status conic_octree_check(const conic_octree *octree, conic_octree_defects *defects) {
+conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defects) {
   size_t n_chunks = (octree->n_nodes + chunk_nodes - 1) / chunk_nodes;
   checking job = {octree, conic_memory_allocate(octree->context, n_chunks, sizeof *job.chunks)};
   memset(defects, 0, sizeof *defects);
   if (!job.chunks)
     return CONIC_ERROR_MEMORY;
+  conic_status status = conic_octree_decode(octree);
+  if (status != CONIC_OK) {
+    conic_memory_release(octree->context, job.chunks);
+    return status;
+  }
   conic_parallel_for(octree->context, n_chunks, check_task, &job);
   for (size_t i = 0; i < n_chunks; i++) {
     defects->ellipses += job.chunks[i].ellipses;

@@ -461,9 +461,7 @@ static conic_status read_octree(conic_octree *octree, const char *path) {
   octree->codes = array_at(octree, &l, ARRAY_CODES);
   octree->index = array_at(octree, &l, ARRAY_INDEX);
   status = read_leaves(octree, &h, &l);
-  if (status == CONIC_OK)
-    status = read_structure(octree, path, &l);
-  return status == CONIC_OK ? conic_octree_decode(octree) : status;
+  return status == CONIC_OK ? read_structure(octree, path, &l) : status;
 }
 
 conic_status conic_octree_read(conic_context *context, const char *path, conic_octree **octree) {

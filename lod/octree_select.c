@@ -307,14 +307,15 @@ static const char *what_is_wrong(const conic_octree *octree, const conic_camera 
   return NULL;
 }
 
-conic_status conic_octree_select(const conic_octree *octree, const conic_camera *camera,
-                                 const conic_render_options *render, const conic_selection_options *options,
-                                 conic_selection *selection) {
+conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
+                                 const conic_selection_options *options, conic_selection *selection) {
   const char *wrong = what_is_wrong(octree, camera, render, options);
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
-  conic_status status = keep_scratch(octree, selection);
+  conic_status status = conic_octree_decode(octree);
+  if (status == CONIC_OK)
+    status = keep_scratch(octree, selection);
   if (status != CONIC_OK)
     return status;
   s.scratch = selection->scratch;

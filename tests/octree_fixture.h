@@ -22,12 +22,12 @@ static inline conic_octree *octree_build(conic_context *context, const conic_spl
   options.quantize = quantize;
   CHECK_OK(conic_octree_build(context, &copy, &options, &octree));
   CHECK(copy.count == 0 && !copy.position[0]);
-  if (!octree)
+  if (!octree || conic_octree_decode(octree) != CONIC_OK)
     exit(1);
   return octree;
 }
 
-static inline void octree_check_sound(const conic_octree *octree) {
+static inline void octree_check_sound(conic_octree *octree) {
   conic_octree_defects found;
   CHECK_OK(conic_octree_check(octree, &found));
   CHECK(found.ellipses == 0 && found.spheres == 0 && found.cones == 0 && found.errors == 0 && found.splats == 0);
@@ -63,7 +63,7 @@ static inline void octree_frame(fixture *f, int size, double azimuth, double ele
   CHECK_OK(conic_camera_frame(f->context, &framing, low, high, &f->camera));
 }
 
-static inline void octree_select(const conic_octree *octree, const fixture *f, double error_px, uint64_t budget,
+static inline void octree_select(conic_octree *octree, const fixture *f, double error_px, uint64_t budget,
                                  conic_selection *selection) {
   conic_selection_options options;
   conic_selection_options_init(&options);

@@ -84,7 +84,7 @@ static conic_status write_all(conic_context *context, const conic_splats *splats
   return status == CONIC_ERROR_UNSUPPORTED ? CONIC_OK : status; /* without OpenEXR there is none to be written */
 }
 
-static conic_status choose(const conic_octree *octree, const conic_camera *camera, conic_context *context) {
+static conic_status choose(conic_octree *octree, const conic_camera *camera, conic_context *context) {
   conic_selection selection;
   conic_selection_options options;
   conic_render_options render;

@@ -93,7 +93,7 @@ static void check_leaves(const conic_octree *octree, const conic_splats *splats)
 }
 
 /* The bounds of every node, or, of large sets, of every 97th with few leaves and of all with many. */
-static void check_bounds(const conic_octree *octree) {
+static void check_bounds(conic_octree *octree) {
   int wrong = 0, overshot = 0;
   for (size_t i = 0; i < octree->n_nodes; i++) {
     size_t n_leaves = octree->first_leaf[octree->end[i]] - octree->first_leaf[i];

@@ -50,6 +50,7 @@ static bytes make_file(conic_context *context, size_t n, int quantize, int with_
   CHECK(conic_octree_is_file(path));
   conic_octree *back;
   CHECK_OK(conic_octree_read(context, path, &back));
+  CHECK_OK(conic_octree_decode(back));
   CHECK(back->n_nodes == octree->n_nodes && back->n_levels == octree->n_levels);
   CHECK(memcmp(back->codes, octree->codes, octree->n_nodes * CONIC_NODE_BYTES) == 0);
   CHECK(memcmp(back->index, octree->index, octree->leaves.count * sizeof *back->index) == 0);

@@ -74,7 +74,7 @@ typedef struct conic_octree_defects {
 } conic_octree_defects;
 
 /* Looks at every leaf of every node. Errors: MEMORY, CANCELLED. */
-CONIC_API conic_status conic_octree_check(const conic_octree *octree, conic_octree_defects *defects);
+CONIC_API conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defects);
 
 /* The splats it was built from, in their order: what `error` 0 stands for. Unless quantised, bit for bit. The caller
  * releases *splats. Errors: MEMORY. */
@@ -103,7 +103,7 @@ typedef struct conic_selection {
 /* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
  * error is at most so many pixels wherever in its sphere it is projected. The kernel's cutoff must be the octree's.
  * Errors: ARGUMENT, MEMORY. */
-CONIC_API conic_status conic_octree_select(const conic_octree *octree, const conic_camera *camera,
+CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
                                            const conic_render_options *render, const conic_selection_options *options,
                                            conic_selection *selection);
 

@@ -7,7 +7,7 @@
 enum { HEADER_BYTES = 256 };
 
 /* What is read can be used, whatever it says of itself. */
-static void use(fuzz_input *input, const conic_octree *octree) {
+static void use(fuzz_input *input, conic_octree *octree) {
   conic_octree_info info;
   conic_octree_defects found;
   conic_selection selection;
