@@ -13,8 +13,9 @@ enum { CONIC_OCTREE_DEPTH = 128 };
  * for much memory. */
 enum { CONIC_OCTREE_MOST_LEFT_OUT = 15 };
 
-/* Subtrees with no more inner nodes than this are looked at whole. */
-enum { CONIC_OCTREE_BLOCK = 128 };
+/* Subtrees with no more inner nodes than the first are walked by one thread, and their own subtrees with no more than
+ * the second are measured whole, side by side. */
+enum { CONIC_OCTREE_BLOCK = 1024, CONIC_OCTREE_TWIG = 16 };
 
 /* What of an inner node is drawn: a line of the cache. */
 typedef struct conic_drawn_node {

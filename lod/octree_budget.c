@@ -32,7 +32,7 @@ static size_t list_openings(const conic_octree *octree, const conic_octree_view 
   int depth = 0;
   for (size_t i = 0; i < octree->n_nodes;) {
     if (i >= measured) {
-      size_t whole = octree->end[i] - i <= CONIC_OCTREE_BLOCK ? octree->end[i] : i + 1;
+      size_t whole = octree->end[i] - i <= CONIC_OCTREE_TWIG ? octree->end[i] : i + 1;
       conic_octree_measure(octree, view, i, whole, pixels);
       measured = whole;
     }

@@ -26,7 +26,7 @@ typedef struct scratch {
 
 static const uint32_t node_bit = UINT32_C(1) << 31;
 
-enum { PIECES_A_TASK = 8 };
+enum { PIECES_A_TASK = 2 };
 
 typedef struct selecting {
   const conic_octree *octree;
@@ -100,16 +100,22 @@ static conic_status list_pieces(selecting *s) {
 /* Lists what a block gives, where its first leaf has its place: it gives no more than it has leaves. */
 static void walk_block(const selecting *s, piece *block) {
   const conic_octree *octree = s->octree;
-  const float *pixels = s->scratch->pixels;
+  float *const pixels = s->scratch->pixels;
   uint32_t *const sources = s->scratch->sources + octree->first_leaf[block->begin], *next = sources;
+  uint32_t measured = block->begin;
   for (uint32_t i = block->begin; i < block->end;) {
+    uint32_t end = octree->end[i];
+    if (i >= measured) {
+      measured = end - i <= CONIC_OCTREE_TWIG ? end : i + 1;
+      conic_octree_measure(octree, &s->view, i, measured, pixels);
+    }
     if (pixels[i] <= s->error_px) {
       int is_culled = pixels[i] < 0.0f;
       *next = node_bit | i;
       next += !is_culled;
       block->n_inner += (size_t)!is_culled;
       block->n_culled += (size_t)is_culled;
-      i = octree->end[i];
+      i = end;
       continue;
     }
     uint32_t first = octree->first_leaf[i], last = octree->first_leaf[++i];
@@ -125,10 +131,8 @@ static void count_task(void *data, size_t i_task, int i_thread) {
   (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_pieces; i++) {
     piece *p = &s->scratch->pieces[i];
-    if (p->kind != PIECE_BLOCK)
-      continue;
-    conic_octree_measure(s->octree, &s->view, p->begin, p->end, s->scratch->pixels);
-    walk_block(s, p);
+    if (p->kind == PIECE_BLOCK)
+      walk_block(s, p);
   }
 }
 
@@ -143,11 +147,13 @@ static inline void put_leaf(const conic_splats *from, size_t i, conic_splats *to
   to->opacity[k] = from->opacity ? from->opacity[i] : 1.0f;
 }
 
-static inline void put_node(const conic_drawn_node *from, conic_splats *to, size_t k) {
+/* A node that faces away stands for leaves that may not, else it were not chosen: it is turned, so as not to be culled
+ * as one. */
+static inline void put_node(const conic_drawn_node *from, int is_turned, conic_splats *to, size_t k) {
   for (int axis = 0; axis < 3; axis++) {
     to->position[axis][k] = from->position[axis];
     to->tangent_u[axis][k] = from->tangent_u[axis];
-    to->tangent_v[axis][k] = from->tangent_v[axis];
+    to->tangent_v[axis][k] = is_turned ? -from->tangent_v[axis] : from->tangent_v[axis];
   }
   for (int channel = 0; channel < 3 && to->color[0]; channel++)
     to->color[channel][k] = from->color[channel];
@@ -184,7 +190,7 @@ static void put_splats(const selecting *s, const uint32_t *sources, size_t begin
     if (k + AHEAD < n && sources[k + AHEAD] != sources[k + AHEAD - 1] + 1) /* the first of a run */
       fetch(octree, sources[k + AHEAD]);
     if (sources[k] >> 31) {
-      put_node(&octree->drawn[i], &to, begin + k);
+      put_node(&octree->drawn[i], s->view.cull_back && conic_octree_faces_away(octree, &s->view, i), &to, begin + k);
       ids[k] = (uint32_t)octree->n_points + i;
     } else {
       put_leaf(&leaves, i, &to, begin + k);

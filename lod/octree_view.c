@@ -66,26 +66,34 @@ static void measure_errors(const conic_octree *octree, const conic_octree_view *
   }
 }
 
-/* Nodes all of whose leaves face away are out of sight. One that faces away itself while some of its leaves may not can
- * not stand for them. */
+int conic_octree_faces_away(const conic_octree *octree, const conic_octree_view *view, size_t i) {
+  float along = 0.0f;
+  for (int axis = 0; axis < 3; axis++)
+    along += (octree->center[axis][i] - view->eye[axis]) * octree->normal[axis][i];
+  return along > 0.0f;
+}
+
+/* Nodes all of whose leaves face away are out of sight. */
 static void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
                        float *pixels) {
+  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
+  const float *nx = octree->normal[0], *ny = octree->normal[1], *nz = octree->normal[2];
+  const float *radius = octree->radius, *cone = octree->cone;
+  const conic_octree_view v = *view;
   for (size_t i = begin; i < end; i++) {
-    float to[3], along = 0.0f, square = 0.0f, sum = view->slack_offset;
-    for (int axis = 0; axis < 3; axis++) {
-      to[axis] = octree->center[axis][i] - view->eye[axis];
-      along += to[axis] * octree->normal[axis][i];
-      square += to[axis] * to[axis];
-      sum += view->slack * fabsf(octree->center[axis][i]);
-    }
-    /* α: half the angle under which the sphere is seen; θ: half the cone's. */
-    float distance = sqrtf(square), sin_a = (octree->radius[i] + sum) / distance, cos_c = octree->cone[i];
-    float cos_a = sin_a < 1.0f ? sqrtf(1.0f - sin_a * sin_a) : 0.0f, sin_c = sqrtf(1.0f - cos_c * cos_c);
+    float dx = x[i] - v.eye[0], dy = y[i] - v.eye[1], dz = z[i] - v.eye[2];
+    float along = (dx * nx[i] + dy * ny[i]) + dz * nz[i], distance = sqrtf((dx * dx + dy * dy) + dz * dz);
+    float r = radius[i] + (v.slack * ((fabsf(x[i]) + fabsf(y[i])) + fabsf(z[i])) + v.slack_offset);
+    /* α: half the angle under which the sphere is seen; γ: half the cone's. Away is where the angle between the ray and
+     * the axis, α and γ are less than a right angle together. */
+    float sin_a = r / distance, cos_a2 = 1.0f - sin_a * sin_a, cos_c = cone[i], sin_c2 = 1.0f - cos_c * cos_c;
+    float cos_a = sqrtf(cos_a2 > 0.0f ? cos_a2 : 0.0f), sin_c = sqrtf(sin_c2 > 0.0f ? sin_c2 : 0.0f);
     float cos_both = cos_a * cos_c - sin_a * sin_c, sin_both = sin_a * cos_c + cos_a * sin_c;
-    if (sin_a < 1.0f && cos_c > 0.0f && cos_both > 0.0f && along > distance * (sin_both + 1e-5f))
-      pixels[i] = -1.0f;
-    else if (pixels[i] >= 0.0f && along > -1e-5f * distance)
-      pixels[i] = HUGE_VALF;
+    float least = cos_c < cos_both ? cos_c : cos_both; /* all of these must be above 0 */
+    least = cos_a2 < least ? cos_a2 : least;
+    float beyond = along - distance * (sin_both + 1e-5f);
+    least = beyond < least ? beyond : least;
+    pixels[i] = least > 0.0f ? -1.0f : pixels[i];
   }
 }
 

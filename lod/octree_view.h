@@ -24,6 +24,9 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
 void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
                           float *pixels);
 
+/* Whether the node's own disc does. */
+int conic_octree_faces_away(const conic_octree *octree, const conic_octree_view *view, size_t i);
+
 /* The least error that `budget` splats can give: the least for which no more are chosen. Errors: MEMORY. */
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
                                      float *pixels, float *error_px);
