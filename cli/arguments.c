@@ -58,7 +58,7 @@ static int parse_int(const char *text, int *value) {
 }
 
 /* All digits are taken exactly; 10k, 2M, 1.5e6 as long as they are whole. */
-static int parse_count(const char *text, unsigned long long *value) {
+int cli_parse_count(const char *text, unsigned long long *value) {
   unsigned long long exact = 0;
   const char *digit = text;
   for (; *digit >= '0' && *digit <= '9'; digit++) {
@@ -158,7 +158,7 @@ static int store(const cli_session *session, const cli_option *option, const cha
     is_in_range = is_understood && is_within(option, *(int *)option->value);
     break;
   case CLI_COUNT:
-    is_understood = parse_count(text, option->value);
+    is_understood = cli_parse_count(text, option->value);
     is_in_range = is_understood && is_within(option, (double)*(unsigned long long *)option->value);
     break;
   case CLI_NUMBER:

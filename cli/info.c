@@ -8,10 +8,11 @@
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/octree_info.h"
+#include "core/clip.h"
 
 /* What in a model cannot be drawn as it stands. */
 typedef struct defects {
-  size_t positions, axes, normals, colors, opacities;
+  size_t positions, axes, normals, colors, opacities, clips;
 } defects;
 
 typedef struct info_job {
@@ -103,8 +104,11 @@ static void check_model(info_job *job) {
     if (points->opacity)
       found->opacities += !(is_finite(points->opacity[i]) && points->opacity[i] >= 0.0f);
   }
+  for (size_t i = 0; i < points->n_clips; i++)
+    for (int k = 0; k < points->clips[i].n_lines; k++)
+      found->clips += !conic_clip_is_line(points->clips[i].lines[k]);
   job->is_sound = job->n_finite > 0 && found->positions + found->axes + found->normals + found->colors == 0 &&
-                  found->opacities == 0;
+                  found->opacities + found->clips == 0;
 }
 
 static void check_image(info_job *job) {
@@ -163,7 +167,8 @@ typedef struct field_name {
 static const field_name field_names[] = {{CONIC_SPLATS_TANGENTS, "axes"},
                                          {CONIC_SPLATS_NORMALS, "normals"},
                                          {CONIC_SPLATS_COLORS, "colors"},
-                                         {CONIC_SPLATS_OPACITIES, "opacities"}};
+                                         {CONIC_SPLATS_OPACITIES, "opacities"},
+                                         {CONIC_SPLATS_CLIPS, "clip lines"}};
 enum { N_FIELDS = sizeof field_names / sizeof *field_names };
 
 static void print_model(const info_job *job) {
@@ -186,11 +191,15 @@ static void print_model(const info_job *job) {
   printf("sound      %s\n", job->is_sound ? "yes" : "no");
   if (job->n_finite == 0)
     printf("  no point has a finite position\n");
-  const size_t counts[] = {found->positions, found->axes, found->normals, found->colors, found->opacities};
-  static const char *const what[] = {"positions that are not finite", "axes that are zero or not finite",
-                                     "normals that are zero or not finite", "colours that are not finite",
-                                     "opacities that are negative or not finite"};
-  for (int i = 0; i < 5; i++)
+  const size_t counts[] = {found->positions, found->axes,      found->normals,
+                           found->colors,    found->opacities, found->clips};
+  static const char *const what[] = {"positions that are not finite",
+                                     "axes that are zero or not finite",
+                                     "normals that are zero or not finite",
+                                     "colours that are not finite",
+                                     "opacities that are negative or not finite",
+                                     "clip lines that are not finite or have no direction"};
+  for (int i = 0; i < 6; i++)
     if (counts[i])
       printf("  %zu %s\n", counts[i], what[i]);
 }
@@ -264,6 +273,7 @@ static void report_model(cli_json *json, const info_job *job) {
   cli_json_count(json, "normals", job->found.normals);
   cli_json_count(json, "colors", job->found.colors);
   cli_json_count(json, "opacities", job->found.opacities);
+  cli_json_count(json, "clips", job->found.clips);
   cli_json_close(json);
 }
 

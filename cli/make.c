@@ -150,7 +150,7 @@ static conic_status append_all(make_job *job, conic_scene *scene, conic_splats *
 }
 
 static conic_status make(cli_session *session, make_job *job) {
-  const unsigned fields = (unsigned)CONIC_SPLATS_TANGENTS | (unsigned)CONIC_SPLATS_COLORS;
+  const unsigned fields = conic_scene_fields(job->scene.type);
   size_t count = job->scene.count;
   conic_scene *scene = NULL;
   conic_splats_writer *writer;
@@ -181,9 +181,9 @@ static void report_seconds(cli_json *json, const make_job *job) {
 
 /* Nothing is ever skipped: what is made is sound. The keys are those of every command that builds. */
 static void report_skipped(cli_json *json) {
-  const char *const reasons[] = {"nan", "zero", "duplicate", "isolated", "failed"};
+  const char *const reasons[] = {"nan", "zero", "duplicate", "isolated", "failed", "clip"};
   cli_json_object(json, "skipped");
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     cli_json_count(json, reasons[i], 0);
   cli_json_close(json);
 }

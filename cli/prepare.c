@@ -22,6 +22,7 @@ typedef struct prepare_job {
 
 /* Makes normals of a set's axes, so that its sizes can be found anew. */
 static void forget_axes(conic_context *context, conic_splats *splats) {
+  splats->n_clips = 0; /* lines in units of the old axes */
   for (size_t i = 0; i < splats->count; i++) {
     double u[3], v[3], normal[3], length2 = 0.0;
     for (int axis = 0; axis < 3; axis++) {
@@ -52,7 +53,9 @@ static conic_status thin_model(prepare_job *job) {
     return CONIC_OK;
   conic_status status = CONIC_OK;
   if (model->n_triangles || model->points.tangent_u[0]) {
-    status = conic_model_to_splats(context, &job->estimate, model, NULL);
+    conic_estimate_options plain = job->estimate;
+    plain.feature_angle_deg = 0.0;
+    status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
     forget_axes(context, &model->points);
@@ -96,6 +99,7 @@ static int write_statistics(prepare_job *job, double total_seconds) {
     return exit_code;
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->model.points.count);
+  cli_json_count(json, "clipped", job->model.points.n_clips);
   cli_json_object(json, "seconds");
   cli_json_number(json, "read", job->read_seconds);
   cli_json_number(json, "work", job->work_seconds);
@@ -110,6 +114,7 @@ static int write_statistics(prepare_job *job, double total_seconds) {
   cli_json_count(json, "duplicate", job->repairs.duplicate);
   cli_json_count(json, "isolated", job->repairs.isolated);
   cli_json_count(json, "failed", job->repairs.failed);
+  cli_json_count(json, "clip", job->repairs.clip);
   cli_json_close(json);
   return cli_json_finish(file);
 }
@@ -150,6 +155,13 @@ static int run(cli_session *session, int argc, char **argv) {
        .help = "neighbours that a point's ellipse comes from, 6 to 64 [20]",
        .minimum = 6,
        .maximum = 64},
+      {.name = "features",
+       .type = CLI_NUMBER,
+       .value = &job.estimate.feature_angle_deg,
+       .argument = "ANGLE",
+       .help = "creases sharper than ANGLE degrees become sharp, by clip lines [none]",
+       .minimum = 0,
+       .maximum = 90},
       {.name = "count",
        .type = CLI_COUNT,
        .value = &job.count,
@@ -180,6 +192,6 @@ static int run(cli_session *session, int argc, char **argv) {
 const cli_command cli_prepare = {
     .name = "prepare",
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
-    .usage = "conic prepare IN -o OUT.ply [-k K] [--count N --seed S]",
+    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S]",
     .run = run,
 };

@@ -17,7 +17,8 @@ conic_status conic_builder_begin(conic_context *context, conic_model *model, uns
 static conic_status move_points(conic_builder *builder, size_t capacity, unsigned fields) {
   conic_splats larger, *points = &builder->model->points;
   size_t count = points->count;
-  conic_status status = conic_splats_allocate(builder->context, capacity, fields, &larger);
+  conic_status status =
+      conic_splats_allocate(builder->context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
   if (status != CONIC_OK)
     return status;
   float **to[] = {larger.position, larger.tangent_u, larger.tangent_v, larger.normal, larger.color};
@@ -32,6 +33,9 @@ static conic_status move_points(conic_builder *builder, size_t capacity, unsigne
   for (size_t k = 0; larger.opacity && k < count; k++)
     larger.opacity[k] = points->opacity ? points->opacity[k] : 1.0f;
   memcpy(larger.origin, points->origin, sizeof larger.origin);
+  larger.n_clips = points->n_clips;
+  larger.clips = points->clips; /* not an array a point */
+  points->clips = NULL;
   conic_splats_release(builder->context, points);
   *points = larger;
   points->count = count;
@@ -57,6 +61,21 @@ conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field 
   if (fields & (unsigned)field)
     return CONIC_OK;
   return move_points(builder, builder->point_capacity, fields | (unsigned)field);
+}
+
+conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip) {
+  conic_splats *points = &builder->model->points;
+  if (points->n_clips == builder->clip_capacity) {
+    void *clips = points->clips;
+    size_t capacity = points->n_clips + points->n_clips / 2 + 256;
+    conic_status status = conic_memory_grow(builder->context, &clips, points->n_clips, capacity, sizeof *points->clips);
+    if (status != CONIC_OK)
+      return status;
+    points->clips = clips;
+    builder->clip_capacity = capacity;
+  }
+  points->clips[points->n_clips++] = *clip;
+  return CONIC_OK;
 }
 
 conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count) {

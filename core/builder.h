@@ -7,7 +7,7 @@
 typedef struct conic_builder {
   conic_context *context;
   conic_model *model; /* points.count says how many points have been filled in */
-  size_t point_capacity, triangle_capacity;
+  size_t point_capacity, triangle_capacity, clip_capacity;
 } conic_builder;
 
 /* The most points a model can have: indices are 32 bits and the largest stands for none. */
@@ -23,8 +23,12 @@ conic_status conic_builder_reserve_points(conic_builder *builder, size_t count);
 /* Room for exactly `count` points, or more where there is more. Errors: MEMORY. */
 conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count);
 
-/* Gives the points another optional array, filled with white, 1 or zero for those that there are. Errors: MEMORY. */
+/* Gives the points another optional array (clip lines are none), filled with white, 1 or zero for those that there are.
+ * Errors: MEMORY. */
 conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field field);
+
+/* Appends a record of clip lines; they come in the order of their splats. Errors: MEMORY. */
+conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip);
 
 /* Room for `count` triangles in all. Errors: MEMORY. */
 conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count);

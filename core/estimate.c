@@ -5,9 +5,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/clip.h"
+#include "core/features.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/normals.h"
+#include "core/trigonometry.h"
 
 void conic_estimate_options_init(conic_estimate_options *options) {
   memset(options, 0, sizeof *options);
@@ -179,6 +182,17 @@ static void count_repairs(const conic_estimate *estimate, conic_repairs *repairs
   repairs->zero = count_zero(estimate);
 }
 
+static int has_new_axes(const void *cookie, uint32_t splat) {
+  return ((const conic_estimate *)cookie)->states[splat] != CONIC_POINT_KEPT;
+}
+
+/* Lines are given in units of the axes: with others they mean nothing. Returns how many records were wrong. */
+static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
+  size_t n_wrong = conic_splats_repair_clips(points), n = points->n_clips;
+  conic_clip_filter(points, has_new_axes, estimate);
+  return n_wrong + n - points->n_clips;
+}
+
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
  */
 static void hand_over(conic_estimate *estimate, conic_model *model) {
@@ -228,13 +242,9 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
   return status;
 }
 
-conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
-  conic_repairs counted = {0, 0, 0, 0, 0};
-  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
-      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: wrong options (6 to %d neighbours, a cutoff above 0)",
-                      CONIC_MAX_NEIGHBOURS);
+  conic_repairs counted = {0, 0, 0, 0, 0, 0};
   conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}};
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
   conic_status status = CONIC_ERROR_MEMORY;
@@ -242,6 +252,7 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
     status = estimate_model(context, options, &estimate, &counted);
   if (status == CONIC_OK) {
     count_repairs(&estimate, &counted);
+    counted.clip = drop_clips(&estimate, &model->points);
     hand_over(&estimate, model);
     if (repairs)
       *repairs = counted;
@@ -252,4 +263,54 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   }
   conic_memory_release(context, estimate.states);
   return status;
+}
+
+/* A mesh with creases: its copy, split there, takes its place when all is done. */
+static conic_status estimate_split(conic_context *context, const conic_estimate_options *options, double cosine,
+                                   conic_model *model, conic_repairs *repairs) {
+  conic_model split;
+  conic_creases creases;
+  conic_status status = conic_creases_split(context, cosine, model, &split, &creases);
+  if (status != CONIC_OK)
+    return status;
+  status = estimate_plain(context, options, &split, repairs);
+  if (status == CONIC_OK)
+    status = conic_creases_clip(context, &creases, (double)options->cutoff, &split);
+  conic_creases_release(context, &creases);
+  conic_model_release(context, status == CONIC_OK ? model : &split);
+  if (status == CONIC_OK)
+    *model = split;
+  return status;
+}
+
+/* Points: their splats are made as ever, in a copy, and then sharpened. */
+static conic_status estimate_sharp_points(conic_context *context, const conic_estimate_options *options, double cosine,
+                                          conic_model *model, conic_repairs *repairs) {
+  conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
+  memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  conic_status status = conic_splats_append(context, &copy.points, &model->points);
+  if (status == CONIC_OK)
+    status = estimate_plain(context, options, &copy, repairs);
+  if (status == CONIC_OK && copy.points.n_clips == 0)
+    status = conic_features_in_points(context, cosine, options, &copy.points);
+  conic_splats_release(context, status == CONIC_OK ? &model->points : &copy.points);
+  if (status == CONIC_OK)
+    model->points = copy.points;
+  return status;
+}
+
+conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+                                   conic_repairs *repairs) {
+  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
+      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
+      !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
+                      CONIC_MAX_NEIGHBOURS);
+  double cosine = conic_cos(conic_radians(options->feature_angle_deg));
+  if (options->feature_angle_deg == 0.0 || model->points.count == 0)
+    return estimate_plain(context, options, model, repairs);
+  if (model->n_triangles && !model->points.tangent_u[0])
+    return estimate_split(context, options, cosine, model, repairs);
+  return estimate_sharp_points(context, options, cosine, model, repairs);
 }

@@ -29,6 +29,19 @@ static inline float conic_exp_negative(float x) {
   return p;
 }
 
+/* Up to here, the square of a cutoff of 1.5, the Gaussian has a polynomial of its own. */
+#define CONIC_NARROW_SUPPORT 2.25f
+
+/* e^(-q/2) for 0 ≤ q ≤ 2.25: the minimax polynomial about the middle. Its sum is shallow, a third of the exponential's
+ * depth, because what a pixel waits for is this. Relative error at most 2.3e-7; exactly 1 at 0 (tests/test_kernel.c).
+ */
+static inline float conic_gauss_narrow(float q) {
+  float t = q - 1.125f, t2 = t * t, t4 = t2 * t2;
+  float a = 0x1.23ba94p-1f + -0x1.23ba94p-2f * t, b = 0x1.23ba98p-4f + -0x1.84f89ap-7f * t;
+  float c = 0x1.84f19cp-10f + -0x1.373c6ep-13f * t, d = 0x1.a3885cp-17f + -0x1.d6063cp-21f * t;
+  return (a + t2 * b) + t4 * (c + t2 * d);
+}
+
 /* Confetti Eq. 10, corrected: exp(-a (r/b)ⁿ / (1 - (r/b)ⁿ)) for q < b². */
 static inline float conic_kernel_confetti(const conic_kernel *kernel, float q) {
   float r = sqrtf(q) / kernel->b, power = r;
@@ -36,6 +49,10 @@ static inline float conic_kernel_confetti(const conic_kernel *kernel, float q) {
     power *= r;
   float rest = 1.0f - power;
   return rest > 0.0f ? conic_exp_negative(-kernel->a * power / rest) : 0.0f;
+}
+
+static inline int conic_kernel_is_narrow(const conic_kernel *kernel) {
+  return kernel->type == CONIC_KERNEL_GAUSS && kernel->cutoff * kernel->cutoff <= CONIC_NARROW_SUPPORT;
 }
 
 /* The kernel at q, 0 ≤ q < conic_kernel_support. */
@@ -48,7 +65,7 @@ static inline float conic_kernel_value(const conic_kernel *kernel, float q) {
   case CONIC_KERNEL_BOX:
     return 1.0f;
   default:
-    return conic_exp_negative(-0.5f * q);
+    return conic_kernel_is_narrow(kernel) ? conic_gauss_narrow(q) : conic_exp_negative(-0.5f * q);
   }
 }
 

@@ -78,6 +78,19 @@ static void find_columns(const conic_ply_header *header, const conic_ply_element
   }
 }
 
+/* Clip lines are given in units of the tangent axes, and so need them. */
+static void find_clip_lists(const conic_ply_header *header, const conic_ply_element *vertices,
+                            conic_ply_layout *layout) {
+  static const char *const list_names[2] = {[CONIC_CLIP_AND] = "clip_and", [CONIC_CLIP_OR] = "clip_or"};
+  for (int i = 0; i < 2; i++) {
+    int i_property = conic_ply_find_property(header, vertices, list_names[i]);
+    layout->clip_property[i] = -1;
+    if (i_property >= 0 && layout->form == CONIC_PLY_AXES &&
+        header->properties[vertices->first_property + (size_t)i_property].is_list)
+      layout->clip_property[i] = i_property;
+  }
+}
+
 /* An opacity is a logit beside scales and rotations, a factor beside axes or radii if it is no integer, and elsewhere
  * nothing that is known. */
 static void choose_opacity(conic_ply_layout *layout) {
@@ -126,6 +139,7 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the vertices lack x, y or z (line %llu)", input->name,
                       (unsigned long long)vertices->line);
   choose_form(layout);
+  find_clip_lists(header, vertices, layout);
   layout->cutoff = cutoff;
   conic_srgb_decode_table(layout->srgb);
   for (int axis = 0; axis < 3; axis++)

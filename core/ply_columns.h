@@ -43,6 +43,7 @@ typedef struct conic_ply_layout {
   int n_scales;    /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
+  int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;

@@ -57,9 +57,34 @@ static conic_status read_blocks(vertex_reader *reader) {
   return CONIC_OK;
 }
 
+/* A list of clip lines, three values each, into the row's record. Both of a row's lists may be there, but one of them
+ * empty. */
+static conic_status read_clip_list(vertex_reader *reader, const conic_ply_property *property,
+                                   conic_clip_operator operation, conic_clip *clip) {
+  conic_ply_source *source = reader->source;
+  uint64_t count;
+  conic_status status = conic_ply_read_list_length(source, property, &count);
+  if (status != CONIC_OK || count == 0)
+    return status;
+  if (count != 3 && count != 6)
+    return conic_ply_wrong(source, "a list of clip lines holds neither 0 nor 3 nor 6 values");
+  if (clip->n_lines)
+    return conic_ply_wrong(source, "a vertex has clip lines in both clip_and and clip_or");
+  clip->operation = (uint16_t)operation;
+  for (uint64_t i = 0; status == CONIC_OK && i < count; i++) {
+    double value = 0.0;
+    status = conic_ply_read_value(source, property->type, &value);
+    clip->lines[i / 3][i % 3] = (float)value;
+  }
+  clip->n_lines = (uint16_t)(count / 3);
+  return status;
+}
+
 /* One row, value by value, into row `i_row` of the block. */
 static conic_status read_row(vertex_reader *reader, const int *column_of_property, size_t i_row) {
   conic_ply_source *source = reader->source;
+  const int *clip_property = reader->layout.clip_property;
+  conic_clip clip = {.splat = (uint32_t)(reader->builder->model->points.count + i_row)};
   conic_status status = conic_ply_begin_row(source);
   for (size_t i = 0; status == CONIC_OK && i < source->element->n_properties; i++) {
     const conic_ply_property *property = &reader->properties[i];
@@ -68,11 +93,18 @@ static conic_status read_row(vertex_reader *reader, const int *column_of_propert
       status = conic_ply_read_value(source, property->type, &reader->block[column_of_property[i]][i_row]);
       continue;
     }
+    if ((int)i == clip_property[CONIC_CLIP_AND] || (int)i == clip_property[CONIC_CLIP_OR]) {
+      status = read_clip_list(reader, property, (int)i == clip_property[CONIC_CLIP_OR] ? CONIC_CLIP_OR : CONIC_CLIP_AND,
+                              &clip);
+      continue;
+    }
     if (property->is_list)
       status = conic_ply_read_list_length(source, property, &count);
     if (status == CONIC_OK)
       status = conic_ply_skip_values(source, property->type, count);
   }
+  if (status == CONIC_OK && clip.n_lines)
+    status = conic_builder_add_clip(reader->builder, &clip);
   return status == CONIC_OK ? conic_ply_end_row(source) : status;
 }
 

@@ -13,8 +13,8 @@
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {
   BLOCK = 256,
-  MAX_VALUES = 16,
-  MAX_BINARY_BYTES = 3 * 8 + 13 * 4,
+  MAX_VALUES = 24,
+  MAX_BINARY_BYTES = 3 * 8 + 19 * 4 + 2,
   MAX_TEXT_BYTES = MAX_VALUES * CONIC_NUMBER_ROOM
 };
 
@@ -24,6 +24,7 @@ struct conic_splats_writer {
   char *path; /* for messages */
   conic_write_options options;
   size_t count, written;
+  size_t next_clip; /* of the batch that is being written */
   unsigned fields;
   int has_header, has_double_positions, has_byte_colors;
   float srgb[256], thresholds[255];
@@ -71,6 +72,8 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   made->options = settings;
   made->count = count;
   made->fields = fields;
+  if (fields & CONIC_SPLATS_CLIPS) /* lines are given in units of the axes, which circles do not keep */
+    made->options.circles = 0;
   conic_srgb_decode_table(made->srgb);
   conic_srgb_thresholds(made->thresholds);
   size_t row_bytes = settings.encoding == CONIC_PLY_ASCII ? MAX_TEXT_BYTES : MAX_BINARY_BYTES;
@@ -132,6 +135,8 @@ static void print_header(const conic_splats_writer *writer) {
     print_properties(to, writer->has_byte_colors ? "uchar" : "float", "red green blue");
   if (writer->fields & CONIC_SPLATS_OPACITIES)
     print_properties(to, "float", "opacity");
+  if (writer->fields & CONIC_SPLATS_CLIPS)
+    fprintf(to, "property list uchar float clip_and\nproperty list uchar float clip_or\n");
   fprintf(to, "end_header\n");
 }
 
@@ -206,7 +211,23 @@ static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, flo
   put_float(row, (float)(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (double)cutoff));
 }
 
-static void put_row(const conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
+/* The two lists of splat i's clip lines: one of them is empty, if not both. */
+static void put_clip(conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
+  const conic_clip *clip = NULL;
+  while (writer->next_clip < batch->n_clips && batch->clips[writer->next_clip].splat < i)
+    writer->next_clip++;
+  if (writer->next_clip < batch->n_clips && batch->clips[writer->next_clip].splat == i)
+    clip = &batch->clips[writer->next_clip];
+  for (int operation = CONIC_CLIP_AND; operation <= CONIC_CLIP_OR; operation++) {
+    int n_lines = clip && (int)clip->operation == operation ? clip->n_lines : 0;
+    n_lines = n_lines < 2 ? n_lines : 2;
+    put_byte(row, (uint8_t)(3 * n_lines));
+    for (int k = 0; k < 3 * n_lines; k++)
+      put_float(row, clip->lines[k / 3][k % 3]);
+  }
+}
+
+static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_splats *batch, size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     double position = (double)batch->position[axis][i];
     if (batch->origin[axis] != 0.0) /* adding 0 would turn -0 into 0 */
@@ -232,6 +253,8 @@ static void put_row(const conic_splats_writer *writer, row_cursor *row, const co
   }
   if (writer->fields & CONIC_SPLATS_OPACITIES)
     put_float(row, batch->opacity[i]);
+  if (writer->fields & CONIC_SPLATS_CLIPS)
+    put_clip(writer, row, batch, i);
   if (row->encoding == CONIC_PLY_ASCII)
     row->next[-1] = '\n';
 }
@@ -246,6 +269,7 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
                       writer->path);
   if (!writer->has_header && batch->count > 0)
     begin(writer, batch);
+  writer->next_clip = 0;
   for (size_t first = 0; first < batch->count; first += BLOCK) {
     size_t n = batch->count - first < BLOCK ? batch->count - first : BLOCK;
     row_cursor row = {.next = writer->rows, .encoding = writer->options.encoding};

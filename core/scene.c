@@ -14,7 +14,8 @@
 static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
     [CONIC_SCENE_PLANE] = &conic_scene_plane,     [CONIC_SCENE_SPHERE] = &conic_scene_sphere,
     [CONIC_SCENE_TORUS] = &conic_scene_torus,     [CONIC_SCENE_KNOT] = &conic_scene_knot,
-    [CONIC_SCENE_TERRAIN] = &conic_scene_terrain, [CONIC_SCENE_GYROID] = &conic_scene_gyroid};
+    [CONIC_SCENE_TERRAIN] = &conic_scene_terrain, [CONIC_SCENE_GYROID] = &conic_scene_gyroid,
+    [CONIC_SCENE_CUBE] = &conic_scene_cube,       [CONIC_SCENE_CORNER] = &conic_scene_corner};
 
 /* Pictures number their splats with 32 bits, and the last number means none. */
 #define MAX_COUNT (CONIC_NO_ID - 1)
@@ -38,6 +39,12 @@ const char *conic_scene_name(conic_scene_type type) {
 
 const char *conic_scene_summary(conic_scene_type type) {
   return kind_of(type) ? kind_of(type)->summary : NULL;
+}
+
+unsigned conic_scene_fields(conic_scene_type type) {
+  const conic_scene_kind *kind = kind_of(type);
+  unsigned fields = (unsigned)CONIC_SPLATS_TANGENTS | (unsigned)CONIC_SPLATS_COLORS;
+  return !kind ? 0 : kind->edges ? fields | (unsigned)CONIC_SPLATS_CLIPS : fields;
 }
 
 void conic_scene_options_init(conic_scene_options *options) {
@@ -210,14 +217,44 @@ static void sample_slab(void *data, size_t i_item, int i_thread) {
   scene->kind->walk(scene->surface, &scene->lattice, i_slab, sample_lattice_point, &slab);
 }
 
+/* The clip lines of splat `at`, from the values that were stored. Returns whether it has some. */
+static int clip_splat(const conic_scene *scene, uint64_t i, const conic_splats *splats, size_t at, conic_clip *clip) {
+  double position[3];
+  conic_scene_edges edges;
+  for (int axis = 0; axis < 3; axis++)
+    position[axis] = (double)splats->position[axis][at];
+  scene->kind->edges(scene, i, position, 1.5 * scene->spacing, &edges);
+  *clip = (conic_clip){.splat = (uint32_t)at, .n_lines = (uint16_t)edges.n, .operation = (uint16_t)edges.operation};
+  for (int k = 0; k < edges.n; k++) {
+    double a = 0.0, b = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      a += edges.inward[k][axis] * (double)splats->tangent_u[axis][at];
+      b += edges.inward[k][axis] * (double)splats->tangent_v[axis][at];
+    }
+    clip->lines[k][0] = (float)a;
+    clip->lines[k][1] = (float)b;
+    clip->lines[k][2] = (float)edges.distance[k];
+  }
+  return edges.n > 0;
+}
+
+static void add_clips(const sampling *work) {
+  conic_splats *splats = work->splats;
+  splats->n_clips = 0;
+  for (uint64_t k = 0; k < work->n; k++)
+    splats->n_clips +=
+        (size_t)clip_splat(work->scene, work->first + k, splats, (size_t)k, &splats->clips[splats->n_clips]);
+}
+
 conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, conic_splats *splats) {
   conic_context *context = scene->context;
   size_t count = scene->options.count;
   if (first > count || n > count - first)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: samples %zu to %zu of %zu", first, first + n, count);
-  unsigned needed = (unsigned)CONIC_SPLATS_TANGENTS | (unsigned)CONIC_SPLATS_COLORS;
+  unsigned needed = conic_scene_fields(scene->options.type);
   if ((conic_splats_fields(splats) & needed) != needed)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: a set without tangent axes or colours");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "scene: a set without tangent axes, colours or room for clip lines");
   splats->count = n;
   memcpy(splats->origin, scene->options.offset, sizeof splats->origin);
   sampling work = {scene, splats, first, n, 0};
@@ -225,5 +262,7 @@ conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, coni
     conic_parallel_for(context, n / CHUNK + (n % CHUNK != 0), place_chunk, &work);
   else if (n)
     conic_parallel_for(context, conic_lattice_slabs(&scene->lattice, first, n, &work.first_slab), sample_slab, &work);
+  if (scene->kind->edges)
+    add_clips(&work);
   return conic_progress(context, "sample", (double)(first + n) / (double)count);
 }

@@ -18,6 +18,16 @@ struct conic_surface_point {
   uint8_t color[3]; /* sRGB codes, so that files keep colours exactly */
 };
 
+enum { CONIC_SCENE_MAX_EDGES = 2 };
+
+/* The sharp edges of a flat face that a splat has to be clipped at. */
+typedef struct conic_scene_edges {
+  int n;
+  conic_clip_operator operation;
+  double inward[CONIC_SCENE_MAX_EDGES][3]; /* unit, in the face's plane, away from the edge */
+  double distance[CONIC_SCENE_MAX_EDGES];  /* from the edge; negative outside of the face */
+} conic_scene_edges;
+
 typedef struct conic_scene_kind {
   const char *name, *summary;
 
@@ -27,6 +37,10 @@ typedef struct conic_scene_kind {
 
   /* Sample i of scene->options.count; null: by the lattice. */
   void (*place)(const conic_scene *scene, uint64_t i, conic_surface_point *point);
+
+  /* The edges near a place on the face of sample i, whose outline has that radius; null: a surface without edges. */
+  void (*edges)(const conic_scene *scene, uint64_t i, const double position[3], double radius,
+                conic_scene_edges *edges);
 
   conic_lattice_walk *walk;
   conic_lattice_project *project;
@@ -44,7 +58,7 @@ struct conic_scene {
 };
 
 extern const conic_scene_kind conic_scene_plane, conic_scene_sphere, conic_scene_torus, conic_scene_knot,
-    conic_scene_terrain, conic_scene_gyroid;
+    conic_scene_terrain, conic_scene_gyroid, conic_scene_cube, conic_scene_corner;
 
 /* Makes scene->surface, `bytes` large; null on failure. */
 void *conic_scene_surface(conic_scene *scene, size_t bytes);

@@ -2,8 +2,10 @@
 
 #include <string.h>
 
+#include "core/clip.h"
 #include "core/memory.h"
 #include "core/message.h"
+#include "core/splats.h"
 
 /* The set's arrays in one list, so that what is done to one is done to all. */
 enum { N_ARRAYS = 16 };
@@ -46,6 +48,13 @@ conic_status conic_splats_allocate(conic_context *context, size_t count, unsigne
       return CONIC_ERROR_MEMORY;
     }
   }
+  if (fields & CONIC_SPLATS_CLIPS) {
+    splats->clips = conic_memory_allocate(context, count, sizeof *splats->clips);
+    if (!splats->clips) {
+      conic_splats_release(context, splats);
+      return CONIC_ERROR_MEMORY;
+    }
+  }
   splats->count = count;
   return CONIC_OK;
 }
@@ -54,7 +63,8 @@ unsigned conic_splats_fields(const conic_splats *splats) {
   return (splats->tangent_u[0] ? (unsigned)CONIC_SPLATS_TANGENTS : 0u) |
          (splats->normal[0] ? (unsigned)CONIC_SPLATS_NORMALS : 0u) |
          (splats->color[0] ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
-         (splats->opacity ? (unsigned)CONIC_SPLATS_OPACITIES : 0u);
+         (splats->opacity ? (unsigned)CONIC_SPLATS_OPACITIES : 0u) |
+         (splats->clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u);
 }
 
 void conic_splats_release(conic_context *context, conic_splats *splats) {
@@ -62,6 +72,7 @@ void conic_splats_release(conic_context *context, conic_splats *splats) {
   list_arrays(splats, arrays);
   for (int i = 0; i < N_ARRAYS; i++)
     conic_memory_release(context, *arrays[i]);
+  conic_memory_release(context, splats->clips);
   memset(splats, 0, sizeof *splats);
 }
 
@@ -73,13 +84,38 @@ static void copy_or_fill(float *to, const float *from, size_t count, float absen
       to[i] = absent;
 }
 
+/* Puts the clip lines of both sets into `joined`, and nothing where there are none. On failure `joined` is empty. */
+static conic_status join_clips(conic_context *context, const conic_splats *first, const conic_splats *next,
+                               conic_splats *joined) {
+  size_t n = first->n_clips + next->n_clips;
+  if (n == 0)
+    return CONIC_OK;
+  joined->clips = conic_memory_allocate(context, n, sizeof *joined->clips);
+  if (!joined->clips) {
+    conic_splats_release(context, joined);
+    return CONIC_ERROR_MEMORY;
+  }
+  joined->n_clips = n;
+  if (first->n_clips)
+    memcpy(joined->clips, first->clips, first->n_clips * sizeof *joined->clips);
+  for (size_t i = 0; i < next->n_clips; i++) {
+    conic_clip *clip = &joined->clips[first->n_clips + i];
+    *clip = next->clips[i];
+    clip->splat += (uint32_t)first->count;
+  }
+  return CONIC_OK;
+}
+
 conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more) {
   conic_splats joined, second = *more;
   float **to[N_ARRAYS], **first[N_ARRAYS], **next[N_ARRAYS];
   if (more->count > SIZE_MAX - splats->count)
     return conic_fail(context, CONIC_ERROR_MEMORY, "too many splats");
   unsigned fields = conic_splats_fields(splats) | conic_splats_fields(more);
-  conic_status status = conic_splats_allocate(context, splats->count + more->count, fields, &joined);
+  conic_status status =
+      conic_splats_allocate(context, splats->count + more->count, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &joined);
+  if (status == CONIC_OK)
+    status = join_clips(context, splats, more, &joined);
   if (status != CONIC_OK)
     return status;
   list_arrays(&joined, to);
@@ -99,6 +135,23 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
   }
   conic_splats_release(context, splats);
   *splats = joined;
+  return CONIC_OK;
+}
+
+conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
+                                 size_t count, conic_splats *gathered) {
+  conic_splats listed = *from;
+  float **to[N_ARRAYS], **old[N_ARRAYS];
+  unsigned fields = conic_splats_fields(from) & ~(unsigned)CONIC_SPLATS_CLIPS;
+  conic_status status = conic_splats_allocate(context, count, fields, gathered);
+  if (status != CONIC_OK)
+    return status;
+  list_arrays(gathered, to);
+  list_arrays(&listed, old);
+  for (int i_array = 0; i_array < N_ARRAYS; i_array++)
+    for (size_t i = 0; *to[i_array] && i < count; i++)
+      (*to[i_array])[i] = (*old[i_array])[sources[i]];
+  memcpy(gathered->origin, from->origin, sizeof gathered->origin);
   return CONIC_OK;
 }
 

@@ -42,6 +42,21 @@ static void keep(float *values, size_t n, uint64_t seed, uint64_t below) {
       values[n_kept++] = values[i];
 }
 
+/* The kept splats' clip lines, under their new numbers. */
+static void keep_clips(conic_splats *splats, uint64_t seed, uint64_t below) {
+  size_t n_kept = 0, number = 0, next = 0;
+  for (size_t i = 0; i < splats->n_clips; i++) {
+    conic_clip clip = splats->clips[i];
+    for (; next < clip.splat; next++)
+      number += rank_of(seed, next) < below;
+    if (rank_of(seed, clip.splat) >= below)
+      continue;
+    clip.splat = (uint32_t)number;
+    splats->clips[n_kept++] = clip;
+  }
+  splats->n_clips = n_kept;
+}
+
 conic_status conic_splats_thin(conic_context *context, conic_splats *splats, size_t count, uint64_t seed) {
   size_t n = splats->count;
   if (count >= n)
@@ -61,6 +76,7 @@ conic_status conic_splats_thin(conic_context *context, conic_splats *splats, siz
     keep(splats->color[axis], n, seed, below);
   }
   keep(splats->opacity, n, seed, below);
+  keep_clips(splats, seed, below);
   splats->count = count;
   return CONIC_OK;
 }

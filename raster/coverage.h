@@ -3,7 +3,8 @@
 #ifndef RASTER_COVERAGE_H
 #define RASTER_COVERAGE_H
 
-#include "raster/tile.h"
+#include "raster/band.h"
+#include "raster/clip_lines.h"
 
 /* A splat on one row of pixels. */
 typedef struct conic_row {
@@ -20,11 +21,11 @@ typedef struct conic_fragment {
 } conic_fragment;
 
 static inline float conic_row_dy(const conic_footprint *footprint, int y) {
-  return (float)(y - footprint->y) + footprint->dy0;
+  return ((float)y - footprint->y) + footprint->dy0;
 }
 
 static inline float conic_row_dx(const conic_footprint *footprint, int x) {
-  return (float)(x - footprint->x) + footprint->dx0;
+  return ((float)x - footprint->x) + footprint->dx0;
 }
 
 static inline conic_row conic_row_begin(const conic_footprint *footprint, float dy) {
@@ -57,6 +58,8 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
                                      float dx, float dy, conic_fragment *fragment) {
   float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
   if (!(iz > 0.0f && iz >= ray->iz_low && iz <= ray->iz_high))
+    return 0;
+  if (!(dx >= ray->dx_low && dx <= ray->dx_high && dy >= ray->dy_low && dy <= ray->dy_high))
     return 0;
   float r = 1.0f / iz;
   float u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
@@ -91,6 +94,8 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
 static inline int conic_fragment_at(const conic_view *view, const conic_projected *projected,
                                     const conic_footprint *footprint, int x, int y, conic_fragment *fragment) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  if (conic_is_clipped(footprint) && !conic_clip_keeps(&projected->clips[footprint - projected->footprints], dx, dy))
+    return 0;
   if (footprint->s3 == 0.0f)
     return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   conic_row row = conic_row_begin(footprint, dy);

@@ -1,11 +1,12 @@
 /* Lanes: several pixels at a time, as wide as the instruction set that the including file is compiled for. Every lane
  * does exactly what scalar code would, so that no width changes a bit.
  *
- * A block is 4 rows of CONIC_BLOCK_COLUMNS pixels, column by column: lane l is column l / 4, row l % 4. Floats take + -
- * × ÷ as they are. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: where a is not a number, b. */
+ * A part of a block is 4 rows of pixels, column by column: lane l is column l / 4, row l % 4. Floats take + - × ÷ as
+ * they are. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: where a is not a number, b. */
 #ifndef RASTER_LANES_H
 #define RASTER_LANES_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -22,7 +23,6 @@
 #endif
 
 #define CONIC_BLOCK_ROWS 4
-#define CONIC_BLOCK_COLUMNS (CONIC_LANES / CONIC_BLOCK_ROWS)
 
 #define CONIC_INLINE static inline __attribute__((always_inline))
 
@@ -74,6 +74,15 @@ CONIC_INLINE lanes_mask lanes_at_least(lanes a, lanes b) {
   return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GE_OQ);
 }
 
+CONIC_INLINE lanes_mask lanes_not(lanes_mask mask) {
+  return (lanes_mask)~mask;
+}
+
+/* Bit l for lane l. */
+CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
+  return mask;
+}
+
 CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
   return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 }
@@ -94,6 +103,17 @@ CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
 /* value + 1 where the mask holds. */
 CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
   return (index_lanes)_mm512_mask_add_epi32((__m512i)value, mask, (__m512i)value, _mm512_set1_epi32(1));
+}
+
+/* Which lanes have a bit of the mask. */
+CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint32_t mask) {
+  return _mm512_test_epi32_mask((__m512i)value, _mm512_set1_epi32((int)mask));
+}
+
+/* Writes the masked values one after the other, and whatever follows up to CONIC_LANES; returns how many. */
+CONIC_INLINE size_t lanes_append(uint32_t *to, lanes_mask mask, index_lanes value) {
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(mask, (__m512i)value));
+  return (size_t)__builtin_popcount(mask);
 }
 
 CONIC_INLINE int lanes_any(lanes_mask mask) {
@@ -128,6 +148,10 @@ CONIC_INLINE lanes_mask lanes_at_least(lanes a, lanes b) {
   return a >= b;
 }
 
+CONIC_INLINE lanes_mask lanes_not(lanes_mask mask) {
+  return ~mask;
+}
+
 CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
   return a < b;
 }
@@ -150,14 +174,31 @@ CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
   return value - (index_lanes)mask;
 }
 
+CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint32_t mask) {
+  return (value & mask) != 0u;
+}
+
+CONIC_INLINE size_t lanes_append(uint32_t *to, lanes_mask mask, index_lanes value) {
+  size_t n = 0;
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    to[n] = value[lane];
+    n -= (size_t)(ptrdiff_t)mask[lane];
+  }
+  return n;
+}
+
 #if defined(__AVX2__)
 
 CONIC_INLINE int lanes_any(lanes_mask mask) {
   return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
 }
 
+CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
+  return (unsigned)_mm256_movemask_ps((__m256)mask);
+}
+
 CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
-  return (unsigned)__builtin_popcount((unsigned)_mm256_movemask_ps((__m256)mask));
+  return (unsigned)__builtin_popcount(lanes_bits(mask));
 }
 
 CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
@@ -178,8 +219,12 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   return _mm_movemask_ps((__m128)mask) != 0;
 }
 
+CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
+  return (unsigned)_mm_movemask_ps((__m128)mask);
+}
+
 CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
-  unsigned bits = (unsigned)_mm_movemask_ps((__m128)mask);
+  unsigned bits = lanes_bits(mask);
   return (unsigned)(UINT64_C(0x4332322132212110) >> (4 * bits)) & 7u; /* how many bits, for each of 16 patterns */
 }
 
@@ -201,6 +246,10 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
+CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
+  return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+}
+
 CONIC_INLINE unsigned lanes_count(lanes_mask mask) {
   return (unsigned)-(mask[0] + mask[1] + mask[2] + mask[3]);
 }
@@ -219,6 +268,36 @@ CONIC_INLINE lanes lanes_sqrt(lanes a) {
 
 #endif
 #endif
+
+CONIC_INLINE lanes lanes_absolute(lanes value) {
+  return (lanes)((int_lanes)value & 0x7fffffff);
+}
+
+#if CONIC_LANES == 16
+#define CONIC_EVEN_LANES 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define CONIC_ODD_LANES 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
+#elif CONIC_LANES == 8
+#define CONIC_EVEN_LANES 0, 2, 4, 6, 8, 10, 12, 14
+#define CONIC_ODD_LANES 1, 3, 5, 7, 9, 11, 13, 15
+#else
+#define CONIC_EVEN_LANES 0, 2, 4, 6
+#define CONIC_ODD_LANES 1, 3, 5, 7
+#endif
+
+/* Pairs of values to the first and the second of each. */
+CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, index_lanes *second) {
+  index_lanes low = lanes_load_indices(from), high = lanes_load_indices(from + CONIC_LANES);
+  *first = __builtin_shufflevector(low, high, CONIC_EVEN_LANES);
+  *second = __builtin_shufflevector(low, high, CONIC_ODD_LANES);
+}
+
+/* first, first + 1, … */
+CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
+  index_lanes ascending;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    ascending[lane] = first + (uint32_t)lane;
+  return ascending;
+}
 
 /* 0, 0, 0, 0, 1, 1, 1, 1, … and 0, 1, 2, 3, 0, 1, 2, 3, …: a lane's place in its block. */
 CONIC_INLINE int_lanes lanes_columns(void) {
@@ -248,6 +327,14 @@ CONIC_INLINE lanes lanes_exp_negative(lanes x) {
   p = p * r + 0x1.fffffcp-2f;
   p = (p * (r * r) + r) + 1.0f;
   return (lanes)((int_lanes)p + k * (1 << 23));
+}
+
+/* conic_gauss_narrow, likewise. */
+CONIC_INLINE lanes lanes_gauss_narrow(lanes q) {
+  lanes t = q - 1.125f, t2 = t * t, t4 = t2 * t2;
+  lanes a = 0x1.23ba94p-1f + -0x1.23ba94p-2f * t, b = 0x1.23ba98p-4f + -0x1.84f89ap-7f * t;
+  lanes c = 0x1.84f19cp-10f + -0x1.373c6ep-13f * t, d = 0x1.a3885cp-17f + -0x1.d6063cp-21f * t;
+  return (a + t2 * b) + t4 * (c + t2 * d);
 }
 
 #endif

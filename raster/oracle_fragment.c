@@ -112,9 +112,13 @@ static int doubt_formula(const oracle_view *view, const oracle_candidate *candid
 int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
                           oracle_fragment *fragment) {
   const oracle_splat *splat = candidate->splat;
-  double errors[ORACLE_N_VALUES], spread = 0.0;
+  double errors[ORACLE_N_VALUES], spread = 0.0, clip_error;
+  double reach_px = (splat->box[1][0] - splat->box[0][0]) + (splat->box[1][1] - splat->box[0][1]);
+  double kept = conic_oracle_clip_margin(&splat->clip, x, y, reach_px, &clip_error);
   int covers = 0;
   unsigned doubt = 0;
+  if (kept < -clip_error)
+    return 0;
   if (candidate->is_drawn) {
     conic_oracle_evaluate(view, &candidate->shape, x, y, fragment->values);
     /* Twice the cutoff's square away nothing is in doubt. */
@@ -131,6 +135,9 @@ int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candi
   fragment->covers = covers;
   if (splat->n_others && (doubt_formula(view, candidate, x, y, fragment) || covers))
     doubt |= 1u << CONIC_UNSTABLE_FORMULA;
+  if ((covers || doubt) && !(kept > clip_error))
+    doubt |= 1u << CONIC_UNSTABLE_CLIP;
+  covers = covers && kept >= 0.0;
   fragment->covers = covers;
   fragment->doubt = doubt;
   fragment->candidate = candidate;

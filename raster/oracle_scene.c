@@ -1,5 +1,6 @@
 #include "raster/oracle_scene.h"
 
+#include "core/clip.h"
 #include "core/memory.h"
 #include "core/message.h"
 
@@ -205,6 +206,12 @@ static int place(const oracle_view *view, const conic_splats *splats, const coni
     splat->placed.p[c] += view->camera.cam_from_world[c][3];
   rotate(&view->camera, world.tu, splat->placed.tu);
   rotate(&view->camera, world.tv, splat->placed.tv);
+  size_t i_clip = conic_clip_find(splats, i);
+  int has_clip = i_clip < splats->n_clips && splats->clips[i_clip].splat == i;
+  double extent = oracle_length(world.p);
+  for (int c = 0; c < 3; c++)
+    extent += fabs(view->camera.cam_from_world[c][3]);
+  conic_oracle_clip(view, &splat->placed, has_clip ? &splats->clips[i_clip] : NULL, extent, &splat->clip);
   choose(view, splat);
   if (splat->formula == ORACLE_NOT_DRAWN && !splat->n_others)
     return 0;

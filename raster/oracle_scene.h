@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "conic/oracle.h"
+#include "raster/oracle_clip.h"
 #include "raster/oracle_splat.h"
 
 enum { ORACLE_N_INPUTS = 6, ORACLE_MAX_OTHERS = 3 };
@@ -17,7 +18,8 @@ typedef struct oracle_splat {
   uint32_t index;
   int is_facing_unsure;
   double box[2][2]; /* what any of the formulas may cover lies within, amply */
-  double behind;    /* s = 1/(1 + ε/‖p‖) */
+  oracle_clip clip;
+  double behind; /* s = 1/(1 + ε/‖p‖) */
   double opacity, color[3];
   double normal[3]; /* world, unit, towards the viewer */
 } oracle_splat;

@@ -56,10 +56,8 @@ static void fill_disc(const splat_setup *s, conic_disc *disc) {
   disc->determinant = (disc->p[0] * disc->n[0] + disc->p[1] * disc->n[1]) + disc->p[2] * disc->n[2];
 }
 
-/* Pixels [begin, end) of [0, size) that lie within `half` of the centre, and a hair more: the pixel's own test decides.
- */
-static void pixel_range(double center, float half, int size, uint16_t *begin, uint16_t *end) {
-  double reach = (double)half * 1.0001 + 0.01;
+/* Pixels [begin, end) of [0, size) whose centres lie within reach of the centre. */
+static void pixel_range(double center, double reach, int size, uint16_t *begin, uint16_t *end) {
   double low = center - reach + 0.5, high = center + reach + 0.5;
   low = low > 0.0 ? low : 0.0;
   high = high < (double)size ? high : (double)size;
@@ -127,10 +125,73 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
+/* In double, for what float cannot hold. */
 static conic_outcome project_by_ray(const splat_setup *s) {
   conic_disc disc;
   fill_disc(s, &disc);
   return conic_project_ray(s->view, &disc, s->footprint, s->box, s->ray);
+}
+
+/* The pixel that a place on the screen is in, and the fraction. One that is off the screen by more than 1e9 has lost
+ * its fraction anyway. */
+static void set_reference(double x, double y, conic_footprint *footprint) {
+  x = x > -1e9 ? x < 1e9 ? x : 1e9 : -1e9;
+  y = y > -1e9 ? y < 1e9 ? y : 1e9 : -1e9;
+  footprint->x = (float)(int32_t)x;
+  footprint->y = (float)(int32_t)y;
+  footprint->dx0 = (float)(((double)footprint->x + 0.5) - x);
+  footprint->dy0 = (float)(((double)footprint->y + 0.5) - y);
+}
+
+/* A ray's limits: its box, and what its disc reaches, with a hair more, since across the line of sight that is narrower
+ * than a rounding. */
+static void set_limits(const conic_view *view, const conic_footprint *footprint, const conic_box *box, conic_ray *ray) {
+  const float hair = 0x1p-20f;
+  float slope = sqrtf(footprint->plane_dx * footprint->plane_dx + footprint->plane_dy * footprint->plane_dy);
+  float widening = slope * view->growth_px, highest = (float)(1.0 / view->near_z);
+  float high = footprint->iz_near + widening;
+  float low = (footprint->iz_far - widening) - hair * footprint->iz_far;
+  ray->iz_high = (high < highest ? high : highest) + hair * footprint->iz_near;
+  ray->iz_low = low > 0.0f ? low : 0.0f;
+  ray->dx_low = ((float)box->x_begin - footprint->x) + footprint->dx0;
+  ray->dx_high = ((float)(box->x_end - 1) - footprint->x) + footprint->dx0;
+  ray->dy_low = ((float)box->y_begin - footprint->y) + footprint->dy0;
+  ray->dy_high = ((float)(box->y_end - 1) - footprint->y) + footprint->dy0;
+}
+
+/* About the projected p, U, V and iz are made of what shearing to it gave: no cancellation, so that float will do
+ * (docs/picture.md). The box is the projected outline's, widened. */
+static conic_outcome project_ray_before_near(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+  const conic_view *view = s->view;
+  conic_footprint *footprint = s->footprint;
+  conic_ray *ray = s->ray;
+  double x_p = view->cx + view->fx * (s->p[0] * s->inverse_z);
+  double y_p = view->cy + view->fy * (s->p[1] * s->inverse_z);
+  pixel_range(x_p + (double)k->shift_x, (double)(view->cutoff * sqrtf(k->rxx) + view->growth_px), view->width,
+              &s->box->x_begin, &s->box->x_end);
+  pixel_range(y_p + (double)k->shift_y, (double)(view->cutoff * sqrtf(k->ryy) + view->growth_px), view->height,
+              &s->box->y_begin, &s->box->y_end);
+  if (conic_box_is_empty(s->box))
+    return CONIC_CULLED;
+  set_reference(x_p, y_p, footprint);
+  set_depth(s, t, k, 1.0f, 1.0f, 1.0f);
+  float inverse_z = (float)s->inverse_z, scale = inverse_z / (t->ux * t->vy - t->uy * t->vx);
+  footprint->s2 = footprint->s3 = 0.0f;
+  footprint->iz0 = inverse_z;
+  footprint->iz_dx = footprint->plane_dx;
+  footprint->iz_dy = footprint->plane_dy;
+  ray->u0 = ray->v0 = 0.0f;
+  ray->u_dx = scale * t->vy;
+  ray->u_dy = -(scale * t->vx);
+  ray->v_dx = -(scale * t->uy);
+  ray->v_dy = scale * t->ux;
+  set_limits(view, footprint, s->box, ray);
+  return CONIC_DRAWN_RAY;
+}
+
+/* Of a box in which the pixel's own q decides. */
+static double a_hair_more(float half_width) {
+  return (double)half_width * 1.0001 + 0.01;
 }
 
 static conic_outcome project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
@@ -146,17 +207,11 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
     return project_by_ray(s);
   double x_t = (view->cx + view->fx * (s->p[0] * s->inverse_z)) + (double)k->shift_x;
   double y_t = (view->cy + view->fy * (s->p[1] * s->inverse_z)) + (double)k->shift_y;
-  pixel_range(x_t, view->cutoff * sqrtf(vxx), view->width, &box->x_begin, &box->x_end);
-  pixel_range(y_t, view->cutoff * sqrtf(vyy), view->height, &box->y_begin, &box->y_end);
+  pixel_range(x_t, a_hair_more(view->cutoff * sqrtf(vxx)), view->width, &box->x_begin, &box->x_end);
+  pixel_range(y_t, a_hair_more(view->cutoff * sqrtf(vyy)), view->height, &box->y_begin, &box->y_end);
   if (conic_box_is_empty(box))
     return CONIC_CULLED;
-  /* A centre that is off the screen by more than this has lost its fraction anyway. */
-  x_t = x_t > -1e9 ? x_t < 1e9 ? x_t : 1e9 : -1e9;
-  y_t = y_t > -1e9 ? y_t < 1e9 ? y_t : 1e9 : -1e9;
-  footprint->x = (int32_t)x_t;
-  footprint->y = (int32_t)y_t;
-  footprint->dx0 = (float)(((double)footprint->x + 0.5) - x_t);
-  footprint->dy0 = (float)(((double)footprint->y + 0.5) - y_t);
+  set_reference(x_t, y_t, footprint);
   footprint->s1 = sqrtf(vyy / determinant);
   footprint->s2 = -(k->rxy / vyy) * footprint->s1;
   footprint->s3 = 1.0f / sqrtf(vyy);
@@ -186,7 +241,7 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
   }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
   if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k))
-    return project_by_ray(s);
+    return project_ray_before_near(s, &t, &k);
   return project_variance(s, &t, &k);
 }
 
@@ -227,6 +282,7 @@ static void set_surface(const splat_setup *s, const float normal[3]) {
     surface->color[axis] = splats->color[axis] ? splats->color[axis][s->i] : 1.0f;
   }
   surface->index = (uint32_t)s->i;
+  surface->unused = 0;
 }
 
 /* ε-offset along the ray, and the opacity. */

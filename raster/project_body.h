@@ -1,351 +1,489 @@
 /* Projection in lanes: conic_project_one (raster/project.c) for a group of splats at once, with the same operations in
  * the same order. What is not usual (near the camera, drawn by ray, not finite) is left to conic_project_one itself.
- * Included by tile_kernels_body.h. What is in double, or converts, is written as plain loops over the group. */
+ * Included by tile_kernels_body.h. */
 #include <math.h>
 
+#include "raster/lanes_double.h"
 #include "raster/projected.h"
 
-/* What a lane turned out to be. */
-enum { GROUP_USUAL, GROUP_CULLED, GROUP_SKIPPED, GROUP_UNUSUAL };
+/* So many splats are looked at at a time for whether they face away, and what is left of them is packed. */
+enum { BATCH = 512 };
 
-typedef struct group {
-  const conic_view *view;
-  const conic_splats *splats;
-  size_t first;
-  int32_t state[CONIC_LANES];
-  double p[3][CONIC_LANES], inverse_z[CONIC_LANES];
-  float inverse_z_float[CONIC_LANES], x[CONIC_LANES], y[CONIC_LANES]; /* p_x/p_z, p_y/p_z */
-  float reach[CONIC_LANES], nearest[CONIC_LANES], farthest[CONIC_LANES], distance[CONIC_LANES];
-  lanes tu[3], tv[3];           /* camera space */
+/* The columns of a splat set that set-up reads. */
+enum { POSITION, TANGENT_U = 3, TANGENT_V = 6, COLOR = 9, OPACITY = 12, N_COLUMNS };
+
+/* The splats of a batch that may be drawn, with room for a last group's spare lanes. */
+typedef struct batch {
+  float columns[N_COLUMNS][BATCH + CONIC_LANES];
+  uint32_t index[BATCH + CONIC_LANES];
+  size_t n;
+} batch;
+
+/* A group's splats in camera space. */
+typedef struct group_splats {
+  doubles p[3], inverse_z;
+  lanes tu[3], tv[3];
+  lanes inverse_z_float, x, y; /* p_x/p_z, p_y/p_z */
+  lanes reach_z, reach, nearest, farthest;
   lanes ux, uy, uz, vx, vy, vz; /* sheared to the centre, over p_z, in pixels */
-  lanes area, bx, by, inverse_w, rxx, rxy, ryy, root, vxx, vyy, determinant;
-  float shift[2][CONIC_LANES], half[2][CONIC_LANES];
-  int32_t begin[2][CONIC_LANES], end[2][CONIC_LANES], center[2][CONIC_LANES];
-  float fraction[2][CONIC_LANES];
-  lanes normal[3], longer;
-} group;
+  lanes area;
+  lanes_mask usual; /* finite, and wholly before near */
+  lanes_mask behind;
+} group_splats;
 
-CONIC_INLINE lanes load3(const float *const v[3], size_t i, int axis) {
-  return lanes_load(v[axis] + i);
+CONIC_INLINE void load_columns(const batch *from, int column, size_t at, lanes result[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    result[axis] = lanes_load(from->columns[column + axis] + at);
 }
 
-CONIC_INLINE void rotate_lanes(const float m[3][3], const float *const v[3], size_t i, lanes result[3]) {
+CONIC_INLINE void rotate_lanes(const float m[3][3], const lanes v[3], lanes result[3]) {
   for (int row = 0; row < 3; row++)
-    result[row] = (m[row][0] * load3(v, i, 0) + m[row][1] * load3(v, i, 1)) + m[row][2] * load3(v, i, 2);
+    result[row] = (m[row][0] * v[0] + m[row][1] * v[1]) + m[row][2] * v[2];
 }
 
-CONIC_INLINE void move_centers(group *g) {
-  const conic_view *view = g->view;
-  const float *x = g->splats->position[0] + g->first, *y = g->splats->position[1] + g->first;
-  const float *z = g->splats->position[2] + g->first;
-  for (int row = 0; row < 3; row++) {
-    const double *m = view->rotation[row];
-    for (int l = 0; l < CONIC_LANES; l++)
-      g->p[row][l] = ((m[0] * (double)x[l] + m[1] * (double)y[l]) + m[2] * (double)z[l]) + view->translation[row];
+CONIC_INLINE void move_centers(const conic_view *view, const lanes position[3], group_splats *g) {
+  for (int half = 0; half < 2; half++) {
+    half_doubles x = half_of(position[0], half), y = half_of(position[1], half), z = half_of(position[2], half);
+    for (int row = 0; row < 3; row++) {
+      const double *m = view->rotation[row];
+      g->p[row].half[half] = ((m[0] * x + m[1] * y) + m[2] * z) + view->translation[row];
+    }
   }
 }
 
-/* Which lanes are wholly before near, and their measures relative to p_z. */
-CONIC_INLINE void classify(group *g) {
-  const conic_view *view = g->view;
-  float reach_z[CONIC_LANES];
-  double near_z = view->near_z;
-  lanes_store(reach_z, view->cutoff * lanes_sqrt(g->tu[2] * g->tu[2] + g->tv[2] * g->tv[2]));
-  for (int l = 0; l < CONIC_LANES; l++) {
-    double x = g->p[0][l], y = g->p[1][l], z = g->p[2][l], r = (double)reach_z[l], inverse = 1.0 / z;
-    int is_finite = (x + y + z + r) * 0.0 == 0.0, is_ahead = z + r > near_z, is_before = z - r > near_z;
-    g->state[l] = is_before ? GROUP_USUAL : GROUP_UNUSUAL;
-    g->state[l] = is_ahead ? g->state[l] : GROUP_CULLED;
-    g->state[l] = is_finite ? g->state[l] : GROUP_SKIPPED;
-    g->inverse_z[l] = inverse;
-    g->reach[l] = (float)(r * inverse);
-    g->nearest[l] = (float)((z - r) * inverse);
-    g->farthest[l] = (float)((z + r) * inverse);
-    g->inverse_z_float[l] = (float)inverse;
-    g->x[l] = (float)(x * inverse);
-    g->y[l] = (float)(y * inverse);
-    g->distance[l] = (float)sqrt((x * x + y * y) + z * z);
+/* Which lanes are wholly before near, and the measures relative to p_z. */
+CONIC_INLINE void classify(const conic_view *view, group_splats *g) {
+  doubles x, y, reach, nearest, farthest, before, ahead, zero;
+  g->reach_z = view->cutoff * lanes_sqrt(g->tu[2] * g->tu[2] + g->tv[2] * g->tv[2]);
+  for (int half = 0; half < 2; half++) {
+    half_doubles z = g->p[2].half[half], r = half_of(g->reach_z, half), inverse = 1.0 / z;
+    g->inverse_z.half[half] = inverse;
+    zero.half[half] = (((g->p[0].half[half] + g->p[1].half[half]) + z) + r) * 0.0;
+    before.half[half] = z - r;
+    ahead.half[half] = z + r;
+    reach.half[half] = r * inverse;
+    nearest.half[half] = (z - r) * inverse;
+    farthest.half[half] = (z + r) * inverse;
+    x.half[half] = g->p[0].half[half] * inverse;
+    y.half[half] = g->p[1].half[half] * inverse;
   }
+  g->reach = lanes_narrow(&reach);
+  g->nearest = lanes_narrow(&nearest);
+  g->farthest = lanes_narrow(&farthest);
+  g->inverse_z_float = lanes_narrow(&g->inverse_z);
+  g->x = lanes_narrow(&x);
+  g->y = lanes_narrow(&y);
+  lanes_mask finite = lanes_greater_double(&zero, -1.0);
+  g->usual = finite & lanes_greater_double(&before, view->near_z);
+  g->behind = finite & lanes_not(lanes_greater_double(&ahead, view->near_z));
 }
 
-CONIC_INLINE void shear(group *g) {
-  float fx = (float)g->view->fx, fy = (float)g->view->fy;
-  lanes inverse_z = lanes_load(g->inverse_z_float), x = lanes_load(g->x), y = lanes_load(g->y);
-  g->uz = g->tu[2] * inverse_z;
-  g->vz = g->tv[2] * inverse_z;
-  g->ux = fx * (g->tu[0] * inverse_z - x * g->uz);
-  g->uy = fy * (g->tu[1] * inverse_z - y * g->uz);
-  g->vx = fx * (g->tv[0] * inverse_z - x * g->vz);
-  g->vy = fy * (g->tv[1] * inverse_z - y * g->vz);
+CONIC_INLINE void shear(const conic_view *view, group_splats *g) {
+  float fx = (float)view->fx, fy = (float)view->fy;
+  g->uz = g->tu[2] * g->inverse_z_float;
+  g->vz = g->tv[2] * g->inverse_z_float;
+  g->ux = fx * (g->tu[0] * g->inverse_z_float - g->x * g->uz);
+  g->uy = fy * (g->tu[1] * g->inverse_z_float - g->y * g->uz);
+  g->vx = fx * (g->tv[0] * g->inverse_z_float - g->x * g->vz);
+  g->vy = fy * (g->tv[1] * g->inverse_z_float - g->y * g->vz);
   g->area = g->ux * g->vy - g->uy * g->vx;
 }
 
-/* Lanes that are still usual, and in which the mask holds (`held` 1) or does not (0), become `state`. Returns whether
- * any is usual afterwards. */
-CONIC_INLINE int move_state(group *g, lanes_mask mask, int held, int32_t state) {
-  float marks[CONIC_LANES];
-  int n_usual = 0;
-  lanes_store(marks, lanes_keep(mask, lanes_of(1.0f)));
-  for (int l = 0; l < CONIC_LANES; l++) {
-    g->state[l] = g->state[l] == GROUP_USUAL && (marks[l] != 0.0f) == held ? state : g->state[l];
-    n_usual += g->state[l] == GROUP_USUAL;
-  }
-  return n_usual;
+CONIC_INLINE void look_at(const conic_view *view, const lanes position[3], const lanes tu[3], const lanes tv[3],
+                          group_splats *g) {
+  move_centers(view, position, g);
+  rotate_lanes(view->rotation_float, tu, g->tu);
+  rotate_lanes(view->rotation_float, tv, g->tv);
+  classify(view, g);
+  shear(view, g);
 }
 
-CONIC_INLINE lanes absolute(lanes value) {
-  return (lanes)((int_lanes)value & 0x7fffffff);
-}
+/* The screen's side of a group. */
+typedef struct group_screen {
+  lanes bx, by, inverse_w, rxx, rxy, ryy, root, vxx, vyy, determinant;
+  lanes_mask by_ray;
+  lanes shift[2], half_width[2], center[2], fraction[2];
+  int_lanes begin[2], end[2];
+} group_screen;
 
 /* dual_conic of project.c; a cutoff of 0 with w = 1 gives the Jacobian at the centre. */
-CONIC_INLINE void dual_conic_lanes(group *g, float cutoff, lanes w) {
+CONIC_INLINE void dual_conic_lanes(const group_splats *g, float cutoff, lanes w, group_screen *s) {
   lanes inverse_w = 1.0f / w;
   float cutoff_squared = cutoff * cutoff;
   lanes tilt = cutoff_squared * (inverse_w * inverse_w);
-  g->bx = g->ux * g->uz + g->vx * g->vz;
-  g->by = g->uy * g->uz + g->vy * g->vz;
-  g->rxx = (g->ux * g->ux + g->vx * g->vx) * inverse_w + tilt * (g->bx * g->bx);
-  g->rxy = (g->ux * g->uy + g->vx * g->vy) * inverse_w + tilt * (g->bx * g->by);
-  g->ryy = (g->uy * g->uy + g->vy * g->vy) * inverse_w + tilt * (g->by * g->by);
-  g->root = absolute(g->area) * (inverse_w * lanes_sqrt(inverse_w));
-  lanes_store(g->shift[0], -(cutoff_squared * inverse_w) * g->bx);
-  lanes_store(g->shift[1], -(cutoff_squared * inverse_w) * g->by);
-  g->inverse_w = inverse_w;
+  s->bx = g->ux * g->uz + g->vx * g->vz;
+  s->by = g->uy * g->uz + g->vy * g->vz;
+  s->rxx = (g->ux * g->ux + g->vx * g->vx) * inverse_w + tilt * (s->bx * s->bx);
+  s->rxy = (g->ux * g->uy + g->vx * g->vy) * inverse_w + tilt * (s->bx * s->by);
+  s->ryy = (g->uy * g->uy + g->vy * g->vy) * inverse_w + tilt * (s->by * s->by);
+  s->root = lanes_absolute(g->area) * (inverse_w * lanes_sqrt(inverse_w));
+  s->shift[0] = -(cutoff_squared * inverse_w) * s->bx;
+  s->shift[1] = -(cutoff_squared * inverse_w) * s->by;
+  s->inverse_w = inverse_w;
 }
 
-/* Where the ray formula may be due; conic_project_one decides. */
-CONIC_INLINE lanes_mask wants_ray(const group *g) {
-  lanes trace = g->rxx + g->ryy, difference = g->rxx - g->ryy;
-  lanes spread = lanes_sqrt(difference * difference + 4.0f * (g->rxy * g->rxy));
-  lanes smaller = 2.0f * (g->root * g->root) / (trace + spread);
+/* Where the ray formula is due: neither edge-on nor tiny. */
+CONIC_INLINE lanes_mask wants_ray(const conic_view *view, const group_splats *g, const group_screen *s) {
+  lanes_mask reaches = lanes_at_least(g->reach, lanes_of(0.25f));
+  if (view->method != CONIC_METHOD_RAY && !lanes_any(reaches))
+    return reaches;
+  lanes trace = s->rxx + s->ryy, difference = s->rxx - s->ryy;
+  lanes spread = lanes_sqrt(difference * difference + 4.0f * (s->rxy * s->rxy));
+  lanes smaller = 2.0f * (s->root * s->root) / (trace + spread);
   lanes_mask thick = lanes_at_least(smaller, lanes_of(0.25f));
-  if (g->view->method == CONIC_METHOD_RAY)
-    return thick;
-  return thick & lanes_at_least(lanes_load(g->reach), lanes_of(0.25f));
+  return view->method == CONIC_METHOD_RAY ? thick : thick & reaches;
 }
 
-CONIC_INLINE void widen(group *g) {
-  float h = g->view->prefilter;
-  g->vxx = g->rxx + h;
-  g->vyy = g->ryy + h;
-  g->determinant = (g->root * g->root + h * (g->rxx + g->ryy)) + h * h;
-  lanes_store(g->half[0], g->view->cutoff * lanes_sqrt(g->vxx));
-  lanes_store(g->half[1], g->view->cutoff * lanes_sqrt(g->vyy));
+CONIC_INLINE void widen(const conic_view *view, group_screen *s) {
+  float h = view->prefilter;
+  s->vxx = s->rxx + h;
+  s->vyy = s->ryy + h;
+  s->determinant = (s->root * s->root + h * (s->rxx + s->ryy)) + h * h;
+  s->half_width[0] = view->cutoff * lanes_sqrt(s->vxx);
+  s->half_width[1] = view->cutoff * lanes_sqrt(s->vyy);
+  if (!lanes_any(s->by_ray))
+    return;
+  lanes outline[2] = {view->cutoff * lanes_sqrt(s->rxx) + view->growth_px,
+                      view->cutoff * lanes_sqrt(s->ryy) + view->growth_px};
+  for (int axis = 0; axis < 2; axis++)
+    s->half_width[axis] = lanes_select(s->by_ray, outline[axis], s->half_width[axis]);
 }
 
-CONIC_INLINE double greater_of(double a, double b) {
-  return a > b ? a : b;
-}
-
-CONIC_INLINE double lesser_of(double a, double b) {
-  return a < b ? a : b;
-}
-
-/* The footprint's centre and box along one axis, as pixel_range of project.c; an empty box has its begin not before its
- * end. One thing a loop: that is how compilers vectorise them. */
-CONIC_INLINE void place(group *g, int axis, double principal, double focal, int size) {
-  double center[CONIC_LANES], low[CONIC_LANES], high[CONIC_LANES], limit = (double)size;
-  for (int l = 0; l < CONIC_LANES; l++) {
-    double reach = (double)g->half[axis][l] * 1.0001 + 0.01;
-    center[l] = (principal + focal * (g->p[axis][l] * g->inverse_z[l])) + (double)g->shift[axis][l];
-    low[l] = center[l] - reach + 0.5;
-    high[l] = center[l] + reach + 0.5;
+/* The footprint's reference and box along one axis, as pixel_range of project.c; an empty box has its begin not before
+ * its end. A ray's reference is the projected p, a variance's its own centre. */
+CONIC_INLINE void place(const group_splats *g, int axis, double principal, double focal, int size, group_screen *s) {
+  doubles center, low, high, fraction;
+  half_doubles zero = half_of_value(0.0), limit = half_of_value((double)size);
+  lanes to_reference = lanes_select(s->by_ray, lanes_of(0.0f), s->shift[axis]);
+  /* In double a factor of 1.0001: not as float times 1 and a float's 1.0001. */
+  lanes is_ray = lanes_keep(s->by_ray, lanes_of(1.0f));
+  for (int half = 0; half < 2; half++) {
+    half_doubles ray = half_of(is_ray, half), half_width = half_of(s->half_width[axis], half);
+    half_doubles reach = half_width * (1.0001 - ray * (1.0001 - 1.0)) + (0.01 - ray * 0.01);
+    half_doubles p = principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half]);
+    half_doubles middle = p + half_of(s->shift[axis], half), reference = p + half_of(to_reference, half);
+    low.half[half] = half_min(half_max(middle - reach + 0.5, zero), limit);
+    high.half[half] = half_max(half_min(middle + reach + 0.5, limit), zero);
+    center.half[half] = half_min(half_max(reference, half_of_value(-1e9)), half_of_value(1e9));
   }
-  for (int l = 0; l < CONIC_LANES; l++)
-    low[l] = lesser_of(greater_of(low[l], 0.0), limit);
-  for (int l = 0; l < CONIC_LANES; l++)
-    high[l] = greater_of(lesser_of(high[l], limit), 0.0);
-  for (int l = 0; l < CONIC_LANES; l++)
-    center[l] = lesser_of(greater_of(center[l], -1e9), 1e9);
-  for (int l = 0; l < CONIC_LANES; l++) {
-    g->begin[axis][l] = (int32_t)low[l];
-    g->end[axis][l] = (int32_t)high[l];
-    g->center[axis][l] = (int32_t)center[l];
-  }
-  for (int l = 0; l < CONIC_LANES; l++)
-    g->fraction[axis][l] = (float)(((double)g->center[axis][l] + 0.5) - center[l]);
-}
-
-CONIC_INLINE void cull_off_screen(group *g) {
-  for (int l = 0; l < CONIC_LANES; l++) {
-    int is_off = g->begin[0][l] >= g->end[0][l] || g->begin[1][l] >= g->end[1][l];
-    g->state[l] = g->state[l] == GROUP_USUAL && is_off ? GROUP_CULLED : g->state[l];
-  }
+  s->begin[axis] = lanes_truncate(&low);
+  s->end[axis] = lanes_truncate(&high);
+  s->center[axis] = __builtin_convertvector(lanes_truncate(&center), lanes);
+  for (int half = 0; half < 2; half++)
+    fraction.half[half] = (half_of(s->center[axis], half) + 0.5) - center.half[half];
+  s->fraction[axis] = lanes_narrow(&fraction);
 }
 
 /* world_normal of project.c. Returns 0, but NaN where the normal is not finite. */
-CONIC_INLINE lanes world_normals(group *g) {
+CONIC_INLINE lanes world_normals(const lanes tu[3], const lanes tv[3], lanes area, lanes normal[3], lanes *longer) {
   lanes u[3], v[3];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = load3((const float *const *)g->splats->tangent_u, g->first, axis);
-    v[axis] = load3((const float *const *)g->splats->tangent_v, g->first, axis);
-  }
-  lanes u_length = lanes_sqrt((u[0] * u[0] + u[1] * u[1]) + u[2] * u[2]);
-  lanes v_length = lanes_sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-  g->longer = lanes_max(u_length, v_length);
+  lanes u_length = lanes_sqrt((tu[0] * tu[0] + tu[1] * tu[1]) + tu[2] * tu[2]);
+  lanes v_length = lanes_sqrt((tv[0] * tv[0] + tv[1] * tv[1]) + tv[2] * tv[2]);
+  *longer = lanes_max(u_length, v_length);
   lanes u_scale = 1.0f / u_length, v_scale = 1.0f / v_length;
   for (int axis = 0; axis < 3; axis++) {
-    u[axis] *= u_scale;
-    v[axis] *= v_scale;
+    u[axis] = tu[axis] * u_scale;
+    v[axis] = tv[axis] * v_scale;
   }
   lanes n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   lanes scale = 1.0f / lanes_sqrt((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
-  lanes_mask away = lanes_less(lanes_of(0.0f), g->area);
+  lanes_mask away = lanes_less(lanes_of(0.0f), area);
   lanes sign = lanes_select(away, lanes_of(-1.0f), lanes_of(1.0f));
   lanes not_finite = lanes_of(0.0f);
   for (int axis = 0; axis < 3; axis++) {
-    g->normal[axis] = sign * (n[axis] * scale);
-    not_finite += g->normal[axis] * 0.0f;
+    normal[axis] = sign * (n[axis] * scale);
+    not_finite += normal[axis] * 0.0f;
   }
   return not_finite;
 }
-
-/* The finished records of a group, field by field. */
-typedef struct records {
-  float s1[CONIC_LANES], s2[CONIC_LANES], s3[CONIC_LANES];
-  float iz0[CONIC_LANES], iz_dx[CONIC_LANES], iz_dy[CONIC_LANES], plane_dx[CONIC_LANES], plane_dy[CONIC_LANES];
-  float iz_far[CONIC_LANES], iz_near[CONIC_LANES], nearness[CONIC_LANES], amplitude[CONIC_LANES];
-  float color[3][CONIC_LANES], normal[3][CONIC_LANES];
-} records;
 
 CONIC_INLINE lanes finite_or_zero(lanes value) {
   return lanes_keep(lanes_at_least(value * 0.0f, lanes_of(0.0f)), value);
 }
 
-/* Everything of the records but places and boxes; returns 0, but NaN or less in lanes
- * with a field that is not finite or out of range. */
-CONIC_INLINE lanes finish_records(group *g, records *r) {
-  const conic_view *view = g->view;
-  lanes inverse_z = lanes_load(g->inverse_z_float), not_finite = world_normals(g);
-  lanes s1 = lanes_sqrt(g->vyy / g->determinant);
-  lanes s2 = -(g->rxy / g->vyy) * s1, s3 = 1.0f / lanes_sqrt(g->vyy);
-  lanes amplitude = g->root / lanes_sqrt(g->determinant);
-  lanes factor = -inverse_z * (g->inverse_w * g->inverse_w), rgx = factor * g->bx, rgy = factor * g->by;
-  lanes iz0 = inverse_z * g->inverse_w;
-  lanes iz_dx = (g->vyy * rgx - g->rxy * rgy) / g->determinant;
-  lanes iz_dy = (g->vxx * rgy - g->rxy * rgx) / g->determinant;
-  lanes iz_far = inverse_z / lanes_load(g->farthest), iz_near = inverse_z / lanes_load(g->nearest);
-  lanes plane_dx = finite_or_zero(-inverse_z * (g->uz * g->vy - g->uy * g->vz) / g->area);
-  lanes plane_dy = finite_or_zero(-inverse_z * (g->ux * g->vz - g->vx * g->uz) / g->area);
-  lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * g->longer), lanes_of(view->epsilon_cap));
-  lanes distance = lanes_load(g->distance);
-  lanes nearness = lanes_keep(lanes_less(lanes_of(0.0f), distance), 1.0f / (1.0f + epsilon / distance));
-  if (g->splats->opacity) {
-    lanes opacity = lanes_load(g->splats->opacity + g->first);
-    amplitude *= opacity;
-    not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_OPACITY), opacity), lanes_of(1.0f));
+/* The finished records of a group, field by field as they lie in memory. */
+typedef struct records {
+  lanes footprint[16], surface[8], ray[12];
+} records;
+
+CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, lanes longer, records *r) {
+  doubles distance;
+  for (int half = 0; half < 2; half++) {
+    half_doubles x = g->p[0].half[half], y = g->p[1].half[half], z = g->p[2].half[half];
+    distance.half[half] = half_sqrt((x * x + y * y) + z * z);
   }
-  not_finite += (lanes_load(g->fraction[0]) + lanes_load(g->fraction[1])) * 0.0f;
-  not_finite += s1 * 0.0f + s2 * 0.0f + s3 * 0.0f + iz0 * 0.0f + iz_dx * 0.0f + iz_dy * 0.0f;
-  not_finite += iz_far * 0.0f + iz_near * 0.0f + nearness * 0.0f + amplitude * 0.0f;
-  lanes_store(r->s1, s1);
-  lanes_store(r->s2, s2);
-  lanes_store(r->s3, s3);
-  lanes_store(r->iz0, iz0);
-  lanes_store(r->iz_dx, iz_dx);
-  lanes_store(r->iz_dy, iz_dy);
-  lanes_store(r->plane_dx, plane_dx);
-  lanes_store(r->plane_dy, plane_dy);
-  lanes_store(r->iz_far, iz_far);
-  lanes_store(r->iz_near, iz_near);
-  lanes_store(r->nearness, nearness);
-  lanes_store(r->amplitude, amplitude);
+  lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * longer), lanes_of(view->epsilon_cap));
+  lanes from_eye = lanes_narrow(&distance);
+  r->footprint[14] = lanes_keep(lanes_less(lanes_of(0.0f), from_eye), 1.0f / (1.0f + epsilon / from_eye));
+}
+
+/* Returns 0, but NaN or less in lanes whose colour is not finite or out of range. */
+CONIC_INLINE lanes set_surfaces(const batch *from, size_t at, const lanes normal[3], records *r) {
+  lanes not_finite = lanes_of(0.0f);
   for (int axis = 0; axis < 3; axis++) {
-    lanes color = g->splats->color[axis] ? lanes_load(g->splats->color[axis] + g->first) : lanes_of(1.0f);
-    lanes_store(r->color[axis], color);
-    lanes_store(r->normal[axis], g->normal[axis]);
+    lanes color = lanes_load(from->columns[COLOR + axis] + at);
+    r->surface[axis] = color;
+    r->surface[3 + axis] = normal[axis];
     not_finite += color * 0.0f;
-    not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_COLOR), absolute(color)), lanes_of(1.0f));
+    not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_COLOR), lanes_absolute(color)), lanes_of(1.0f));
   }
+  r->surface[6] = (lanes)lanes_load_indices(from->index + at);
+  r->surface[7] = lanes_of(0.0f);
   return not_finite;
 }
 
-CONIC_INLINE void write_record(const group *g, const records *r, int l, conic_footprint *to, conic_box *box,
-                               conic_surface *surface) {
-  to->x = g->center[0][l];
-  to->y = g->center[1][l];
-  to->dx0 = g->fraction[0][l];
-  to->dy0 = g->fraction[1][l];
-  to->s1 = r->s1[l];
-  to->s2 = r->s2[l];
-  to->s3 = r->s3[l];
-  to->iz0 = r->iz0[l];
-  to->iz_dx = r->iz_dx[l];
-  to->iz_dy = r->iz_dy[l];
-  to->plane_dx = r->plane_dx[l];
-  to->plane_dy = r->plane_dy[l];
-  to->iz_far = r->iz_far[l];
-  to->iz_near = r->iz_near[l];
-  to->nearness = r->nearness[l];
-  to->amplitude = r->amplitude[l];
-  box->x_begin = (uint16_t)g->begin[0][l];
-  box->x_end = (uint16_t)g->end[0][l];
-  box->y_begin = (uint16_t)g->begin[1][l];
-  box->y_end = (uint16_t)g->end[1][l];
-  for (int axis = 0; axis < 3; axis++) {
-    surface->color[axis] = r->color[axis][l];
-    surface->normal[axis] = r->normal[axis][l];
+/* project_ray_before_near of project.c: the ray's record, and what is other in the footprint's. Its i_ray is set when
+ * it is written. */
+CONIC_INLINE void set_rays(const group_splats *g, const group_screen *s, records *r, float growth_px,
+                           float greatest_iz) {
+  lanes zero = lanes_of(0.0f), scale = g->inverse_z_float / g->area;
+  lanes plane_dx = r->footprint[10], plane_dy = r->footprint[11], far = r->footprint[12], near = r->footprint[13];
+  const lanes of_ray[16] = {[7] = g->inverse_z_float, [8] = plane_dx, [9] = plane_dy, [15] = lanes_of(1.0f)};
+  lanes widening = lanes_sqrt(plane_dx * plane_dx + plane_dy * plane_dy) * growth_px;
+  lanes high = lanes_min(near + widening, lanes_of(greatest_iz));
+  for (int field = 4; field < 16; field++)
+    if (field < 10 || field == 15)
+      r->footprint[field] = lanes_select(s->by_ray, of_ray[field], r->footprint[field]);
+  r->ray[0] = r->ray[3] = zero;
+  r->ray[1] = scale * g->vy;
+  r->ray[2] = -(scale * g->vx);
+  r->ray[4] = -(scale * g->uy);
+  r->ray[5] = scale * g->ux;
+  r->ray[6] = lanes_max((far - widening) - 0x1p-20f * far, zero);
+  r->ray[7] = high + 0x1p-20f * near;
+  for (int axis = 0; axis < 2; axis++) {
+    r->ray[8 + 2 * axis] = (__builtin_convertvector(s->begin[axis], lanes) - s->center[axis]) + s->fraction[axis];
+    r->ray[9 + 2 * axis] = (__builtin_convertvector(s->end[axis] - 1, lanes) - s->center[axis]) + s->fraction[axis];
   }
-  surface->index = (uint32_t)(g->first + (size_t)l);
 }
+
+/* Returns 0, but NaN where the ray's record is not finite. */
+CONIC_INLINE lanes check_rays(const group_screen *s, const records *r) {
+  lanes not_finite = lanes_of(0.0f);
+  for (int field = 0; field < 8 && lanes_any(s->by_ray); field++)
+    not_finite += lanes_keep(s->by_ray, r->ray[field] * 0.0f);
+  return not_finite;
+}
+
+/* Everything but nearness and the surface; in the order of conic_footprint. Returns 0, but NaN in lanes with a field
+ * that is not finite. */
+CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, float growth_px, float greatest_iz,
+                                  records *r) {
+  lanes inverse_z = g->inverse_z_float, not_finite = (s->fraction[0] + s->fraction[1]) * 0.0f;
+  lanes factor = -inverse_z * (s->inverse_w * s->inverse_w), rgx = factor * s->bx, rgy = factor * s->by;
+  r->footprint[0] = s->center[0];
+  r->footprint[1] = s->center[1];
+  r->footprint[2] = s->fraction[0];
+  r->footprint[3] = s->fraction[1];
+  r->footprint[4] = lanes_sqrt(s->vyy / s->determinant);
+  r->footprint[5] = -(s->rxy / s->vyy) * r->footprint[4];
+  r->footprint[6] = 1.0f / lanes_sqrt(s->vyy);
+  r->footprint[7] = inverse_z * s->inverse_w;
+  r->footprint[8] = (s->vyy * rgx - s->rxy * rgy) / s->determinant;
+  r->footprint[9] = (s->vxx * rgy - s->rxy * rgx) / s->determinant;
+  r->footprint[10] = finite_or_zero(-inverse_z * (g->uz * g->vy - g->uy * g->vz) / g->area);
+  r->footprint[11] = finite_or_zero(-inverse_z * (g->ux * g->vz - g->vx * g->uz) / g->area);
+  r->footprint[12] = inverse_z / g->farthest;
+  r->footprint[13] = inverse_z / g->nearest;
+  r->footprint[15] = s->root / lanes_sqrt(s->determinant);
+  if (lanes_any(s->by_ray))
+    set_rays(g, s, r, growth_px, greatest_iz);
+  for (int field = 4; field < 14; field++)
+    not_finite += r->footprint[field] * 0.0f;
+  return not_finite;
+}
+
+/* What became of a group's lanes; what is in none is culled. */
+typedef struct group_verdict {
+  lanes_mask usual, unusual, skipped;
+} group_verdict;
 
 /* Decides what each lane is and fills its record where it is usual. */
-CONIC_INLINE void set_up_group(group *g, records *r) {
-  const conic_view *view = g->view;
-  move_centers(g);
-  rotate_lanes(view->rotation_float, (const float *const *)g->splats->tangent_u, g->first, g->tu);
-  rotate_lanes(view->rotation_float, (const float *const *)g->splats->tangent_v, g->first, g->tv);
-  classify(g);
-  shear(g);
-  lanes_mask away = lanes_less(lanes_of(0.0f), g->area);
-  if (view->cull_back && !move_state(g, away, 1, GROUP_CULLED))
-    return;
+CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *from, size_t at, group_screen *s,
+                                        records *r) {
+  group_splats g;
+  group_verdict verdict;
+  lanes position[3], tu[3], tv[3], normal[3], longer;
+  load_columns(from, POSITION, at, position);
+  load_columns(from, TANGENT_U, at, tu);
+  load_columns(from, TANGENT_V, at, tv);
+  look_at(view, position, tu, tv, &g);
+  verdict.usual = g.usual;
+  verdict.unusual = lanes_not(g.usual | g.behind);
+  if (view->cull_back)
+    verdict.usual &= lanes_not(lanes_less(lanes_of(0.0f), g.area));
+  s->by_ray = lanes_not(lanes_at_least(lanes_of(0.0f), lanes_of(0.0f)));
   if (view->method == CONIC_METHOD_AFFINE)
-    dual_conic_lanes(g, 0.0f, lanes_of(1.0f));
+    dual_conic_lanes(&g, 0.0f, lanes_of(1.0f), s);
   else {
-    dual_conic_lanes(g, view->cutoff, lanes_load(g->nearest) * lanes_load(g->farthest));
-    move_state(g, wants_ray(g), 1, GROUP_UNUSUAL);
+    dual_conic_lanes(&g, view->cutoff, g.nearest * g.farthest, s);
+    s->by_ray = verdict.usual & wants_ray(view, &g, s);
   }
-  widen(g);
-  move_state(g, lanes_less(lanes_of(0.0f), g->determinant), 0, GROUP_SKIPPED);
-  move_state(g, lanes_at_least(g->determinant * 0.0f, lanes_of(0.0f)), 0, GROUP_UNUSUAL);
-  place(g, 0, view->cx, view->fx, view->width);
-  place(g, 1, view->cy, view->fy, view->height);
-  cull_off_screen(g);
-  lanes not_finite = finish_records(g, r);
-  move_state(g, lanes_at_least(not_finite, lanes_of(0.0f)), 0, GROUP_UNUSUAL);
+  widen(view, s);
+  lanes_mask has_area = s->by_ray | lanes_less(lanes_of(0.0f), s->determinant);
+  verdict.skipped = verdict.usual & lanes_not(has_area);
+  verdict.usual &= has_area;
+  place(&g, 0, view->cx, view->fx, view->width, s);
+  place(&g, 1, view->cy, view->fy, view->height, s);
+  lanes_mask on_screen = lanes_less_int(s->begin[0], s->end[0]) & lanes_less_int(s->begin[1], s->end[1]);
+  lanes_mask squares = s->by_ray | lanes_at_least(s->determinant * 0.0f, lanes_of(0.0f));
+  lanes not_finite = world_normals(tu, tv, g.area, normal, &longer) +
+                     set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
+  set_nearness(view, &g, longer, r);
+  lanes opacity = lanes_load(from->columns[OPACITY] + at);
+  r->footprint[15] *= opacity;
+  not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_OPACITY), opacity), lanes_of(1.0f));
+  not_finite += r->footprint[14] * 0.0f + r->footprint[15] * 0.0f;
+  not_finite += set_surfaces(from, at, normal, r) + check_rays(s, r);
+  /* A determinant that float cannot hold is not culled by a box of float's; conic_project_one takes it on. */
+  lanes_mask odd = verdict.usual & lanes_not(squares & lanes_at_least(not_finite, lanes_of(0.0f))) &
+                   (on_screen | lanes_not(squares));
+  verdict.unusual |= odd;
+  verdict.usual &= on_screen & lanes_not(odd);
+  s->by_ray &= verdict.usual;
+  return verdict;
 }
 
-CONIC_INLINE void take_group(const group *g, const records *r, conic_projected *projected, conic_chunk *chunk) {
-  for (int l = 0; l < CONIC_LANES; l++) {
-    size_t at = chunk->first + chunk->n_drawn;
-    switch (g->state[l]) {
-    case GROUP_USUAL:
-      write_record(g, r, l, &projected->footprints[at], &projected->boxes[at], &projected->surfaces[at]);
-      chunk->n_fallback += g->view->method == CONIC_METHOD_RAY;
-      chunk->n_drawn++;
-      break;
-    case GROUP_CULLED:
-      chunk->n_culled++;
-      break;
-    case GROUP_SKIPPED:
-      chunk->n_skipped++;
-      break;
-    default:
-      conic_project_one(g->view, g->splats, g->first + (size_t)l, projected, chunk);
-    }
+CONIC_INLINE void write_boxes(const group_screen *s, unsigned drawn, conic_box *boxes) {
+  uint32_t columns[CONIC_LANES], rows[CONIC_LANES];
+  lanes_store_indices(columns, (index_lanes)(s->begin[0] | s->end[0] << 16));
+  lanes_store_indices(rows, (index_lanes)(s->begin[1] | s->end[1] << 16));
+  for (int lane = 0; drawn >> lane; lane++) {
+    boxes->x_begin = (uint16_t)columns[lane];
+    boxes->x_end = (uint16_t)(columns[lane] >> 16);
+    boxes->y_begin = (uint16_t)rows[lane];
+    boxes->y_end = (uint16_t)(rows[lane] >> 16);
+    boxes += drawn >> lane & 1;
   }
+}
+
+/* Appends the rays' records and lets their footprints point to them. */
+static __attribute__((noinline)) void write_rays(records *r, unsigned by_ray, conic_projected *projected,
+                                                 conic_chunk *chunk) {
+  size_t at = chunk->first + chunk->n_rays;
+  index_lanes i_ray = (index_lanes)r->footprint[4];
+  for (int lane = 0; by_ray >> lane; lane++)
+    if (by_ray >> lane & 1)
+      i_ray[lane] = (uint32_t)(chunk->first + chunk->n_rays++);
+  r->footprint[4] = (lanes)i_ray;
+  lanes_store_records(r->ray, 12, by_ray, (float *)(void *)&projected->rays[at]);
+}
+
+/* Appends the drawn lanes' records. */
+CONIC_INLINE void write_records(const group_screen *s, records *r, unsigned drawn, conic_projected *projected,
+                                conic_chunk *chunk) {
+  size_t at = chunk->first + chunk->n_drawn;
+  if (__builtin_expect(lanes_any(s->by_ray), 0))
+    write_rays(r, lanes_bits(s->by_ray) & drawn, projected, chunk);
+  for (size_t line = 0; line < CONIC_LANES; line++)
+    __builtin_prefetch((char *)&projected->footprints[at + CONIC_LANES] + 64 * line, 1);
+  for (size_t line = 0; line < CONIC_LANES / 2; line++)
+    __builtin_prefetch((char *)&projected->surfaces[at + CONIC_LANES] + 64 * line, 1);
+  write_boxes(s, drawn, &projected->boxes[at]);
+  lanes_store_records(r->footprint, 16, drawn, (float *)(void *)&projected->footprints[at]);
+  lanes_store_records(r->surface, 8, drawn, (float *)(void *)&projected->surfaces[at]);
+  chunk->n_drawn += (size_t)__builtin_popcount(drawn);
+}
+
+/* A group with lanes that are not usual: lane by lane, in order. */
+static __attribute__((noinline)) void take_mixed(const conic_view *view, const conic_splats *splats,
+                                                 const uint32_t *index, const group_screen *s, records *r,
+                                                 unsigned usual, unsigned unusual, conic_projected *projected,
+                                                 conic_chunk *chunk) {
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    if (usual >> lane & 1)
+      write_records(s, r, 1u << lane, projected, chunk);
+    if (unusual >> lane & 1)
+      conic_project_one(view, splats, index[lane], projected, chunk);
+  }
+}
+
+CONIC_INLINE void project_group(const conic_view *view, const conic_splats *splats, const batch *from, size_t at,
+                                conic_projected *projected, conic_chunk *chunk) {
+  group_screen s;
+  records r;
+  group_verdict verdict = set_up_group(view, from, at, &s, &r);
+  unsigned all = (1u << CONIC_LANES) - 1, valid = from->n - at < CONIC_LANES ? (1u << (from->n - at)) - 1 : all;
+  unsigned usual = lanes_bits(verdict.usual) & valid, unusual = lanes_bits(verdict.unusual) & valid;
+  unsigned skipped = lanes_bits(verdict.skipped) & valid;
+  unsigned by_ray = lanes_bits(s.by_ray) & valid,
+           fallback = view->method == CONIC_METHOD_RAY ? usual & ~by_ray : by_ray;
+  chunk->n_fallback += (size_t)__builtin_popcount(fallback);
+  chunk->n_skipped += (size_t)__builtin_popcount(skipped);
+  chunk->n_culled += (size_t)__builtin_popcount(valid & ~(usual | unusual | skipped));
+  if (__builtin_expect(unusual != 0, 0))
+    take_mixed(view, splats, from->index + at, &s, &r, usual, unusual, projected, chunk);
+  else
+    write_records(&s, &r, usual, projected, chunk);
+}
+
+/* The columns of the splats from `first` on; null where the set has none. */
+CONIC_INLINE void find_columns(const conic_splats *splats, size_t first, const float *columns[N_COLUMNS]) {
+  for (int axis = 0; axis < 3; axis++) {
+    columns[POSITION + axis] = splats->position[axis] + first;
+    columns[TANGENT_U + axis] = splats->tangent_u[axis] + first;
+    columns[TANGENT_V + axis] = splats->tangent_v[axis] + first;
+    columns[COLOR + axis] = splats->color[axis] ? splats->color[axis] + first : NULL;
+  }
+  columns[OPACITY] = splats->opacity ? splats->opacity + first : NULL;
+}
+
+/* Which of the splats first … first + CONIC_LANES are culled because they face away or lie behind near. */
+CONIC_INLINE lanes_mask faces_away(const conic_view *view, const float *const columns[N_COLUMNS], size_t i) {
+  group_splats g;
+  lanes position[3], tu[3], tv[3];
+  for (int axis = 0; axis < 3; axis++) {
+    position[axis] = lanes_load(columns[POSITION + axis] + i);
+    tu[axis] = lanes_load(columns[TANGENT_U + axis] + i);
+    tv[axis] = lanes_load(columns[TANGENT_V + axis] + i);
+  }
+  look_at(view, position, tu, tv, &g);
+  return g.behind | (g.usual & lanes_less(lanes_of(0.0f), g.area));
+}
+
+/* Packs those of the n splats from `first` on that do not face away; the spare lanes repeat the last. */
+static void pack_batch(const conic_view *view, const conic_splats *splats, size_t first, size_t n, batch *to) {
+  const float *columns[N_COLUMNS];
+  size_t i = 0, n_packed = 0;
+  find_columns(splats, first, columns);
+  for (; view->cull_back && i + CONIC_LANES <= n; i += CONIC_LANES) {
+    lanes_mask kept = lanes_not(faces_away(view, columns, i));
+    for (int column = 0; column < N_COLUMNS; column++)
+      if (columns[column])
+        lanes_append((uint32_t *)(void *)(to->columns[column] + n_packed), kept,
+                     (index_lanes)lanes_load(columns[column] + i));
+    n_packed += lanes_append(to->index + n_packed, kept, lanes_ascending((uint32_t)(first + i)));
+  }
+  for (int column = 0; column < N_COLUMNS; column++)
+    if (columns[column])
+      memcpy(to->columns[column] + n_packed, columns[column] + i, (n - i) * sizeof(float));
+  for (; i < n; i++)
+    to->index[n_packed++] = (uint32_t)(first + i);
+  to->n = n_packed;
+  for (size_t spare = n_packed; spare % CONIC_LANES != 0; spare++) {
+    to->index[spare] = to->index[n_packed - 1];
+    for (int column = 0; column < N_COLUMNS; column++)
+      to->columns[column][spare] = to->columns[column][n_packed - 1];
+  }
+}
+
+/* A set without colours is white, one without opacities opaque. */
+static void fill_with_ones(float *column) {
+  for (size_t i = 0; i < BATCH + CONIC_LANES; i++)
+    column[i] = 1.0f;
 }
 
 static void project(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t end = conic_chunk_begin(splats, i_chunk, projected);
-  group g = {.view = view, .splats = splats, .first = chunk->first};
-  records r;
-  for (; g.first + CONIC_LANES <= end; g.first += CONIC_LANES) {
-    set_up_group(&g, &r);
-    take_group(&g, &r, projected, chunk);
+  batch packed;
+  for (int column = COLOR; column < N_COLUMNS; column++)
+    fill_with_ones(packed.columns[column]);
+  for (size_t first = chunk->first; first < end; first += BATCH) {
+    size_t n = end - first < BATCH ? end - first : BATCH;
+    pack_batch(view, splats, first, n, &packed);
+    chunk->n_culled += n - packed.n;
+    for (size_t i = 0; i < packed.n; i += CONIC_LANES)
+      project_group(view, splats, &packed, i, projected, chunk);
   }
-  for (size_t i = g.first; i < end; i++)
-    conic_project_one(view, splats, i, projected, chunk);
 }

@@ -48,8 +48,8 @@ static conic_outcome set_box(const conic_view *view, const conic_disc *disc, con
   pixels_between(top.y_px - growth, bottom.y_px + growth, view->height, &box->y_begin, &box->y_end);
   if (conic_box_is_empty(box))
     return CONIC_CULLED;
-  footprint->x = (box->x_begin + box->x_end) / 2;
-  footprint->y = (box->y_begin + box->y_end) / 2;
+  footprint->x = (float)((box->x_begin + box->x_end) / 2);
+  footprint->y = (float)((box->y_begin + box->y_end) / 2);
   footprint->dx0 = footprint->dy0 = 0.0f;
   return CONIC_DRAWN_RAY;
 }
@@ -85,6 +85,10 @@ conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, 
   set_affine(view, footprint, m_u, disc->determinant, &ray->u0, &ray->u_dx, &ray->u_dy);
   set_affine(view, footprint, m_v, disc->determinant, &ray->v0, &ray->v_dx, &ray->v_dy);
   set_affine(view, footprint, disc->n, disc->determinant, &footprint->iz0, &footprint->iz_dx, &footprint->iz_dy);
+  ray->dx_low = (float)box->x_begin - footprint->x;
+  ray->dx_high = (float)(box->x_end - 1) - footprint->x;
+  ray->dy_low = (float)box->y_begin - footprint->y;
+  ray->dy_high = (float)(box->y_end - 1) - footprint->y;
   footprint->s2 = footprint->s3 = 0.0f;
   footprint->plane_dx = footprint->iz_dx;
   footprint->plane_dy = footprint->iz_dy;
@@ -127,8 +131,8 @@ static conic_outcome project_segment(const conic_view *view, const conic_disc *d
     return CONIC_CULLED;
   /* The reference is the pixel of the image nearest the middle, which may be far outside. */
   double x = floor(x_t), y = floor(y_t);
-  footprint->x = (int32_t)(x < -1e6 ? -1e6 : x > 1e6 ? 1e6 : x);
-  footprint->y = (int32_t)(y < -1e6 ? -1e6 : y > 1e6 ? 1e6 : y);
+  footprint->x = (float)(int32_t)(x < -1e6 ? -1e6 : x > 1e6 ? 1e6 : x);
+  footprint->y = (float)(int32_t)(y < -1e6 ? -1e6 : y > 1e6 ? 1e6 : y);
   footprint->dx0 = (float)((double)footprint->x + 0.5 - x_t);
   footprint->dy0 = (float)((double)footprint->y + 0.5 - y_t);
   footprint->s1 = (float)sqrt(vyy / determinant);

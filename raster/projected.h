@@ -12,9 +12,10 @@
  * their precision depends neither on the place on the screen nor on the tile. q  = (s1·dx + s2·dy)² + (s3·dy)², the
  * Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded quadratic has; covered where q < support
  *   iz = iz0 + iz_dy·dy + iz_dx·dx, clamped to [iz_far, iz_near]: inverse depth
- * Where s3 is 0 the splat is drawn by the exact ray–splat parameter, with the coefficients of rays[i_ray]. */
+ * The sign of s3 says whether the splat has clip lines (raster/clip_lines.h). Where s3 is 0 the splat is drawn by the
+ * exact ray–splat parameter, with the coefficients of rays[i_ray]. */
 typedef struct conic_footprint {
-  int32_t x, y;
+  float x, y; /* whole numbers */
   float dx0, dy0;
   union {
     float s1;
@@ -28,7 +29,8 @@ typedef struct conic_footprint {
   float amplitude; /* A·opacity */
 } conic_footprint;
 
-/* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. */
+/* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. It is rounded
+ * outwards to blocks of 4 × 4 pixels there: where a pixel is covered, its q decides, and for rays their own limits. */
 typedef struct conic_box {
   uint16_t x_begin, x_end, y_begin, y_end;
 } conic_box;
@@ -41,14 +43,16 @@ static inline int conic_box_is_empty(const conic_box *box) {
 typedef struct conic_ray {
   float u0, u_dx, u_dy;
   float v0, v_dx, v_dy;
-  float iz_low, iz_high; /* covered only where iz lies between: what the disc reaches, widened by the prefilter */
+  float iz_low, iz_high; /* covered only where iz lies between: what the disc reaches, widened by the prefilter; */
+  float dx_low, dx_high, dy_low, dy_high; /* and only in the splat's box: low ≤ dx ≤ high */
 } conic_ray;
 
-/* The part that blending and resolving read. */
+/* The part that blending and resolving read, half a cache line. */
 typedef struct conic_surface {
   float color[3];
   float normal[3]; /* world, unit, towards the viewer */
   uint32_t index;  /* in the splat set */
+  uint32_t unused; /* 0 */
 } conic_surface;
 
 /* A splat with more opacity, or a colour beyond this, is skipped: no sum of 2³² of them overflows. */
@@ -71,6 +75,7 @@ typedef struct conic_projected {
   conic_box *boxes;
   conic_surface *surfaces;
   conic_ray *rays;
+  struct conic_clip_record *clips; /* of the footprints that are marked; null where the set has no clip lines */
 } conic_projected;
 
 /* Empties chunk i_chunk and sets its `first`; returns the splat after its last. */

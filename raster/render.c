@@ -9,7 +9,9 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "raster/tile_kernels.h"
+#include "raster/bins.h"
+#include "raster/clip_lines.h"
+#include "raster/tile.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
 typedef struct kept {
@@ -17,13 +19,14 @@ typedef struct kept {
   size_t bytes;
 } kept;
 
+/* Ticks of a sample of the blocks: what shares the tiles' time out. */
 typedef struct tile_times {
-  double visibility, accumulate, resolve;
+  uint64_t lists, visibility, accumulate, resolve;
 } tile_times;
 
 struct conic_renderer {
   conic_context *context;
-  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, planes, times;
+  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, scratch, times, clips;
 };
 
 /* One frame on its way through the stages. */
@@ -36,8 +39,8 @@ typedef struct frame {
   conic_finish finish;
   const conic_tile_kernels *kernels;
   conic_image *image;
-  char *planes; /* one tile's planes a thread */
-  size_t planes_bytes;
+  char *scratch; /* of tiles, a thread */
+  size_t scratch_bytes;
   tile_times *times;                 /* a thread */
   uint64_t *n_fragments, *n_covered; /* a tile */
   atomic_size_t n_tiles_done;
@@ -80,9 +83,9 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
-  kept *all[] = {&renderer->footprints, &renderer->boxes,  &renderer->surfaces,   &renderer->rays,
-                 &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->references, &renderer->planes, &renderer->times};
+  kept *all[] = {&renderer->footprints, &renderer->boxes,   &renderer->surfaces,   &renderer->rays,
+                 &renderer->chunks,     &renderer->counts,  &renderer->tile_begin, &renderer->tile_counts,
+                 &renderer->references, &renderer->scratch, &renderer->times,      &renderer->clips};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   conic_memory_release(renderer->context, renderer);
@@ -124,6 +127,11 @@ static conic_status plan_chunks(frame *f) {
   if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays ||
       !bins->counts || !bins->tile_begin || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
+  projected->clips = NULL;
+  if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
+    projected->clips = room(renderer, &renderer->clips, n, sizeof *projected->clips);
+  if (f->splats->n_clips && n && !projected->clips)
+    return CONIC_ERROR_MEMORY;
   f->n_covered = f->n_fragments + bins->n_tiles;
   return CONIC_OK;
 }
@@ -136,10 +144,8 @@ static conic_status plan_tiles(frame *f, int tile) {
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
-  f->planes_bytes = conic_tile_bytes(tile);
-  f->planes = room(renderer, &renderer->planes, n_threads, f->planes_bytes);
   f->times = room(renderer, &renderer->times, n_threads, sizeof *f->times);
-  if (!f->planes || !f->times)
+  if (!f->times)
     return CONIC_ERROR_MEMORY;
   memset(f->times, 0, n_threads * sizeof *f->times);
   return CONIC_OK;
@@ -149,6 +155,8 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   frame *f = data;
   (void)i_thread;
   f->kernels->project(&f->view, f->splats, i_chunk, &f->projected);
+  if (f->projected.clips)
+    conic_clip_chunk(&f->view, f->splats, i_chunk, &f->projected);
 }
 
 static void count_task(void *data, size_t i_chunk, int i_thread) {
@@ -174,7 +182,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
   tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
-  conic_tile_clear(tile, bins->tile, f->planes + (size_t)i_thread * f->planes_bytes);
+  conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
 }
 
 /* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
@@ -190,27 +198,26 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
     return;
   if (i_thread == 0)
     report_progress(f);
-  int nearest_only = f->finish.options->passes == 1;
   conic_tile tile;
-  double start = seconds_now();
+  conic_tile_report report;
   begin_tile(f, i_tile, i_thread, &tile);
-  if (nearest_only)
-    f->kernels->nearest(&tile);
-  else
-    f->kernels->visibility(&tile);
-  double seen = seconds_now();
-  if (nearest_only)
-    conic_tile_take_nearest(&tile);
-  else
-    f->kernels->accumulate(&tile);
-  double summed = seconds_now();
-  f->kernels->resolve(&tile, &f->finish, f->image);
-  f->times[i_thread].visibility += seen - start;
-  f->times[i_thread].accumulate += summed - seen;
-  f->times[i_thread].resolve += seconds_now() - summed;
-  f->n_fragments[i_tile] = tile.n_fragments;
-  f->n_covered[i_tile] = tile.n_covered;
+  conic_tile_draw(&tile, f->kernels, &f->finish, f->image, &report);
+  f->times[i_thread].lists += report.lists;
+  f->times[i_thread].visibility += report.visibility;
+  f->times[i_thread].accumulate += report.accumulate;
+  f->times[i_thread].resolve += report.resolve;
+  f->n_fragments[i_tile] = report.n_fragments;
+  f->n_covered[i_tile] = report.n_covered;
   atomic_fetch_add(&f->n_tiles_done, 1);
+}
+
+static size_t longest_list(const conic_bins *bins) {
+  size_t longest = 0;
+  for (size_t i = 0; i < bins->n_tiles; i++) {
+    size_t n = bins->tile_begin[i + 1] - bins->tile_begin[i];
+    longest = n > longest ? n : longest;
+  }
+  return longest;
 }
 
 static conic_status bin(frame *f) {
@@ -218,7 +225,9 @@ static conic_status bin(frame *f) {
   conic_parallel_for(context, f->projected.n_chunks, count_task, f);
   size_t n_references = conic_bins_place(&f->bins, &f->projected);
   f->bins.references = room(f->renderer, &f->renderer->references, n_references, sizeof *f->bins.references);
-  if (!f->bins.references)
+  f->scratch_bytes = conic_tile_bytes(longest_list(&f->bins));
+  f->scratch = room(f->renderer, &f->renderer->scratch, (size_t)conic_context_threads(context), f->scratch_bytes);
+  if (!f->bins.references || !f->scratch)
     return CONIC_ERROR_MEMORY;
   conic_parallel_for(context, f->projected.n_chunks, fill_task, f);
   return CONIC_OK;
@@ -226,17 +235,19 @@ static conic_status bin(frame *f) {
 
 /* Wall-clock of the tiles, shared out by what their stages took on all threads. */
 static void share_out(const frame *f, double tiles_ms, conic_render_milliseconds *ms) {
-  tile_times sum = {0, 0, 0};
+  tile_times sum = {0, 0, 0, 0};
   for (int i = 0; i < conic_context_threads(f->renderer->context); i++) {
+    sum.lists += f->times[i].lists;
     sum.visibility += f->times[i].visibility;
     sum.accumulate += f->times[i].accumulate;
     sum.resolve += f->times[i].resolve;
   }
-  double all = sum.visibility + sum.accumulate + sum.resolve;
+  double all = (double)(sum.lists + sum.visibility + sum.accumulate + sum.resolve);
   double scale = all > 0.0 ? tiles_ms / all : 0.0;
-  ms->visibility = sum.visibility * scale;
-  ms->accumulate = sum.accumulate * scale;
-  ms->resolve = sum.resolve * scale;
+  ms->bin += (double)sum.lists * scale;
+  ms->visibility = (double)sum.visibility * scale;
+  ms->accumulate = (double)sum.accumulate * scale;
+  ms->resolve = (double)sum.resolve * scale;
 }
 
 static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {

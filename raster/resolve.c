@@ -9,11 +9,12 @@ typedef struct pixel {
   float rgba[4], normal[3], albedo[3], weight;
 } pixel;
 
-void conic_tile_rays_init(const conic_tile *tile, conic_tile_rays *rays) {
-  const conic_view *view = tile->view;
-  for (int i = 0; i < 256 + 4; i++) {
-    rays->x[i] = (float)(((double)(tile->x_begin + i) + 0.5 - view->cx) / view->fx);
-    rays->y[i] = (float)(((double)(tile->y_begin + i) + 0.5 - view->cy) / view->fy);
+void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays) {
+  rays->x_begin = x_begin;
+  rays->y_begin = y_begin;
+  for (int i = 0; i < CONIC_GREATEST_TILE; i++) {
+    rays->x[i] = (float)(((double)(x_begin + i) + 0.5 - view->cx) / view->fx);
+    rays->y[i] = (float)(((double)(y_begin + i) + 0.5 - view->cy) / view->fy);
   }
 }
 
@@ -27,22 +28,25 @@ static void viewer_at(const conic_finish *finish, float dx, float dy, float view
 }
 
 /* The weighted mean of the splats' normals, and its direction; where they cancel, that of the heaviest splat. */
-static void normal_of_sum(const conic_tile *tile, size_t at, float mean[3], float normal[3]) {
+static void normal_of_sum(const conic_band *band, int block, int l, float mean[3], float normal[3]) {
+  const conic_block_sums *sums = &band->sums[block];
+  float part = 1.0f / sums->weight[l];
   for (int axis = 0; axis < 3; axis++)
-    mean[axis] = tile->planes.normal[axis][at] / tile->planes.weight[at];
+    mean[axis] = sums->normal[axis][l] * part;
   float norm = sqrtf((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
-  const conic_surface *heaviest = &tile->projected->surfaces[tile->planes.heaviest[at]];
+  float scale = 1.0f / norm;
+  const conic_surface *heaviest = &band->projected->surfaces[sums->heaviest[l]];
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = norm > 0.0f ? mean[axis] / norm : heaviest->normal[axis];
+    normal[axis] = norm > 0.0f ? mean[axis] * scale : heaviest->normal[axis];
 }
 
-static void finish_covered(const conic_tile *tile, const conic_finish *finish, size_t at, float dx, float dy,
+static void finish_covered(const conic_band *band, const conic_finish *finish, int block, int l, float dx, float dy,
                            pixel *p) {
   float viewer[3], mean_normal[3], shaded[3];
-  p->weight = tile->planes.weight[at];
+  p->weight = band->sums[block].weight[l];
   for (int axis = 0; axis < 3; axis++)
-    p->albedo[axis] = tile->planes.color[axis][at] / p->weight;
-  normal_of_sum(tile, at, mean_normal, p->normal);
+    p->albedo[axis] = band->sums[block].color[axis][l] * (1.0f / p->weight);
+  normal_of_sum(band, block, l, mean_normal, p->normal);
   viewer_at(finish, dx, dy, viewer);
   conic_shade(finish, p->albedo, p->normal, mean_normal, viewer, shaded);
   for (int axis = 0; axis < 3; axis++)
@@ -63,49 +67,63 @@ static void store(const conic_image *image, conic_plane plane, size_t at, const 
       to[at * n + i] = values[i];
 }
 
-void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image) {
-  conic_tile_rays rays;
-  conic_tile_rays_init(tile, &rays);
-  for (int y = tile->y_begin; y < tile->y_end; y++)
-    for (int x = tile->x_begin; x < tile->x_end; x++) {
-      pixel p;
-      size_t from = conic_tile_place(tile, x, y), at = (size_t)y * (size_t)image->width + (size_t)x;
-      tile->n_covered += tile->planes.weight[from] > 0.0f;
-      if (tile->planes.weight[from] > 0.0f)
-        finish_covered(tile, finish, from, rays.x[x - tile->x_begin], rays.y[y - tile->y_begin], &p);
-      else
-        finish_uncovered(finish, &p);
-      store(image, CONIC_PLANE_RGBA, at, p.rgba, 4);
-      store(image, CONIC_PLANE_NORMAL, at, p.normal, 3);
-      store(image, CONIC_PLANE_ALBEDO, at, p.albedo, 3);
-      store(image, CONIC_PLANE_WEIGHT, at, &p.weight, 1);
-    }
-  conic_tile_resolve_indices(tile, image);
-}
-
-/* Camera-space z of the splat's plane at the pixel: its gradient is not shrunk here, but stays in the splat's range. */
-static float plane_z(const conic_footprint *footprint, int x, int y) {
+float conic_plane_z(const conic_footprint *footprint, int x, int y) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
   float iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx;
   return 1.0f / conic_clamp_iz(footprint, iz);
 }
 
-void conic_tile_resolve_indices(conic_tile *tile, conic_image *image) {
-  const conic_tile_planes *planes = &tile->planes;
-  const conic_projected *projected = tile->projected;
-  float *z = image->planes[CONIC_PLANE_Z];
+static void resolve_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int x, int y,
+                          int is_covered, conic_image *image) {
+  pixel p;
+  int block = (x - band->x) / CONIC_BLOCK_EDGE, l = (x - band->x) % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + (y - band->y);
+  size_t at = (size_t)y * (size_t)image->width + (size_t)x;
+  float z = 0.0f;
+  if (is_covered) {
+    finish_covered(band, finish, block, l, rays->x[x - rays->x_begin], rays->y[y - rays->y_begin], &p);
+    z = conic_plane_z(&band->projected->footprints[band->sums[block].heaviest[l]], x, y);
+  } else
+    finish_uncovered(finish, &p);
+  store(image, CONIC_PLANE_RGBA, at, p.rgba, 4);
+  store(image, CONIC_PLANE_NORMAL, at, p.normal, 3);
+  store(image, CONIC_PLANE_ALBEDO, at, p.albedo, 3);
+  store(image, CONIC_PLANE_WEIGHT, at, &p.weight, 1);
+  store(image, CONIC_PLANE_Z, at, &z, 1);
+}
+
+static void resolve_block_indices(const conic_band *band, int block, int l, size_t at, conic_image *image) {
+  const conic_block_sums *sums = &band->sums[block];
   uint32_t *count = image->planes[CONIC_PLANE_COUNT], *id = image->planes[CONIC_PLANE_ID];
-  if (!z && !count && !id)
+  int is_covered = !conic_block_is_empty(band, block) && sums->weight[l] > 0.0f;
+  if (count)
+    count[at] = is_covered ? sums->count[l] : 0;
+  if (id)
+    id[at] = is_covered ? band->projected->surfaces[sums->nearest[l]].index : CONIC_NO_ID;
+}
+
+void conic_band_resolve_indices(const conic_band *band, conic_image *image) {
+  if (!image->planes[CONIC_PLANE_COUNT] && !image->planes[CONIC_PLANE_ID])
     return;
-  for (int y = tile->y_begin; y < tile->y_end; y++)
-    for (int x = tile->x_begin; x < tile->x_end; x++) {
-      size_t from = conic_tile_place(tile, x, y), at = (size_t)y * (size_t)image->width + (size_t)x;
-      int is_covered = planes->weight[from] > 0.0f;
-      if (z)
-        z[at] = is_covered ? plane_z(&projected->footprints[planes->heaviest[from]], x, y) : 0.0f;
-      if (count)
-        count[at] = planes->count[from];
-      if (id)
-        id[at] = is_covered ? projected->surfaces[planes->nearest[from]].index : CONIC_NO_ID;
+  int y_end = band->y + CONIC_BLOCK_EDGE < image->height ? band->y + CONIC_BLOCK_EDGE : image->height;
+  int x_end = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
+  for (int y = band->y; y < y_end; y++)
+    for (int x = band->x; x < x_end && x < image->width; x++) {
+      int column = x - band->x;
+      resolve_block_indices(band, column / CONIC_BLOCK_EDGE,
+                            column % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + (y - band->y),
+                            (size_t)y * (size_t)image->width + (size_t)x, image);
     }
+}
+
+void conic_band_resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+      if (x >= image->width || y >= image->height)
+        continue;
+      int is_covered = !conic_block_is_empty(band, block) && band->sums[block].weight[l] > 0.0f;
+      resolve_pixel(band, finish, rays, x, y, is_covered, image);
+      band->n_covered += (unsigned)is_covered;
+    }
+  conic_band_resolve_indices(band, image);
 }

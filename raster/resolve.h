@@ -1,8 +1,8 @@
-/* Pass 3: normalising, shading, and writing a tile's pixels to the planes that the image has. */
+/* Pass 3: normalising, shading, and writing a band's pixels to the planes that the image has. */
 #ifndef RASTER_RESOLVE_H
 #define RASTER_RESOLVE_H
 
-#include "raster/tile.h"
+#include "raster/band.h"
 
 /* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
  * the scans and meshes: the darkest side stays readable and white does not burn out. */
@@ -21,16 +21,20 @@ typedef struct conic_finish {
 
 /* The directions of a tile's columns and rows of pixels: d = (x, y, 1). */
 typedef struct conic_tile_rays {
-  float x[256 + 4], y[256 + 4];
+  int x_begin, y_begin; /* the tile's first pixel */
+  float x[CONIC_GREATEST_TILE], y[CONIC_GREATEST_TILE];
 } conic_tile_rays;
 
-void conic_tile_rays_init(const conic_tile *tile, conic_tile_rays *rays);
+void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays);
 
 /* The plain C reference of the slot `resolve`: everything, a pixel at a time. */
-void conic_tile_resolve(conic_tile *tile, const conic_finish *finish, conic_image *image);
+void conic_band_resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image);
 
-/* The planes that name splats or ask one for its depth: Z, count, id. */
-void conic_tile_resolve_indices(conic_tile *tile, conic_image *image);
+/* The planes that name splats: count and id. */
+void conic_band_resolve_indices(const conic_band *band, conic_image *image);
+
+/* Camera-space z of the splat's plane at the pixel, within the splat's range. */
+float conic_plane_z(const conic_footprint *footprint, int x, int y);
 
 /* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
  * weighted mean of the splats' unit normals, whose length says how far they agree. */

@@ -1,11 +1,11 @@
-/* Pass 3 in lanes: conic_tile_resolve (raster/resolve.c) a block at a time, with the same operations in the same order.
- * Included by tile_kernels_body.h. */
+/* Pass 3 in lanes: conic_band_resolve (raster/resolve.c) a part of a block at a time, with the same operations in the
+ * same order. Included by tile_kernels_body.h. */
 #include "raster/resolve.h"
 
-/* The finished pixels of one block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
+/* The finished pixels of one part of a block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
 typedef struct finished {
   lanes_mask covered;
-  lanes rgb[3], alpha, normal[3], albedo[3], weight;
+  lanes rgba[4], normal[3], albedo[3], weight, z;
 } finished;
 
 CONIC_INLINE lanes dot_lanes(const lanes a[3], const lanes b[3]) {
@@ -34,12 +34,11 @@ CONIC_INLINE void shade_lanes(const conic_finish *finish, const lanes albedo[3],
     shaded[i] = albedo[i] * lit + glossy;
 }
 
-CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays *rays, int column, int row,
-                               lanes viewer[3]) {
+CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays *rays, int x, int y, lanes viewer[3]) {
   lanes dx, dy;
   for (int lane = 0; lane < CONIC_LANES; lane++) {
-    dx[lane] = rays->x[column + lane / CONIC_BLOCK_ROWS];
-    dy[lane] = rays->y[row + lane % CONIC_BLOCK_ROWS];
+    dx[lane] = rays->x[x - rays->x_begin + lane / CONIC_BLOCK_ROWS];
+    dy[lane] = rays->y[y - rays->y_begin + lane % CONIC_BLOCK_ROWS];
   }
   lanes scale = -1.0f / lanes_sqrt((dx * dx + dy * dy) + 1.0f);
   for (int i = 0; i < 3; i++) {
@@ -49,77 +48,137 @@ CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays
 }
 
 /* Where the normals cancel, that of the heaviest splat. */
-CONIC_INLINE void mend_normals(const conic_tile *tile, size_t at, lanes_mask cancelled, lanes normal[3]) {
+CONIC_INLINE void mend_normals(const conic_band *band, const conic_block_sums *sums, size_t at, lanes_mask cancelled,
+                               lanes normal[3]) {
   if (!lanes_any(cancelled))
     return;
   lanes marks = lanes_keep(cancelled, lanes_of(1.0f));
   for (int lane = 0; lane < CONIC_LANES; lane++)
     for (int axis = 0; axis < 3 && marks[lane] != 0.0f; axis++)
-      normal[axis][lane] = tile->projected->surfaces[tile->planes.heaviest[at + (size_t)lane]].normal[axis];
+      normal[axis][lane] = band->projected->surfaces[sums->heaviest[at + (size_t)lane]].normal[axis];
 }
 
-CONIC_INLINE void finish_block(const conic_tile *tile, const conic_finish *finish, const conic_tile_rays *rays,
-                               int column, int row, size_t at, finished *block) {
-  const conic_tile_planes *planes = &tile->planes;
+/* conic_plane_z of the heaviest splats. */
+CONIC_INLINE lanes plane_z(const conic_band *band, const conic_block_sums *sums, size_t at, int x, int y,
+                           lanes_mask covered) {
+  float dx[CONIC_LANES], dy[CONIC_LANES], iz0[CONIC_LANES], plane_dx[CONIC_LANES], plane_dy[CONIC_LANES];
+  float iz_far[CONIC_LANES], iz_near[CONIC_LANES];
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    const conic_footprint *footprint = &band->projected->footprints[sums->heaviest[at + (size_t)lane]];
+    dx[lane] = conic_row_dx(footprint, x + lane / CONIC_BLOCK_ROWS);
+    dy[lane] = conic_row_dy(footprint, y + lane % CONIC_BLOCK_ROWS);
+    iz0[lane] = footprint->iz0;
+    plane_dx[lane] = footprint->plane_dx;
+    plane_dy[lane] = footprint->plane_dy;
+    iz_far[lane] = footprint->iz_far;
+    iz_near[lane] = footprint->iz_near;
+  }
+  lanes iz = (lanes_load(iz0) + lanes_load(plane_dy) * lanes_load(dy)) + lanes_load(plane_dx) * lanes_load(dx);
+  iz = lanes_min(lanes_max(iz, lanes_load(iz_far)), lanes_load(iz_near));
+  return lanes_keep(covered, 1.0f / iz);
+}
+
+CONIC_INLINE void finish_part(const conic_band *band, const conic_block_sums *sums, const conic_finish *finish,
+                              const conic_tile_rays *rays, int x, size_t at, finished *done) {
   const conic_render_options *options = finish->options;
   lanes mean_normal[3], viewer[3], shaded[3], zero = lanes_of(0.0f);
-  lanes weight = lanes_load(&planes->weight[at]);
+  lanes weight = lanes_load(sums->weight + at), share = 1.0f / weight;
   lanes_mask covered = lanes_less(zero, weight);
   for (int axis = 0; axis < 3; axis++) {
-    block->albedo[axis] = lanes_keep(covered, lanes_load(&planes->color[axis][at]) / weight);
-    mean_normal[axis] = lanes_keep(covered, lanes_load(&planes->normal[axis][at]) / weight);
+    done->albedo[axis] = lanes_keep(covered, lanes_load(sums->color[axis] + at) * share);
+    mean_normal[axis] = lanes_keep(covered, lanes_load(sums->normal[axis] + at) * share);
   }
-  lanes norm = lanes_sqrt(dot_lanes(mean_normal, mean_normal));
+  lanes norm = lanes_sqrt(dot_lanes(mean_normal, mean_normal)), scale = 1.0f / norm;
   lanes_mask has_direction = lanes_less(zero, norm);
   for (int axis = 0; axis < 3; axis++)
-    block->normal[axis] = lanes_keep(has_direction, mean_normal[axis] / norm);
-  mend_normals(tile, at, covered & lanes_less(lanes_keep(has_direction, lanes_of(1.0f)), lanes_of(1.0f)),
-               block->normal);
+    done->normal[axis] = lanes_keep(has_direction, mean_normal[axis] * scale);
+  mend_normals(band, sums, at, covered & lanes_less(lanes_keep(has_direction, lanes_of(1.0f)), lanes_of(1.0f)),
+               done->normal);
   if (options->shading == CONIC_SHADE_NONE)
-    memcpy(shaded, block->albedo, sizeof shaded);
+    memcpy(shaded, done->albedo, sizeof shaded);
   else {
-    viewer_lanes(finish, rays, column, row, viewer);
-    shade_lanes(finish, block->albedo, block->normal, mean_normal, viewer, shaded);
+    viewer_lanes(finish, rays, x, band->y, viewer);
+    shade_lanes(finish, done->albedo, done->normal, mean_normal, viewer, shaded);
   }
   for (int axis = 0; axis < 3; axis++)
-    block->rgb[axis] = lanes_select(covered, shaded[axis] * finish->exposure, lanes_of(finish->background[axis]));
-  block->alpha = lanes_select(covered, lanes_of(1.0f), lanes_of(finish->background[3]));
-  block->weight = weight;
-  block->covered = covered;
+    done->rgba[axis] = lanes_select(covered, shaded[axis] * finish->exposure, lanes_of(finish->background[axis]));
+  done->rgba[3] = lanes_select(covered, lanes_of(1.0f), lanes_of(finish->background[3]));
+  done->weight = weight;
+  done->covered = covered;
 }
 
-/* From channels of lanes to the channels of pixels, those of the block that are in the tile. */
-CONIC_INLINE void store_block(const conic_tile *tile, const conic_image *image, conic_plane plane, int x, int y,
-                              const lanes *channels, size_t n_channels) {
-  float *to = image->planes[plane], from[4][CONIC_LANES];
-  if (!to)
-    return;
-  for (size_t channel = 0; channel < n_channels; channel++)
-    lanes_store(from[channel], channels[channel]);
-  int n_rows = tile->y_end - y < CONIC_BLOCK_ROWS ? tile->y_end - y : CONIC_BLOCK_ROWS;
-  int n_columns = tile->x_end - x < CONIC_BLOCK_COLUMNS ? tile->x_end - x : CONIC_BLOCK_COLUMNS;
-  for (int row = 0; row < n_rows; row++) {
-    float *pixel = to + ((size_t)(y + row) * (size_t)image->width + (size_t)x) * n_channels;
-    for (int column = 0; column < n_columns; column++)
+CONIC_INLINE void finish_uncovered(const conic_finish *finish, finished *done) {
+  for (int channel = 0; channel < 4; channel++)
+    done->rgba[channel] = lanes_of(finish->background[channel]);
+  for (int axis = 0; axis < 3; axis++)
+    done->normal[axis] = done->albedo[axis] = lanes_of(0.0f);
+  done->weight = done->z = lanes_of(0.0f);
+}
+
+/* Where a part's pixels go. */
+typedef struct target {
+  const conic_image *image;
+  int x, y, n_columns, n_rows; /* within the image */
+} target;
+
+#define PART_COLUMNS (CONIC_LANES / CONIC_BLOCK_ROWS)
+
+/* From channels of lanes to the channels of pixels, at the image's edge. */
+CONIC_INLINE void store_cut(const target *t, float *to, const lanes *channels, size_t n_channels) {
+  for (int row = 0; row < t->n_rows; row++) {
+    float *pixel = to + (size_t)row * (size_t)t->image->width * n_channels;
+    for (int column = 0; column < t->n_columns; column++)
       for (size_t channel = 0; channel < n_channels; channel++)
-        *pixel++ = from[channel][column * CONIC_BLOCK_ROWS + row];
+        *pixel++ = channels[channel][column * CONIC_BLOCK_ROWS + row];
   }
 }
 
-static void resolve(conic_tile *tile, const conic_finish *finish, conic_image *image) {
-  conic_tile_rays rays;
-  conic_tile_rays_init(tile, &rays);
-  for (int y = tile->y_begin; y < tile->y_end; y += CONIC_BLOCK_ROWS)
-    for (int x = tile->x_begin; x < tile->x_end; x += CONIC_BLOCK_COLUMNS) {
-      finished block;
-      size_t at = conic_tile_place(tile, x, y);
-      finish_block(tile, finish, &rays, x - tile->x_begin, y - tile->y_begin, at, &block);
-      tile->n_covered += lanes_count(block.covered);
-      const lanes rgba[4] = {block.rgb[0], block.rgb[1], block.rgb[2], block.alpha};
-      store_block(tile, image, CONIC_PLANE_RGBA, x, y, rgba, 4);
-      store_block(tile, image, CONIC_PLANE_NORMAL, x, y, block.normal, 3);
-      store_block(tile, image, CONIC_PLANE_ALBEDO, x, y, block.albedo, 3);
-      store_block(tile, image, CONIC_PLANE_WEIGHT, x, y, &block.weight, 1);
-    }
-  conic_tile_resolve_indices(tile, image);
+CONIC_INLINE void store_part(const target *t, conic_plane plane, const lanes *channels, size_t n_channels) {
+  float *to = t->image->planes[plane];
+  if (!to)
+    return;
+  to += ((size_t)t->y * (size_t)t->image->width + (size_t)t->x) * n_channels;
+  size_t stride = (size_t)t->image->width * n_channels;
+  if (t->n_columns < PART_COLUMNS || t->n_rows < CONIC_BLOCK_ROWS)
+    store_cut(t, to, channels, n_channels);
+  else if (n_channels == 1)
+    lanes_store_plane(to, stride, channels[0]);
+  else if (n_channels == 3)
+    lanes_store_triples(to, stride, channels);
+  else
+    lanes_store_quads(to, stride, channels);
 }
+
+CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const conic_finish *finish,
+                               const conic_tile_rays *rays, const conic_image *image) {
+  finished done;
+  const conic_block_sums *sums = &band->sums[block];
+  int x = band->x + block * CONIC_BLOCK_EDGE + part * PART_COLUMNS;
+  target t = {image, x, band->y, image->width - x, image->height - band->y};
+  size_t at = (size_t)part * CONIC_LANES;
+  t.n_columns = t.n_columns < PART_COLUMNS ? t.n_columns : PART_COLUMNS;
+  t.n_rows = t.n_rows < CONIC_BLOCK_ROWS ? t.n_rows : CONIC_BLOCK_ROWS;
+  if (conic_block_is_empty(band, block))
+    finish_uncovered(finish, &done);
+  else {
+    finish_part(band, sums, finish, rays, x, at, &done);
+    if (image->planes[CONIC_PLANE_Z])
+      done.z = plane_z(band, sums, at, x, band->y, done.covered);
+    band->n_covered += lanes_count(done.covered);
+  }
+  store_part(&t, CONIC_PLANE_RGBA, done.rgba, 4);
+  store_part(&t, CONIC_PLANE_NORMAL, done.normal, 3);
+  store_part(&t, CONIC_PLANE_ALBEDO, done.albedo, 3);
+  store_part(&t, CONIC_PLANE_WEIGHT, &done.weight, 1);
+  store_part(&t, CONIC_PLANE_Z, &done.z, 1);
+}
+
+static void resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int part = 0; part < CONIC_PARTS; part++)
+      if (band->x + block * CONIC_BLOCK_EDGE + part * PART_COLUMNS < image->width)
+        resolve_part(band, block, part, finish, rays, image);
+  conic_band_resolve_indices(band, image);
+}
+
+#undef PART_COLUMNS

@@ -2,59 +2,94 @@
 
 #include <string.h>
 
-#include "raster/coverage.h"
+#include "raster/ticks.h"
 
-/* The widest vector is four columns of a band; what of it is past the last column falls into the padding. */
-static int stride_of(int edge) {
-  return edge + 4;
+static size_t padded(size_t n) {
+  return (n + CONIC_SELECT_SLACK + 15) / 16 * 16;
 }
 
-size_t conic_tile_bytes(int edge) {
-  return CONIC_N_TILE_PLANES * (size_t)stride_of(edge) * (size_t)edge * sizeof(float);
+size_t conic_tile_bytes(size_t n_references) {
+  return CONIC_BAND_BLOCKS * (sizeof(conic_kept) + sizeof(conic_nearest_fragments) + sizeof(conic_block_sums)) +
+         4 * padded(n_references) * sizeof(uint32_t);
 }
 
-void conic_tile_clear(conic_tile *tile, int edge, void *memory) {
-  conic_tile_planes *planes = &tile->planes;
-  tile->stride = stride_of(edge);
-  size_t n = (size_t)tile->stride * (size_t)edge;
-  float *next = memory;
-  memset(memory, 0, conic_tile_bytes(edge));
-  float **float_planes[] = {&planes->threshold, &planes->nearest_iz, &planes->weight,   &planes->heaviest_weight,
-                            &planes->color[0],  &planes->color[1],   &planes->color[2], &planes->normal[0],
-                            &planes->normal[1], &planes->normal[2]};
-  uint32_t **index_planes[] = {&planes->nearest, &planes->heaviest, &planes->count};
-  for (size_t i = 0; i < sizeof float_planes / sizeof float_planes[0]; i++, next += n)
-    *float_planes[i] = next;
-  for (size_t i = 0; i < sizeof index_planes / sizeof index_planes[0]; i++, next += n)
-    *index_planes[i] = (uint32_t *)(void *)next;
-  memset(planes->nearest, 0xff, n * sizeof(uint32_t));
-  memset(planes->heaviest, 0xff, n * sizeof(uint32_t));
-  tile->n_fragments = tile->n_covered = 0;
+void conic_tile_place_scratch(conic_tile *tile, void *memory) {
+  conic_tile_scratch *scratch = &tile->scratch;
+  size_t n = padded(tile->n_references);
+  scratch->nearest = memory;
+  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS);
+  scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
+  uint32_t *lists = (uint32_t *)(scratch->kept + CONIC_BAND_BLOCKS);
+  for (int i = 0; i < 2; i++) {
+    scratch->band_indices[i] = lists + (size_t)(2 * i) * n;
+    scratch->band_words[i] = lists + (size_t)(2 * i + 1) * n;
+  }
 }
 
-/* The weight with which a footprint covers a pixel that it is known to cover. */
-static float weight_at(const conic_tile *tile, const conic_footprint *footprint, int x, int y) {
-  conic_fragment fragment = {.scale = 1.0f};
-  conic_fragment_at(tile->view, tile->projected, footprint, x, y, &fragment);
-  return conic_final_weight(tile->view, footprint, fragment.q, fragment.scale);
+/* The splats that meet row i_row of the tile's blocks. */
+static void select_band(const conic_tile *tile, const conic_tile_kernels *kernels, int i_row, conic_band *band) {
+  uint32_t *indices = tile->scratch.band_indices[i_row % 2], *words = tile->scratch.band_words[i_row % 2];
+  band->indices = indices;
+  band->words = words;
+  band->n = kernels->select(tile->references, tile->n_references, UINT32_C(0x10000) << i_row, indices, words);
+  band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
-void conic_tile_take_nearest(conic_tile *tile) {
-  conic_tile_planes *planes = &tile->planes;
-  for (int y = tile->y_begin; y < tile->y_end; y++)
-    for (int x = tile->x_begin; x < tile->x_end; x++) {
-      size_t at = conic_tile_place(tile, x, y);
-      uint32_t i_footprint = planes->nearest[at];
-      if (i_footprint == CONIC_NO_SPLAT)
-        continue;
-      const conic_surface *surface = &tile->projected->surfaces[i_footprint];
-      float weight = weight_at(tile, &tile->projected->footprints[i_footprint], x, y);
-      planes->weight[at] = planes->heaviest_weight[at] = weight;
-      planes->heaviest[at] = i_footprint;
-      planes->count[at] = 1;
-      for (int axis = 0; axis < 3; axis++) {
-        planes->color[axis][at] = weight * surface->color[axis];
-        planes->normal[axis][at] = weight * surface->normal[axis];
-      }
+/* Brings a band's records nearer while another is being drawn. */
+static void prefetch_band(const conic_band *band) {
+  for (size_t i = 0; i < band->n; i++) {
+    __builtin_prefetch(&band->projected->footprints[band->indices[i]]);
+    __builtin_prefetch(&band->projected->surfaces[band->indices[i]]);
+  }
+}
+
+static void draw_band(const conic_tile_kernels *kernels, const conic_finish *finish, const conic_tile_rays *rays,
+                      conic_band *band, conic_image *image, conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  if (finish->options->passes == 1)
+    kernels->nearest(band);
+  else
+    kernels->visibility(band);
+  uint64_t seen = conic_ticks();
+  if (finish->options->passes != 1)
+    kernels->accumulate(band);
+  uint64_t summed = conic_ticks();
+  kernels->resolve(band, finish, rays, image);
+  report->visibility += seen - start;
+  report->accumulate += summed - seen;
+  report->resolve += conic_ticks() - summed;
+}
+
+void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                     conic_image *image, conic_tile_report *report) {
+  conic_tile_rays rays;
+  conic_band band = {.view = tile->view,
+                     .projected = tile->projected,
+                     .keeps_indices = tile->keeps_indices,
+                     .x = tile->x_begin,
+                     .n_blocks = (tile->x_end - tile->x_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
+                     .kept = tile->scratch.kept,
+                     .nearest = tile->scratch.nearest,
+                     .sums = tile->scratch.sums};
+  conic_band next = band;
+  int n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
+  memset(report, 0, sizeof *report);
+  conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
+  select_band(tile, kernels, 0, &next);
+  prefetch_band(&next);
+  for (int i_row = 0; i_row < n_rows; i_row++) {
+    uint64_t start = conic_ticks();
+    band.indices = next.indices;
+    band.words = next.words;
+    band.n = next.n;
+    band.y = next.y;
+    if (i_row + 1 < n_rows) {
+      select_band(tile, kernels, i_row + 1, &next);
+      prefetch_band(&next);
     }
+    report->lists += conic_ticks() - start;
+    draw_band(kernels, finish, &rays, &band, image, report);
+  }
+  report->n_fragments = band.n_fragments;
+  report->n_covered = band.n_covered;
 }

@@ -1,26 +1,31 @@
-/* The hot loops over a tile's fragments, one table an instruction set. All tables give the same bits as the plain C
- * one.
+/* The hot loops, one table an instruction set. All tables give the same bits as the plain C one.
  *
- * Contract of every slot: the tile's planes are cleared (conic_tile_clear) and hold what the slots before left; nothing
- * else is written. Records are finite, so no lane, masked ones included, multiplies zero by infinity except where a
- * comparison then drops it. Sums are in the order of the tile's list. */
+ * Contract of every slot: it writes what is named here and nothing else. Records are finite; a lane that is not covered
+ * may hold anything, and is dropped by a comparison, never by a multiplication with zero. Sums are in the order of the
+ * band's list. */
 #ifndef RASTER_TILE_KERNELS_H
 #define RASTER_TILE_KERNELS_H
 
+#include "raster/bins.h"
 #include "raster/resolve.h"
+
+/* select may write so many entries past those that it counts. */
+#define CONIC_SELECT_SLACK 16
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
   /* Set-up: the splats of a chunk, compacted, in order. */
   void (*project)(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
-  /* Pass 1: threshold, and n_fragments. */
-  void (*visibility)(conic_tile *tile);
-  /* Pass 1 where the nearest splat wins alone: nearest_iz and nearest; the first of equals. */
-  void (*nearest)(conic_tile *tile);
-  /* Pass 2: sums over the visible splats, the heaviest and the nearest of them. */
-  void (*accumulate)(conic_tile *tile);
+  /* The references whose word has a bit of the mask, in order: footprints and words apart. Returns how many. */
+  size_t (*select)(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints, uint32_t *words);
+  /* Pass 1: the band's kept fragments and thresholds, n_kept, not_kept, n_fragments. */
+  void (*visibility)(conic_band *band);
+  /* Pass 2: the sums over the visible splats of each block that is not empty. */
+  void (*accumulate)(conic_band *band);
+  /* In place of both where the nearest splat wins alone, the first of equals. */
+  void (*nearest)(conic_band *band);
   /* Pass 3: the image's pixels, and n_covered. */
-  void (*resolve)(conic_tile *tile, const conic_finish *finish, conic_image *image);
+  void (*resolve)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image);
 } conic_tile_kernels;
 
 extern const conic_tile_kernels conic_tile_kernels_scalar;

@@ -1,10 +1,12 @@
-/* The body of a table of tile kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME.
- */
+/* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
 #include "raster/coverage.h"
-#include "raster/lanes.h"
+#include "raster/lanes_store.h"
 #include "raster/tile_kernels.h"
 
-/* One splat's pixels in one block, covered or not. */
+/* A block is so many vectors. */
+#define CONIC_PARTS (CONIC_BLOCK_PIXELS / CONIC_LANES)
+
+/* One splat's pixels in one part of a block, covered or not. */
 typedef struct fragments {
   lanes_mask covered;
   lanes q;
@@ -12,111 +14,77 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
-/* Does something with the fragments of a block whose first pixel is at `at` in the tile's planes. */
-typedef void visit_block(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                         const fragments *block);
+/* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. */
+typedef struct sites {
+  lanes x[CONIC_BAND_BLOCKS * CONIC_PARTS], y;
+  lanes_mask inside[CONIC_BAND_BLOCKS * CONIC_PARTS]; /* the image */
+} sites;
 
-/* The part of a footprint's box that lies in the tile. */
-typedef struct window {
-  int x_begin, x_end, y_begin, y_end;
-} window;
-
-CONIC_INLINE window window_of(const conic_tile *tile, const conic_box *box) {
-  window w;
-  w.x_begin = box->x_begin > tile->x_begin ? box->x_begin : tile->x_begin;
-  w.x_end = box->x_end < tile->x_end ? box->x_end : tile->x_end;
-  w.y_begin = box->y_begin > tile->y_begin ? box->y_begin : tile->y_begin;
-  w.y_end = box->y_end < tile->y_end ? box->y_end : tile->y_end;
-  return w;
-}
-
-/* Four rows of a footprint: what of its evaluation does not depend on x. */
-typedef struct band {
-  lanes_mask inside; /* rows within the window */
-  lanes dy;
-  lanes q_offset, q_rest, iz_offset, plane_offset;
-} band;
-
-CONIC_INLINE band begin_band(const conic_footprint *footprint, window w, int y) {
-  band b;
-  int_lanes rows = lanes_rows() + y;
-  b.inside = lanes_less_int(rows, lanes_of_int(w.y_end)) & lanes_less_int(lanes_of_int(w.y_begin - 1), rows);
-  b.dy = __builtin_convertvector(rows - footprint->y, lanes) + footprint->dy0;
-  lanes minor = footprint->s3 * b.dy;
-  b.q_offset = footprint->s2 * b.dy;
-  b.q_rest = minor * minor;
-  b.iz_offset = footprint->iz0 + footprint->iz_dy * b.dy;
-  b.plane_offset = footprint->iz0 + footprint->plane_dy * b.dy;
-  return b;
-}
-
-/* Narrows the window to the columns where one of the band's rows may have q < support; a hair more, since every pixel
- * is tested. Worth its cost for wide footprints only. */
-CONIC_INLINE void narrow(const conic_footprint *footprint, const band *b, float support, window w, int *begin,
-                         int *end) {
-  float inverse = 1.0f / footprint->s1, low = 1e30f, high = -1e30f;
-  lanes half = lanes_sqrt(lanes_max(support - b->q_rest, lanes_of(0.0f))) * inverse, middle = -b->q_offset * inverse;
-  for (int row = 0; row < CONIC_BLOCK_ROWS; row++) {
-    if (!(b->q_rest[row] < support))
-      continue;
-    low = middle[row] - half[row] < low ? middle[row] - half[row] : low;
-    high = middle[row] + half[row] > high ? middle[row] + half[row] : high;
-  }
-  float slack = 0.05f + 2e-5f * (fabsf(low) + fabsf(high));
-  float from = (float)(w.x_begin - footprint->x), to = (float)(w.x_end - 1 - footprint->x);
-  low = low - slack - footprint->dx0;
-  high = high + slack - footprint->dx0;
-  low = low > from ? low : from;
-  high = high < to ? high : to;
-  *begin = *end = w.x_begin;
-  if (low <= high) {
-    int first = footprint->x + (int)low, last = footprint->x + (int)high;
-    *begin = first > w.x_begin ? first : w.x_begin; /* far from the reference, a float skips integers */
-    *end = last < w.x_end - 1 ? last + 1 : w.x_end;
+CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
+  int_lanes rows = lanes_rows() + band->y;
+  s->y = __builtin_convertvector(rows, lanes);
+  for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++) {
+    int_lanes columns = lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE));
+    s->x[part] = __builtin_convertvector(columns, lanes);
+    s->inside[part] = lanes_less_int(columns, lanes_of_int(band->view->width)) &
+                      lanes_less_int(rows, lanes_of_int(band->view->height));
   }
 }
 
-CONIC_INLINE size_t place_of(const conic_tile *tile, int x, int y) {
-  return ((size_t)((y - tile->y_begin) / CONIC_BLOCK_ROWS) * (size_t)tile->stride + (size_t)(x - tile->x_begin)) *
-         CONIC_BLOCK_ROWS;
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
+  size_t i = 0, n_selected = 0;
+  for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
+    index_lanes footprint, word;
+    lanes_load_pairs(&references[i].footprint, &footprint, &word);
+    lanes_mask has = lanes_has_bits(word, mask);
+    lanes_append(words + n_selected, has, word);
+    n_selected += lanes_append(footprints + n_selected, has, footprint);
+  }
+  for (; i < n; i++) {
+    footprints[n_selected] = references[i].footprint;
+    words[n_selected] = references[i].word;
+    n_selected += (references[i].word & mask) != 0;
+  }
+  return n_selected;
+}
+
+/* What of a splat's evaluation does not depend on the column. */
+typedef struct rows_of_splat {
+  lanes dy, q_offset, q_rest, iz_offset, plane_offset;
+} rows_of_splat;
+
+CONIC_INLINE rows_of_splat begin_rows(const conic_footprint *footprint, lanes y) {
+  rows_of_splat rows;
+  rows.dy = (y - footprint->y) + footprint->dy0;
+  lanes minor = footprint->s3 * rows.dy;
+  rows.q_offset = footprint->s2 * rows.dy;
+  rows.q_rest = minor * minor;
+  rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
+  rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
+  return rows;
 }
 
 /* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
-CONIC_INLINE void walk_ellipse(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, window w,
-                               visit_block *visit) {
-  enum { WIDE = 16 };
-  float support = tile->view->support;
-  lanes far_iz = lanes_of(footprint->iz_far), near_iz = lanes_of(footprint->iz_near);
-  int first_row = w.y_begin - (w.y_begin - tile->y_begin) % CONIC_BLOCK_ROWS;
-  fragments f = {.scale = lanes_of(1.0f)};
-  for (int y = first_row; y < w.y_end; y += CONIC_BLOCK_ROWS) {
-    int begin = w.x_begin, end = w.x_end;
-    band b = begin_band(footprint, w, y);
-    if (end - begin > WIDE)
-      narrow(footprint, &b, support, w, &begin, &end);
-    size_t at = place_of(tile, begin, y);
-    int_lanes columns = lanes_columns() + begin;
-    for (int x = begin; x < end; x += CONIC_BLOCK_COLUMNS) {
-      lanes dx = __builtin_convertvector(columns - footprint->x, lanes) + footprint->dx0;
-      lanes major = footprint->s1 * dx + b.q_offset;
-      f.q = major * major + b.q_rest;
-      f.covered = lanes_less(f.q, lanes_of(support)) & lanes_less_int(columns, lanes_of_int(w.x_end)) & b.inside;
-      lanes iz = lanes_max(b.iz_offset + footprint->iz_dx * dx, far_iz);
-      f.iz = lanes_min(iz, near_iz);
-      f.plane_iz = b.plane_offset + footprint->plane_dx * dx;
-      visit(tile, i_footprint, footprint, at, &f);
-      columns += CONIC_BLOCK_COLUMNS;
-      at += CONIC_LANES;
-    }
-  }
+CONIC_INLINE void ellipse_fragments(const conic_footprint *footprint, const rows_of_splat *rows, float support,
+                                    lanes dx, fragments *f) {
+  lanes major = footprint->s1 * dx + rows->q_offset;
+  f->q = major * major + rows->q_rest;
+  f->covered = lanes_less(f->q, lanes_of(support));
+  lanes iz = lanes_max(rows->iz_offset + footprint->iz_dx * dx, lanes_of(footprint->iz_far));
+  f->iz = lanes_min(iz, lanes_of(footprint->iz_near));
+  f->plane_iz = rows->plane_offset + footprint->plane_dx * dx;
+  f->scale = lanes_of(1.0f);
 }
 
 /* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
-CONIC_INLINE void ray_block(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray, lanes dx,
-                            lanes dy, fragments *f) {
+CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                lanes dx, lanes dy, fragments *f) {
   lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
   f->covered = lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
                lanes_at_least(lanes_of(ray->iz_high), iz);
+  f->covered &= lanes_at_least(dx, lanes_of(ray->dx_low)) & lanes_at_least(lanes_of(ray->dx_high), dx) &
+                lanes_at_least(dy, lanes_of(ray->dy_low)) & lanes_at_least(lanes_of(ray->dy_high), dy);
   lanes r = 1.0f / iz;
   lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
   lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
@@ -136,152 +104,359 @@ CONIC_INLINE void ray_block(const conic_view *view, const conic_footprint *footp
   f->scale = 1.0f / lanes_sqrt(determinant);
 }
 
-CONIC_INLINE void walk_ray(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, window w,
-                           visit_block *visit) {
-  const conic_ray *ray = &tile->projected->rays[footprint->i_ray];
-  int first_row = w.y_begin - (w.y_begin - tile->y_begin) % CONIC_BLOCK_ROWS;
-  for (int y = first_row; y < w.y_end; y += CONIC_BLOCK_ROWS) {
-    fragments f;
-    band b = begin_band(footprint, w, y);
-    size_t at = place_of(tile, w.x_begin, y);
-    int_lanes columns = lanes_columns() + w.x_begin;
-    for (int x = w.x_begin; x < w.x_end; x += CONIC_BLOCK_COLUMNS) {
-      lanes dx = __builtin_convertvector(columns - footprint->x, lanes) + footprint->dx0;
-      ray_block(tile->view, footprint, ray, dx, b.dy, &f);
-      f.covered &= lanes_less_int(columns, lanes_of_int(w.x_end)) & b.inside;
-      if (lanes_any(f.covered))
-        visit(tile, i_footprint, footprint, at, &f);
-      columns += CONIC_BLOCK_COLUMNS;
-      at += CONIC_LANES;
-    }
-  }
+/* conic_clip_keeps, lane by lane. */
+CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+  lanes zero = lanes_of(0.0f);
+  lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
+  lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
+  return clip->is_or ? first | second : first & second;
 }
 
-CONIC_INLINE void walk_tile(conic_tile *tile, visit_block *visit) {
+/* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
+ * compiler can tell. */
+typedef struct sources {
+  const conic_view *view;
+  float support;
+  const conic_footprint *footprints;
+  const conic_surface *surfaces;
+  const conic_ray *rays;
+  const conic_clip_record *clips;
+  const uint32_t *indices, *words;
+  size_t n;
+} sources;
+
+CONIC_INLINE sources sources_of(const conic_band *band) {
+  const conic_projected *projected = band->projected;
+  return (sources){band->view,          band->view->support, projected->footprints,
+                   projected->surfaces, projected->rays,     projected->clips,
+                   band->indices,       band->words,         band->n};
+}
+
+/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. */
+CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const rows_of_splat *rows, lanes x,
+                           lanes_mask inside, int is_special, fragments *f) {
+  lanes dx = (x - footprint->x) + footprint->dx0;
+  if (is_special && footprint->s3 == 0.0f)
+    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  else
+    ellipse_fragments(footprint, rows, from->support, dx, f);
+  if (is_special && conic_is_clipped(footprint))
+    f->covered &= clip_keeps(&from->clips[footprint - from->footprints], dx, rows->dy);
+  f->covered &= inside;
+}
+
+CONIC_INLINE void prefetch_footprint(const sources *from, size_t i) {
   enum { AHEAD = 16 };
-  const conic_footprint *footprints = tile->projected->footprints;
-  for (size_t i = 0; i < tile->n_references; i++) {
-    uint32_t i_footprint = tile->references[i];
-    const conic_footprint *footprint = &footprints[i_footprint];
-    if (i + AHEAD < tile->n_references) {
-      uint32_t i_later = tile->references[i + AHEAD];
-      __builtin_prefetch(&footprints[i_later]);
-      __builtin_prefetch(&tile->projected->boxes[i_later]);
-      __builtin_prefetch(&tile->projected->surfaces[i_later]);
-    }
-    window w = window_of(tile, &tile->projected->boxes[i_footprint]);
-    if (footprint->s3 != 0.0f)
-      walk_ellipse(tile, i_footprint, footprint, w, visit);
-    else
-      walk_ray(tile, i_footprint, footprint, w, visit);
+  size_t later = i + AHEAD < from->n ? i + AHEAD : i;
+  __builtin_prefetch(&from->footprints[from->indices[later]]);
+}
+
+CONIC_INLINE void empty_blocks(conic_band *band) {
+  for (int block = 0; block < band->n_blocks; block++) {
+    band->n_kept[block] = 0;
+    band->not_kept[block] = band->n;
   }
 }
 
-CONIC_INLINE void raise_threshold(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                                  const fragments *f) {
-  float *to = &tile->planes.threshold[at];
-  (void)i_footprint;
-  tile->n_fragments += lanes_count(f->covered);
-  lanes offset_iz = footprint->nearness * lanes_min(f->plane_iz, f->iz), threshold = lanes_load(to);
-  lanes_store(to, lanes_select(f->covered & lanes_less(threshold, offset_iz), offset_iz, threshold));
+/* Raises a part's thresholds and writes its fragments to the place; returns which are covered. */
+CONIC_INLINE unsigned pass_part(const conic_footprint *footprint, const fragments *f, conic_kept *kept, size_t place,
+                                size_t at, int is_special) {
+  lanes offset_iz = lanes_keep(f->covered, footprint->nearness * lanes_min(f->plane_iz, f->iz));
+  lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
+  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].seen_iz + at,
+              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
+  if (is_special)
+    lanes_store(kept->scale[place] + at, f->scale);
+  return lanes_count(f->covered);
 }
 
-/* Where `better` holds, `value` and `i_footprint` take the place of what is kept. */
-CONIC_INLINE void keep_better(float *kept, uint32_t *whose, lanes_mask better, lanes value, lanes old,
-                              uint32_t i_footprint) {
-  lanes_store(kept, lanes_select(better, value, old));
-  lanes_store_indices(whose, lanes_select_indices(better, lanes_of_index(i_footprint), lanes_load_indices(whose)));
+/* One splat in the blocks that its word names; returns how many pixels it covers. */
+CONIC_INLINE unsigned pass_splat(conic_band *band, const sources *from, const sites *s, size_t i, size_t room,
+                                 int is_special) {
+  const conic_footprint *footprint = &from->footprints[from->indices[i]];
+  uint32_t columns = from->words[i] & 0xffff;
+  int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
+  rows_of_splat rows = begin_rows(footprint, s->y);
+  unsigned n_fragments = 0;
+  for (int block = first; block <= last; block++) {
+    conic_kept *kept = &band->kept[block];
+    size_t place = band->n_kept[block];
+    unsigned n_covered = 0;
+    fragments f;
+    kept->footprint[place] = from->indices[i];
+    kept->amplitude[place] = footprint->amplitude;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      int at = block * CONIC_PARTS + part;
+      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
+      n_covered += pass_part(footprint, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
+    }
+    n_fragments += n_covered;
+    if (place < room)
+      band->n_kept[block] = place + (n_covered > 0);
+    else if (n_covered > 0 && band->not_kept[block] > i)
+      band->not_kept[block] = i;
+  }
+  return n_fragments;
 }
 
-/* Splats come in file order, so that the first of equals stays. */
-CONIC_INLINE void keep_nearest(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                               const fragments *f) {
-  lanes nearest_iz = lanes_load(&tile->planes.nearest_iz[at]);
-  (void)footprint;
-  tile->n_fragments += lanes_count(f->covered);
-  keep_better(&tile->planes.nearest_iz[at], &tile->planes.nearest[at], f->covered & lanes_less(nearest_iz, f->iz),
-              f->iz, nearest_iz, i_footprint);
+static void visibility(conic_band *band) {
+  const sources from = sources_of(band);
+  size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  uint64_t n_fragments = 0;
+  int has_special = 0;
+  sites s;
+  find_sites(band, &s);
+  empty_blocks(band);
+  for (int block = 0; block < band->n_blocks; block++)
+    memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
+  for (size_t i = 0; i < from.n; i++) {
+    prefetch_footprint(&from, i);
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
+      n_fragments += pass_splat(band, &from, &s, i, room, 0);
+    else {
+      n_fragments += pass_splat(band, &from, &s, i, room, 1);
+      has_special = 1;
+    }
+  }
+  band->has_special = has_special;
+  band->n_fragments += n_fragments;
+}
+
+/* Which kernel a loop is made for. */
+typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER } kernel_kind;
+
+static kernel_kind kind_of(const conic_kernel *kernel) {
+  if (conic_kernel_is_narrow(kernel))
+    return KERNEL_NARROW_GAUSS;
+  return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
+}
+
+/* conic_kernel_value of core/kernel.h, for kernels that are no Gaussian. */
+CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
+  if (kernel->type == CONIC_KERNEL_HAT)
+    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
+  if (kernel->type == CONIC_KERNEL_BOX)
+    return lanes_of(1.0f);
+  lanes r = lanes_sqrt(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  lanes rest = 1.0f - power;
+  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
 }
 
 /* conic_final_weight in every lane; 0 in those that are not visible. */
-CONIC_INLINE lanes weigh(const conic_tile *tile, const conic_footprint *footprint, const fragments *f,
-                         lanes_mask visible, int is_gauss) {
+CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
+                         kernel_kind kind) {
   lanes kernel;
-  if (is_gauss)
-    kernel = lanes_exp_negative(-0.5f * f->q);
-  else
-    for (int lane = 0; lane < CONIC_LANES; lane++) { /* beyond the support, a kernel need not have a value */
-      float q = f->q[lane] < tile->view->support ? f->q[lane] : 0.0f;
-      kernel[lane] = conic_kernel_value(&tile->view->kernel, q);
-    }
-  lanes weight = (footprint->amplitude * f->scale) * kernel;
+  if (kind == KERNEL_NARROW_GAUSS)
+    kernel = lanes_gauss_narrow(q);
+  else if (kind == KERNEL_GAUSS)
+    kernel = lanes_exp_negative(-0.5f * q);
+  else /* beyond the support, a kernel need not have a value */
+    kernel = other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
+  lanes weight = (amplitude * scale) * kernel;
   return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
 }
 
-CONIC_INLINE void add_to(float *sum, lanes term) {
-  lanes_store(sum, lanes_load(sum) + term);
+/* The sums of one part, in registers. */
+typedef struct part_sums {
+  lanes weight, color[3], normal[3], heaviest_weight, nearest_iz;
+  index_lanes heaviest, nearest, count;
+} part_sums;
+
+CONIC_INLINE void clear_sums(part_sums *sums) {
+  sums->weight = sums->heaviest_weight = sums->nearest_iz = lanes_of(0.0f);
+  for (int axis = 0; axis < 3; axis++)
+    sums->color[axis] = sums->normal[axis] = lanes_of(0.0f);
+  sums->heaviest = sums->nearest = sums->count = lanes_of_index(0);
 }
 
-/* Which kernel, and whether the planes are kept that only the image's count and id need. */
-typedef struct blending {
-  int is_gauss, keeps_indices;
-} blending;
+/* Where `better` holds, `value` and `i_footprint` take the place of what is kept. */
+CONIC_INLINE void keep_better(lanes *kept, index_lanes *whose, lanes_mask better, lanes value, uint32_t i_footprint) {
+  *kept = lanes_select(better, value, *kept);
+  *whose = lanes_select_indices(better, lanes_of_index(i_footprint), *whose);
+}
 
-/* Adds the visible fragments to the pixels' sums: an invisible one adds 0, which changes no bit. Splats come in file
- * order: sums keep it, and the first of equals stays. */
-CONIC_INLINE void blend(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                        const fragments *f, blending how) {
-  conic_tile_planes *planes = &tile->planes;
-  lanes seen_iz = lanes_max(f->plane_iz, f->iz);
-  lanes_mask visible = f->covered & lanes_at_least(seen_iz, lanes_load(&planes->threshold[at]));
-  if (!lanes_any(visible))
-    return;
-  const conic_surface *surface = &tile->projected->surfaces[i_footprint];
-  lanes weight = weigh(tile, footprint, f, visible, how.is_gauss);
-  add_to(&planes->weight[at], weight);
+/* Adds visible fragments: an invisible one adds 0, which changes no bit. Splats come in file order: sums keep it, and
+ * the first of equals stays. */
+CONIC_INLINE void blend(const conic_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
+  to->weight += weight;
   for (int axis = 0; axis < 3; axis++) {
-    add_to(&planes->color[axis][at], weight * surface->color[axis]);
-    add_to(&planes->normal[axis][at], weight * surface->normal[axis]);
+    to->color[axis] += weight * surface->color[axis];
+    to->normal[axis] += weight * surface->normal[axis];
   }
-  lanes heaviest = lanes_load(&planes->heaviest_weight[at]);
-  keep_better(&planes->heaviest_weight[at], &planes->heaviest[at], lanes_less(heaviest, weight), weight, heaviest,
-              i_footprint);
-  if (!how.keeps_indices)
-    return;
-  lanes nearest = lanes_load(&planes->nearest_iz[at]);
-  lanes_store_indices(&planes->count[at], lanes_increment(visible, lanes_load_indices(&planes->count[at])));
-  keep_better(&planes->nearest_iz[at], &planes->nearest[at], visible & lanes_less(nearest, f->iz), f->iz, nearest,
-              i_footprint);
+  lanes_mask heavier = lanes_less(to->heaviest_weight, weight);
+  to->heaviest_weight = lanes_max(weight, to->heaviest_weight);
+  to->heaviest = lanes_select_indices(heavier, lanes_of_index(i_footprint), to->heaviest);
 }
 
-#define DEFINE_BLEND(NAME_OF_BLEND, ...)                                                                               \
-  CONIC_INLINE void NAME_OF_BLEND(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at, \
-                                  const fragments *f) {                                                                \
-    blend(tile, i_footprint, footprint, at, f, (blending){__VA_ARGS__});                                               \
+CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, int has_special,
+                             kernel_kind kind, part_sums *to) {
+  enum { AHEAD = 8 };
+  lanes threshold = lanes_load(kept->threshold + at);
+  for (size_t i = 0; i < n_kept; i++) {
+    uint32_t i_footprint = kept->footprint[i];
+    __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
+    lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
+    if (!lanes_any(visible))
+      continue;
+    lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
+    if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
+      scale = lanes_load(kept->scale[i] + at);
+    blend(&from->surfaces[i_footprint], i_footprint, weigh(from->view, kept->amplitude[i], q, scale, visible, kind),
+          to);
   }
-
-DEFINE_BLEND(blend_gauss, .is_gauss = 1)
-DEFINE_BLEND(blend_gauss_indices, .is_gauss = 1, .keeps_indices = 1)
-DEFINE_BLEND(blend_other_indices, .keeps_indices = 1)
-
-static void visibility(conic_tile *tile) {
-  walk_tile(tile, raise_threshold);
 }
 
-static void nearest(conic_tile *tile) {
-  walk_tile(tile, keep_nearest);
+/* What was not kept is evaluated again. */
+CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, int part, kernel_kind kind,
+                             part_sums *to) {
+  const sources from = sources_of(band);
+  int at = block * CONIC_PARTS + part;
+  lanes threshold = lanes_load(band->kept[block].threshold + part * CONIC_LANES);
+  fragments f;
+  for (size_t i = band->not_kept[block]; i < from.n; i++) {
+    if (!(from.words[i] >> block & 1))
+      continue;
+    const conic_footprint *footprint = &from.footprints[from.indices[i]];
+    rows_of_splat rows = begin_rows(footprint, s->y);
+    evaluate(&from, footprint, &rows, s->x[at], s->inside[at], !(footprint->s3 > 0.0f), &f);
+    lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
+    if (!lanes_any(visible))
+      continue;
+    uint32_t i_footprint = from.indices[i];
+    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint->amplitude, f.q, f.scale, visible, kind),
+          to);
+    if (!band->keeps_indices)
+      continue;
+    to->count = lanes_increment(visible, to->count);
+    keep_better(&to->nearest_iz, &to->nearest, visible & lanes_less(to->nearest_iz, f.iz), f.iz, i_footprint);
+  }
 }
 
-static void accumulate(conic_tile *tile) {
-  if (tile->view->kernel.type != CONIC_KERNEL_GAUSS)
-    walk_tile(tile, blend_other_indices);
-  else if (tile->keeps_indices)
-    walk_tile(tile, blend_gauss_indices);
-  else
-    walk_tile(tile, blend_gauss);
+CONIC_INLINE void store_sums(const part_sums *from, size_t at, conic_block_sums *to) {
+  lanes_store(to->weight + at, from->weight);
+  for (int axis = 0; axis < 3; axis++) {
+    lanes_store(to->color[axis] + at, from->color[axis]);
+    lanes_store(to->normal[axis] + at, from->normal[axis]);
+  }
+  lanes_store_indices(to->heaviest + at, from->heaviest);
+  lanes_store_indices(to->nearest + at, from->nearest);
+  lanes_store_indices(to->count + at, from->count);
+}
+
+CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
+  const sources from = sources_of(band);
+  sites s;
+  find_sites(band, &s);
+  for (int block = 0; block < band->n_blocks; block++) {
+    if (conic_block_is_empty(band, block))
+      continue;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      size_t at = (size_t)part * CONIC_LANES;
+      part_sums of_part;
+      clear_sums(&of_part);
+      blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
+      if (band->not_kept[block] < band->n)
+        blend_rest(band, &s, block, part, kind, &of_part);
+      store_sums(&of_part, at, &band->sums[block]);
+    }
+  }
+}
+
+static void accumulate(conic_band *band) {
+  switch (kind_of(&band->view->kernel)) {
+  case KERNEL_NARROW_GAUSS:
+    accumulate_with(band, KERNEL_NARROW_GAUSS);
+    break;
+  case KERNEL_GAUSS:
+    accumulate_with(band, KERNEL_GAUSS);
+    break;
+  default:
+    accumulate_with(band, KERNEL_OTHER);
+  }
+}
+
+CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest_fragments *kept, size_t at) {
+  lanes iz = lanes_load(kept->iz + at);
+  lanes_mask nearer = f->covered & lanes_less(iz, f->iz);
+  lanes_store(kept->iz + at, lanes_select(nearer, f->iz, iz));
+  lanes_store(kept->q + at, lanes_select(nearer, f->q, lanes_load(kept->q + at)));
+  lanes_store(kept->scale + at, lanes_select(nearer, f->scale, lanes_load(kept->scale + at)));
+  lanes_store_indices(kept->footprint + at, lanes_select_indices(nearer, lanes_of_index(i_footprint),
+                                                                 lanes_load_indices(kept->footprint + at)));
+}
+
+CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_special) {
+  const conic_footprint *footprint = &from->footprints[from->indices[i]];
+  uint32_t columns = from->words[i] & 0xffff;
+  int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
+  rows_of_splat rows = begin_rows(footprint, s->y);
+  unsigned n_fragments = 0;
+  for (int block = first; block <= last; block++) {
+    unsigned n_covered = 0;
+    fragments f;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      int at = block * CONIC_PARTS + part;
+      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
+      keep_nearest(&f, from->indices[i], &band->nearest[block], (size_t)part * CONIC_LANES);
+      n_covered += lanes_count(f.covered);
+    }
+    band->n_kept[block] += n_covered > 0;
+    n_fragments += n_covered;
+  }
+  return n_fragments;
+}
+
+/* The nearest splats' colour, normal and weight. */
+CONIC_INLINE void take_nearest(const conic_band *band, const sources *from, int block, size_t at) {
+  const conic_nearest_fragments *kept = &band->nearest[block];
+  float amplitude[CONIC_LANES], color[3][CONIC_LANES], normal[3][CONIC_LANES];
+  part_sums to;
+  clear_sums(&to);
+  to.heaviest = to.nearest = lanes_load_indices(kept->footprint + at);
+  lanes_mask covered = lanes_less(lanes_of(0.0f), lanes_load(kept->iz + at));
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    uint32_t i_footprint = kept->footprint[at + (size_t)lane];
+    const conic_surface *surface = &from->surfaces[i_footprint];
+    amplitude[lane] = from->footprints[i_footprint].amplitude;
+    for (int axis = 0; axis < 3; axis++) {
+      color[axis][lane] = surface->color[axis];
+      normal[axis][lane] = surface->normal[axis];
+    }
+  }
+  to.weight = weigh(from->view, 1.0f, lanes_load(kept->q + at), lanes_load(amplitude) * lanes_load(kept->scale + at),
+                    covered, kind_of(&from->view->kernel));
+  for (int axis = 0; axis < 3; axis++) {
+    to.color[axis] += to.weight * lanes_load(color[axis]); /* to 0, which a product may be below: -0 */
+    to.normal[axis] += to.weight * lanes_load(normal[axis]);
+  }
+  to.count = lanes_increment(covered, lanes_of_index(0));
+  store_sums(&to, at, &band->sums[block]);
+}
+
+static void nearest(conic_band *band) {
+  const sources from = sources_of(band);
+  uint64_t n_fragments = 0;
+  sites s;
+  find_sites(band, &s);
+  empty_blocks(band);
+  memset(band->nearest, 0, (size_t)band->n_blocks * sizeof *band->nearest);
+  for (size_t i = 0; i < from.n; i++) {
+    prefetch_footprint(&from, i);
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
+      n_fragments += pass_nearest(band, &from, &s, i, 0);
+    else
+      n_fragments += pass_nearest(band, &from, &s, i, 1);
+  }
+  band->n_fragments += n_fragments;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int part = 0; part < CONIC_PARTS && !conic_block_is_empty(band, block); part++)
+      take_nearest(band, &from, block, (size_t)part * CONIC_LANES);
 }
 
 #include "raster/project_body.h"
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME, project, visibility, nearest, accumulate, resolve};
+const conic_tile_kernels TABLE = {NAME, project, select_references, visibility, accumulate, nearest, resolve};

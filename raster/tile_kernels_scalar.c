@@ -1,90 +1,187 @@
-/* The plain C reference of the tile kernels: a pixel at a time, by the definitions of coverage.h. */
+/* The plain C reference of the kernels: a pixel at a time, by the definitions of coverage.h. */
+#include <string.h>
+
 #include "raster/coverage.h"
 #include "raster/tile_kernels.h"
 
-typedef void visit_fragment(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                            const conic_fragment *fragment);
-
-static int least(int a, int b) {
-  return a < b ? a : b;
+/* The fragment of a footprint at pixel l of a block: 1 where it is covered. */
+static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, int l, conic_fragment *fragment) {
+  int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+  const conic_footprint *footprint = &band->projected->footprints[i_footprint];
+  return x < band->view->width && y < band->view->height &&
+         conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static int greatest(int a, int b) {
-  return a > b ? a : b;
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
+  size_t n_selected = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (!(references[i].word & mask))
+      continue;
+    words[n_selected] = references[i].word;
+    footprints[n_selected++] = references[i].footprint;
+  }
+  return n_selected;
 }
 
-static inline void walk_splat(conic_tile *tile, uint32_t i_footprint, visit_fragment *visit) {
-  const conic_footprint *footprint = &tile->projected->footprints[i_footprint];
-  const conic_box *box = &tile->projected->boxes[i_footprint];
-  int x_begin = greatest(box->x_begin, tile->x_begin), x_end = least(box->x_end, tile->x_end);
-  int y_begin = greatest(box->y_begin, tile->y_begin), y_end = least(box->y_end, tile->y_end);
-  for (int y = y_begin; y < y_end; y++)
-    for (int x = x_begin; x < x_end; x++) {
-      conic_fragment fragment;
-      if (conic_fragment_at(tile->view, tile->projected, footprint, x, y, &fragment))
-        visit(tile, i_footprint, footprint, conic_tile_place(tile, x, y), &fragment);
+static float seen_iz_of(const conic_fragment *fragment) {
+  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
+}
+
+static float offset_iz_of(const conic_footprint *footprint, const conic_fragment *fragment) {
+  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+}
+
+/* Raises the thresholds of one block and writes the splat's fragments to the next place; returns how many there are. */
+static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int block) {
+  conic_kept *kept = &band->kept[block];
+  size_t place = band->n_kept[block];
+  unsigned n_covered = 0;
+  kept->footprint[place] = i_footprint;
+  kept->amplitude[place] = band->projected->footprints[i_footprint].amplitude;
+  for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+    conic_fragment fragment = {0, 0, 0, 0};
+    int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
+    kept->fragments[place].q[l] = fragment.q;
+    kept->fragments[place].seen_iz[l] = is_covered ? seen_iz_of(&fragment) : -1.0f;
+    kept->scale[place][l] = fragment.scale;
+    if (!is_covered)
+      continue;
+    float offset_iz = offset_iz_of(&band->projected->footprints[i_footprint], &fragment);
+    kept->threshold[l] = offset_iz > kept->threshold[l] ? offset_iz : kept->threshold[l];
+    n_covered++;
+  }
+  return n_covered;
+}
+
+static void visibility(conic_band *band) {
+  size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  band->has_special = 0;
+  for (size_t i = 0; i < band->n; i++)
+    band->has_special |= !(band->projected->footprints[band->indices[i]].s3 > 0.0f);
+  for (int block = 0; block < band->n_blocks; block++) {
+    memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
+    band->n_kept[block] = 0;
+    band->not_kept[block] = band->n;
+  }
+  for (size_t i = 0; i < band->n; i++)
+    for (int block = 0; block < band->n_blocks; block++) {
+      unsigned n_covered = band->words[i] >> block & 1 ? pass_block(band, band->indices[i], block) : 0;
+      band->n_fragments += n_covered;
+      if (n_covered == 0)
+        continue;
+      if (band->n_kept[block] < room)
+        band->n_kept[block]++;
+      else if (band->not_kept[block] == band->n)
+        band->not_kept[block] = i;
     }
 }
 
-static void raise_threshold(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                            const conic_fragment *fragment) {
-  float hiding_iz = fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz;
-  float offset_iz = footprint->nearness * hiding_iz;
-  (void)i_footprint;
-  tile->n_fragments++;
-  if (tile->planes.threshold[at] < offset_iz)
-    tile->planes.threshold[at] = offset_iz;
-}
-
-/* Splats come in file order, so that the first of equals stays. */
-static void keep_nearest(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                         const conic_fragment *fragment) {
-  (void)footprint;
-  tile->n_fragments++;
-  if (tile->planes.nearest_iz[at] < fragment->iz) {
-    tile->planes.nearest_iz[at] = fragment->iz;
-    tile->planes.nearest[at] = i_footprint;
-  }
-}
-
-static void blend(conic_tile *tile, uint32_t i_footprint, const conic_footprint *footprint, size_t at,
-                  const conic_fragment *fragment) {
-  conic_tile_planes *planes = &tile->planes;
-  float seen_iz = fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
-  if (!(seen_iz >= planes->threshold[at]))
-    return;
-  const conic_surface *surface = &tile->projected->surfaces[i_footprint];
-  float weight = conic_final_weight(tile->view, footprint, fragment->q, fragment->scale);
-  planes->weight[at] += weight;
+static void blend(const conic_band *band, uint32_t i_footprint, int block, int l, const conic_fragment *fragment,
+                  float *heaviest_weight) {
+  conic_block_sums *sums = &band->sums[block];
+  const conic_surface *surface = &band->projected->surfaces[i_footprint];
+  const conic_footprint *footprint = &band->projected->footprints[i_footprint];
+  float weight = conic_final_weight(band->view, footprint, fragment->q, fragment->scale);
+  sums->weight[l] += weight;
   for (int axis = 0; axis < 3; axis++) {
-    planes->color[axis][at] += weight * surface->color[axis];
-    planes->normal[axis][at] += weight * surface->normal[axis];
+    sums->color[axis][l] += weight * surface->color[axis];
+    sums->normal[axis][l] += weight * surface->normal[axis];
   }
-  planes->count[at]++;
-  if (planes->heaviest_weight[at] < weight) {
-    planes->heaviest_weight[at] = weight;
-    planes->heaviest[at] = i_footprint;
-  }
-  if (planes->nearest_iz[at] < fragment->iz) {
-    planes->nearest_iz[at] = fragment->iz;
-    planes->nearest[at] = i_footprint;
+  if (*heaviest_weight < weight) {
+    *heaviest_weight = weight;
+    sums->heaviest[l] = i_footprint;
   }
 }
 
-static void visibility(conic_tile *tile) {
-  for (size_t i = 0; i < tile->n_references; i++)
-    walk_splat(tile, tile->references[i], raise_threshold);
+/* Splats come in file order: sums keep it, and the first of equals stays. */
+static void accumulate_pixel(const conic_band *band, int block, int l) {
+  const conic_kept *kept = &band->kept[block];
+  float heaviest_weight = 0.0f, nearest_iz = 0.0f;
+  conic_fragment fragment = {0, 0, 0, 0};
+  for (size_t i = 0; i < band->n_kept[block]; i++) {
+    fragment.q = kept->fragments[i].q[l];
+    fragment.scale = kept->scale[i][l];
+    if (kept->fragments[i].seen_iz[l] >= kept->threshold[l])
+      blend(band, kept->footprint[i], block, l, &fragment, &heaviest_weight);
+  }
+  for (size_t i = band->not_kept[block]; i < band->n; i++) {
+    if (!(band->words[i] >> block & 1) || !fragment_of(band, band->indices[i], block, l, &fragment) ||
+        !(seen_iz_of(&fragment) >= kept->threshold[l]))
+      continue;
+    blend(band, band->indices[i], block, l, &fragment, &heaviest_weight);
+    if (!band->keeps_indices)
+      continue;
+    band->sums[block].count[l]++;
+    if (nearest_iz < fragment.iz) {
+      nearest_iz = fragment.iz;
+      band->sums[block].nearest[l] = band->indices[i];
+    }
+  }
 }
 
-static void nearest(conic_tile *tile) {
-  for (size_t i = 0; i < tile->n_references; i++)
-    walk_splat(tile, tile->references[i], keep_nearest);
+static void accumulate(conic_band *band) {
+  for (int block = 0; block < band->n_blocks; block++) {
+    if (conic_block_is_empty(band, block))
+      continue;
+    memset(&band->sums[block], 0, sizeof band->sums[block]);
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      accumulate_pixel(band, block, l);
+  }
 }
 
-static void accumulate(conic_tile *tile) {
-  for (size_t i = 0; i < tile->n_references; i++)
-    walk_splat(tile, tile->references[i], blend);
+/* Returns how many of the block's pixels the splat covers. */
+static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int block) {
+  conic_nearest_fragments *nearest = &band->nearest[block];
+  unsigned n_covered = 0;
+  for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+    conic_fragment fragment;
+    if (!fragment_of(band, i_footprint, block, l, &fragment))
+      continue;
+    n_covered++;
+    if (!(nearest->iz[l] < fragment.iz))
+      continue;
+    nearest->iz[l] = fragment.iz;
+    nearest->q[l] = fragment.q;
+    nearest->scale[l] = fragment.scale;
+    nearest->footprint[l] = i_footprint;
+  }
+  return n_covered;
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {"scalar", conic_project_chunk, visibility,
-                                                      nearest,  accumulate,          conic_tile_resolve};
+/* The nearest splats' colour, normal and weight. */
+static void take_nearest(const conic_band *band, int block) {
+  const conic_nearest_fragments *nearest = &band->nearest[block];
+  conic_block_sums *sums = &band->sums[block];
+  memset(sums, 0, sizeof *sums);
+  for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+    float heaviest_weight = 0.0f;
+    conic_fragment fragment = {.q = nearest->q[l], .scale = nearest->scale[l]};
+    if (!(nearest->iz[l] > 0.0f))
+      continue;
+    blend(band, nearest->footprint[l], block, l, &fragment, &heaviest_weight);
+    sums->nearest[l] = nearest->footprint[l];
+    sums->count[l] = 1;
+  }
+}
+
+static void nearest(conic_band *band) {
+  for (int block = 0; block < band->n_blocks; block++) {
+    memset(&band->nearest[block], 0, sizeof band->nearest[block]);
+    band->n_kept[block] = 0;
+    band->not_kept[block] = band->n;
+  }
+  for (size_t i = 0; i < band->n; i++)
+    for (int block = 0; block < band->n_blocks; block++)
+      if (band->words[i] >> block & 1) {
+        unsigned n_covered = keep_nearest(band, band->indices[i], block);
+        band->n_fragments += n_covered;
+        band->n_kept[block] += n_covered > 0;
+      }
+  for (int block = 0; block < band->n_blocks; block++)
+    if (!conic_block_is_empty(band, block))
+      take_nearest(band, block);
+}
+
+const conic_tile_kernels conic_tile_kernels_scalar = {
+    "scalar", conic_project_chunk, select_references, visibility, accumulate, nearest, conic_band_resolve};

@@ -70,7 +70,8 @@ static inline void fixture_scene(fixture *f, conic_scene_type type, size_t count
   conic_scene_options_init(&options);
   options.type = type;
   options.count = count;
-  fixture_splats(f, count);
+  conic_splats_release(f->context, &f->splats);
+  CHECK_OK(conic_splats_allocate(f->context, count, conic_scene_fields(type), &f->splats));
   CHECK_OK(conic_scene_create(f->context, &options, &scene));
   CHECK_OK(conic_scene_sample(scene, 0, count, &f->splats));
   conic_scene_destroy(scene);

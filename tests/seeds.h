@@ -101,6 +101,17 @@ static inline void seeds_all_ply(seed_set *set) {
             "property float scale_1\nproperty float scale_2\nproperty float rot_0\nproperty float rot_1\n"
             "property float rot_2\nproperty float rot_3\n",
             "ffffffffffffff", 3, "", 0, 0);
+  seeds_ply(set,
+            "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float tu_x\n"
+            "property float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\nproperty float tv_z\n"
+            "property uchar a\nproperty list uchar int clip_or\nproperty float opacity\n",
+            "fffffffffblf", 3, "", 0, 0);
+  seeds_text(
+      set, "ply", "ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float tu_x\nproperty float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\n"
+      "property float tv_z\nproperty list uchar float clip_and\nproperty list uchar float clip_or\nend_header\n"
+      "0 0 0 1 0 0 0 1 0 0 6 1 0 .5 0 1 .5\n1 0 0 1 0 0 0 1 0 3 1 nan 0 0\n2 0 0 0 0 0 0 1 0 6 0 0 1 -1 0 1 0\n");
   seeds_text(set, "ply", "ply",
              "ply\nformat ascii 1.0\nobj_info by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
              "property int z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 2\n"

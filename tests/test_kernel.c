@@ -17,6 +17,18 @@ static void test_exponential(void) {
   CHECK(conic_exp_negative((float)NAN) == conic_exp_negative(-80.0f));
 }
 
+static void test_narrow_gaussian(void) {
+  double worst = 0.0;
+  for (int i = 0; i <= 2250000; i++) {
+    float q = (float)i * 1e-6f;
+    double exact = exp(-0.5 * (double)q), error = fabs((double)conic_gauss_narrow(q) / exact - 1.0);
+    worst = error > worst ? error : worst;
+  }
+  printf("largest relative error of the narrow Gaussian: %.3g\n", worst);
+  CHECK(worst <= 2.3e-7);
+  CHECK(conic_gauss_narrow(0.0f) == 1.0f);
+}
+
 /* As printed, without the division by b, Eq. 10 is neither 1 at 0 nor 0 at b. */
 static double confetti_as_printed(double a, double b, int n, double r) {
   double t = pow(r - b, n);
@@ -49,6 +61,7 @@ static void test_others(void) {
 
 int main(void) {
   test_exponential();
+  test_narrow_gaussian();
   test_confetti();
   test_others();
   return check_result();

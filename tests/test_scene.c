@@ -7,7 +7,7 @@
 
 #define PI 3.14159265358979323846
 
-enum { FIELDS = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, N_ARRAYS = 12 };
+enum { FIELDS = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS, N_ARRAYS = 12 };
 
 static conic_scene_options options_of(conic_scene_type type, size_t count) {
   conic_scene_options options;
@@ -43,6 +43,20 @@ static void list_arrays(const conic_splats *splats, float *arrays[N_ARRAYS]) {
   }
 }
 
+/* Whether the clip lines of part[0 … n) are those of whole[first … first + n). */
+static int are_clips_part(const conic_splats *whole, size_t first, const conic_splats *part, size_t n) {
+  size_t at = 0;
+  while (at < whole->n_clips && whole->clips[at].splat < first)
+    at++;
+  for (size_t i = 0; i < part->n_clips; i++, at++) {
+    conic_clip moved = part->clips[i];
+    moved.splat += (uint32_t)first;
+    if (at == whole->n_clips || memcmp(&moved, &whole->clips[at], sizeof moved) != 0)
+      return 0;
+  }
+  return at == whole->n_clips || whole->clips[at].splat >= first + n;
+}
+
 /* Whether part[0 … n) is whole[first … first + n), bit for bit. */
 static int is_part(const conic_splats *whole, size_t first, const conic_splats *part, size_t n) {
   float *a[N_ARRAYS], *b[N_ARRAYS];
@@ -51,7 +65,7 @@ static int is_part(const conic_splats *whole, size_t first, const conic_splats *
   for (int i = 0; i < N_ARRAYS; i++)
     if (memcmp(a[i] + first, b[i], n * sizeof(float)) != 0)
       return 0;
-  return part->count == n;
+  return part->count == n && are_clips_part(whole, first, part, n);
 }
 
 static double dot(const double a[3], const double b[3]) {
@@ -259,8 +273,34 @@ static double distance_gyroid(const double p[3], double outward[3]) {
   return (sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x)) / (k * length);
 }
 
+/* The outside of the cube is where its greatest coordinate is. */
+static double distance_cube(const double p[3], double outward[3]) {
+  int axis = 0;
+  for (int i = 1; i < 3; i++)
+    axis = fabs(p[i]) > fabs(p[axis]) ? i : axis;
+  outward[0] = outward[1] = outward[2] = 0.0;
+  outward[axis] = p[axis] < 0.0 ? -1.0 : 1.0;
+  return fabs(p[axis]) - 0.5;
+}
+
+/* Of the missing octant, where the least one is. */
+static double distance_corner(const double p[3], double outward[3]) {
+  double d = distance_cube(p, outward);
+  int axis = 0;
+  if (fabs(d) < 1e-6) {
+    CHECK(!(p[0] > 1e-6 && p[1] > 1e-6 && p[2] > 1e-6));
+    return d;
+  }
+  for (int i = 1; i < 3; i++)
+    axis = p[i] < p[axis] ? i : axis;
+  for (int i = 0; i < 3; i++)
+    outward[i] = i == axis;
+  return p[axis];
+}
+
 static double (*const distances[CONIC_N_SCENES])(const double[3], double[3]) = {
-    distance_plane, distance_sphere, distance_torus, distance_knot, distance_terrain, distance_gyroid};
+    distance_plane,   distance_sphere, distance_torus, distance_knot,
+    distance_terrain, distance_gyroid, distance_cube,  distance_corner};
 
 static void test_surface(conic_context *context, conic_scene_type type) {
   conic_splats splats = sample_plain(context, type, 5003);
@@ -477,7 +517,7 @@ static void test_checkerboard(conic_context *context) {
 }
 
 int main(void) {
-  static const size_t closed_counts[CONIC_N_SCENES] = {20011, 20011, 20011, 20011, 60013, 700001};
+  static const size_t closed_counts[CONIC_N_SCENES] = {20011, 20011, 20011, 20011, 60013, 700001, 20011, 20011};
   conic_context *context = check_context(2);
   test_refusals(context);
   for (int type = 0; type < CONIC_N_SCENES; type++) {

@@ -57,12 +57,17 @@ typedef struct conic_repairs {
   size_t duplicate; /* coincident with an earlier point: kept, but no neighbour of it */
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
+  size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
 } conic_repairs;
 
 typedef struct conic_estimate_options {
   size_t size;      /* sizeof(conic_estimate_options), set by the init function */
   int n_neighbours; /* k, 6 to 64 */
   float cutoff;     /* F_g: the estimated outline is F_g standard deviations */
+
+  /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
+   * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
+  double feature_angle_deg;
 } conic_estimate_options;
 
 CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
@@ -90,7 +95,8 @@ typedef struct conic_write_options {
   size_t size;                 /* sizeof(conic_write_options), set by the init function */
   conic_ply_encoding encoding; /* binary little endian by default */
   int double_positions;        /* write positions as double; also done when the first batch's origin is not zero */
-  int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long */
+  int circles;                 /* write `nx ny nz radius` instead of the axes: for splats whose axes are equally long,
+                                  and not in a file with clip lines, which need the axes */
   float cutoff;                /* F_g, for that radius */
 } conic_write_options;
 

@@ -19,16 +19,22 @@ typedef enum conic_scene_type {
   CONIC_SCENE_TORUS = 2,   /* radii 1 and 0.4, around y */
   CONIC_SCENE_KNOT = 3,    /* a (2, 3) torus knot as a tube */
   CONIC_SCENE_TERRAIN = 4, /* an island of fractal heights over [-1, 1]², y up, coloured by height and slope */
-  CONIC_SCENE_GYROID = 5   /* the iso-surface in the cube [-1, 1]³, 22 periods: on average over 20 sheets deep.
+  CONIC_SCENE_GYROID = 5,  /* the iso-surface in the cube [-1, 1]³, 22 periods: on average over 20 sheets deep.
                               Resolved from some 4 million splats on */
+  CONIC_SCENE_CUBE = 6,    /* edge 1 around the origin, sharp: clip lines at its edges and corners */
+  CONIC_SCENE_CORNER = 7   /* the same without the octant of positive coordinates: convex and concave edges, and
+                              faces with a concave corner, where lines combine by OR */
 } conic_scene_type;
 
-#define CONIC_N_SCENES 6
+#define CONIC_N_SCENES 8
 
 /* "plane", "sphere" …; null for a number that is no scene. */
 CONIC_API const char *conic_scene_name(conic_scene_type type);
 /* One line that says what it is. */
 CONIC_API const char *conic_scene_summary(conic_scene_type type);
+
+/* Which optional arrays a scene's splats have: bits of conic_splats_field; 0 for a number that is no scene. */
+CONIC_API unsigned conic_scene_fields(conic_scene_type type);
 
 typedef struct conic_scene_options {
   size_t size; /* sizeof(conic_scene_options), set by the init function */
@@ -52,8 +58,9 @@ typedef struct conic_scene conic_scene;
 CONIC_API conic_status conic_scene_create(conic_context *context, const conic_scene_options *options,
                                           conic_scene **scene);
 
-/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with tangents
- * and colours for at least n and which gets the count n; other arrays are left as they are. Circles: outline radius 1.5
+/* Samples `n` splats of the scene from number `first` on into `splats`, which the caller has allocated with the
+ * arrays of conic_scene_fields for at least n and which gets the count n; other arrays are left as they are. Clip lines
+ * are made for every splat that a sharp edge is nearer to than twice its outline's radius. Circles: outline radius 1.5
  * × sqrt(area / count). Errors: ARGUMENT, CANCELLED. */
 CONIC_API conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, conic_splats *splats);
 

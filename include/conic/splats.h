@@ -15,6 +15,22 @@
 extern "C" {
 #endif
 
+/* How the two lines of a splat combine. */
+typedef enum conic_clip_operator {
+  CONIC_CLIP_AND = 0, /* what both keep is drawn: a convex corner */
+  CONIC_CLIP_OR = 1   /* what either keeps: a concave one */
+} conic_clip_operator;
+
+/* The clip lines of one splat, in its own plane: a line (a, b, c) keeps the points p + u·t_u + v·t_v with
+ * a·u + b·v + c ≥ 0. A line that is not finite, or whose a and b are both 0, is none, and is left out
+ * (docs/picture.md, Clip lines). */
+typedef struct conic_clip {
+  uint32_t splat;     /* its index in the set */
+  uint16_t n_lines;   /* 1 or 2 */
+  uint16_t operation; /* conic_clip_operator; of two lines */
+  float lines[2][3];
+} conic_clip;
+
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
  * by a function of the library (then release it so). Optional arrays are null when absent. An optional
  * three-component array is there in all three components or in none. */
@@ -38,6 +54,11 @@ typedef struct conic_splats {
 
   /* Multiplies the weight of a splat; optional (null: 1). */
   float *opacity;
+
+  /* Clip lines, for the splats that have some; optional (null: none). Records in ascending order of `splat`, at most
+   * one a splat and all below `count`. */
+  size_t n_clips;
+  conic_clip *clips;
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */
@@ -45,11 +66,13 @@ typedef enum conic_splats_field {
   CONIC_SPLATS_TANGENTS = 1,
   CONIC_SPLATS_NORMALS = 2,
   CONIC_SPLATS_COLORS = 4,
-  CONIC_SPLATS_OPACITIES = 8
+  CONIC_SPLATS_OPACITIES = 8,
+  CONIC_SPLATS_CLIPS = 16
 } conic_splats_field;
 
 /* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents
- * undefined, origin zero. On failure *splats is empty. Errors: ARGUMENT, MEMORY. */
+ * undefined, origin zero. Of clip lines there is room for one record a splat, and n_clips is 0. On failure *splats is
+ * empty. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t count, unsigned fields,
                                              conic_splats *splats);
 
@@ -57,9 +80,13 @@ CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t coun
 CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
 
 /* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
- * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs). `more` is
- * left as it was; on failure `splats` is too. Errors: MEMORY. */
+ * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; no clip
+ * lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
+
+/* Takes away the clip lines that are none, and those whose record is out of order, names no splat of the set or has no
+ * or too many lines: what is left is what the renderer draws. Returns how many records were changed or dropped. */
+CONIC_API size_t conic_splats_repair_clips(conic_splats *splats);
 
 /* Releases the arrays and leaves an empty set; a set of zero bytes is allowed. */
 CONIC_API void conic_splats_release(conic_context *context, conic_splats *splats);

@@ -1,0 +1,78 @@
+/* One row of a tile's blocks of 4 × 4 pixels, the unit of the passes. What they hand to each other stays in the nearest
+ * caches: visibility goes splat by splat and keeps its fragments, block by block; accumulation then takes a block's
+ * fragments one after the other, with the sums in registers. */
+#ifndef RASTER_BAND_H
+#define RASTER_BAND_H
+
+#include "conic/image.h"
+#include "raster/projected.h"
+
+#define CONIC_NO_SPLAT 0xFFFFFFFFu
+
+/* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
+#define CONIC_LEAST_WEIGHT 0x1p-60f
+
+/* Pixels of a block, column by column: pixel l is column l / 4, row l % 4. Blocks lie at multiples of 4 of the image,
+ * as boxes are rounded to; tiles are multiples of 4, so that no tile size moves a block. */
+#define CONIC_BLOCK_EDGE 4
+#define CONIC_BLOCK_PIXELS 16
+
+/* The greatest edge of a tile, and how many blocks that is. */
+#define CONIC_GREATEST_TILE 64
+#define CONIC_BAND_BLOCKS 16
+
+/* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
+#define CONIC_KEPT_SPLATS 128
+
+typedef struct conic_kept_fragments {
+  float q[CONIC_BLOCK_PIXELS];
+  float seen_iz[CONIC_BLOCK_PIXELS]; /* max of the splat's and its plane's; -1 where not covered */
+} conic_kept_fragments;
+
+/* What visibility found in a block, and blending reads. The last place is for what is not kept. */
+typedef struct conic_kept {
+  conic_kept_fragments fragments[CONIC_KEPT_SPLATS + 1];
+  float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of special ones: all but ellipses without clip lines */
+  uint32_t footprint[CONIC_KEPT_SPLATS + 1];
+  float amplitude[CONIC_KEPT_SPLATS + 1]; /* the footprint's */
+  float threshold[CONIC_BLOCK_PIXELS];    /* max of s·min(iz, iz_plane) over what covers the pixel, at least 0 */
+} conic_kept;
+
+/* The sums over a block's visible splats, 0 where there is none. Splats are named by their footprint. */
+typedef struct conic_block_sums {
+  float weight[CONIC_BLOCK_PIXELS];
+  float color[3][CONIC_BLOCK_PIXELS], normal[3][CONIC_BLOCK_PIXELS];
+  uint32_t heaviest[CONIC_BLOCK_PIXELS]; /* whose weight is the largest, the first of equals */
+  uint32_t nearest[CONIC_BLOCK_PIXELS];  /* whose iz is the largest; only where the frame keeps indices */
+  uint32_t count[CONIC_BLOCK_PIXELS];    /* how many; likewise */
+} conic_block_sums;
+
+/* Where the nearest splat wins: its fragments; iz is 0 where there is none. */
+typedef struct conic_nearest_fragments {
+  float iz[CONIC_BLOCK_PIXELS], q[CONIC_BLOCK_PIXELS], scale[CONIC_BLOCK_PIXELS];
+  uint32_t footprint[CONIC_BLOCK_PIXELS];
+} conic_nearest_fragments;
+
+typedef struct conic_band {
+  const conic_view *view;
+  const conic_projected *projected;
+  const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order; bit c of the word: block c */
+  size_t n;
+  int x, y, n_blocks;              /* its first pixel in the image */
+  int keeps_indices;               /* the image wants counts or ids */
+  int has_special;                 /* visibility has met rays or clip lines */
+  uint64_t n_fragments, n_covered; /* found by visibility and by resolving, all bands before included */
+  /* For each block: */
+  size_t n_kept[CONIC_BAND_BLOCKS];   /* so many splats are in `kept`; */
+  size_t not_kept[CONIC_BAND_BLOCKS]; /* the first of the band's that covers a pixel and is not, or n */
+  conic_kept *kept;
+  conic_nearest_fragments *nearest;
+  conic_block_sums *sums;
+} conic_band;
+
+/* Nothing covers the block. */
+static inline int conic_block_is_empty(const conic_band *band, int block) {
+  return band->n_kept[block] == 0 && band->not_kept[block] == band->n;
+}
+
+#endif

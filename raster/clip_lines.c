@@ -1,0 +1,85 @@
+#include "raster/clip_lines.h"
+
+#include "core/clip.h"
+
+/* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */
+#define OVERLAP_PX (1.0 / 256.0)
+
+static const conic_clip_record keeps_all = {{1.0f, 1.0f}, {0.0f, 0.0f}, {0.0f, 0.0f}, 0, 0};
+
+static double row_times(const double m[3], const float *const v[3], size_t i) {
+  return (m[0] * (double)v[0][i] + m[1] * (double)v[1][i]) + m[2] * (double)v[2][i];
+}
+
+static void cross(const double a[3], const double b[3], double result[3]) {
+  result[0] = a[1] * b[2] - a[2] * b[1];
+  result[1] = a[2] * b[0] - a[0] * b[2];
+  result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* The columns of M's adjugate, t_v × p, p × t_u, t_u × t_v, in double from the splat itself; returns the sign of |M|.
+ */
+static double adjugate(const conic_view *view, const conic_splats *splats, size_t i, double columns[3][3]) {
+  double p[3], tu[3], tv[3];
+  for (int row = 0; row < 3; row++) {
+    const double *m = view->rotation[row];
+    p[row] = row_times(m, (const float *const *)splats->position, i) + view->translation[row];
+    tu[row] = row_times(m, (const float *const *)splats->tangent_u, i);
+    tv[row] = row_times(m, (const float *const *)splats->tangent_v, i);
+  }
+  cross(tv, p, columns[0]);
+  cross(p, tu, columns[1]);
+  cross(tu, tv, columns[2]);
+  double determinant = (p[0] * columns[2][0] + p[1] * columns[2][1]) + p[2] * columns[2][2];
+  return determinant > 0.0 ? 1.0 : determinant < 0.0 ? -1.0 : 0.0;
+}
+
+/* A line on the screen, from m = adj(M)·lᵀ. Returns 0 where it is none there: of a plane seen exactly from its edge, or
+ * through the eye. */
+static int set_line(const conic_view *view, const conic_footprint *footprint, const double columns[3][3], double sign,
+                    const float line[3], conic_clip_record *record, int i) {
+  double m[3];
+  for (int axis = 0; axis < 3; axis++)
+    m[axis] =
+        ((double)line[0] * columns[0][axis] + (double)line[1] * columns[1][axis]) + (double)line[2] * columns[2][axis];
+  double by_x = m[0] / view->fx, by_y = m[1] / view->fy;
+  double length = sqrt(by_x * by_x + by_y * by_y);
+  if (sign == 0.0 || !(length > 0.0) || !(length * 0.0 == 0.0))
+    return 0;
+  /* The reference is where dx = dy = 0. */
+  double x = ((double)footprint->x + 0.5 - (double)footprint->dx0) - view->cx;
+  double y = ((double)footprint->y + 0.5 - (double)footprint->dy0) - view->cy;
+  double distance = ((x * by_x + y * by_y) + m[2]) / length;
+  double d0 = sign * distance + OVERLAP_PX;
+  d0 = d0 > -1e9 ? d0 < 1e9 ? d0 : 1e9 : -1e9; /* farther than any pixel */
+  record->d0[i] = (float)d0;
+  record->by_x[i] = (float)(sign * by_x / length);
+  record->by_y[i] = (float)(sign * by_y / length);
+  return 1;
+}
+
+static conic_clip_record project_clip(const conic_view *view, const conic_splats *splats, const conic_clip *clip,
+                                      const conic_footprint *footprint) {
+  double columns[3][3], sign = adjugate(view, splats, clip->splat, columns);
+  conic_clip_record record = keeps_all;
+  int n_lines = 0;
+  for (int i = 0; i < clip->n_lines && i < 2; i++)
+    if (conic_clip_is_line(clip->lines[i]))
+      n_lines += set_line(view, footprint, (const double(*)[3])columns, sign, clip->lines[i], &record, n_lines);
+  record.is_or = n_lines == 2 && clip->operation == CONIC_CLIP_OR;
+  return record;
+}
+
+void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
+  const conic_chunk *chunk = &projected->chunks[i_chunk];
+  size_t i_clip = conic_clip_find(splats, chunk->first);
+  for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn && i_clip < splats->n_clips; i++) {
+    while (i_clip < splats->n_clips && splats->clips[i_clip].splat < projected->surfaces[i].index)
+      i_clip++;
+    if (i_clip == splats->n_clips || splats->clips[i_clip].splat != projected->surfaces[i].index)
+      continue;
+    conic_footprint *footprint = &projected->footprints[i];
+    projected->clips[i] = project_clip(view, splats, &splats->clips[i_clip], footprint);
+    footprint->s3 = -footprint->s3;
+  }
+}
