@@ -22,6 +22,8 @@ void conic_octree_destroy(conic_octree *octree) {
   conic_context *context = octree->context;
   conic_splats_release(context, &octree->owned);
   conic_memory_release(context, octree->owned_index);
+  conic_memory_release(context, octree->owned_clips);
+  conic_memory_release(context, octree->clip_of_point);
   conic_memory_release(context, octree->owned_codes);
   conic_memory_release(context, octree->owned_leaf_codes);
   conic_memory_release(context, octree->drawn);
@@ -33,6 +35,19 @@ void conic_octree_destroy(conic_octree *octree) {
   conic_memory_release(context, octree->first_leaf);
   conic_mapping_close(context, &octree->mapping);
   conic_memory_release(context, octree);
+}
+
+conic_status conic_octree_index_clips(conic_octree *octree) {
+  if (octree->n_clips == 0)
+    return CONIC_OK;
+  octree->clip_of_point = conic_memory_allocate(octree->context, octree->n_points, sizeof *octree->clip_of_point);
+  if (!octree->clip_of_point)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < octree->n_points; i++)
+    octree->clip_of_point[i] = CONIC_NO_CLIP;
+  for (size_t i = 0; i < octree->n_clips; i++)
+    octree->clip_of_point[octree->clips[i].splat] = (uint32_t)i;
+  return CONIC_OK;
 }
 
 /* The nodes on the way from the root to the one that is looked at. */
@@ -246,9 +261,13 @@ static void copy_leaves(void *data, size_t i_chunk, int i_thread) {
 conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats) {
   const conic_splats *leaves = &octree->leaves;
   leaf_copy copy = {octree, splats};
-  conic_status status = conic_splats_allocate(octree->context, octree->n_points, conic_splats_fields(leaves), splats);
+  unsigned fields = conic_splats_fields(leaves) | (octree->n_clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u);
+  conic_status status = conic_splats_allocate(octree->context, octree->n_points, fields, splats);
   if (status != CONIC_OK)
     return status;
+  splats->n_clips = octree->n_clips;
+  if (octree->n_clips)
+    memcpy(splats->clips, octree->clips, octree->n_clips * sizeof *splats->clips);
   memcpy(splats->origin, leaves->origin, sizeof splats->origin);
   for (size_t i = 0; leaves->count < octree->n_points && i < octree->n_points; i++) /* those that are not kept */
     blank(splats, i);

@@ -6,6 +6,8 @@
 #include "lod/mapping.h"
 #include "lod/octree_code.h"
 
+#define CONIC_NO_CLIP UINT32_MAX
+
 /* No inner node is deeper; splitting at the mean gives up well before (lod/octree_split.c). */
 enum { CONIC_OCTREE_DEPTH = 128 };
 
@@ -31,7 +33,10 @@ struct conic_octree {
   size_t n_points, n_leaves, n_nodes;
   conic_splats leaves; /* n_points of them: those of the hierarchy, then those that cannot be drawn */
   uint32_t *index;     /* of each in the input */
-  uint8_t *codes;      /* CONIC_NODE_BYTES a node */
+  size_t n_clips;
+  conic_clip *clips;       /* of the input, by index in it; the leaves' own are null */
+  uint32_t *clip_of_point; /* record of each point of the input, or CONIC_NO_CLIP; null where there are no clip lines */
+  uint8_t *codes;          /* CONIC_NODE_BYTES a node */
 
   /* What the codes give, once it is asked for. */
   conic_drawn_node *drawn;
@@ -50,6 +55,7 @@ struct conic_octree {
   /* Where all that lies: in memory of its own, or in the file's. What is not in memory of its own is null here. */
   conic_splats owned;
   uint32_t *owned_index;
+  conic_clip *owned_clips;
   unsigned char *owned_codes, *owned_leaf_codes;
   conic_mapping mapping;
 };
@@ -63,6 +69,15 @@ double conic_octree_near(const conic_octree *octree);
 
 /* Whether all colours of a set are those of 8-bit codes. */
 int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats);
+
+/* Finds the clip lines of each point. Errors: MEMORY. */
+conic_status conic_octree_index_clips(conic_octree *octree);
+
+/* The clip lines of leaf i, or null. */
+static inline const conic_clip *conic_octree_clip(const conic_octree *octree, size_t i_leaf) {
+  uint32_t i = octree->clip_of_point ? octree->clip_of_point[octree->index[i_leaf]] : CONIC_NO_CLIP;
+  return i == CONIC_NO_CLIP ? NULL : &octree->clips[i];
+}
 
 /* The size of the file that holds it. */
 uint64_t conic_octree_file_bytes(const conic_octree *octree);

@@ -192,6 +192,10 @@ static conic_status quantize(conic_octree *octree) {
     return status;
   for (int axis = 0; axis < 3; axis++)
     memcpy(before.position[axis], leaves->position[axis], leaves->count * sizeof(float));
+  if (octree->n_clips) {
+    conic_splats_release(context, &before);
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "octree: splats with clip lines are not quantised");
+  }
   conic_leaf_encode(context, &octree->scale, leaves, octree->owned_leaf_codes);
   conic_leaf_decode(context, &octree->scale, octree->leaf_codes, leaves);
   double greatest2 = 0.0;
@@ -240,6 +244,9 @@ static conic_status build(conic_octree *octree, const conic_octree_options *opti
     status = split(octree);
   if (status != CONIC_OK)
     return status;
+  status = conic_octree_index_clips(octree);
+  if (status != CONIC_OK)
+    return status;
   octree->leaves = *leaves;
   choose_scale(octree, (double)options->cutoff);
   if (options->quantize)
@@ -276,8 +283,13 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
   }
   made->context = context;
   made->n_points = splats->count;
+  conic_splats_repair_clips(splats);
   made->owned = *splats;
   memset(splats, 0, sizeof *splats);
+  made->n_clips = made->owned.n_clips; /* they go by the index in the input, not by leaf */
+  made->clips = made->owned_clips = made->owned.clips;
+  made->owned.clips = NULL;
+  made->owned.n_clips = 0;
   for (int axis = 0; axis < 3; axis++) { /* axes say it all */
     conic_memory_release(context, made->owned.normal[axis]);
     made->owned.normal[axis] = NULL;

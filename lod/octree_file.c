@@ -17,6 +17,9 @@ enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'};
 
+/* The records of clip lines are in the file as they are in memory. */
+_Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");
+
 /* The header as it is in memory; in the file each member is little-endian, one after the other. */
 typedef struct header {
   uint32_t version, flags;
@@ -25,6 +28,7 @@ typedef struct header {
   float low[3], high[3];
   float cutoff, color;
   double length, splat_length, position_error;
+  uint64_t n_clips;
   uint64_t body_sum; /* over the arrays' sums */
 } header;
 
@@ -39,7 +43,7 @@ typedef struct field {
 static const field fields[] = {FIELD(version, 1),        FIELD(flags, 1),   FIELD(n_points, 1), FIELD(n_leaves, 1),
                                FIELD(n_nodes, 1),        FIELD(origin, 3),  FIELD(low, 3),      FIELD(high, 3),
                                FIELD(cutoff, 1),         FIELD(color, 1),   FIELD(length, 1),   FIELD(splat_length, 1),
-                               FIELD(position_error, 1), FIELD(body_sum, 1)};
+                               FIELD(position_error, 1), FIELD(n_clips, 1), FIELD(body_sum, 1)};
 
 static uint64_t get_bits(const unsigned char *from, size_t n_bytes) {
   uint64_t bits = 0;
@@ -116,6 +120,8 @@ static layout lay_out_file(const header *h) {
     add_array(&l, h->n_points, h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float));
   if (h->flags & FLAG_OPACITIES)
     add_array(&l, h->n_points, sizeof(float));
+  if (h->n_clips)
+    add_array(&l, h->n_clips, sizeof(conic_clip));
   return l;
 }
 
@@ -133,6 +139,7 @@ static header describe_header(const conic_octree *octree) {
   h.length = octree->scale.length;
   h.splat_length = octree->splat_length;
   h.position_error = octree->position_error;
+  h.n_clips = octree->n_clips;
   return h;
 }
 
@@ -172,7 +179,9 @@ static void list_sources(const conic_octree *octree, unsigned char *const color_
   n += 9;
   for (int channel = 0; channel < 3 && leaves->color[0]; channel++)
     sources[n++] = octree->has_color_codes ? (const void *)color_codes[channel] : leaves->color[channel];
-  sources[n] = leaves->opacity;
+  if (leaves->opacity)
+    sources[n++] = leaves->opacity;
+  sources[n] = octree->clips;
 }
 
 static conic_status encode_colors(const conic_octree *octree, unsigned char *codes[3]) {
@@ -277,6 +286,8 @@ static const char *check_header(const header *h) {
     return "unknown flags";
   if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
     return "counts that do not go together";
+  if (h->n_clips > h->n_points || (h->n_clips && (h->flags & FLAG_QUANTIZED)))
+    return "clip lines where there can be none";
   if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
@@ -335,7 +346,7 @@ void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
   transfer(&h, bytes, 0);
   layout l = {0};
-  if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves)
+  if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
   if (l.n > 0 && l.n_bytes == n_bytes) {
     unsigned char sums[8 * MOST_ARRAYS];
@@ -400,7 +411,10 @@ static conic_status read_leaves(conic_octree *octree, const header *h, const lay
     next += 3;
   }
   if (h->flags & FLAG_OPACITIES)
-    leaves->opacity = array_at(octree, l, next);
+    leaves->opacity = array_at(octree, l, next++);
+  octree->n_clips = (size_t)h->n_clips;
+  if (h->n_clips)
+    octree->clips = array_at(octree, l, next);
   return CONIC_OK;
 }
 
@@ -422,6 +436,18 @@ static conic_status check_index(const conic_octree *octree, const char *path, co
   return status;
 }
 
+/* Records in order, each of a point, with lines. */
+static conic_status check_clips(const conic_octree *octree, const char *path) {
+  for (size_t i = 0; i < octree->n_clips; i++) {
+    const conic_clip *clip = &octree->clips[i];
+    if (clip->splat >= octree->n_points || (i > 0 && clip->splat <= clip[-1].splat) || clip->n_lines < 1 ||
+        clip->n_lines > 2 || clip->operation > CONIC_CLIP_OR)
+      return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: clip lines out of order or range (at byte %zu)", path,
+                        (size_t)((const unsigned char *)clip - octree->mapping.bytes));
+  }
+  return CONIC_OK;
+}
+
 static conic_status read_structure(conic_octree *octree, const char *path, const layout *l) {
   conic_context *context = octree->context;
   octree->end = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->end);
@@ -432,7 +458,10 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
   if (wrong)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
                       l->arrays[ARRAY_CODES].offset);
-  return check_index(octree, path, l);
+  conic_status status = check_index(octree, path, l);
+  if (status == CONIC_OK)
+    status = check_clips(octree, path);
+  return status == CONIC_OK ? conic_octree_index_clips(octree) : status;
 }
 
 static conic_status read_octree(conic_octree *octree, const char *path) {

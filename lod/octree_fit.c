@@ -181,6 +181,8 @@ static conic_octree_disc leaf_disc(const conic_octree *octree, size_t i) {
     disc.u[axis] = octree->scale.cutoff * (double)octree->leaves.tangent_u[axis][i];
     disc.v[axis] = octree->scale.cutoff * (double)octree->leaves.tangent_v[axis][i];
   }
+  if (conic_octree_clip(octree, i)) /* what is left of it may be at its other end */
+    disc.error = 2.0 * sqrt(dot(disc.u, disc.u) + dot(disc.v, disc.v));
   return disc;
 }
 

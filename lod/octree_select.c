@@ -22,6 +22,8 @@ typedef struct scratch {
   uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or node_bit and a node */
   size_t sources_room;
   float *arrays; /* the selection's */
+  conic_clip *clips;
+  size_t clips_room;
 } scratch;
 
 static const uint32_t node_bit = UINT32_C(1) << 31;
@@ -46,6 +48,7 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
   scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->arrays);
+    conic_memory_release(context, kept->clips);
     conic_memory_release(context, kept->pixels);
     conic_memory_release(context, kept->pieces);
     conic_memory_release(context, kept->sources);
@@ -266,6 +269,40 @@ static conic_status place_pieces(selecting *s) {
   return CONIC_OK;
 }
 
+/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
+static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
+  if (*memory && *room >= count)
+    return CONIC_OK;
+  conic_memory_release(context, *memory);
+  *memory = conic_memory_allocate(context, count, size);
+  *room = *memory ? count : 0;
+  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* The clip lines of the leaves that were chosen, in their new order. */
+static conic_status take_clips(selecting *s) {
+  const conic_octree *octree = s->octree;
+  conic_selection *selection = s->selection;
+  conic_splats *splats = &selection->splats;
+  splats->n_clips = 0;
+  splats->clips = NULL;
+  if (octree->n_clips == 0)
+    return CONIC_OK;
+  conic_status status = keep_room(octree->context, (void **)&s->scratch->clips, &s->scratch->clips_room,
+                                  octree->n_clips, sizeof *s->scratch->clips);
+  if (status != CONIC_OK)
+    return status;
+  splats->clips = s->scratch->clips;
+  for (size_t k = 0; k < splats->count; k++) {
+    uint32_t id = selection->ids[k];
+    if (id >= octree->n_points || octree->clip_of_point[id] == CONIC_NO_CLIP)
+      continue;
+    splats->clips[splats->n_clips] = octree->clips[octree->clip_of_point[id]];
+    splats->clips[splats->n_clips++].splat = (uint32_t)k;
+  }
+  return CONIC_OK;
+}
+
 static conic_status select_splats(selecting *s) {
   conic_context *context = s->octree->context;
   conic_status status = list_pieces(s);
@@ -276,17 +313,7 @@ static conic_status select_splats(selecting *s) {
   status = place_pieces(s);
   if (status == CONIC_OK)
     conic_parallel_for(context, n_tasks, fill_task, s);
-  return status;
-}
-
-/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
-static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
-  if (*memory && *room >= count)
-    return CONIC_OK;
-  conic_memory_release(context, *memory);
-  *memory = conic_memory_allocate(context, count, size);
-  *room = *memory ? count : 0;
-  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return status == CONIC_OK ? take_clips(s) : status;
 }
 
 static conic_status keep_scratch(const conic_octree *octree, conic_selection *selection) {

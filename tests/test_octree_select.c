@@ -266,6 +266,62 @@ static void test_zero(void) {
   fixture_close(&f);
 }
 
+/* Clip lines go with their splats: through a file, in error 0 and in what is chosen. */
+static void test_clips(void) {
+  enum { N = 400 };
+  fixture f = fixture_open(2);
+  conic_selection selection = {0};
+  char path[] = "/tmp/conic-test-octree-XXXXXX";
+  conic_splats splats, leaves;
+  conic_octree *octree;
+  conic_octree_options options;
+  CHECK(mkstemp(path) >= 0);
+  fixture_scene(&f, CONIC_SCENE_TORUS, N);
+  CHECK_OK(
+      conic_splats_allocate(f.context, N, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS, &splats));
+  for (int axis = 0; axis < 3; axis++) {
+    memcpy(splats.position[axis], f.splats.position[axis], N * sizeof(float));
+    memcpy(splats.tangent_u[axis], f.splats.tangent_u[axis], N * sizeof(float));
+    memcpy(splats.tangent_v[axis], f.splats.tangent_v[axis], N * sizeof(float));
+    memcpy(splats.color[axis], f.splats.color[axis], N * sizeof(float));
+  }
+  for (uint32_t i = 0; i < N; i += 3)
+    splats.clips[splats.n_clips++] =
+        (conic_clip){.splat = i, .n_lines = 1, .operation = 0, .lines = {{1.0f, 0.5f, 0.1f * (float)(i % 7)}}};
+  conic_splats_release(f.context, &f.splats);
+  f.splats = splats;
+  octree_frame(&f, 200, 20, 30, 1.0);
+  fixture_render(&f);
+  uint64_t hash = conic_image_hash(&f.image, CONIC_PLANE_RGBA);
+  octree = octree_build(f.context, &f.splats, 0);
+  CHECK_OK(conic_octree_write(octree, path));
+  conic_octree_destroy(octree);
+  CHECK_OK(conic_octree_read(f.context, path, &octree));
+  octree_select(octree, &f, 1e-20, 0, &selection);
+  CHECK(selection.splats.count == N && selection.splats.n_clips == f.splats.n_clips);
+  for (size_t i = 0; i < selection.splats.n_clips; i++) {
+    const conic_clip *clip = &selection.splats.clips[i];
+    uint32_t id = selection.ids[clip->splat];
+    CHECK(id % 3 == 0 && clip->lines[0][2] == 0.1f * (float)(id % 7));
+    CHECK(i == 0 || clip->splat > clip[-1].splat);
+  }
+  octree_select(octree, &f, 30.0, 0, &selection);
+  CHECK(selection.splats.n_clips < f.splats.n_clips);
+  CHECK_OK(conic_octree_leaves(octree, &leaves));
+  conic_splats copy = octree_copy(f.context, &leaves);
+  conic_splats_release(f.context, &f.splats);
+  f.splats = leaves;
+  fixture_render(&f);
+  CHECK(conic_image_hash(&f.image, CONIC_PLANE_RGBA) == hash);
+  conic_octree_destroy(octree);
+  conic_octree_options_init(&options);
+  options.quantize = 1;
+  CHECK(conic_octree_build(f.context, &copy, &options, &octree) == CONIC_ERROR_UNSUPPORTED);
+  conic_selection_release(f.context, &selection);
+  remove(path);
+  fixture_close(&f);
+}
+
 static void test_refusals(void) {
   fixture f = fixture_open(1);
   conic_selection selection = {0};
@@ -300,6 +356,7 @@ int main(void) {
     test_cull(60.0, cull_back);
   }
   test_zero();
+  test_clips();
   test_refusals();
   return check_result();
 }
