@@ -153,8 +153,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
                      command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
-  if (job->options.tile % 4)
-    return cli_usage("%s: --tile takes a multiple of 4", command);
+  if (job->options.tile & (job->options.tile - 1))
+    return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
   if (strncmp(raw->device, "opencl", 6) == 0)
     return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
   if (strcmp(raw->device, "cpu") != 0)
@@ -279,7 +279,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
        .parse = parse_planes},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
-      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 64},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_words},

@@ -11,8 +11,8 @@ typedef struct conic_tile_entry {
 } conic_tile_entry;
 
 typedef struct conic_bins {
-  int tile;            /* edge in pixels */
-  uint64_t reciprocal; /* ⌈2³² / tile⌉ */
+  int tile;      /* edge in pixels */
+  int tile_bits; /* its binary logarithm */
   int n_tiles_x, n_tiles_y;
   size_t n_tiles;
   uint32_t *counts;   /* [chunk][tile]: first how many, then where the chunk's next entry goes */

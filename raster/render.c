@@ -140,7 +140,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   conic_renderer *renderer = f->renderer;
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
-  f->bins.reciprocal = ((UINT64_C(1) << 32) + (unsigned)tile - 1) / (unsigned)tile;
+  f->bins.tile_bits = __builtin_ctz((unsigned)tile);
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;

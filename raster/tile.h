@@ -6,7 +6,7 @@
 
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
-  uint32_t *band_indices[2], *band_words[2]; /* of this row of blocks, and of the next */
+  uint32_t *indices, *words; /* of a row of blocks */
   conic_kept *kept;
   conic_nearest_fragments *nearest;
   conic_block_sums *sums;

@@ -145,10 +145,12 @@ CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint
   f->covered &= inside;
 }
 
-CONIC_INLINE void prefetch_footprint(const sources *from, size_t i) {
+/* What the splat after the next few is read from, in this pass and the next. */
+CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
   enum { AHEAD = 16 };
-  size_t later = i + AHEAD < from->n ? i + AHEAD : i;
-  __builtin_prefetch(&from->footprints[from->indices[later]]);
+  uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
+  __builtin_prefetch(&from->footprints[later]);
+  __builtin_prefetch(&from->surfaces[later]);
 }
 
 CONIC_INLINE void empty_blocks(conic_band *band) {
@@ -211,7 +213,7 @@ static void visibility(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++)
     memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
   for (size_t i = 0; i < from.n; i++) {
-    prefetch_footprint(&from, i);
+    prefetch_splat(&from, i);
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_splat(band, &from, &s, i, room, 0);
     else {
@@ -444,7 +446,7 @@ static void nearest(conic_band *band) {
   empty_blocks(band);
   memset(band->nearest, 0, (size_t)band->n_blocks * sizeof *band->nearest);
   for (size_t i = 0; i < from.n; i++) {
-    prefetch_footprint(&from, i);
+    prefetch_splat(&from, i);
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_nearest(band, &from, &s, i, 0);
     else

@@ -83,7 +83,7 @@ typedef struct conic_render_options {
   int has_background;
   float background[3]; /* linear RGB behind the picture, which then is opaque */
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
-  int tile;            /* tile edge in pixels, a multiple of 4 from 8 to 64; changes no bit of the image */
+  int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
 } conic_render_options;
 
