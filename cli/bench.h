@@ -69,7 +69,7 @@ enum { CLI_BENCH_MOST_FRAMES = 1000 };
 
 typedef struct cli_bench_line {
   /* What is measured. */
-  char name[64]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
+  char name[96]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
   char scene_name[32];
   int i_scene, i_method;
   conic_isa isa;

@@ -91,7 +91,7 @@ static void check_defined(const fixture *f) {
 }
 
 int main(void) {
-  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 12};
+  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 8};
   uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
