@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", "affine", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
@@ -255,8 +255,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
-      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
-       .choices = method_words},
+      {"method", CLI_CHOICE, &method, "NAME",
+       "how a splat is projected and weighed: point, disc, affine, conic, ray, auto [conic]", .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
