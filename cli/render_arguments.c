@@ -194,6 +194,12 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     answer = check_deep(job);
   if (answer != CLI_DONE)
     return answer;
+  if (cli_lod_is_wanted(job) && job->deep_path)
+    return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
+  if (job->error_px > 0.0 && job->budget)
+    return cli_usage("render: --error and --budget are two ways to choose; give one of both");
+  if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
+    return cli_usage("render: --error and --budget need a single .cot as input (conic octree makes one)");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
   return cli_check_outputs(session, paths, job->n_outputs + 1);
@@ -301,6 +307,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = parse_output},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"error", CLI_NUMBER, &job->error_px, "PX",
+       "of a .cot, no more splats than keep the error on the screen below this; 0: all [0]", 0, 65536},
+      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot, the N splats or fewer whose error is the least", 1,
+       4294967294.0},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);

@@ -95,6 +95,7 @@ typedef struct conic_render_options {
 CONIC_API void conic_render_options_init(conic_render_options *options);
 
 typedef struct conic_render_milliseconds {
+  double lod; /* left at 0: whoever chooses what to draw (conic/octree.h) may add it, to frame too */
   double setup, bin, visibility, accumulate, resolve, frame;
 } conic_render_milliseconds;
 
