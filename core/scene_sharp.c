@@ -7,9 +7,8 @@
 /* A face at axis = level, facing ±axis: the square [low, high]² of the two axes that follow, without its quarter of
  * positive coordinates where it is notched. */
 typedef struct box_face {
-  int axis;
+  int axis, is_notched;
   double side, level, low, high;
-  int is_notched;
 } box_face;
 
 /* A rectangle of a face, which is sampled by itself; its area in 24ths of the whole. */
@@ -27,9 +26,9 @@ typedef struct box {
   box_piece pieces[MAX_PIECES];
 } box;
 
-static const box_face cube_faces[] = {{0, -1.0, -0.5, -0.5, 0.5, 0}, {1, -1.0, -0.5, -0.5, 0.5, 0},
-                                      {2, -1.0, -0.5, -0.5, 0.5, 0}, {0, 1.0, 0.5, -0.5, 0.5, 0},
-                                      {1, 1.0, 0.5, -0.5, 0.5, 0},   {2, 1.0, 0.5, -0.5, 0.5, 0}};
+static const box_face cube_faces[] = {{0, 0, -1.0, -0.5, -0.5, 0.5}, {1, 0, -1.0, -0.5, -0.5, 0.5},
+                                      {2, 0, -1.0, -0.5, -0.5, 0.5}, {0, 0, 1.0, 0.5, -0.5, 0.5},
+                                      {1, 0, 1.0, 0.5, -0.5, 0.5},   {2, 0, 1.0, 0.5, -0.5, 0.5}};
 
 static const box cube = {
     6,
@@ -43,9 +42,9 @@ static const box cube = {
 };
 
 static const box_face corner_faces[] = {
-    {0, -1.0, -0.5, -0.5, 0.5, 0}, {1, -1.0, -0.5, -0.5, 0.5, 0}, {2, -1.0, -0.5, -0.5, 0.5, 0},
-    {0, 1.0, 0.5, -0.5, 0.5, 1},   {1, 1.0, 0.5, -0.5, 0.5, 1},   {2, 1.0, 0.5, -0.5, 0.5, 1},
-    {0, 1.0, 0.0, 0.0, 0.5, 0},    {1, 1.0, 0.0, 0.0, 0.5, 0},    {2, 1.0, 0.0, 0.0, 0.5, 0}};
+    {0, 0, -1.0, -0.5, -0.5, 0.5}, {1, 0, -1.0, -0.5, -0.5, 0.5}, {2, 0, -1.0, -0.5, -0.5, 0.5},
+    {0, 1, 1.0, 0.5, -0.5, 0.5},   {1, 1, 1.0, 0.5, -0.5, 0.5},   {2, 1, 1.0, 0.5, -0.5, 0.5},
+    {0, 0, 1.0, 0.0, 0.0, 0.5},    {1, 0, 1.0, 0.0, 0.0, 0.5},    {2, 0, 1.0, 0.0, 0.0, 0.5}};
 
 static const box corner = {
     12,

@@ -150,13 +150,13 @@ static void code_block(const leaf_job *job, size_t i_block) {
   if (job->is_encoding) {
     box = find_box(leaves, begin, end);
     for (int axis = 0; axis < 3; axis++) {
-      put_float(head + 4 * axis, box.low[axis]);
-      put_float(head + 12 + 4 * axis, box.step[axis]);
+      put_float(head + (size_t)axis * 4, box.low[axis]);
+      put_float(head + 12 + (size_t)axis * 4, box.step[axis]);
     }
   } else {
     for (int axis = 0; axis < 3; axis++) {
-      box.low[axis] = get_float(head + 4 * axis);
-      box.step[axis] = get_float(head + 12 + 4 * axis);
+      box.low[axis] = get_float(head + (size_t)axis * 4);
+      box.step[axis] = get_float(head + 12 + (size_t)axis * 4);
     }
   }
   for (size_t i = begin; i < end; i++, code += n_bytes) {
@@ -184,7 +184,8 @@ static void run_job(conic_context *context, leaf_job *job) {
 void conic_leaf_encode(conic_context *context, const conic_code_scale *scale, const conic_splats *leaves,
                        unsigned char *codes) {
   conic_splats arrays = *leaves;
-  leaf_job job = {scale, &arrays, codes, 1};
+  leaf_job job = {scale, &arrays, NULL, 1};
+  job.codes = codes;
   run_job(context, &job);
 }
 

@@ -88,7 +88,7 @@ unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes) {
   size_t i = 0;
   for (; i + 32 <= n_bytes; i += 32)
     for (int lane = 0; lane < 4; lane++)
-      lanes[lane] = mix(lanes[lane], word_at(bytes + i + 8 * lane));
+      lanes[lane] = mix(lanes[lane], word_at(bytes + i + (size_t)lane * 8));
   for (int lane = 0; lane < 4; lane++)
     sum = mix(sum, lanes[lane]);
   for (; i < n_bytes; i++)

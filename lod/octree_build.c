@@ -273,11 +273,8 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
   conic_status status = CONIC_OK;
   *octree = NULL;
   conic_octree *made = wrong ? NULL : conic_memory_allocate_zeroed(context, 1, sizeof *made);
-  if (wrong)
-    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
-  else if (!made)
-    status = CONIC_ERROR_MEMORY;
-  if (status != CONIC_OK) {
+  if (!made) {
+    status = wrong ? conic_fail(context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_ERROR_MEMORY;
     conic_splats_release(context, splats);
     return status;
   }

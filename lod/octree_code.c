@@ -1,6 +1,7 @@
 #include "lod/octree_code.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "core/color.h"
@@ -38,7 +39,7 @@ static double power_of_two(int exponent) {
 static double power(const conic_code_scale *scale, int steps, int per_octave) {
   int octaves = steps >= 0 ? steps / per_octave : -((per_octave - 1 - steps) / per_octave);
   int rest = steps - octaves * per_octave;
-  return power_of_two(octaves) * scale->octave[rest * (OCTAVE_STEPS / per_octave)];
+  return power_of_two(octaves) * scale->octave[(ptrdiff_t)rest * (OCTAVE_STEPS / per_octave)];
 }
 
 void conic_code_scale_init(double length, double cutoff, float color, conic_code_scale *scale) {

@@ -212,7 +212,7 @@ static uint64_t sum_arrays(conic_context *context, const layout *l, const void *
   unsigned char bytes[8 * MOST_ARRAYS];
   conic_parallel_for(context, (size_t)l->n, sum_task, &job);
   for (int i = 0; i < l->n; i++)
-    put_bits(bytes + 8 * i, 8, job.sums[i]);
+    put_bits(bytes + (size_t)i * 8, 8, job.sums[i]);
   return conic_checksum(bytes, 8 * (size_t)l->n);
 }
 
@@ -351,7 +351,7 @@ void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   if (l.n > 0 && l.n_bytes == n_bytes) {
     unsigned char sums[8 * MOST_ARRAYS];
     for (int i = 0; i < l.n; i++)
-      put_bits(sums + 8 * i, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
+      put_bits(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
     h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
     transfer(&h, bytes, 1);
   }

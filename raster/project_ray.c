@@ -48,8 +48,9 @@ static conic_outcome set_box(const conic_view *view, const conic_disc *disc, con
   pixels_between(top.y_px - growth, bottom.y_px + growth, view->height, &box->y_begin, &box->y_end);
   if (conic_box_is_empty(box))
     return CONIC_CULLED;
-  footprint->x = (float)((box->x_begin + box->x_end) / 2);
-  footprint->y = (float)((box->y_begin + box->y_end) / 2);
+  int x = (box->x_begin + box->x_end) / 2, y = (box->y_begin + box->y_end) / 2;
+  footprint->x = (float)x;
+  footprint->y = (float)y;
   footprint->dx0 = footprint->dy0 = 0.0f;
   return CONIC_DRAWN_RAY;
 }

@@ -11,8 +11,8 @@ static void fill_numbered(conic_context *context, conic_splats *splats, size_t c
   for (size_t i = 0; i < count; i++) {
     for (int axis = 0; axis < 3; axis++) {
       splats->position[axis][i] = axis ? 0.25f : (float)i;
-      splats->tangent_u[axis][i] = axis == 0;
-      splats->tangent_v[axis][i] = axis == 1;
+      splats->tangent_u[axis][i] = axis == 0 ? 1.0f : 0.0f;
+      splats->tangent_v[axis][i] = axis == 1 ? 1.0f : 0.0f;
     }
     if (i % 3 == 0)
       splats->clips[splats->n_clips++] = (conic_clip){.splat = (uint32_t)i,
@@ -262,7 +262,7 @@ static void drop_clips(fixture *f) {
 
 /* Every instruction set clips the same pixels. */
 static void test_isas(fixture *f, conic_method method, int passes) {
-  uint64_t state = 23, hashes[CONIC_N_PLANES];
+  uint64_t state = 23, hashes[CONIC_N_PLANES] = {0};
   fill_wild(f, &state, 3000);
   fixture_camera(f, 203, 151, 120.0);
   f->options.method = method;

@@ -33,7 +33,7 @@ static uint32_t vertex_at(conic_model *mesh, double x, double y, double z) {
 
 /* A cube of n × n squares a face, faces outwards, vertices shared across the edges. */
 static void make_cube(conic_context *context, int n, conic_model *mesh) {
-  begin_mesh(context, (size_t)(6 * n * n + 2), (size_t)(12 * n * n), mesh);
+  begin_mesh(context, (size_t)n * (size_t)n * 6 + 2, (size_t)n * (size_t)n * 12, mesh);
   for (int face = 0; face < 6; face++)
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n; j++) {
