@@ -107,7 +107,7 @@ static void test_pans(fixture *f) {
   check_run(f, "a sphere, panned", pan, 17, 1.0 / 16, (run){0.1, 0.001, 0.005});
   check_run(f, "a sphere, panned", pan, 17, 1.0 / 256, (run){0.08, 0.0005, 0.001});
   f->options.kernel.cutoff = 3.0f;
-  check_run(f, "a sphere, panned, cutoff 3", pan, 17, 1.0 / 256, (run){0.01, 0.0005, 0.001});
+  check_run(f, "a sphere, panned, cutoff 3", pan, 17, 1.0 / 256, (run){0.01, 0.002, 0.001});
   stability_sheet floor = stability_floor(0.4, 0.0, 3.0, 120);
   options_of(f, 128, 96, 110.0);
   f->options.near_z = 1e-3;
