@@ -70,6 +70,17 @@ static inline void stability_look(fixture *f, const double eye[3], const double 
   }
 }
 
+/* The pixels that one of the two covers alone and that no doubt about an outline excuses: there are none. */
+static inline size_t stability_uncovered(const conic_reference *reference, const conic_image *image) {
+  const unsigned excuses = 1u << CONIC_UNSTABLE_CUTOFF | 1u << CONIC_UNSTABLE_CLIP | 1u << CONIC_UNSTABLE_FORMULA;
+  const uint32_t *ids = image->planes[CONIC_PLANE_ID];
+  size_t n = 0;
+  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+    n += (ids[i] != CONIC_NO_ID) != (reference->planes[CONIC_PLANE_COUNT][i] > 0.0) &&
+         !(reference->unstable[i] & excuses);
+  return n;
+}
+
 /* The methods draw what the oracle says, to its bounds, in every plane; at most so large a share of the covered pixels
  * may hang on roundings. The image of the last method is left in the fixture. */
 static inline void stability_agree(fixture *f, const char *name, double unstable_share) {
@@ -90,6 +101,7 @@ static inline void stability_agree(fixture *f, const char *name, double unstable
                 conic_plane_describe((conic_plane)i)->name, verdict.planes[i].max_abs);
         check_failures++;
       }
+    CHECK(stability_uncovered(&reference, &f->image) == 0);
     if (!(share <= unstable_share)) {
       fprintf(stderr, "%s, %s: %.3g of the pixels are unstable\n", name, conic_method_name((conic_method)method),
               share);
