@@ -11,6 +11,7 @@ typedef struct diff_job {
   cli_session *session;
   const char *paths[2];
   const char *heatmap_path;
+  int is_flip_map;
   double max_abs, min_psnr;
   int has_max_abs, has_min_psnr;
 
@@ -46,6 +47,7 @@ static void write_planes(cli_json *json, const conic_difference *difference) {
     cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
     cli_json_number(json, "max_abs", difference->planes[i].max_abs);
     cli_json_number(json, "rmse", difference->planes[i].rmse);
+    cli_json_number(json, "p999", difference->planes[i].p999);
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -63,9 +65,14 @@ static int write_statistics(const diff_job *job) {
   cli_json_bool(json, "identical", difference->identical);
   cli_json_number(json, "max_abs", has_values ? difference->max_abs : NAN);
   cli_json_number(json, "rmse", has_values ? difference->rmse : NAN);
+  cli_json_number(json, "p999", has_values ? difference->p999 : NAN);
   cli_json_number(json, "psnr", difference->has_color ? difference->psnr : NAN);
   cli_json_number(json, "ssim", difference->has_color ? difference->ssim : NAN);
-  cli_json_number(json, "flip", NAN); /* not measured yet */
+  cli_json_number(json, "flip", difference->has_color ? difference->flip : NAN);
+  if (difference->has_color)
+    cli_json_count(json, "over_code", difference->over_code);
+  else
+    cli_json_number(json, "over_code", NAN);
   if (difference->same_size) {
     cli_json_count(json, "differing_pixels", difference->differing_pixels);
     cli_json_count(json, "largest_hole", difference->largest_hole);
@@ -102,13 +109,15 @@ static void print_result(const diff_job *job) {
   printf("differing pixels  %zu of %zu\n", difference->differing_pixels, (size_t)a->width * (size_t)a->height);
   printf("largest hole      %zu\n", difference->largest_hole);
   if (difference->has_color)
-    printf("psnr              %.2f dB\nssim              %.6f\n", difference->psnr, difference->ssim);
+    printf("over a code       %zu\npsnr              %.2f dB\nssim              %.6f\nflip              %.6f\n",
+           difference->over_code, difference->psnr, difference->ssim, difference->flip);
   if (has_common_values(job))
-    printf("%-17s max_abs %-12.6g rmse %.6g\n", "all", difference->max_abs, difference->rmse);
+    printf("%-17s max_abs %-12.6g rmse %-12.6g p99.9 %.6g\n", "all", difference->max_abs, difference->rmse,
+           difference->p999);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (difference->planes[i].compared)
-      printf("%-17s max_abs %-12.6g rmse %.6g\n", conic_plane_describe((conic_plane)i)->name,
-             difference->planes[i].max_abs, difference->planes[i].rmse);
+      printf("%-17s max_abs %-12.6g rmse %-12.6g p99.9 %.6g\n", conic_plane_describe((conic_plane)i)->name,
+             difference->planes[i].max_abs, difference->planes[i].rmse, difference->planes[i].p999);
   print_lone_planes(job, 0);
   print_lone_planes(job, 1);
 }
@@ -124,7 +133,8 @@ static conic_status write_heatmap(const diff_job *job) {
   }
   if (!job->difference.has_color)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: not written: not both images have colour", job->heatmap_path);
-  conic_status status = conic_image_heatmap(context, &job->images[0], &job->images[1], &heatmap);
+  conic_status status = job->is_flip_map ? conic_image_flip_heatmap(context, &job->images[0], &job->images[1], &heatmap)
+                                         : conic_image_heatmap(context, &job->images[0], &job->images[1], &heatmap);
   if (status != CONIC_OK)
     return status;
   status = conic_image_write(context, job->heatmap_path, &heatmap);
@@ -163,6 +173,7 @@ static int run_job(diff_job *job) {
 }
 
 static int run(cli_session *session, int argc, char **argv) {
+  static const char *const heatmap_words[] = {"samples", "flip", NULL};
   diff_job job = {.session = session};
   const char *positional[argc];
   int n_positional;
@@ -172,6 +183,12 @@ static int run(cli_session *session, int argc, char **argv) {
        .value = &job.heatmap_path,
        .argument = "H.png",
        .help = "write a picture of where they differ"},
+      {.name = "heatmap-of",
+       .type = CLI_CHOICE,
+       .value = &job.is_flip_map,
+       .argument = "WHAT",
+       .help = "what it paints: samples, their largest difference; flip, what is seen of it [samples]",
+       .choices = heatmap_words},
       {.name = "max-abs",
        .type = CLI_NUMBER,
        .value = &job.max_abs,
@@ -201,6 +218,6 @@ static int run(cli_session *session, int argc, char **argv) {
 const cli_command cli_diff = {
     .name = "diff",
     .summary = "compares two images",
-    .usage = "conic diff A B [--heatmap H.png] [--max-abs X] [--min-psnr DB]",
+    .usage = "conic diff A B [--heatmap H.png] [--heatmap-of samples|flip] [--max-abs X] [--min-psnr DB]",
     .run = run,
 };

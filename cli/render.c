@@ -57,6 +57,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicSamples", NULL, (double)job->samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
   name_attribute(image, "conicCx", NULL, camera->cx);
@@ -93,6 +94,26 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   return status;
 }
 
+/* --deep: the splats behind the picture's pixels. */
+static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                               const conic_camera *camera, const conic_image *image, int i_frame) {
+  conic_contributions *contributions;
+  double start = cli_seconds();
+  if (!job->deep_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->deep_path, i_frame);
+  conic_status status =
+      path ? conic_contributions_create(session->context, splats, camera, &job->options, &contributions)
+           : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    status = conic_contributions_write(contributions, path, image);
+    conic_contributions_destroy(contributions);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                  conic_renderer *renderer, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
@@ -101,12 +122,14 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = conic_render(renderer, splats, &camera, &job->options, image, &repeats[i]);
+    status = conic_render_samples(session->context, renderer, splats, &camera, &job->options, job->samples, image,
+                                  &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
   describe(job, &camera, image);
-  return write_frame(session, job, image, i_frame);
+  status = write_frame(session, job, image, i_frame);
+  return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
 static void print_summary(const cli_session *session, const cli_render_job *job) {

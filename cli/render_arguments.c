@@ -153,8 +153,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
                      command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
-  if (job->options.tile % 4)
-    return cli_usage("%s: --tile takes a multiple of 4", command);
+  if (job->options.tile & (job->options.tile - 1))
+    return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
   if (strncmp(raw->device, "opencl", 6) == 0)
     return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
   if (strcmp(raw->device, "cpu") != 0)
@@ -162,20 +162,41 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
   return CLI_DONE;
 }
 
+/* Refused now, and not after the work. */
+static int check_output(const char *path) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  if (strcmp(path, "-") == 0)
+    return cli_usage("render: a picture cannot go to standard output");
+  if (!dot || !dot[1])
+    return cli_usage("%s: the name needs an ending, such as .exr", path);
+  return CLI_DONE;
+}
+
+static int check_deep(const cli_render_job *job) {
+  const char *dot = strrchr(job->deep_path, '.');
+  if (!dot || strcmp(dot, ".exr") != 0)
+    return cli_usage("%s: a deep image is an .exr", job->deep_path);
+  if (job->samples > 1)
+    return cli_usage("render: --deep lists the splats of pixels, not of --samples");
+  return CLI_DONE;
+}
+
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
-  if (job->n_outputs == 0)
+  const char *paths[CLI_MAX_OUTPUTS + 1];
+  int answer = CLI_DONE;
+  if (job->n_outputs == 0 && !job->deep_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
-  for (int i = 0; i < job->n_outputs; i++) { /* now, and not after the work */
-    const char *slash = strrchr(job->outputs[i], '/'), *dot = strrchr(slash ? slash : job->outputs[i], '.');
-    if (strcmp(job->outputs[i], "-") == 0)
-      return cli_usage("render: a picture cannot go to standard output");
-    if (!dot || !dot[1])
-      return cli_usage("%s: the name needs an ending, such as .exr", job->outputs[i]);
-  }
+  for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
+    answer = check_output(paths[i] = job->outputs[i]);
+  paths[job->n_outputs] = job->deep_path;
+  if (answer == CLI_DONE && job->deep_path)
+    answer = check_deep(job);
+  if (answer != CLI_DONE)
+    return answer;
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  return cli_check_outputs(session, job->outputs, job->n_outputs);
+  return cli_check_outputs(session, paths, job->n_outputs + 1);
 }
 
 void cli_scene_defaults(cli_render_job *job) {
@@ -186,7 +207,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
   job->epsilon.value = job->near_z.value = -1.0;
-  job->n_frames = job->repeat = 1;
+  job->n_frames = job->repeat = job->samples = 1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
 
@@ -237,6 +258,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
+      {"samples", CLI_INT, &job->samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
+       CONIC_MAX_SAMPLES},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
@@ -250,7 +273,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
        .parse = parse_planes},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
-      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels; changes no bit [64]", 8, 64},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_words},
@@ -276,6 +299,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
+      {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };

@@ -12,12 +12,14 @@ typedef struct cli_render_job {
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
   int n_outputs;
+  const char *deep_path;   /* --deep; null: none */
   const char *camera_path; /* null: framed */
   conic_framing framing;
   int is_up_given;
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   int repeat;
+  int samples;     /* N × N a pixel */
   unsigned planes; /* bits 1 << conic_plane */
   int n_neighbours;
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */

@@ -32,7 +32,8 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();
-  status = conic_render(renderer, splats, camera, &job->scene.options, &job->image, &job->scene.statistics);
+  status = conic_render_samples(session->context, renderer, splats, camera, &job->scene.options, job->scene.samples,
+                                &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   conic_renderer_destroy(renderer);
   return status;
@@ -56,8 +57,8 @@ static conic_status compare(cli_session *session, verify_job *job, const conic_s
     status = check_size(job, &camera);
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render(session->context, splats, &camera, &job->scene.options,
-                                 (conic_oracle_question)job->question, &job->reference);
+    status = conic_oracle_render_samples(session->context, splats, &camera, &job->scene.options,
+                                         (conic_oracle_question)job->question, job->scene.samples, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
@@ -87,6 +88,10 @@ static void report_pixels(cli_json *json, const verify_job *job) {
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
+  if (job->scene.samples > 1) {
+    cli_json_count(json, "unstable_samples", job->reference.unstable_samples);
+    cli_json_count(json, "covered_samples", job->reference.covered_samples);
+  }
   cli_json_count(json, "undecided_ids", job->reference.undecided_ids);
   cli_json_number(json, "unstable_limit", verdict->unstable_limit);
   cli_json_object(json, "unstable_by_reason");
@@ -114,6 +119,8 @@ static int write_statistics(cli_session *session, const verify_job *job) {
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
   cli_json_text(json, "method", conic_method_name(job->scene.options.method));
+  if (job->scene.samples > 1)
+    cli_json_count(json, "samples", (uint64_t)job->scene.samples);
   report_planes(json, job);
   report_pixels(json, job);
   if (job->question == CONIC_ORACLE_EXACT)
@@ -131,6 +138,8 @@ static void print_unstable(const verify_job *job) {
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
   printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
          100.0 * (double)verdict->unstable_pixels / covered);
+  if (job->scene.samples > 1)
+    printf(", %zu of %zu samples", job->reference.unstable_samples, job->reference.covered_samples);
   const char *separator = ": ";
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
     if (job->reference.unstable_by_reason[i]) {

@@ -1,28 +1,11 @@
 #include "core/color.h"
 
 #include <math.h>
-#include <string.h>
 
-/* A positive number whose logarithm is about 1/n of v's: a start for Newton's iteration, from the bits of the double.
- */
-static double root_guess(double v, int n) {
-  uint64_t bits, one = UINT64_C(0x3ff0000000000000);
-  memcpy(&bits, &v, sizeof bits);
-  int64_t log_scaled = ((int64_t)bits - (int64_t)one) / n;
-  bits = (uint64_t)((int64_t)one + log_scaled);
-  memcpy(&v, &bits, sizeof bits);
-  return v;
-}
-
-static double cube_root(double v) {
-  double r = root_guess(v, 3);
-  for (int i = 0; i < 5; i++)
-    r = r - (r - v / (r * r)) / 3.0;
-  return r;
-}
+#include "core/power.h"
 
 static double fifth_root(double v) {
-  double r = root_guess(v, 5);
+  double r = conic_root_guess(v, 5);
   for (int i = 0; i < 6; i++)
     r = r - (r - v / (r * r * (r * r))) / 5.0;
   return r;
@@ -40,7 +23,7 @@ double conic_srgb_encode(double linear) {
     return linear * 12.92;
   if (!(linear < 1e60))
     return linear;
-  double five_thirds = linear * cube_root(linear * linear);
+  double five_thirds = linear * conic_cube_root(linear * linear);
   return 1.055 * sqrt(sqrt(five_thirds)) - 0.055; /* linear^(5/12) */
 }
 

@@ -6,31 +6,13 @@
 #include "core/image.h"
 #include "core/memory.h"
 #include "core/message.h"
+#include "core/power.h"
 
 /* The sums of one plane, or of several. */
 typedef struct plane_sums {
   double max_abs, sum_of_squares;
   double n_samples;
 } plane_sums;
-
-static uint32_t bits_at(const unsigned char *row, size_t i) {
-  uint32_t bits;
-  memcpy(&bits, row + 4 * i, sizeof bits);
-  return bits;
-}
-
-/* |a − b| of floats whose bits differ; NaN, and infinities of two signs, differ by infinity. */
-static double sample_difference(uint32_t a_bits, uint32_t b_bits) {
-  float a, b;
-  memcpy(&a, &a_bits, sizeof a);
-  memcpy(&b, &b_bits, sizeof b);
-  double difference = fabs((double)a - (double)b);
-  return difference >= 0.0 ? difference : (double)INFINITY;
-}
-
-static double integer_difference(uint32_t a, uint32_t b) {
-  return a > b ? (double)(a - b) : (double)(b - a);
-}
 
 /* Row by row, so that the rounding of the sums is the same whatever the rows' number; marks the pixels that differ. */
 static plane_sums compare_plane(const conic_image *a, const conic_image *b, conic_plane plane, unsigned char *differs) {
@@ -45,10 +27,10 @@ static plane_sums compare_plane(const conic_image *a, const conic_image *b, coni
     if (memcmp(a_row, b_row, width * n_channels * 4) == 0)
       continue;
     for (size_t i = 0; i < width * n_channels; i++) {
-      uint32_t a_bits = bits_at(a_row, i), b_bits = bits_at(b_row, i);
+      uint32_t a_bits = conic_bits_at(a_row, i), b_bits = conic_bits_at(b_row, i);
       if (a_bits == b_bits)
         continue;
-      double difference = description->is_uint ? integer_difference(a_bits, b_bits) : sample_difference(a_bits, b_bits);
+      double difference = conic_sample_difference(a_bits, b_bits, description->is_uint);
       differs[y * width + i / n_channels] = 1;
       if (difference > sums.max_abs)
         sums.max_abs = difference;
@@ -66,6 +48,7 @@ static double root_mean(const plane_sums *sums) {
 static void compare_planes(const conic_image *a, const conic_image *b, conic_difference *difference,
                            unsigned char *differs) {
   plane_sums total = {0};
+  unsigned measured = 0;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     if (!a->planes[i] || !b->planes[i])
       continue;
@@ -73,37 +56,26 @@ static void compare_planes(const conic_image *a, const conic_image *b, conic_dif
     difference->planes[i].compared = 1;
     difference->planes[i].max_abs = sums.max_abs;
     difference->planes[i].rmse = root_mean(&sums);
+    difference->planes[i].p999 = conic_compare_p999(a, b, 1u << i);
     if (i == CONIC_PLANE_ID || i == CONIC_PLANE_COUNT)
       continue;
+    measured |= 1u << i;
     if (sums.max_abs > total.max_abs)
       total.max_abs = sums.max_abs;
     total.sum_of_squares += sums.sum_of_squares;
     total.n_samples += sums.n_samples;
   }
+  difference->p999 = conic_compare_p999(a, b, measured);
   difference->max_abs = total.max_abs;
   difference->rmse = root_mean(&total);
   for (size_t i = 0; i < conic_image_pixels(a); i++)
     difference->differing_pixels += differs[i];
 }
 
-/* ln v for v > 0 within 1e-15, with the same bits everywhere: ln(m·2^e) by the series of artanh((m − 1)/(m + 1)). */
-static double natural_logarithm(double v) {
-  int exponent;
-  double m = frexp(v, &exponent); /* exact; in [½, 1) */
-  if (m < 0.70710678118654752) {
-    m *= 2.0;
-    exponent--;
-  }
-  double t = (m - 1.0) / (m + 1.0), t_squared = t * t, sum = 0.0;
-  for (int k = 23; k >= 1; k -= 2) /* |t| < 0.172: the first term left out is under 1e-20 */
-    sum = sum * t_squared + 1.0 / (double)k;
-  return (double)exponent * 0.69314718055994530942 + 2.0 * t * sum;
-}
-
 static double psnr_of(double mean_square) {
   if (mean_square == 0.0)
     return (double)INFINITY;
-  return -10.0 * natural_logarithm(mean_square) / 2.30258509299404568402;
+  return -10.0 * conic_logarithm(mean_square) / 2.30258509299404568402;
 }
 
 static conic_status compare_colors(conic_context *context, const conic_image *a, const conic_image *b,
@@ -114,6 +86,10 @@ static conic_status compare_colors(conic_context *context, const conic_image *a,
   conic_status status = conic_compare_color(context, a, b, &sum_of_squares, &difference->ssim);
   if (status != CONIC_OK)
     return status;
+  status = conic_compare_flip(context, a, b, NULL, &difference->flip);
+  if (status != CONIC_OK)
+    return status;
+  difference->over_code = conic_compare_codes(a, b);
   difference->has_color = 1;
   difference->psnr = psnr_of(sum_of_squares / (3.0 * (double)conic_image_pixels(a)));
   return CONIC_OK;

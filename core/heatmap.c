@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/compare.h"
 #include "core/image.h"
+#include "core/memory.h"
 #include "core/message.h"
 
 /* The smallest difference that is told from the next: 2^-20, a millionth. */
@@ -44,14 +46,19 @@ static double pixel_difference(const float *a, const float *b) {
   return largest;
 }
 
-conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
-                                 conic_image *heatmap) {
+/* A picture for the heat map of two images, all zero. */
+static conic_status begin(conic_context *context, const conic_image *a, const conic_image *b, conic_image *heatmap) {
   if (!a || !b || !heatmap || !a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: an image has no colour");
   if (a->width != b->width || a->height != b->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: the images differ in size, %d × %d and %d × %d",
                       a->width, a->height, b->width, b->height);
-  conic_status status = conic_image_allocate(context, a->width, a->height, 1u << CONIC_PLANE_RGBA, heatmap);
+  return conic_image_allocate(context, a->width, a->height, 1u << CONIC_PLANE_RGBA, heatmap);
+}
+
+conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_image *heatmap) {
+  conic_status status = begin(context, a, b, heatmap);
   if (status != CONIC_OK)
     return status;
   const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
@@ -63,4 +70,26 @@ conic_status conic_image_heatmap(conic_context *context, const conic_image *a, c
     pixel[3] = 1.0f;
   }
   return CONIC_OK;
+}
+
+conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                      conic_image *heatmap) {
+  double mean;
+  conic_status status = begin(context, a, b, heatmap);
+  if (status != CONIC_OK)
+    return status;
+  float *map = conic_memory_allocate(context, conic_image_pixels(a), sizeof *map);
+  status = map ? conic_compare_flip(context, a, b, map, &mean) : CONIC_ERROR_MEMORY;
+  float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; status == CONIC_OK && i < conic_image_pixels(a); i++, pixel += 4) {
+    if (map[i] < 0.25f) /* black to blue */
+      pixel[2] = 4.0f * map[i];
+    else
+      paint((map[i] - 0.25f) / 0.75f, pixel);
+    pixel[3] = 1.0f;
+  }
+  conic_memory_release(context, map);
+  if (status != CONIC_OK)
+    conic_image_release(context, heatmap);
+  return status;
 }

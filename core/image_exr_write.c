@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/image_exr_attributes.h"
 #include "core/image_exr_stream.h"
 #include "core/memory.h"
 #include "core/threads.h"
@@ -41,33 +42,9 @@ static exr_result_t add_channels(exr_context_t file, const conic_image *image) {
   return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t add_attribute(exr_context_t file, const conic_attribute *attribute) {
-  exr_attr_m44d_t matrix;
-  switch (attribute->type) {
-  case CONIC_ATTRIBUTE_TEXT:
-    return exr_attr_set_string(file, 0, attribute->name, attribute->text);
-  case CONIC_ATTRIBUTE_DOUBLE:
-    return exr_attr_set_double(file, 0, attribute->name, attribute->values[0]);
-  case CONIC_ATTRIBUTE_MATRIX:
-    memcpy(matrix.m, attribute->values, sizeof matrix.m);
-    return exr_attr_set_m44d(file, 0, attribute->name, &matrix);
-  }
-  return EXR_ERR_INVALID_ARGUMENT;
-}
-
-/* Names over 31 bytes make a file that old readers refuse, so the flag is set only where one is. */
-static int has_long_name(const conic_image *image) {
-  for (int i = 0; i < image->n_attributes; i++)
-    if (strlen(image->attributes[i].name) > 31)
-      return 1;
-  return 0;
-}
-
 static exr_result_t write_header(exr_context_t file, const conic_image *image) {
   int part;
-  exr_result_t result = EXR_ERR_SUCCESS;
-  if (has_long_name(image))
-    result = exr_set_longname_support(file, 1);
+  exr_result_t result = conic_exr_prepare_attributes(file, image);
   if (result == EXR_ERR_SUCCESS)
     result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
   if (result == EXR_ERR_SUCCESS)
@@ -76,8 +53,8 @@ static exr_result_t write_header(exr_context_t file, const conic_image *image) {
     result = exr_set_zip_compression_level(file, 0, ZIP_LEVEL);
   if (result == EXR_ERR_SUCCESS)
     result = add_channels(file, image);
-  for (int i = 0; result == EXR_ERR_SUCCESS && i < image->n_attributes; i++)
-    result = add_attribute(file, &image->attributes[i]);
+  if (result == EXR_ERR_SUCCESS)
+    result = conic_exr_add_attributes(file, image);
   if (result == EXR_ERR_SUCCESS)
     result = exr_write_header(file);
   return result;

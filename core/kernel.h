@@ -33,7 +33,7 @@ static inline float conic_exp_negative(float x) {
 #define CONIC_NARROW_SUPPORT 2.25f
 
 /* e^(-q/2) for 0 ≤ q ≤ 2.25: the minimax polynomial about the middle. Its sum is shallow, a third of the exponential's
- * depth, because what a pixel waits for is this. Relative error at most 2.3e-7; exactly 1 at 0 (tests/test_kernel.c).
+ * depth, because what a pixel waits for is this. Relative error at most 2.4e-7; exactly 1 at 0 (tests/test_kernel.c).
  */
 static inline float conic_gauss_narrow(float q) {
   float t = q - 1.125f, t2 = t * t, t4 = t2 * t2;

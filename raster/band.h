@@ -32,9 +32,10 @@ typedef struct conic_kept_fragments {
 /* What visibility found in a block, and blending reads. The last place is for what is not kept. */
 typedef struct conic_kept {
   conic_kept_fragments fragments[CONIC_KEPT_SPLATS + 1];
-  float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of rays only */
+  float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of special ones: all but ellipses without clip lines */
   uint32_t footprint[CONIC_KEPT_SPLATS + 1];
-  float threshold[CONIC_BLOCK_PIXELS]; /* max of s·min(iz, iz_plane) over what covers the pixel, at least 0 */
+  float amplitude[CONIC_KEPT_SPLATS + 1]; /* the footprint's */
+  float threshold[CONIC_BLOCK_PIXELS];    /* max of s·min(iz, iz_plane) over what covers the pixel, at least 0 */
 } conic_kept;
 
 /* The sums over a block's visible splats, 0 where there is none. Splats are named by their footprint. */
@@ -59,6 +60,7 @@ typedef struct conic_band {
   size_t n;
   int x, y, n_blocks;              /* its first pixel in the image */
   int keeps_indices;               /* the image wants counts or ids */
+  int has_special;                 /* visibility has met rays or clip lines */
   uint64_t n_fragments, n_covered; /* found by visibility and by resolving, all bands before included */
   /* For each block: */
   size_t n_kept[CONIC_BAND_BLOCKS];   /* so many splats are in `kept`; */

@@ -7,15 +7,16 @@ typedef struct tile_range {
   int x_begin, x_end, y_begin, y_end;
 } tile_range;
 
-/* pixel / tile by a multiplication: exact for pixels below 65,536 and tiles up to 256. */
-static int tile_of(const conic_bins *bins, unsigned pixel) {
-  return (int)((pixel * bins->reciprocal) >> 32);
+static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
+  int shift = bins->tile_bits;
+  tile_range range = {box->x_begin >> shift, ((box->x_end - 1) >> shift) + 1, box->y_begin >> shift,
+                      ((box->y_end - 1) >> shift) + 1};
+  return range;
 }
 
-static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
-  tile_range range = {tile_of(bins, box->x_begin), tile_of(bins, box->x_end - 1u) + 1, tile_of(bins, box->y_begin),
-                      tile_of(bins, box->y_end - 1u) + 1};
-  return range;
+/* Most splats are in one tile. */
+static int is_single(const tile_range *range) {
+  return range->x_end - range->x_begin == 1 && range->y_end - range->y_begin == 1;
 }
 
 void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
@@ -24,6 +25,10 @@ void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t
   memset(counts, 0, bins->n_tiles * sizeof *counts);
   for (size_t i = 0; i < chunk->n_drawn; i++) {
     tile_range range = tiles_of(bins, &projected->boxes[chunk->first + i]);
+    if (is_single(&range)) {
+      counts[range.y_begin * bins->n_tiles_x + range.x_begin]++;
+      continue;
+    }
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++)
         counts[y * bins->n_tiles_x + x]++;
@@ -59,19 +64,38 @@ static uint32_t blocks_met(int begin, int end, int tile_begin, int tile) {
   return bits(first / 4, last / 4);
 }
 
+/* Appends a footprint to the list of tile (x, y). */
+static inline void refer(const conic_bins *bins, uint32_t *next, size_t i, int x, int y, uint32_t word) {
+  size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;
+  bins->references[bins->tile_begin[i_tile] + next[i_tile]++] = (conic_tile_entry){(uint32_t)i, word};
+}
+
+/* The word of a box within one tile. */
+static inline uint32_t single_word(const conic_bins *bins, const conic_box *box) {
+  int in_tile = bins->tile - 1;
+  return bits((box->x_begin & in_tile) >> 2, ((box->x_end - 1) & in_tile) >> 2) |
+         bits((box->y_begin & in_tile) >> 2, ((box->y_end - 1) & in_tile) >> 2) << 16;
+}
+
+static void refer_to_all(const conic_bins *bins, uint32_t *next, const conic_box *box, size_t i,
+                         const tile_range *range) {
+  for (int y = range->y_begin; y < range->y_end; y++)
+    for (int x = range->x_begin; x < range->x_end; x++)
+      refer(bins, next, i, x, y,
+            blocks_met(box->x_begin, box->x_end, x * bins->tile, bins->tile) |
+                blocks_met(box->y_begin, box->y_end, y * bins->tile, bins->tile) << 16);
+}
+
 void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
+  const conic_bins own = *bins; /* what is stored could be anything of theirs, as far as a compiler can tell */
   const conic_chunk *chunk = &projected->chunks[i_chunk];
-  uint32_t *next = bins->counts + i_chunk * bins->n_tiles;
-  for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++) {
+  uint32_t *next = own.counts + i_chunk * own.n_tiles;
+  for (size_t i = chunk->first, end = chunk->first + chunk->n_drawn; i < end; i++) {
     const conic_box *box = &projected->boxes[i];
-    tile_range range = tiles_of(bins, box);
-    for (int y = range.y_begin; y < range.y_end; y++) {
-      uint32_t rows = blocks_met(box->y_begin, box->y_end, y * bins->tile, bins->tile) << 16;
-      for (int x = range.x_begin; x < range.x_end; x++) {
-        size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x, at = bins->tile_begin[i_tile] + next[i_tile]++;
-        bins->references[at] = (uint32_t)i;
-        bins->words[at] = rows | blocks_met(box->x_begin, box->x_end, x * bins->tile, bins->tile);
-      }
-    }
+    tile_range range = tiles_of(&own, box);
+    if (is_single(&range))
+      refer(&own, next, i, range.x_begin, range.y_begin, single_word(&own, box));
+    else
+      refer_to_all(&own, next, box, i, &range);
   }
 }

@@ -273,6 +273,24 @@ CONIC_INLINE lanes lanes_absolute(lanes value) {
   return (lanes)((int_lanes)value & 0x7fffffff);
 }
 
+#if CONIC_LANES == 16
+#define CONIC_EVEN_LANES 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define CONIC_ODD_LANES 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
+#elif CONIC_LANES == 8
+#define CONIC_EVEN_LANES 0, 2, 4, 6, 8, 10, 12, 14
+#define CONIC_ODD_LANES 1, 3, 5, 7, 9, 11, 13, 15
+#else
+#define CONIC_EVEN_LANES 0, 2, 4, 6
+#define CONIC_ODD_LANES 1, 3, 5, 7
+#endif
+
+/* Pairs of values to the first and the second of each. */
+CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, index_lanes *second) {
+  index_lanes low = lanes_load_indices(from), high = lanes_load_indices(from + CONIC_LANES);
+  *first = __builtin_shufflevector(low, high, CONIC_EVEN_LANES);
+  *second = __builtin_shufflevector(low, high, CONIC_ODD_LANES);
+}
+
 /* first, first + 1, … */
 CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
   index_lanes ascending;

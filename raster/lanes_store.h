@@ -4,6 +4,7 @@
 #define RASTER_LANES_STORE_H
 
 #include "raster/lanes.h"
+#include "raster/stream.h"
 
 typedef float quad __attribute__((vector_size(16)));
 
@@ -79,7 +80,7 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
     }
   }
   for (; drawn; drawn &= drawn - 1, to += n_fields)
-    memcpy(to, records[__builtin_ctz(drawn)], n_fields * sizeof(float));
+    conic_stream_copy(to, records[__builtin_ctz(drawn)], n_fields * sizeof(float));
 }
 
 #else
@@ -95,10 +96,8 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
       for (int row = 0; row < 4; row++)
         memcpy(records[column * 4 + row] + first, &rows[row], sizeof rows[row]);
     }
-  for (int lane = 0; drawn >> lane; lane++) {
-    memcpy(to, records[lane], n_fields * sizeof(float));
-    to += drawn >> lane & 1 ? n_fields : 0;
-  }
+  for (; drawn; drawn &= drawn - 1, to += n_fields)
+    conic_stream_copy(to, records[__builtin_ctz(drawn)], n_fields * sizeof(float));
 }
 
 CONIC_INLINE void lanes_store_quads(float *to, size_t stride, const lanes *channels) {

@@ -262,13 +262,16 @@ static conic_status compute(job *j) {
   }
   if (status == CONIC_OK)
     gather(j, n_threads);
+  j->reference->samples = 1;
+  j->reference->covered_samples = j->reference->covered_pixels;
+  j->reference->unstable_samples = j->reference->unstable_pixels;
   for (int t = 0; t < n_threads && j->workers; t++)
     release_room(j->context, &j->workers[t]);
   conic_memory_release(j->context, j->workers);
   return status;
 }
 
-static conic_status allocate(conic_context *context, conic_reference *r) {
+conic_status conic_oracle_allocate(conic_context *context, conic_reference *r) {
   size_t n = (size_t)r->width * (size_t)r->height;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     size_t n_channels = (size_t)conic_plane_describe((conic_plane)i)->n_channels;
@@ -306,7 +309,7 @@ conic_status conic_oracle_render(conic_context *context, const conic_splats *spl
   reference->height = camera->height;
   reference->question = question;
   reference->white = conic_oracle_exp(options->exposure * 0.69314718055994530942);
-  status = allocate(context, reference);
+  status = conic_oracle_allocate(context, reference);
   if (status == CONIC_OK)
     status = conic_oracle_scene_create(context, splats, camera, options, &j.scene);
   if (status == CONIC_OK) {

@@ -92,7 +92,9 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
   verdict->covered_pixels = reference->covered_pixels;
   verdict->unstable_pixels = reference->unstable_pixels;
   verdict->compared_pixels = n_pixels - reference->unstable_pixels;
-  verdict->pass = is_exact || (double)reference->unstable_pixels <= unstable_limit * (double)reference->covered_pixels;
+  size_t unstable = reference->samples > 1 ? reference->unstable_samples : reference->unstable_pixels;
+  size_t covered = reference->samples > 1 ? reference->covered_samples : reference->covered_pixels;
+  verdict->pass = is_exact || (double)unstable <= unstable_limit * (double)covered;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     conic_oracle_plane_verdict *plane = &verdict->planes[i];
     plane->bound = is_exact ? NAN : bounds[i];

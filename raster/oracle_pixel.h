@@ -2,6 +2,7 @@
 #ifndef RASTER_ORACLE_PIXEL_H
 #define RASTER_ORACLE_PIXEL_H
 
+#include "conic/oracle.h"
 #include "raster/oracle_scene.h"
 
 /* What a stable pixel may be off by: see docs/oracle.md. */
@@ -58,6 +59,9 @@ void conic_oracle_blend(const oracle_fragment *fragments, size_t n, int passes, 
 /* The shaded colour of a covered pixel, premultiplied, exposure in. */
 void conic_oracle_shade(const conic_camera *camera, const conic_render_options *options, double x, double y,
                         const oracle_pixel *pixel, double rgba[4]);
+/* Room for the planes of a reference whose size is set, all zero; what there is of it stays after a failure. */
+conic_status conic_oracle_allocate(conic_context *context, conic_reference *reference);
+
 /* What an uncovered pixel shows. */
 void conic_oracle_background(const conic_render_options *options, double rgba[4]);
 

@@ -375,10 +375,6 @@ CONIC_INLINE void write_records(const group_screen *s, records *r, unsigned draw
   size_t at = chunk->first + chunk->n_drawn;
   if (__builtin_expect(lanes_any(s->by_ray), 0))
     write_rays(r, lanes_bits(s->by_ray) & drawn, projected, chunk);
-  for (size_t line = 0; line < CONIC_LANES; line++)
-    __builtin_prefetch((char *)&projected->footprints[at + CONIC_LANES] + 64 * line, 1);
-  for (size_t line = 0; line < CONIC_LANES / 2; line++)
-    __builtin_prefetch((char *)&projected->surfaces[at + CONIC_LANES] + 64 * line, 1);
   write_boxes(s, drawn, &projected->boxes[at]);
   lanes_store_records(r->footprint, 16, drawn, (float *)(void *)&projected->footprints[at]);
   lanes_store_records(r->surface, 8, drawn, (float *)(void *)&projected->surfaces[at]);
@@ -486,4 +482,5 @@ static void project(const conic_view *view, const conic_splats *splats, size_t i
     for (size_t i = 0; i < packed.n; i += CONIC_LANES)
       project_group(view, splats, &packed, i, projected, chunk);
   }
+  conic_stream_fence();
 }

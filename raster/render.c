@@ -26,8 +26,7 @@ typedef struct tile_times {
 
 struct conic_renderer {
   conic_context *context;
-  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, words, scratch, times,
-      clips;
+  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, scratch, times, clips;
 };
 
 /* One frame on its way through the stages. */
@@ -84,10 +83,9 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
-  kept *all[] = {&renderer->footprints, &renderer->boxes,  &renderer->surfaces,   &renderer->rays,
-                 &renderer->chunks,     &renderer->counts, &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->references, &renderer->words,  &renderer->scratch,    &renderer->times,
-                 &renderer->clips};
+  kept *all[] = {&renderer->footprints, &renderer->boxes,   &renderer->surfaces,   &renderer->rays,
+                 &renderer->chunks,     &renderer->counts,  &renderer->tile_begin, &renderer->tile_counts,
+                 &renderer->references, &renderer->scratch, &renderer->times,      &renderer->clips};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   conic_memory_release(renderer->context, renderer);
@@ -142,7 +140,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   conic_renderer *renderer = f->renderer;
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
-  f->bins.reciprocal = ((UINT64_C(1) << 32) + (unsigned)tile - 1) / (unsigned)tile;
+  f->bins.tile_bits = __builtin_ctz((unsigned)tile);
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
@@ -178,7 +176,6 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->view = &f->view;
   tile->projected = &f->projected;
   tile->references = bins->references + bins->tile_begin[i_tile];
-  tile->words = bins->words + bins->tile_begin[i_tile];
   tile->n_references = bins->tile_begin[i_tile + 1] - bins->tile_begin[i_tile];
   tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
@@ -228,10 +225,9 @@ static conic_status bin(frame *f) {
   conic_parallel_for(context, f->projected.n_chunks, count_task, f);
   size_t n_references = conic_bins_place(&f->bins, &f->projected);
   f->bins.references = room(f->renderer, &f->renderer->references, n_references, sizeof *f->bins.references);
-  f->bins.words = room(f->renderer, &f->renderer->words, n_references, sizeof *f->bins.words);
   f->scratch_bytes = conic_tile_bytes(longest_list(&f->bins));
   f->scratch = room(f->renderer, &f->renderer->scratch, (size_t)conic_context_threads(context), f->scratch_bytes);
-  if (!f->bins.references || !f->bins.words || !f->scratch)
+  if (!f->bins.references || !f->scratch)
     return CONIC_ERROR_MEMORY;
   conic_parallel_for(context, f->projected.n_chunks, fill_task, f);
   return CONIC_OK;

@@ -115,70 +115,44 @@ CONIC_INLINE void finish_uncovered(const conic_finish *finish, finished *done) {
   done->weight = done->z = lanes_of(0.0f);
 }
 
-/* Where a part's pixels go. */
-typedef struct target {
-  const conic_image *image;
-  int x, y, n_columns, n_rows; /* within the image */
-} target;
-
-#define PART_COLUMNS (CONIC_LANES / CONIC_BLOCK_ROWS)
-
-/* From channels of lanes to the channels of pixels, at the image's edge. */
-CONIC_INLINE void store_cut(const target *t, float *to, const lanes *channels, size_t n_channels) {
-  for (int row = 0; row < t->n_rows; row++) {
-    float *pixel = to + (size_t)row * (size_t)t->image->width * n_channels;
-    for (int column = 0; column < t->n_columns; column++)
-      for (size_t channel = 0; channel < n_channels; channel++)
-        *pixel++ = channels[channel][column * CONIC_BLOCK_ROWS + row];
-  }
-}
-
-CONIC_INLINE void store_part(const target *t, conic_plane plane, const lanes *channels, size_t n_channels) {
-  float *to = t->image->planes[plane];
-  if (!to)
-    return;
-  to += ((size_t)t->y * (size_t)t->image->width + (size_t)t->x) * n_channels;
-  size_t stride = (size_t)t->image->width * n_channels;
-  if (t->n_columns < PART_COLUMNS || t->n_rows < CONIC_BLOCK_ROWS)
-    store_cut(t, to, channels, n_channels);
-  else if (n_channels == 1)
-    lanes_store_plane(to, stride, channels[0]);
-  else if (n_channels == 3)
-    lanes_store_triples(to, stride, channels);
-  else
-    lanes_store_quads(to, stride, channels);
+/* Writes a part to the rows of the planes that the image has. */
+CONIC_INLINE void store_part(const finished *done, size_t column, const conic_image *image, conic_band_rows *rows) {
+  const size_t stride = CONIC_GREATEST_TILE;
+  if (image->planes[CONIC_PLANE_RGBA])
+    lanes_store_quads(rows->rgba[0] + 4 * column, 4 * stride, done->rgba);
+  if (image->planes[CONIC_PLANE_NORMAL])
+    lanes_store_triples(rows->normal[0] + 3 * column, 3 * stride, done->normal);
+  if (image->planes[CONIC_PLANE_ALBEDO])
+    lanes_store_triples(rows->albedo[0] + 3 * column, 3 * stride, done->albedo);
+  if (image->planes[CONIC_PLANE_WEIGHT])
+    lanes_store_plane(rows->weight[0] + column, stride, done->weight);
+  if (image->planes[CONIC_PLANE_Z])
+    lanes_store_plane(rows->z[0] + column, stride, done->z);
 }
 
 CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const conic_finish *finish,
-                               const conic_tile_rays *rays, const conic_image *image) {
+                               const conic_tile_rays *rays, const conic_image *image, conic_band_rows *rows) {
   finished done;
   const conic_block_sums *sums = &band->sums[block];
-  int x = band->x + block * CONIC_BLOCK_EDGE + part * PART_COLUMNS;
-  target t = {image, x, band->y, image->width - x, image->height - band->y};
+  int column = block * CONIC_BLOCK_EDGE + part * (CONIC_LANES / CONIC_BLOCK_ROWS), x = band->x + column;
   size_t at = (size_t)part * CONIC_LANES;
-  t.n_columns = t.n_columns < PART_COLUMNS ? t.n_columns : PART_COLUMNS;
-  t.n_rows = t.n_rows < CONIC_BLOCK_ROWS ? t.n_rows : CONIC_BLOCK_ROWS;
   if (conic_block_is_empty(band, block))
     finish_uncovered(finish, &done);
   else {
     finish_part(band, sums, finish, rays, x, at, &done);
+    done.z = lanes_of(0.0f);
     if (image->planes[CONIC_PLANE_Z])
       done.z = plane_z(band, sums, at, x, band->y, done.covered);
     band->n_covered += lanes_count(done.covered);
   }
-  store_part(&t, CONIC_PLANE_RGBA, done.rgba, 4);
-  store_part(&t, CONIC_PLANE_NORMAL, done.normal, 3);
-  store_part(&t, CONIC_PLANE_ALBEDO, done.albedo, 3);
-  store_part(&t, CONIC_PLANE_WEIGHT, &done.weight, 1);
-  store_part(&t, CONIC_PLANE_Z, &done.z, 1);
+  store_part(&done, (size_t)column, image, rows);
 }
 
 static void resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {
+  _Alignas(64) conic_band_rows rows;
   for (int block = 0; block < band->n_blocks; block++)
     for (int part = 0; part < CONIC_PARTS; part++)
-      if (band->x + block * CONIC_BLOCK_EDGE + part * PART_COLUMNS < image->width)
-        resolve_part(band, block, part, finish, rays, image);
+      resolve_part(band, block, part, finish, rays, image, &rows);
+  conic_band_store_rows(band, &rows, image);
   conic_band_resolve_indices(band, image);
 }
-
-#undef PART_COLUMNS

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "raster/stream.h"
 #include "raster/ticks.h"
 
 static size_t padded(size_t n) {
@@ -10,7 +11,7 @@ static size_t padded(size_t n) {
 
 size_t conic_tile_bytes(size_t n_references) {
   return CONIC_BAND_BLOCKS * (sizeof(conic_kept) + sizeof(conic_nearest_fragments) + sizeof(conic_block_sums)) +
-         4 * padded(n_references) * sizeof(uint32_t);
+         2 * padded(n_references) * sizeof(uint32_t);
 }
 
 void conic_tile_place_scratch(conic_tile *tile, void *memory) {
@@ -19,29 +20,15 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   scratch->nearest = memory;
   scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS);
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
-  uint32_t *lists = (uint32_t *)(scratch->kept + CONIC_BAND_BLOCKS);
-  for (int i = 0; i < 2; i++) {
-    scratch->band_indices[i] = lists + (size_t)(2 * i) * n;
-    scratch->band_words[i] = lists + (size_t)(2 * i + 1) * n;
-  }
+  scratch->indices = (uint32_t *)(scratch->kept + CONIC_BAND_BLOCKS);
+  scratch->words = scratch->indices + n;
 }
 
 /* The splats that meet row i_row of the tile's blocks. */
 static void select_band(const conic_tile *tile, const conic_tile_kernels *kernels, int i_row, conic_band *band) {
-  uint32_t *indices = tile->scratch.band_indices[i_row % 2], *words = tile->scratch.band_words[i_row % 2];
-  band->indices = indices;
-  band->words = words;
-  band->n =
-      kernels->select(tile->references, tile->words, tile->n_references, UINT32_C(0x10000) << i_row, indices, words);
+  band->n = kernels->select(tile->references, tile->n_references, UINT32_C(0x10000) << i_row, tile->scratch.indices,
+                            tile->scratch.words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
-}
-
-/* Brings a band's records nearer while another is being drawn. */
-static void prefetch_band(const conic_band *band) {
-  for (size_t i = 0; i < band->n; i++) {
-    __builtin_prefetch(&band->projected->footprints[band->indices[i]]);
-    __builtin_prefetch(&band->projected->surfaces[band->indices[i]]);
-  }
 }
 
 static void draw_band(const conic_tile_kernels *kernels, const conic_finish *finish, const conic_tile_rays *rays,
@@ -69,28 +56,21 @@ void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const 
                      .keeps_indices = tile->keeps_indices,
                      .x = tile->x_begin,
                      .n_blocks = (tile->x_end - tile->x_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
+                     .indices = tile->scratch.indices,
+                     .words = tile->scratch.words,
                      .kept = tile->scratch.kept,
                      .nearest = tile->scratch.nearest,
                      .sums = tile->scratch.sums};
-  conic_band next = band;
   int n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
   memset(report, 0, sizeof *report);
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
-  select_band(tile, kernels, 0, &next);
-  prefetch_band(&next);
   for (int i_row = 0; i_row < n_rows; i_row++) {
     uint64_t start = conic_ticks();
-    band.indices = next.indices;
-    band.words = next.words;
-    band.n = next.n;
-    band.y = next.y;
-    if (i_row + 1 < n_rows) {
-      select_band(tile, kernels, i_row + 1, &next);
-      prefetch_band(&next);
-    }
+    select_band(tile, kernels, i_row, &band);
     report->lists += conic_ticks() - start;
     draw_band(kernels, finish, &rays, &band, image, report);
   }
+  conic_stream_fence();
   report->n_fragments = band.n_fragments;
   report->n_covered = band.n_covered;
 }

@@ -6,7 +6,7 @@
 
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
-  uint32_t *band_indices[2], *band_words[2]; /* of this row of blocks, and of the next */
+  uint32_t *indices, *words; /* of a row of blocks */
   conic_kept *kept;
   conic_nearest_fragments *nearest;
   conic_block_sums *sums;
@@ -15,7 +15,7 @@ typedef struct conic_tile_scratch {
 typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
-  const uint32_t *references, *words; /* as in conic_bins */
+  const conic_tile_entry *references;
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */

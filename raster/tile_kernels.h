@@ -6,6 +6,7 @@
 #ifndef RASTER_TILE_KERNELS_H
 #define RASTER_TILE_KERNELS_H
 
+#include "raster/bins.h"
 #include "raster/resolve.h"
 
 /* select may write so many entries past those that it counts. */
@@ -15,10 +16,8 @@ typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
   /* Set-up: the splats of a chunk, compacted, in order. */
   void (*project)(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
-  /* Those of n indices whose word has a bit of the mask, in order, with their words.
-   * Returns how many. */
-  size_t (*select)(const uint32_t *indices, const uint32_t *words, size_t n, uint32_t mask, uint32_t *selected,
-                   uint32_t *selected_words);
+  /* The references whose word has a bit of the mask, in order: footprints and words apart. Returns how many. */
+  size_t (*select)(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints, uint32_t *words);
   /* Pass 1: the band's kept fragments and thresholds, n_kept, not_kept, n_fragments. */
   void (*visibility)(conic_band *band);
   /* Pass 2: the sums over the visible splats of each block that is not empty. */

@@ -31,19 +31,20 @@ CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
   }
 }
 
-static size_t select_indices(const uint32_t *indices, const uint32_t *words, size_t n, uint32_t mask,
-                             uint32_t *selected, uint32_t *selected_words) {
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
   size_t i = 0, n_selected = 0;
   for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
-    index_lanes word = lanes_load_indices(words + i);
+    index_lanes footprint, word;
+    lanes_load_pairs(&references[i].footprint, &footprint, &word);
     lanes_mask has = lanes_has_bits(word, mask);
-    lanes_append(selected_words + n_selected, has, word);
-    n_selected += lanes_append(selected + n_selected, has, lanes_load_indices(indices + i));
+    lanes_append(words + n_selected, has, word);
+    n_selected += lanes_append(footprints + n_selected, has, footprint);
   }
   for (; i < n; i++) {
-    selected[n_selected] = indices[i];
-    selected_words[n_selected] = words[i];
-    n_selected += (words[i] & mask) != 0;
+    footprints[n_selected] = references[i].footprint;
+    words[n_selected] = references[i].word;
+    n_selected += (references[i].word & mask) != 0;
   }
   return n_selected;
 }
@@ -144,10 +145,12 @@ CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint
   f->covered &= inside;
 }
 
-CONIC_INLINE void prefetch_footprint(const sources *from, size_t i) {
-  enum { AHEAD = 6 };
-  size_t later = i + AHEAD < from->n ? i + AHEAD : i;
-  __builtin_prefetch(&from->footprints[from->indices[later]]);
+/* What the splat after the next few is read from, in this pass and the next. */
+CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
+  enum { AHEAD = 16 };
+  uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
+  __builtin_prefetch(&from->footprints[later]);
+  __builtin_prefetch(&from->surfaces[later]);
 }
 
 CONIC_INLINE void empty_blocks(conic_band *band) {
@@ -184,6 +187,7 @@ CONIC_INLINE unsigned pass_splat(conic_band *band, const sources *from, const si
     unsigned n_covered = 0;
     fragments f;
     kept->footprint[place] = from->indices[i];
+    kept->amplitude[place] = footprint->amplitude;
     for (int part = 0; part < CONIC_PARTS; part++) {
       int at = block * CONIC_PARTS + part;
       evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
@@ -202,18 +206,22 @@ static void visibility(conic_band *band) {
   const sources from = sources_of(band);
   size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
   uint64_t n_fragments = 0;
+  int has_special = 0;
   sites s;
   find_sites(band, &s);
   empty_blocks(band);
   for (int block = 0; block < band->n_blocks; block++)
     memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
   for (size_t i = 0; i < from.n; i++) {
-    prefetch_footprint(&from, i);
+    prefetch_splat(&from, i);
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_splat(band, &from, &s, i, room, 0);
-    else
+    else {
       n_fragments += pass_splat(band, &from, &s, i, room, 1);
+      has_special = 1;
+    }
   }
+  band->has_special = has_special;
   band->n_fragments += n_fragments;
 }
 
@@ -240,8 +248,8 @@ CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
 }
 
 /* conic_final_weight in every lane; 0 in those that are not visible. */
-CONIC_INLINE lanes weigh(const conic_view *view, const conic_footprint *footprint, lanes q, lanes scale,
-                         lanes_mask visible, kernel_kind kind) {
+CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
+                         kernel_kind kind) {
   lanes kernel;
   if (kind == KERNEL_NARROW_GAUSS)
     kernel = lanes_gauss_narrow(q);
@@ -249,7 +257,7 @@ CONIC_INLINE lanes weigh(const conic_view *view, const conic_footprint *footprin
     kernel = lanes_exp_negative(-0.5f * q);
   else /* beyond the support, a kernel need not have a value */
     kernel = other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
-  lanes weight = (footprint->amplitude * scale) * kernel;
+  lanes weight = (amplitude * scale) * kernel;
   return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
 }
 
@@ -285,19 +293,21 @@ CONIC_INLINE void blend(const conic_surface *surface, uint32_t i_footprint, lane
   to->heaviest = lanes_select_indices(heavier, lanes_of_index(i_footprint), to->heaviest);
 }
 
-CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, kernel_kind kind,
-                             part_sums *to) {
+CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, int has_special,
+                             kernel_kind kind, part_sums *to) {
+  enum { AHEAD = 8 };
   lanes threshold = lanes_load(kept->threshold + at);
   for (size_t i = 0; i < n_kept; i++) {
+    uint32_t i_footprint = kept->footprint[i];
+    __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
     lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
     if (!lanes_any(visible))
       continue;
-    uint32_t i_footprint = kept->footprint[i];
-    const conic_footprint *footprint = &from->footprints[i_footprint];
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
-    if (__builtin_expect(footprint->s3 == 0.0f, 0))
+    if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
       scale = lanes_load(kept->scale[i] + at);
-    blend(&from->surfaces[i_footprint], i_footprint, weigh(from->view, footprint, q, scale, visible, kind), to);
+    blend(&from->surfaces[i_footprint], i_footprint, weigh(from->view, kept->amplitude[i], q, scale, visible, kind),
+          to);
   }
 }
 
@@ -318,7 +328,8 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, 
     if (!lanes_any(visible))
       continue;
     uint32_t i_footprint = from.indices[i];
-    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint, f.q, f.scale, visible, kind), to);
+    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint->amplitude, f.q, f.scale, visible, kind),
+          to);
     if (!band->keeps_indices)
       continue;
     to->count = lanes_increment(visible, to->count);
@@ -348,7 +359,7 @@ CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
       size_t at = (size_t)part * CONIC_LANES;
       part_sums of_part;
       clear_sums(&of_part);
-      blend_kept(&from, &band->kept[block], band->n_kept[block], at, kind, &of_part);
+      blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
       if (band->not_kept[block] < band->n)
         blend_rest(band, &s, block, part, kind, &of_part);
       store_sums(&of_part, at, &band->sums[block]);
@@ -417,8 +428,7 @@ CONIC_INLINE void take_nearest(const conic_band *band, const sources *from, int 
       normal[axis][lane] = surface->normal[axis];
     }
   }
-  const conic_footprint unit = {.amplitude = 1.0f};
-  to.weight = weigh(from->view, &unit, lanes_load(kept->q + at), lanes_load(amplitude) * lanes_load(kept->scale + at),
+  to.weight = weigh(from->view, 1.0f, lanes_load(kept->q + at), lanes_load(amplitude) * lanes_load(kept->scale + at),
                     covered, kind_of(&from->view->kernel));
   for (int axis = 0; axis < 3; axis++) {
     to.color[axis] += to.weight * lanes_load(color[axis]); /* to 0, which a product may be below: -0 */
@@ -436,7 +446,7 @@ static void nearest(conic_band *band) {
   empty_blocks(band);
   memset(band->nearest, 0, (size_t)band->n_blocks * sizeof *band->nearest);
   for (size_t i = 0; i < from.n; i++) {
-    prefetch_footprint(&from, i);
+    prefetch_splat(&from, i);
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       n_fragments += pass_nearest(band, &from, &s, i, 0);
     else
@@ -451,4 +461,4 @@ static void nearest(conic_band *band) {
 #include "raster/project_body.h"
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME, project, select_indices, visibility, accumulate, nearest, resolve};
+const conic_tile_kernels TABLE = {NAME, project, select_references, visibility, accumulate, nearest, resolve};

@@ -12,14 +12,14 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static size_t select_indices(const uint32_t *indices, const uint32_t *words, size_t n, uint32_t mask,
-                             uint32_t *selected, uint32_t *selected_words) {
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
   size_t n_selected = 0;
   for (size_t i = 0; i < n; i++) {
-    if (!(words[i] & mask))
+    if (!(references[i].word & mask))
       continue;
-    selected_words[n_selected] = words[i];
-    selected[n_selected++] = indices[i];
+    words[n_selected] = references[i].word;
+    footprints[n_selected++] = references[i].footprint;
   }
   return n_selected;
 }
@@ -38,6 +38,7 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
   size_t place = band->n_kept[block];
   unsigned n_covered = 0;
   kept->footprint[place] = i_footprint;
+  kept->amplitude[place] = band->projected->footprints[i_footprint].amplitude;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
@@ -55,6 +56,9 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
 
 static void visibility(conic_band *band) {
   size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  band->has_special = 0;
+  for (size_t i = 0; i < band->n; i++)
+    band->has_special |= !(band->projected->footprints[band->indices[i]].s3 > 0.0f);
   for (int block = 0; block < band->n_blocks; block++) {
     memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
     band->n_kept[block] = 0;
@@ -180,4 +184,4 @@ static void nearest(conic_band *band) {
 }
 
 const conic_tile_kernels conic_tile_kernels_scalar = {
-    "scalar", conic_project_chunk, select_indices, visibility, accumulate, nearest, conic_band_resolve};
+    "scalar", conic_project_chunk, select_references, visibility, accumulate, nearest, conic_band_resolve};

@@ -44,8 +44,8 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
     return "the prefilter is out of range (0 to 10000)";
   if (options->passes != 1 && options->passes != 3)
     return "there are 3 passes or 1";
-  if (options->tile < 8 || options->tile > 64 || options->tile % 4)
-    return "the tile is not a multiple of 4 from 8 to 64";
+  if (options->tile < 8 || options->tile > 64 || (options->tile & (options->tile - 1)))
+    return "the tile is not 8, 16, 32 or 64";
   if (!conic_method_name(options->method))
     return "the method is unknown";
   if (!(options->near_z >= 0.0) || !(options->epsilon < 1e30) || !(fabs(options->exposure) <= 100.0))

@@ -30,7 +30,7 @@ for ask in --help -h; do
   run 0 $ask
   cmp -s out help || fail "conic $ask is not conic help"
 done
-for command in make prepare render diff verify info bench; do
+for command in make prepare render diff verify info explain chart bench; do
   grep -q "^  $command " help || fail "conic help does not list $command"
   run 0 help $command
   [[ -s out && ! -s err ]] || fail "conic help $command belongs on standard output"
@@ -51,7 +51,7 @@ run_wrong 2 'did you mean render?' rendr
 run_wrong 2 'did you mean prepare?' help prepar
 run_wrong 2 'did you mean --version?' --versoin
 run_wrong 2 'unknown command xyzzy' xyzzy
-for command in make prepare render diff verify info bench; do
+for command in make prepare render diff verify info explain chart bench; do
   run_wrong 2 'did you mean --quiet?' $command --quite
   run_wrong 2 'threads' $command --threads many
   run_wrong 2 'needs a value' $command --json

@@ -33,7 +33,7 @@ static void check_projected(desk *d) {
 
 static void run_select(const conic_tile_kernels *kernels, desk *d) {
   uint32_t mask = UINT32_C(0x10000) << (d->band.y / 4 % 16);
-  d->n_answered = kernels->select(d->list, d->words, d->band.n, mask, d->selected, d->selected_words);
+  d->n_answered = kernels->select(d->references, d->band.n, mask, d->selected, d->selected_words);
 }
 
 static void check_selected(desk *d) {
@@ -191,6 +191,7 @@ static void list_splats(desk *d) {
         box->y_begin >= band->y + CONIC_BLOCK_EDGE || box->y_end <= band->y)
       continue;
     d->words[band->n] = blocks_of(band, box) | (((uint32_t)k * 2654435761u) & UINT32_C(0xffff0000));
+    d->references[band->n] = (conic_tile_entry){(uint32_t)k, d->words[band->n]};
     d->list[band->n++] = (uint32_t)k;
   }
 }

@@ -16,7 +16,21 @@ typedef struct arena {
 } arena;
 
 /* The arenas of a desk, in this order; the image's planes follow. */
-enum { FOOTPRINTS, BOXES, SURFACES, RAYS, LIST, WORDS, SELECTED, SELECTED_WORDS, KEPT, NEAREST, SUMS, IMAGE };
+enum {
+  FOOTPRINTS,
+  BOXES,
+  SURFACES,
+  RAYS,
+  LIST,
+  WORDS,
+  REFERENCES,
+  SELECTED,
+  SELECTED_WORDS,
+  KEPT,
+  NEAREST,
+  SUMS,
+  IMAGE
+};
 
 /* All that the slots read and write: a chunk of splats and its records, a band of blocks, an image. */
 typedef struct desk {
@@ -26,6 +40,7 @@ typedef struct desk {
   conic_chunk chunk;
   conic_projected projected;
   uint32_t *list, *words, *selected, *selected_words;
+  conic_tile_entry *references;
   conic_band band;
   conic_tile_rays rays;
   conic_image image;
@@ -122,6 +137,7 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
   n = n < GREATEST_LIST ? n : GREATEST_LIST;
   d->list = room(d, n * sizeof *d->list);
   d->words = room(d, n * sizeof *d->words);
+  d->references = room(d, n * sizeof *d->references);
   d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
   d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
   d->band.kept = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.kept);
@@ -168,8 +184,8 @@ static inline void close_desk(desk *d) {
 
 /* Says where the arena differs first, and how. */
 static inline void compare_arena(const desk *a, const desk *b, int i) {
-  static const char *const names[] = {"footprints", "boxes",          "surfaces", "rays",    "list", "words",
-                                      "selected",   "selected words", "kept",     "nearest", "sums"};
+  static const char *const names[] = {"footprints", "boxes",    "surfaces",       "rays", "list",    "words",
+                                      "references", "selected", "selected words", "kept", "nearest", "sums"};
   const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
   size_t n = a->arenas[i].compared, at = 0;
   CHECK(n == b->arenas[i].compared);

@@ -48,12 +48,14 @@ run_diff 1 a.pfm nan.pfm --max-abs 1e30
 
 # Statistics
 run_diff 1 a.pfm b.pfm --json -
-for key in identical max_abs rmse psnr ssim flip differing_pixels largest_hole planes; do
+for key in identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes; do
   grep -q "^  \"$key\": " out || fail "no $key in the statistics"
 done
 has '"identical": false'
 has '"max_abs": 0.5,'
-has '"flip": null'
+has '"flip": 0\.[0-9]'
+has '"over_code": 1,'
+has '"p999": 0.5,'
 has '"differing_pixels": 1,'
 has '"largest_hole": 0,'
 has '^    "rgba": {'
@@ -63,6 +65,7 @@ has '"identical": true'
 has '"max_abs": 0,'
 has '"psnr": null'
 has '"ssim": 1,'
+has '"flip": 0,'
 run_diff 1 a.pfm nan.pfm --json -
 has '"max_abs": null'
 run_diff 1 a.pfm tall.pfm --json -
@@ -75,6 +78,8 @@ fi
 # Heat maps
 run_diff 1 a.pfm b.pfm --heatmap h.pfm
 [[ $(head -c 7 h.pfm | tr '\n' ' ') == 'PF 2 1 ' ]] || fail "no heat map"
+run_diff 1 a.pfm b.pfm --heatmap f.pfm --heatmap-of flip
+cmp -s h.pfm f.pfm && fail "both heat maps are the same"
 run_diff 1 a.pfm tall.pfm --heatmap none.pfm
 [[ ! -e none.pfm ]] || fail "a heat map of different sizes"
 grep -q '^conic: warning: none.pfm: ' err || fail "silent about the missing heat map"
@@ -84,6 +89,7 @@ run_diff 2 a.pfm
 run_diff 2 a.pfm b.pfm tall.pfm
 run_diff 2 a.pfm b.pfm --max-abs nonsense
 run_diff 2 a.pfm b.pfm --max-abs -1
+run_diff 2 a.pfm b.pfm --heatmap h.pfm --heatmap-of nonsense
 run_diff 2 a.pfm b.pfm --heatmap h.nosuchformat2 --json h.nosuchformat2
 run_diff 3 absent.pfm a.pfm
 run_diff 3 a.pfm absent.pfm

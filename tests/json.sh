@@ -42,10 +42,12 @@ declare -A wanted=(
     methods.conic device isa threads tile epsilon_mode epsilon near primitives.splats clouds_culled hash.rgba hash.Z
     ms.read ms.estimate ms.lod ms.setup ms.bin ms.visibility ms.accumulate ms.resolve ms.write ms.frame ms.total
     ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes"
-  [diff]="identical max_abs rmse psnr ssim flip differing_pixels largest_hole planes.rgba.max_abs planes.rgba.rmse"
+  [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs planes.rgba.rmse"
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z compared_pixels
     unstable_pixels covered_pixels undecided_ids unstable_limit unstable_by_reason.cutoff unstable_by_reason.visibility
     ms.render ms.oracle pass"
+  [chart]="scenes methods points seconds"
+  [explain]="method pixel planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
   [bench]="lines wrong_pictures peak_rss_bytes machine"
   [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
 )

@@ -26,6 +26,10 @@ cat > camera.json << 'END'
  "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
 END
 run 0 verify knot.ply --camera camera.json
+run 0 verify knot.ply --size 60x40 --samples 3 --json -
+has '"samples": 3,'
+has '"covered_samples": '
+has '"pass": true'
 
 # Statistics
 run 0 verify knot.ply --size 160x120 --json -
@@ -64,6 +68,7 @@ if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   run 1 verify knot.ply --size 160x120 --image wrong.exr --json -
   has '"pass": false'
   run 1 verify knot.ply --size 160x120 --image right.exr --light 0,1,0
+  run 1 verify knot.ply --size 160x120 --image right.exr --samples 2
   run 3 verify knot.ply --size 160x121 --image right.exr
   grep -q '^conic: error: right.exr: ' err || fail "no word on the size"
 else

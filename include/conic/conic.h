@@ -4,6 +4,7 @@
 
 #include "conic/camera.h"
 #include "conic/context.h"
+#include "conic/contributions.h"
 #include "conic/export.h"
 #include "conic/image.h"
 #include "conic/model.h"

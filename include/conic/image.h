@@ -86,14 +86,18 @@ CONIC_API conic_status conic_image_read(conic_context *context, const char *path
 typedef struct conic_plane_difference {
   int compared; /* the plane is in both images */
   double max_abs, rmse;
+  double p999; /* of the pixels' largest differences */
 } conic_plane_difference;
 
 typedef struct conic_difference {
   int identical;           /* same size, same planes, same bits */
   int same_size;           /* where 0, nothing below is set */
   double max_abs, rmse;    /* over all common planes but id and count; NaN against a number counts as infinite */
+  double p999;             /* 99.9 % of the pixels differ by no more in any of those planes */
   double psnr, ssim;       /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
-  int has_color;           /* both have rgba: psnr and ssim are set */
+  double flip;             /* mean ꟻLIP of R, G, B, clamped to 0 … 1: 0 where nothing differs, 1 at most */
+  size_t over_code;        /* pixels where R, G or B, sRGB-encoded, differ by more than 1/255 */
+  int has_color;           /* both have rgba: psnr, ssim, flip and over_code are set */
   size_t differing_pixels; /* pixels where any common plane differs */
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_N_PLANES];
@@ -108,6 +112,10 @@ CONIC_API conic_status conic_image_compare(conic_context *context, const conic_i
  * ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_image *heatmap);
+
+/* The same of ꟻLIP: black at 0, then linearly over blue, red and yellow to white at 1. */
+CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                                conic_image *heatmap);
 
 #ifdef __cplusplus
 }

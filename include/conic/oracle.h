@@ -64,7 +64,9 @@ typedef struct conic_reference {
                                      as good an id; or CONIC_ANY_ID where there are several */
   double white;                   /* 2^exposure, by which rgba is multiplied */
   size_t covered_pixels, unstable_pixels;
-  size_t undecided_ids; /* pixels with CONIC_ANY_ID: their ids are not compared */
+  int samples;                              /* N × N a pixel; what follows counts samples */
+  size_t covered_samples, unstable_samples; /* the same as the pixels where N is 1 */
+  size_t undecided_ids;                     /* pixels with CONIC_ANY_ID: their ids are not compared */
   size_t unstable_by_reason[CONIC_N_UNSTABLE_REASONS];
   conic_weight_error weight_error; /* for the exact question; else zero */
 } conic_reference;
@@ -77,6 +79,13 @@ typedef struct conic_reference {
 CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_splats *splats,
                                            const conic_camera *camera, const conic_render_options *options,
                                            conic_oracle_question question, conic_reference *reference);
+
+/* The same with samples × samples samples a pixel (docs/picture.md), 1 to 16. A pixel is as unstable as its samples are
+ * together. All samples are kept until they are reduced: some 120 bytes each. */
+CONIC_API conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats,
+                                                   const conic_camera *camera, const conic_render_options *options,
+                                                   conic_oracle_question question, int samples,
+                                                   conic_reference *reference);
 
 CONIC_API void conic_reference_release(conic_context *context, conic_reference *reference);
 
@@ -91,7 +100,7 @@ typedef struct conic_oracle_plane_verdict {
 typedef struct conic_oracle_verdict {
   conic_oracle_plane_verdict planes[CONIC_N_PLANES];
   size_t compared_pixels, unstable_pixels, covered_pixels;
-  double unstable_limit; /* share of the covered pixels that may be unstable */
+  double unstable_limit; /* share of the covered pixels, or samples, that may be unstable */
   int pass;              /* every bound and the limit are kept */
 } conic_oracle_verdict;
 

@@ -83,7 +83,7 @@ typedef struct conic_render_options {
   int has_background;
   float background[3]; /* linear RGB behind the picture, which then is opaque */
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
-  int tile;            /* tile edge in pixels, a multiple of 4 from 8 to 64; changes no bit of the image */
+  int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
 } conic_render_options;
 
@@ -128,6 +128,17 @@ CONIC_API void conic_renderer_destroy(conic_renderer *renderer);
 CONIC_API conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                     const conic_render_options *options, conic_image *image,
                                     conic_render_statistics *statistics);
+
+#define CONIC_MAX_SAMPLES 16
+
+/* The same with samples × samples samples a pixel (docs/picture.md): the picture is drawn so many times as wide and as
+ * high, the prefilter in px² of that, and reduced. 1 is conic_render itself; samples times the image's size is 65535 at
+ * most. Needs memory for up to 2²⁴ samples or one row of the image's, whichever is more, at 4 bytes a channel, beside
+ * the renderer's. In `statistics`, fragments and pixels_covered count samples. `context` is the renderer's. */
+CONIC_API conic_status conic_render_samples(conic_context *context, conic_renderer *renderer,
+                                            const conic_splats *splats, const conic_camera *camera,
+                                            const conic_render_options *options, int samples, conic_image *image,
+                                            conic_render_statistics *statistics);
 
 #ifdef __cplusplus
 }

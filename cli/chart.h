@@ -1,0 +1,43 @@
+/* The speed–accuracy chart: what was measured, and drawing it. */
+#ifndef CLI_CHART_H
+#define CLI_CHART_H
+
+#include <stddef.h>
+
+#include "cli/chart_scene.h"
+
+/* How far a picture is from what it should be; of R, G, B. */
+typedef struct cli_chart_error {
+  int is_measured;
+  double max, rmse; /* linear */
+  double psnr, flip;
+} cli_chart_error;
+
+/* One method with one kernel on one scene. */
+typedef struct cli_chart_point {
+  const cli_chart_scene *scene;
+  conic_method method;
+  conic_kernel kernel;
+  double ms; /* a frame */
+  size_t fragments;
+  cli_chart_error oracle, truth; /* against the exact kernel, in a window; against the surface */
+  double weight_max;             /* the largest error of a weight in that window */
+  size_t holes, largest_hole;    /* pixels */
+  int is_front[2];               /* no other of its scene is faster and nearer to the oracle, the surface */
+} cli_chart_point;
+
+/* "gauss", "confetti" … */
+const char *cli_kernel_name(conic_kernel_type type);
+
+/* Draws FOLDER/chart.csv by gnuplot, which reads FOLDER/chart.gp: SVG and PNG. Returns 0 where there is no gnuplot or
+ * it failed. */
+int cli_chart_plot(const char *folder);
+
+/* The script of that; the points are those of the table. Returns 0 where it cannot be written. */
+int cli_chart_write_script(const char *folder, const cli_chart_point *points, int n_points);
+
+static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
+  return against_truth ? &point->truth : &point->oracle;
+}
+
+#endif

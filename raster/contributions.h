@@ -1,0 +1,50 @@
+/* The inside of a frame's contributions. */
+#ifndef RASTER_CONTRIBUTIONS_H
+#define RASTER_CONTRIBUTIONS_H
+
+#include "conic/contributions.h"
+#include "raster/coverage.h"
+
+/* Rows of the picture whose splats are listed together. */
+enum { CONIC_CONTRIBUTION_BAND = 8 };
+
+struct conic_contributions {
+  conic_context *context;
+  const conic_splats *splats;
+  conic_render_options options;
+  conic_view view;
+  conic_projected projected;
+  size_t *band_begin; /* band b's splats are references[band_begin[b] … band_begin[b + 1]), in the order of the set */
+  uint32_t *references;     /* indices of footprints */
+  conic_contribution *list; /* of the last pixel that was asked for */
+  size_t list_room;
+};
+
+/* The footprint at a pixel, which it covers: everything but the verdict. */
+conic_contribution conic_contribution_of(const conic_contributions *contributions, uint32_t i_footprint, int x, int y,
+                                         const conic_fragment *fragment);
+
+/* The pixels that a footprint may cover: those of the blocks of 4 × 4 that its box meets, within the picture. */
+typedef struct conic_reach {
+  int x_begin, x_end, y_begin, y_end;
+} conic_reach;
+
+static inline conic_reach conic_reach_of(const conic_contributions *contributions, uint32_t i_footprint) {
+  const conic_box *box = &contributions->projected.boxes[i_footprint];
+  const conic_view *view = &contributions->view;
+  conic_reach reach = {box->x_begin / 4 * 4, (box->x_end + 3) / 4 * 4, box->y_begin / 4 * 4, (box->y_end + 3) / 4 * 4};
+  reach.x_end = reach.x_end < view->width ? reach.x_end : view->width;
+  reach.y_end = reach.y_end < view->height ? reach.y_end : view->height;
+  return reach;
+}
+
+/* By what a fragment hides others, and by what it is seen: docs/picture.md, "Visible". */
+static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
+  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+}
+
+static inline float conic_seen_iz(const conic_fragment *fragment) {
+  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
+}
+
+#endif
