@@ -38,14 +38,14 @@ conic_status cli_bench_scene_camera(cli_session *session, const cli_bench_scene 
 
 /* --- methods --- */
 
-/* conic, ray, affine; and nearest: conic's single pass, where the nearest splat wins. */
+/* conic, ray, affine, point, disc, auto; and nearest: conic's single pass, where the nearest splat wins. */
 typedef struct cli_bench_method {
   const char *name;
   conic_method method;
   int passes;
 } cli_bench_method;
 
-enum { CLI_BENCH_N_METHODS = 4 };
+enum { CLI_BENCH_N_METHODS = 7 };
 extern const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS];
 
 /* --- what a stage must at least do (cli/bench_work.c) --- */
@@ -69,7 +69,7 @@ enum { CLI_BENCH_MOST_FRAMES = 1000 };
 
 typedef struct cli_bench_line {
   /* What is measured. */
-  char name[64]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
+  char name[96]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
   char scene_name[32];
   int i_scene, i_method;
   conic_isa isa;

@@ -6,10 +6,10 @@
 
 #include "cli/bench.h"
 
-const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {{"conic", CONIC_METHOD_CONIC, 3},
-                                                                 {"ray", CONIC_METHOD_RAY, 3},
-                                                                 {"affine", CONIC_METHOD_AFFINE, 3},
-                                                                 {"nearest", CONIC_METHOD_CONIC, 1}};
+const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
+    {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},
+    {"point", CONIC_METHOD_POINT, 3},  {"disc", CONIC_METHOD_DISC, 3}, {"auto", CONIC_METHOD_AUTO, 3},
+    {"nearest", CONIC_METHOD_CONIC, 1}};
 
 static int compare_doubles(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;

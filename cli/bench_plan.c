@@ -73,8 +73,9 @@ static int take_method(cli_bench_job *job, const char *word) {
   }
   if (strcmp(word, "all") == 0)
     return CLI_DONE;
-  return nearest ? cli_usage("bench: unknown method %s; did you mean %s?", word, nearest)
-                 : cli_usage("bench: unknown method %s; there are conic, ray, affine, nearest", word);
+  return nearest
+             ? cli_usage("bench: unknown method %s; did you mean %s?", word, nearest)
+             : cli_usage("bench: unknown method %s; there are conic, ray, affine, point, disc, auto, nearest", word);
 }
 
 static int is_isa_here(conic_isa isa) {

@@ -84,7 +84,7 @@ static void name_line(const bench_run *r, cli_bench_line *line) {
   if (line->width != 1024 || line->height != 1024)
     snprintf(size, sizeof size, "@%dx%d", line->width, line->height);
   snprintf(line->scene_name, sizeof line->scene_name, "%s", r->scene.name);
-  snprintf(line->name, sizeof line->name, "%.31s%s/%s/%s/%d", r->scene.name, size,
+  snprintf(line->name, sizeof line->name, "%.31s%.15s/%.15s/%.15s/%d", r->scene.name, size,
            cli_bench_methods[line->i_method].name, conic_isa_name(line->isa), line->threads);
 }
 

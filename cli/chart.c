@@ -229,7 +229,8 @@ static conic_status measure_point(chart_job *job, const chart_view *view, const 
     status = compare_truth(context, view, &image, point);
   conic_image_release(context, &image);
   int edge = job->is_quick && kernel->window > 6 ? 6 : kernel->window;
-  if (status == CONIC_OK && edge > 0)
+  int is_of_the_kernel = options.method != CONIC_METHOD_POINT && options.method != CONIC_METHOD_DISC;
+  if (status == CONIC_OK && edge > 0 && is_of_the_kernel)
     status = compare_oracle(job, view, &options, edge, point);
   job->n_points += status == CONIC_OK;
   return status;

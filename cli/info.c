@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/octree_info.h"
 #include "core/clip.h"
 
 /* What in a model cannot be drawn as it stands. */
@@ -25,6 +26,10 @@ typedef struct info_job {
   size_t n_finite;
   double minimum[3], maximum[3];
   defects found;
+  /* of octrees */
+  conic_octree *octree;
+  conic_octree_info info;
+  conic_octree_defects broken;
   /* of images */
   conic_image image;
   size_t n_wrong_samples;
@@ -119,6 +124,18 @@ static void check_image(info_job *job) {
   job->is_sound = job->n_wrong_samples == 0;
 }
 
+static int read_octree(cli_session *session, info_job *job) {
+  conic_status status = conic_octree_read(session->context, job->path, &job->octree);
+  if (status == CONIC_OK)
+    status = conic_octree_describe(job->octree, &job->info);
+  if (status == CONIC_OK && job->is_check)
+    status = conic_octree_check(job->octree, &job->broken);
+  const conic_octree_defects *broken = &job->broken;
+  job->kind = "cot";
+  job->is_sound = broken->ellipses + broken->spheres + broken->cones + broken->errors + broken->splats == 0;
+  return cli_exit_of(status);
+}
+
 static int has_image(const info_job *job) {
   return job->image.width > 0;
 }
@@ -126,6 +143,8 @@ static int has_image(const info_job *job) {
 static int read_file(cli_session *session, info_job *job) {
   int is_image = is_exr(job->path);
   find_size(job);
+  if (conic_octree_is_file(job->path))
+    return read_octree(session, job);
   conic_status status = is_image ? conic_image_read(session->context, job->path, &job->image)
                                  : conic_model_read(session->context, job->path, NULL, &job->model);
   if (status != CONIC_OK)
@@ -204,11 +223,14 @@ static int print_text(const info_job *job) {
   printf("kind       %s\n", job->kind);
   if (job->has_bytes)
     printf("bytes      %" PRIu64, job->bytes);
-  if (job->has_bytes && job->model.points.count)
-    printf(" (%.1f a point)", (double)job->bytes / (double)job->model.points.count);
+  size_t n_points = job->octree ? job->info.n_points : job->model.points.count;
+  if (job->has_bytes && n_points)
+    printf(" (%.1f a point)", (double)job->bytes / (double)n_points);
   if (job->has_bytes)
     putchar('\n');
-  if (has_image(job))
+  if (job->octree)
+    cli_octree_print(&job->info, job->is_check ? &job->broken : NULL);
+  else if (has_image(job))
     print_image(job);
   else
     print_model(job);
@@ -274,7 +296,9 @@ static int report(cli_session *session, const info_job *job) {
   cli_json_text(json, "kind", job->kind);
   if (job->has_bytes)
     cli_json_count(json, "bytes", job->bytes);
-  if (has_image(job))
+  if (job->octree)
+    cli_octree_report(json, &job->info, job->is_check ? &job->broken : NULL);
+  else if (has_image(job))
     report_image(json, job);
   else
     report_model(json, job);
@@ -299,6 +323,7 @@ static int run(cli_session *session, int argc, char **argv) {
       exit_code = report(session, &job);
     conic_model_release(session->context, &job.model);
     conic_image_release(session->context, &job.image);
+    conic_octree_destroy(job.octree);
   }
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

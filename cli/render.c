@@ -27,6 +27,7 @@ static void take_medians(cli_render_job *job, conic_render_statistics *frames, s
     n--;
   }
   ms.frame = median_of(frames, n, offsetof(conic_render_milliseconds, frame));
+  ms.lod = median_of(frames, n, offsetof(conic_render_milliseconds, lod));
   ms.setup = median_of(frames, n, offsetof(conic_render_milliseconds, setup));
   ms.bin = median_of(frames, n, offsetof(conic_render_milliseconds, bin));
   ms.visibility = median_of(frames, n, offsetof(conic_render_milliseconds, visibility));
@@ -114,6 +115,22 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
   return status;
 }
 
+/* One picture; of an octree, of what is chosen for it, which counts among the frame's time. */
+static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                         const conic_camera *camera, conic_renderer *renderer, conic_image *image,
+                         conic_render_statistics *statistics) {
+  double lod_ms = 0.0;
+  conic_status status = job->octree ? cli_lod_select(job, camera, &lod_ms) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_render_samples(session->context, renderer, job->octree ? &job->selection.splats : splats, camera,
+                                  &job->options, job->samples, image, statistics);
+  if (status == CONIC_OK && job->octree)
+    conic_selection_name(&job->selection, image);
+  statistics->ms.lod = lod_ms;
+  statistics->ms.frame += lod_ms;
+  return status;
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                  conic_renderer *renderer, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
@@ -122,8 +139,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = conic_render_samples(session->context, renderer, splats, &camera, &job->options, job->samples, image,
-                                  &repeats[i]);
+    status = draw(session, job, splats, &camera, renderer, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
@@ -175,6 +191,7 @@ static int run(cli_session *session, int argc, char **argv) {
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     conic_splats_release(session->context, &splats);
+    cli_lod_close(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", "affine", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
@@ -194,6 +194,12 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     answer = check_deep(job);
   if (answer != CLI_DONE)
     return answer;
+  if (cli_lod_is_wanted(job) && job->deep_path)
+    return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
+  if (job->error_px > 0.0 && job->budget)
+    return cli_usage("render: --error and --budget are two ways to choose; give one of both");
+  if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
+    return cli_usage("render: --error and --budget need a single .cot as input (conic octree makes one)");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
   return cli_check_outputs(session, paths, job->n_outputs + 1);
@@ -249,8 +255,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
-      {"method", CLI_CHOICE, &method, "NAME", "how a splat is projected and weighed: conic, ray, affine [conic]",
-       .choices = method_words},
+      {"method", CLI_CHOICE, &method, "NAME",
+       "how a splat is projected and weighed: point, disc, affine, conic, ray, auto [conic]", .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
@@ -301,6 +307,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = parse_output},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"error", CLI_NUMBER, &job->error_px, "PX",
+       "of a .cot, no more splats than keep the error on the screen below this; 0: all [0]", 0, 65536},
+      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot, the N splats or fewer whose error is the least", 1,
+       4294967294.0},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);

@@ -24,6 +24,13 @@ typedef struct cli_render_job {
   int n_neighbours;
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
+  double error_px;              /* 0: every splat */
+  unsigned long long budget;    /* 0: no limit */
+
+  /* Where one of both is given: the only input, and what was chosen of it for the frame. */
+  conic_octree *octree;
+  conic_octree_info info;
+  conic_selection selection;
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
@@ -40,9 +47,19 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
 /* What job's options are before any is parsed; cli_scene_parse leaves alone what is no option of its own. */
 void cli_scene_defaults(cli_render_job *job);
 
+/* Whether less than everything is to be drawn. */
+int cli_lod_is_wanted(const cli_render_job *job);
+/* Opens the only input, an octree, into the job. */
+conic_status cli_lod_open(cli_session *session, cli_render_job *job);
+/* Chooses for a frame; *ms is what it took. */
+conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, double *ms);
+/* Ends both; fine where they never were. */
+void cli_lod_close(cli_session *session, cli_render_job *job);
+
 /* Reads the inputs into one set of splats, which the caller releases, also after a failure. */
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);
-/* Fills in what every frame would find anew: the near distance and the scale of ε. */
+/* Fills in what every frame would find anew: the near distance and the scale of ε. Of an octree the splats are of no
+ * matter here and in cli_scene_camera. */
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats);
 /* The camera of a frame. */
 conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, const conic_splats *splats, int i_frame,

@@ -24,8 +24,14 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
   cli_json_close(json);
   cli_json_object(json, "primitives");
   cli_json_count(json, "splats", s->splats_drawn);
+  if (job->octree) { /* of what was handed over to be drawn */
+    cli_json_count(json, "leaves", job->selection.splats.count - job->selection.n_inner);
+    cli_json_count(json, "inner_nodes", job->selection.n_inner);
+  }
   cli_json_close(json);
-  cli_json_count(json, "clouds_culled", 0);
+  cli_json_count(json, "clouds_culled", job->selection.n_culled);
+  if (job->octree)
+    cli_json_number(json, "error_px", job->selection.error_px);
 }
 
 static void report_settings(cli_json *json, const cli_render_job *job) {
@@ -46,7 +52,7 @@ static void report_times(cli_json *json, const cli_render_job *job) {
   cli_json_object(json, "ms");
   cli_json_number(json, "read", job->read_ms);
   cli_json_number(json, "estimate", job->estimate_ms);
-  cli_json_number(json, "lod", 0.0);
+  cli_json_number(json, "lod", s->ms.lod);
   cli_json_number(json, "setup", s->ms.setup);
   cli_json_number(json, "bin", s->ms.bin);
   cli_json_number(json, "visibility", s->ms.visibility);

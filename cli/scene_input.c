@@ -24,6 +24,26 @@ static conic_status check_extent(const cli_render_job *job, const char *path, co
   return CONIC_ERROR_INPUT;
 }
 
+/* An octree without a choice of level is the splats that it was built from. */
+static conic_status read_octree(cli_session *session, const char *path, conic_splats *splats, conic_model_kind *kind) {
+  conic_octree *octree;
+  conic_splats leaves;
+  *kind = CONIC_MODEL_PLY;
+  conic_status status = conic_octree_read(session->context, path, &octree);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_octree_leaves(octree, &leaves);
+  conic_octree_destroy(octree);
+  if (status != CONIC_OK || splats->count == 0) {
+    if (status == CONIC_OK)
+      *splats = leaves;
+    return status;
+  }
+  status = conic_splats_append(session->context, splats, &leaves);
+  conic_splats_release(session->context, &leaves);
+  return status;
+}
+
 /* Reads an input, and gives its points axes where it has none. */
 static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
                                conic_model_kind *kind, double *estimate_seconds) {
@@ -31,6 +51,8 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
   conic_read_options read_options;
   conic_estimate_options estimate_options;
   conic_repairs repairs;
+  if (conic_octree_is_file(path))
+    return read_octree(session, path, splats, kind);
   conic_read_options_init(&read_options);
   conic_estimate_options_init(&estimate_options);
   read_options.cutoff = estimate_options.cutoff = job->options.kernel.cutoff;
@@ -57,6 +79,8 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
   memset(splats, 0, sizeof *splats);
+  if (cli_lod_is_wanted(job))
+    return cli_lod_open(session, job);
   for (int i = 0; i < job->n_inputs; i++) {
     conic_model_kind kind;
     conic_status status = read_input(session, job, job->inputs[i], splats, &kind, &estimate_seconds);
@@ -77,6 +101,10 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double spacing = 1.0;
   conic_status status = CONIC_OK;
+  if (job->octree && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
+    cli_error(CLI_USAGE, "render: lengths in spacings need every splat; give world units with --error or --budget");
+    return CONIC_ERROR_ARGUMENT;
+  }
   if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
     status = conic_splats_spacing(session->context, splats, &spacing);
   if (job->epsilon.value >= 0.0)
@@ -86,12 +114,21 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
   return status;
 }
 
+/* What an octree knows of the splats that it was built from. */
+static void measure_octree(cli_render_job *job) {
+  job->options.splat_length = job->info.splat_length;
+  if (job->options.near_z == 0.0)
+    job->options.near_z = job->info.near_z;
+}
+
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
   conic_status status = resolve_lengths(session, job, splats);
-  if (status == CONIC_OK)
+  if (job->octree)
+    measure_octree(job);
+  else if (status == CONIC_OK)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && job->options.near_z == 0.0)
+  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0)
     job->options.near_z = conic_default_near(splats);
   job->estimate_ms += 1e3 * (cli_seconds() - start);
   return status;
@@ -103,7 +140,11 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   conic_framing framing = job->framing;
   if (job->camera_path)
     return conic_camera_read(session->context, job->camera_path, camera);
-  conic_splats_bounds(splats, low, high);
+  if (job->octree) {
+    memcpy(low, job->info.minimum, sizeof low);
+    memcpy(high, job->info.maximum, sizeof high);
+  } else
+    conic_splats_bounds(splats, low, high);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
   return conic_camera_frame(session->context, &framing, low, high, camera);
 }

@@ -62,6 +62,7 @@ static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, s
     }
     double weight_error = is_exact ? 0.0 : together(f[i].weight_error, f[heaviest].weight_error);
     if (passes != 1 && i != heaviest && !are_copies(&f[i], &f[heaviest]) &&
+        !(weight_error == 0.0 && f[i].weight == f[heaviest].weight) &&
         f[i].weight + weight_error >= f[heaviest].weight &&
         fabs(f[i].z - f[heaviest].z) > 0.5 * ORACLE_Z_BOUND * f[heaviest].z)
       doubt |= 1u << CONIC_UNSTABLE_WEIGHT_TIE;

@@ -11,6 +11,9 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   view.prefilter = (double)options->prefilter;
   view.reach_px = view.cutoff * sqrt(view.prefilter);
   view.method = (int)options->method;
+  view.thin_px = 0.5;
+  if (options->method == CONIC_METHOD_AUTO)
+    view.thin_px = oracle_max(0.25, sqrt(1.25 * view.prefilter) / view.cutoff);
   view.cull_back = options->cull_back;
   return view;
 }
@@ -23,6 +26,14 @@ static double band_px(const oracle_view *view, const oracle_placed *s, double re
   return steepness > 0.0 ? (near_iz - far_iz) * fabs(oracle_dot(normal, s->p)) / steepness : INFINITY;
 }
 
+/* The bound of conic's error: its amplitude, times how far its centre is from p's place in standard deviations. */
+static double conic_error(const oracle_view *view, const oracle_placed *s, const oracle_shape *shape) {
+  const conic_camera *c = &view->camera;
+  double offset[2] = {c->fx * s->p[0] / s->p[2] + c->cx - shape->center[0],
+                      c->fy * s->p[1] / s->p[2] + c->cy - shape->center[1]};
+  return ORACLE_AUTO_STEEPNESS * shape->amplitude * sqrt(oracle_max(oracle_form(shape->inverse, offset), 0.0));
+}
+
 void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double answers[ORACLE_N_QUESTIONS]) {
   double normal[3], reach = view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]);
   oracle_cross(s->tu, s->tv, normal);
@@ -31,24 +42,27 @@ void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double an
   answers[ORACLE_IS_BACK] = facing;
   answers[ORACLE_REACHES_NEAR] = reach - (s->p[2] - view->near_z);
   answers[ORACLE_IS_BAND_NARROW] = view->cutoff - band_px(view, s, reach, normal);
-  answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = -1.0;
+  answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = answers[ORACLE_IS_COARSE] = -1.0;
   answers[ORACLE_HAS_NO_PLANE] = -oracle_length(normal);
-  if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0)
+  int is_dot = view->method == CONIC_METHOD_DISC || view->method == CONIC_METHOD_POINT; /* those have an area always */
+  if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0 && !is_dot)
     answers[ORACLE_HAS_NO_PLANE] = -fabs(facing);
   oracle_shape shape;
   if (s->p[2] > reach && conic_oracle_shape(view, s, ORACLE_CONIC, &shape)) {
     oracle_symmetric r = shape.variance;
     r.xx -= view->prefilter;
     r.yy -= view->prefilter;
-    answers[ORACLE_IS_THIN] = 0.5 - sqrt(oracle_lesser_eigenvalue(r));
+    answers[ORACLE_IS_COARSE] = conic_error(view, s, &shape) / ORACLE_AUTO_ERROR - 1.0;
+    answers[ORACLE_IS_THIN] = view->thin_px - sqrt(oracle_lesser_eigenvalue(r));
     answers[ORACLE_IS_CLOSE] = reach / s->p[2] - 0.25;
   }
 }
 
 void conic_oracle_answer(const double answers[ORACLE_N_QUESTIONS], int is_so[ORACLE_N_QUESTIONS]) {
   for (int i = 0; i < ORACLE_N_QUESTIONS; i++) /* on the very border, as the page has it */
-    is_so[i] =
-        i == ORACLE_IS_BACK || i == ORACLE_IS_THIN || i == ORACLE_IS_BAND_NARROW ? answers[i] > 0.0 : answers[i] >= 0.0;
+    is_so[i] = i == ORACLE_IS_BACK || i == ORACLE_IS_THIN || i == ORACLE_IS_BAND_NARROW || i == ORACLE_IS_COARSE
+                   ? answers[i] > 0.0
+                   : answers[i] >= 0.0;
 }
 
 oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
@@ -56,10 +70,16 @@ oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORAC
     return ORACLE_NOT_DRAWN;
   if (is_so[ORACLE_REACHES_NEAR])
     return is_so[ORACLE_IS_BAND_NARROW] ? ORACLE_SEGMENT : ORACLE_RAY;
+  if (view->method == CONIC_METHOD_DISC)
+    return ORACLE_DISC;
+  if (view->method == CONIC_METHOD_POINT)
+    return ORACLE_POINT;
   if (view->method == CONIC_METHOD_AFFINE) /* thin or not, the variance of the centre's Jacobian */
     return ORACLE_AFFINE;
   if (is_so[ORACLE_IS_THIN])
     return ORACLE_CONIC;
+  if (view->method == CONIC_METHOD_AUTO)
+    return is_so[ORACLE_IS_COARSE] ? ORACLE_RAY : ORACLE_CONIC;
   if (view->method == CONIC_METHOD_RAY || is_so[ORACLE_IS_CLOSE])
     return ORACLE_RAY;
   return ORACLE_CONIC;

@@ -68,10 +68,30 @@ static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, dou
   values[ORACLE_IZ_PLANE] = at.iz;
 }
 
+/* The pixel that holds the place; of the four borders the upper and the left one are its own. */
+static void evaluate_point(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                           double values[ORACLE_N_VALUES]) {
+  for (int i = 0; i < ORACLE_N_MARGINS; i++)
+    values[i] = 1.0;
+  values[ORACLE_MARGIN_Q] = view->support;
+  values[ORACLE_MARGIN_LEFT] = shape->center[0] - (x - 0.5);
+  values[ORACLE_MARGIN_RIGHT] = (x + 0.5) - shape->center[0];
+  values[ORACLE_MARGIN_TOP] = shape->center[1] - (y - 0.5);
+  values[ORACLE_MARGIN_BOTTOM] = (y + 0.5) - shape->center[1];
+  if (values[ORACLE_MARGIN_RIGHT] == 0.0 || values[ORACLE_MARGIN_BOTTOM] == 0.0)
+    values[ORACLE_MARGIN_FRONT] = -1.0;
+  values[ORACLE_WEIGHT] = 1.0;
+  values[ORACLE_IZ] = values[ORACLE_IZ_PLANE] = shape->center_iz;
+}
+
 void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, double x, double y,
                            double values[ORACLE_N_VALUES]) {
   if (shape->formula == ORACLE_RAY) {
     evaluate_ray(view, shape, x, y, values);
+    return;
+  }
+  if (shape->formula == ORACLE_POINT) {
+    evaluate_point(view, shape, x, y, values);
     return;
   }
   double offset[2] = {x - shape->center[0], y - shape->center[1]};
@@ -99,21 +119,13 @@ static void round_ellipse(const oracle_shape *shape, const double offset[2], con
   errors[ORACLE_WEIGHT] = values[ORACLE_WEIGHT] * unit;
 }
 
-/* The middle of what of the box is on the screen. */
-static double middle(const oracle_shape *shape, int axis, int size_px) {
-  double low = oracle_min(oracle_max(shape->box[0][axis], 0.0), (double)size_px);
-  double high = oracle_min(oracle_max(shape->box[1][axis], 0.0), (double)size_px);
-  return 0.5 * (low + high);
-}
-
 /* U, V and iz are sums over the offset from the splat's place, each rounded; J and S follow from them. */
 static void round_ray(const oracle_view *view, const oracle_shape *shape, double x, double y,
                       const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   const double(*rows)[3] = shape->from_screen;
   ray_parameters at = find_parameters(view, shape, x, y);
-  double reach_x = fabs(x - middle(shape, 0, view->camera.width));
-  double reach_y = fabs(y - middle(shape, 1, view->camera.height));
+  double reach_x = fabs(x - shape->center[0]), reach_y = fabs(y - shape->center[1]);
   double sums[3], pull[2], error = 0.0;
   for (int i = 0; i < 3; i++)
     sums[i] = fabs(rows[0][i]) * reach_x + fabs(rows[1][i]) * reach_y + (i < 2 ? fabs(at.u[i] * at.iz) : fabs(at.iz));
@@ -138,7 +150,14 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
     errors[i] = 0.0;
   if (shape->formula == ORACLE_RAY)
     round_ray(view, shape, x, y, values, errors);
-  else {
+  else if (shape->formula == ORACLE_POINT) {
+    /* The place is formed in double. */
+    double position =
+        1e-14 * (fabs(shape->center[0]) + fabs(shape->center[1]) + fabs(view->camera.cx) + fabs(view->camera.cy));
+    for (int i = ORACLE_MARGIN_LEFT; i <= ORACLE_MARGIN_BOTTOM; i++)
+      errors[i] = position;
+    errors[ORACLE_IZ] = errors[ORACLE_IZ_PLANE] = ORACLE_UNIT * shape->center_iz;
+  } else {
     double offset[2] = {x - shape->center[0], y - shape->center[1]};
     round_ellipse(shape, offset, values, errors);
   }

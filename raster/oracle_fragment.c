@@ -1,12 +1,26 @@
 /* A splat at a pixel, and how far off single precision may be there. */
 #include "raster/oracle_pixel.h"
 
+/* Segments are set up in double precision, as are rays that reach near: nothing disturbs those. Nor does a point know
+ * of its axes. */
+static int is_set_up_in_float(const oracle_view *view, const oracle_splat *splat) {
+  switch (splat->formula) {
+  case ORACLE_CONIC:
+  case ORACLE_AFFINE:
+  case ORACLE_DISC:
+    return 1;
+  case ORACLE_RAY:
+    return conic_oracle_is_before_near(view, &splat->placed);
+  default:
+    return 0;
+  }
+}
+
 void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, oracle_candidate *candidate) {
   candidate->splat = splat;
   candidate->is_drawn =
       splat->formula != ORACLE_NOT_DRAWN && conic_oracle_shape(view, &splat->placed, splat->formula, &candidate->shape);
-  /* The set-up of rays and segments is in double precision: nothing disturbs it. */
-  candidate->n_disturbed = splat->formula == ORACLE_CONIC || splat->formula == ORACLE_AFFINE ? ORACLE_N_INPUTS : 0;
+  candidate->n_disturbed = is_set_up_in_float(view, splat) ? ORACLE_N_INPUTS : 0;
   for (int i = 0; i < candidate->n_disturbed; i++) {
     oracle_placed moved = conic_oracle_disturb(&splat->placed, i);
     candidate->is_disturbed[i] =

@@ -4,10 +4,15 @@
 #include "core/message.h"
 #include "raster/oracle_exact.h"
 
-static oracle_formula formula_of(conic_method method) {
-  if (method == CONIC_METHOD_CONIC)
-    return ORACLE_CONIC;
-  return method == CONIC_METHOD_RAY ? ORACLE_RAY : ORACLE_AFFINE;
+static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
+  static const oracle_formula formulas[CONIC_N_METHODS] = {[CONIC_METHOD_CONIC] = ORACLE_CONIC,
+                                                           [CONIC_METHOD_RAY] = ORACLE_RAY,
+                                                           [CONIC_METHOD_AFFINE] = ORACLE_AFFINE,
+                                                           [CONIC_METHOD_DISC] = ORACLE_DISC,
+                                                           [CONIC_METHOD_POINT] = ORACLE_POINT};
+  if (view->method == CONIC_METHOD_AUTO)
+    return conic_oracle_choose(view, is_so);
+  return formulas[view->method];
 }
 
 conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat *splat, const conic_camera *camera,
@@ -25,7 +30,7 @@ conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat
   conic_oracle_ask(&view, &placed, answers);
   conic_oracle_answer(answers, is_so);
   if (is_so[ORACLE_IS_BEHIND] || is_so[ORACLE_REACHES_NEAR] || is_so[ORACLE_HAS_NO_PLANE] ||
-      !conic_oracle_shape(&view, &placed, formula_of(options->method), &shape))
+      !conic_oracle_shape(&view, &placed, formula_of(&view, is_so), &shape))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splat has no footprint of its own on the screen");
   conic_oracle_exact(&view, &placed, &exact);
   for (size_t i = 0; i < n; i++) {

@@ -96,9 +96,10 @@ static void answer_errors(const oracle_view *view, const oracle_placed *placed,
   errors[ORACLE_IS_BEHIND] = errors[ORACLE_REACHES_NEAR] = unit * (fabs(placed->p[2]) + reach + view->near_z);
   errors[ORACLE_IS_BAND_NARROW] = unit * view->cutoff;
   errors[ORACLE_IS_CLOSE] = unit;
+  errors[ORACLE_IS_COARSE] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_COARSE]));
   oracle_shape shape;
   if (conic_oracle_shape(view, placed, ORACLE_CONIC, &shape)) {
-    double sigma = oracle_max(0.5 - answers[ORACLE_IS_THIN], 0.25);
+    double sigma = oracle_max(view->thin_px - answers[ORACLE_IS_THIN], 0.5 * view->thin_px);
     errors[ORACLE_IS_THIN] = unit * oracle_greater_eigenvalue(shape.variance) / sigma;
   }
   for (int i = 0; i < ORACLE_N_INPUTS; i++) {
@@ -117,8 +118,11 @@ static int may_overflow(const oracle_view *view, const oracle_placed *placed) {
   double focal = oracle_max(view->camera.fx, view->camera.fy), z = oracle_max(fabs(placed->p[2]), view->near_z);
   double longer = oracle_max(u, v), shorter = oracle_min(u, v);
   double pixels = longer * focal * p / (z * z);
-  double large[] = {p * p, longer * longer, p * u * v, pixels * pixels * pixels * pixels, 1.0 / (z * z)};
-  double small[] = {shorter * shorter, p * u * v, u * v, z * z};
+  int is_dot =
+      view->method == CONIC_METHOD_DISC || view->method == CONIC_METHOD_POINT; /* without an area to be formed */
+  double area = is_dot ? 1.0 : pixels * pixels * pixels * pixels, volume = is_dot ? 1.0 : p * u * v;
+  double large[] = {p * p, longer * longer, volume, area, 1.0 / (z * z), pixels};
+  double small[] = {shorter * shorter, volume, is_dot ? 1.0 : u * v, z * z};
   for (size_t i = 0; i < sizeof large / sizeof large[0]; i++)
     if (!(large[i] < high))
       return 1;

@@ -107,6 +107,44 @@ static void set_affine(const oracle_view *view, const oracle_placed *s, double f
   set_ellipse(view, s, root, r_g, offset, shape);
 }
 
+/* A circle about the place that p projects to, at p's depth, and its box; a point's radius is only what it takes along
+ * to be measured by. */
+static int set_dot(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
+  const conic_camera *c = &view->camera;
+  double longer = oracle_max(oracle_length(s->tu), oracle_length(s->tv));
+  double radius = oracle_max(0.5, view->cutoff * longer * sqrt(c->fx * c->fy) / s->p[2]);
+  if (shape->formula == ORACLE_POINT)
+    radius = 0.5;
+  double variance = radius * radius / (view->cutoff * view->cutoff);
+  shape->center[0] = c->fx * s->p[0] / s->p[2] + c->cx;
+  shape->center[1] = c->fy * s->p[1] / s->p[2] + c->cy;
+  shape->center_iz = shape->range[0] = shape->range[1] = 1.0 / s->p[2];
+  shape->variance = (oracle_symmetric){variance, 0.0, variance};
+  shape->inverse = oracle_inverse(shape->variance);
+  shape->amplitude = 1.0;
+  for (int i = 0; i < 2; i++) {
+    shape->box[0][i] = shape->center[i] - radius;
+    shape->box[1][i] = shape->center[i] + radius;
+  }
+  return 1;
+}
+
+int conic_oracle_is_before_near(const oracle_view *view, const oracle_placed *s) {
+  return s->p[2] - view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]) > view->near_z;
+}
+
+/* Pixels are counted from p's place, or, where the disc reaches near, from the middle of what of the box is seen. */
+static void set_ray_reference(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
+  const conic_camera *c = &view->camera;
+  const double size[2] = {c->width, c->height}, focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};
+  for (int i = 0; i < 2; i++) {
+    double low = oracle_min(oracle_max(shape->box[0][i], 0.0), size[i]);
+    double high = oracle_min(oracle_max(shape->box[1][i], 0.0), size[i]);
+    shape->center[i] =
+        conic_oracle_is_before_near(view, s) ? focal[i] * s->p[i] / s->p[2] + principal[i] : 0.5 * (low + high);
+  }
+}
+
 static int set_ray(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
   const conic_camera *c = &view->camera;
   const double matrix[3][3] = {
@@ -129,6 +167,7 @@ static int set_ray(const oracle_view *view, const oracle_placed *s, oracle_shape
     shape->box[0][i] = extremes[0].along - view->reach_px;
     shape->box[1][i] = extremes[1].along + view->reach_px;
   }
+  set_ray_reference(view, s, shape);
   return 1;
 }
 
@@ -177,6 +216,8 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
     is_set = set_ray(view, s, shape);
   else if (formula == ORACLE_SEGMENT)
     is_set = set_segment(view, s, shape);
+  else if ((formula == ORACLE_DISC || formula == ORACLE_POINT) && s->p[2] > 0.0)
+    is_set = set_dot(view, s, shape);
   else
     is_set = 0;
   double sum = shape->amplitude + shape->center[0] + shape->center[1] + shape->inverse.xx + shape->inverse.yy;

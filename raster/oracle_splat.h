@@ -22,9 +22,14 @@ typedef struct oracle_view {
   double support;   /* a pixel is covered where q is below this */
   double prefilter; /* h */
   double reach_px;  /* F_g·√h: by how much the prefilter widens an outline */
+  double thin_px;   /* below this smaller standard deviation a splat is not drawn by ray */
   int method;
   int cull_back;
 } oracle_view;
+
+/* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/picture.md, Auto. */
+#define ORACLE_AUTO_ERROR 4e-3
+#define ORACLE_AUTO_STEEPNESS 0.68
 
 /* A view of the options; `near_z` is taken as given. */
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z);
@@ -39,7 +44,9 @@ typedef enum oracle_formula {
   ORACLE_CONIC,
   ORACLE_AFFINE,
   ORACLE_RAY,
-  ORACLE_SEGMENT
+  ORACLE_SEGMENT,
+  ORACLE_DISC,
+  ORACLE_POINT
 } oracle_formula;
 
 /* The questions that choose a formula; each is answered by the sign of a number: no where it is negative. */
@@ -48,7 +55,8 @@ enum {
   ORACLE_IS_BACK,        /* faces away */
   ORACLE_REACHES_NEAR,   /* the disc reaches the near plane */
   ORACLE_IS_BAND_NARROW, /* … and stands edge-on */
-  ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel */
+  ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel, or what `auto` has for that */
+  ORACLE_IS_COARSE,      /* conic's weights may be off by more than `auto` allows */
   ORACLE_IS_CLOSE,       /* the disc is deep compared with its distance */
   ORACLE_HAS_NO_PLANE,   /* axes without a plane, or no area where nothing widens it */
   ORACLE_N_QUESTIONS
@@ -65,8 +73,10 @@ typedef struct oracle_shape {
   double range[2];    /* of inverse depth: far end, near end */
   double box[2][2];   /* the widened box: minimum and maximum in x, y; of what the formula may cover */
   double gradient[2]; /* of the plane's inverse depth per pixel; zero where it is infinite */
-  /* conic, affine and segment */
-  double center[2], center_iz;
+  /* all; a ray's center is what its pixels are counted from, a point's the projected p, others' that of the ellipse */
+  double center[2];
+  /* all but ray */
+  double center_iz;
   oracle_symmetric variance, inverse; /* V and V⁻¹ */
   double slope[2];                    /* of iz: V⁻¹R′g */
   double amplitude;
@@ -79,6 +89,9 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
 
 /* By how much of itself the ray formula's range of inverse depth is widened: docs/picture.md, Ray. */
 #define ORACLE_RANGE_SLACK 0x1p-20
+
+/* Whether the disc's nearer end is beyond near. */
+int conic_oracle_is_before_near(const oracle_view *view, const oracle_placed *s);
 
 /* What a shape is at a pixel. A pixel is covered where none of the margins is negative, and those of q and in front of
  * the eye are positive. */

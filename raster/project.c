@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "raster/method.h"
+
 /* A splat in camera space, divided by p_z: x and y then are on the image plane at distance 1. */
 typedef struct tangents {
   float ux, uy, uz, vx, vy, vz;
@@ -100,12 +102,30 @@ static projected_kernel jacobian_at_center(const tangents *t) {
   return dual_conic(t, 0.0f, 1.0f);
 }
 
-/* The smaller eigenvalue of R' is below ¼ px²: edge-on or tiny. */
-static int is_thin(const projected_kernel *k) {
+/* The smaller eigenvalue of R' is below the limit, ¼ px² for most methods: edge-on or tiny. */
+static int is_thin(const conic_view *view, const projected_kernel *k) {
   float trace = k->rxx + k->ryy, difference = k->rxx - k->ryy;
   float spread = sqrtf(difference * difference + 4.0f * (k->rxy * k->rxy));
   float smaller = 2.0f * (k->root_determinant * k->root_determinant) / (trace + spread);
-  return !(smaller >= 0.25f);
+  return !(smaller >= view->thin);
+}
+
+/* Whether conic's weights may be off by more than `auto` allows. Its centre is that of the outline and not the
+ * projected p: A·√(δᵀV⁻¹δ) bounds what that does. δᵀ adj(R') δ is (F_g·reach)²·|R'|, without the cancellation. */
+static int is_coarse(const splat_setup *s, const projected_kernel *k) {
+  const conic_view *view = s->view;
+  float h = view->prefilter, square = k->root_determinant * k->root_determinant;
+  float determinant = (square + h * (k->rxx + k->ryy)) + h * h, inverse = 1.0f / determinant;
+  float along = view->cutoff * s->reach;
+  float moved = (along * along) * square + h * (k->shift_x * k->shift_x + k->shift_y * k->shift_y);
+  return (square * inverse) * (moved * inverse) > view->auto_limit;
+}
+
+static int wants_ray(const splat_setup *s, const projected_kernel *k) {
+  conic_method method = s->view->method;
+  if (is_thin(s->view, k))
+    return 0;
+  return method == CONIC_METHOD_RAY || (method == CONIC_METHOD_AUTO ? is_coarse(s, k) : s->reach >= 0.25f);
 }
 
 static void set_depth(const splat_setup *s, const tangents *t, const projected_kernel *k, float vxx, float vyy,
@@ -220,6 +240,35 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
   return CONIC_DRAWN_VARIANCE;
 }
 
+/* Methods `disc` and `point`: a circle about the projected p, without tilt or depth of its own; or the pixel that holds
+ * p, which is the circle that just fits into it. */
+static conic_outcome project_dot(const splat_setup *s, const float tu[3], const float tv[3]) {
+  const conic_view *view = s->view;
+  conic_footprint *footprint = s->footprint;
+  int is_point = view->method == CONIC_METHOD_POINT;
+  float inverse_z = (float)s->inverse_z;
+  float u_length = sqrtf((tu[0] * tu[0] + tu[1] * tu[1]) + tu[2] * tu[2]);
+  float v_length = sqrtf((tv[0] * tv[0] + tv[1] * tv[1]) + tv[2] * tv[2]);
+  float radius = view->cutoff * ((u_length > v_length ? u_length : v_length) * (view->focal_px * inverse_z));
+  radius = is_point ? 0.5f : radius > 0.5f ? radius : 0.5f;
+  double x_p = view->cx + view->fx * (s->p[0] * s->inverse_z);
+  double y_p = view->cy + view->fy * (s->p[1] * s->inverse_z);
+  double reach = is_point ? 0.5 : a_hair_more(radius);
+  pixel_range(x_p, reach, view->width, &s->box->x_begin, &s->box->x_end);
+  pixel_range(y_p, reach, view->height, &s->box->y_begin, &s->box->y_end);
+  if (conic_box_is_empty(s->box))
+    return CONIC_CULLED;
+  set_reference(x_p, y_p, footprint);
+  if (is_point)
+    footprint->dx0 = footprint->dy0 = 0.0f;
+  footprint->s1 = footprint->s3 = view->cutoff / radius;
+  if (!(footprint->s3 > 0.0f)) /* 0 would mean a ray */
+    return CONIC_SKIPPED;
+  footprint->iz0 = footprint->iz_far = footprint->iz_near = inverse_z;
+  footprint->s2 = footprint->iz_dx = footprint->iz_dy = footprint->plane_dx = footprint->plane_dy = 0.0f;
+  return CONIC_DRAWN_DOT;
+}
+
 /* Wholly before near: the usual path, in float. */
 static conic_outcome project_before_near(splat_setup *s, const float tu[3], const float tv[3]) {
   const conic_view *view = s->view;
@@ -235,12 +284,14 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
   s->along_ray = t.ux * t.vy - t.uy * t.vx;
   if (view->cull_back && s->along_ray > 0.0f)
     return CONIC_CULLED;
+  if (conic_method_is_dot(view->method))
+    return project_dot(s, tu, tv);
   if (view->method == CONIC_METHOD_AFFINE) {
     projected_kernel affine = jacobian_at_center(&t);
     return project_variance(s, &t, &affine);
   }
   projected_kernel k = dual_conic(&t, view->cutoff, s->nearest * s->farthest);
-  if ((view->method == CONIC_METHOD_RAY || s->reach >= 0.25f) && !is_thin(&k))
+  if (wants_ray(s, &k))
     return project_ray_before_near(s, &t, &k);
   return project_variance(s, &t, &k);
 }
@@ -369,8 +420,8 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else {
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
-    int is_own = outcome == CONIC_DRAWN_RAY ? view->method == CONIC_METHOD_RAY
-                                            : outcome == CONIC_DRAWN_VARIANCE && view->method != CONIC_METHOD_RAY;
+    int is_own = outcome == CONIC_DRAWN_RAY ? conic_method_has_rays(view->method)
+                                            : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
     chunk->n_fallback += !is_own;
     chunk->n_drawn++;
   }

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "raster/lanes_double.h"
+#include "raster/method.h"
 #include "raster/projected.h"
 
 /* So many splats are looked at at a time for whether they face away, and what is left of them is packed. */
@@ -101,7 +102,7 @@ CONIC_INLINE void look_at(const conic_view *view, const lanes position[3], const
 /* The screen's side of a group. */
 typedef struct group_screen {
   lanes bx, by, inverse_w, rxx, rxy, ryy, root, vxx, vyy, determinant;
-  lanes_mask by_ray;
+  lanes_mask by_ray, box_is_exact; /* exact: not a hair wider, since not only the pixel's own q decides in it */
   lanes shift[2], half_width[2], center[2], fraction[2];
   int_lanes begin[2], end[2];
 } group_screen;
@@ -122,16 +123,27 @@ CONIC_INLINE void dual_conic_lanes(const group_splats *g, float cutoff, lanes w,
   s->inverse_w = inverse_w;
 }
 
+/* is_coarse of project.c. */
+CONIC_INLINE lanes_mask are_coarse(const conic_view *view, const group_splats *g, const group_screen *s) {
+  float h = view->prefilter;
+  lanes square = s->root * s->root;
+  lanes determinant = (square + h * (s->rxx + s->ryy)) + h * h, inverse = 1.0f / determinant;
+  lanes along = view->cutoff * g->reach;
+  lanes moved = (along * along) * square + h * (s->shift[0] * s->shift[0] + s->shift[1] * s->shift[1]);
+  return lanes_less(lanes_of(view->auto_limit), (square * inverse) * (moved * inverse));
+}
+
 /* Where the ray formula is due: neither edge-on nor tiny. */
 CONIC_INLINE lanes_mask wants_ray(const conic_view *view, const group_splats *g, const group_screen *s) {
-  lanes_mask reaches = lanes_at_least(g->reach, lanes_of(0.25f));
-  if (view->method != CONIC_METHOD_RAY && !lanes_any(reaches))
-    return reaches;
+  lanes_mask wants =
+      view->method == CONIC_METHOD_AUTO ? are_coarse(view, g, s) : lanes_at_least(g->reach, lanes_of(0.25f));
+  if (view->method != CONIC_METHOD_RAY && !lanes_any(wants))
+    return wants;
   lanes trace = s->rxx + s->ryy, difference = s->rxx - s->ryy;
   lanes spread = lanes_sqrt(difference * difference + 4.0f * (s->rxy * s->rxy));
   lanes smaller = 2.0f * (s->root * s->root) / (trace + spread);
-  lanes_mask thick = lanes_at_least(smaller, lanes_of(0.25f));
-  return view->method == CONIC_METHOD_RAY ? thick : thick & reaches;
+  lanes_mask thick = lanes_at_least(smaller, lanes_of(view->thin));
+  return view->method == CONIC_METHOD_RAY ? thick : thick & wants;
 }
 
 CONIC_INLINE void widen(const conic_view *view, group_screen *s) {
@@ -156,10 +168,10 @@ CONIC_INLINE void place(const group_splats *g, int axis, double principal, doubl
   half_doubles zero = half_of_value(0.0), limit = half_of_value((double)size);
   lanes to_reference = lanes_select(s->by_ray, lanes_of(0.0f), s->shift[axis]);
   /* In double a factor of 1.0001: not as float times 1 and a float's 1.0001. */
-  lanes is_ray = lanes_keep(s->by_ray, lanes_of(1.0f));
+  lanes is_exact = lanes_keep(s->box_is_exact, lanes_of(1.0f));
   for (int half = 0; half < 2; half++) {
-    half_doubles ray = half_of(is_ray, half), half_width = half_of(s->half_width[axis], half);
-    half_doubles reach = half_width * (1.0001 - ray * (1.0001 - 1.0)) + (0.01 - ray * 0.01);
+    half_doubles exact = half_of(is_exact, half), half_width = half_of(s->half_width[axis], half);
+    half_doubles reach = half_width * (1.0001 - exact * (1.0001 - 1.0)) + (0.01 - exact * 0.01);
     half_doubles p = principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half]);
     half_doubles middle = p + half_of(s->shift[axis], half), reference = p + half_of(to_reference, half);
     low.half[half] = half_min(half_max(middle - reach + 0.5, zero), limit);
@@ -293,10 +305,52 @@ CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, 
   return not_finite;
 }
 
+/* project_dot of project.c, up to the box. */
+CONIC_INLINE void measure_dots(const conic_view *view, const group_splats *g, group_screen *s) {
+  lanes u_length = lanes_sqrt((g->tu[0] * g->tu[0] + g->tu[1] * g->tu[1]) + g->tu[2] * g->tu[2]);
+  lanes v_length = lanes_sqrt((g->tv[0] * g->tv[0] + g->tv[1] * g->tv[1]) + g->tv[2] * g->tv[2]);
+  lanes radius = view->cutoff * (lanes_max(u_length, v_length) * (view->focal_px * g->inverse_z_float));
+  if (view->method == CONIC_METHOD_POINT)
+    s->box_is_exact = lanes_at_least(lanes_of(0.0f), lanes_of(0.0f));
+  s->half_width[0] = view->method == CONIC_METHOD_POINT ? lanes_of(0.5f) : lanes_max(radius, lanes_of(0.5f));
+  s->half_width[1] = s->half_width[0];
+  s->shift[0] = s->shift[1] = lanes_of(0.0f);
+  s->determinant = lanes_of(1.0f);
+}
+
+/* And from the box on: what set_footprints does for ellipses and rays. */
+CONIC_INLINE lanes set_dots(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
+  lanes zero = lanes_of(0.0f), scale = view->cutoff / s->half_width[0], inverse_z = g->inverse_z_float;
+  const lanes fields[16] = {s->center[0], s->center[1], s->fraction[0], s->fraction[1], scale, zero,
+                            scale,        inverse_z,    zero,           zero,           zero,  zero,
+                            inverse_z,    inverse_z,    zero,           lanes_of(1.0f)};
+  lanes not_finite = ((s->fraction[0] + s->fraction[1]) * 0.0f + scale * 0.0f) + inverse_z * 0.0f;
+  memcpy(r->footprint, fields, sizeof fields);
+  if (view->method == CONIC_METHOD_POINT)
+    r->footprint[2] = r->footprint[3] = zero;
+  return not_finite - lanes_keep(lanes_at_least(zero, scale), lanes_of(1.0f)); /* 0 would mean a ray */
+}
+
 /* What became of a group's lanes; what is in none is culled. */
 typedef struct group_verdict {
   lanes_mask usual, unusual, skipped;
 } group_verdict;
+
+/* The footprints' sizes on the screen by the formula that is due. */
+CONIC_INLINE void measure(const conic_view *view, const group_splats *g, lanes_mask usual, group_screen *s) {
+  s->by_ray = s->box_is_exact = lanes_not(lanes_at_least(lanes_of(0.0f), lanes_of(0.0f)));
+  if (conic_method_is_dot(view->method)) {
+    measure_dots(view, g, s);
+    return;
+  }
+  if (view->method == CONIC_METHOD_AFFINE)
+    dual_conic_lanes(g, 0.0f, lanes_of(1.0f), s);
+  else {
+    dual_conic_lanes(g, view->cutoff, g->nearest * g->farthest, s);
+    s->by_ray = s->box_is_exact = usual & wants_ray(view, g, s);
+  }
+  widen(view, s);
+}
 
 /* Decides what each lane is and fills its record where it is usual. */
 CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *from, size_t at, group_screen *s,
@@ -312,14 +366,7 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
   verdict.unusual = lanes_not(g.usual | g.behind);
   if (view->cull_back)
     verdict.usual &= lanes_not(lanes_less(lanes_of(0.0f), g.area));
-  s->by_ray = lanes_not(lanes_at_least(lanes_of(0.0f), lanes_of(0.0f)));
-  if (view->method == CONIC_METHOD_AFFINE)
-    dual_conic_lanes(&g, 0.0f, lanes_of(1.0f), s);
-  else {
-    dual_conic_lanes(&g, view->cutoff, g.nearest * g.farthest, s);
-    s->by_ray = verdict.usual & wants_ray(view, &g, s);
-  }
-  widen(view, s);
+  measure(view, &g, verdict.usual, s);
   lanes_mask has_area = s->by_ray | lanes_less(lanes_of(0.0f), s->determinant);
   verdict.skipped = verdict.usual & lanes_not(has_area);
   verdict.usual &= has_area;
@@ -327,8 +374,11 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
   place(&g, 1, view->cy, view->fy, view->height, s);
   lanes_mask on_screen = lanes_less_int(s->begin[0], s->end[0]) & lanes_less_int(s->begin[1], s->end[1]);
   lanes_mask squares = s->by_ray | lanes_at_least(s->determinant * 0.0f, lanes_of(0.0f));
-  lanes not_finite = world_normals(tu, tv, g.area, normal, &longer) +
-                     set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
+  lanes not_finite = world_normals(tu, tv, g.area, normal, &longer);
+  if (conic_method_is_dot(view->method))
+    not_finite += set_dots(view, &g, s, r);
+  else
+    not_finite += set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
   set_nearness(view, &g, longer, r);
   lanes opacity = lanes_load(from->columns[OPACITY] + at);
   r->footprint[15] *= opacity;
@@ -403,7 +453,8 @@ CONIC_INLINE void project_group(const conic_view *view, const conic_splats *spla
   unsigned usual = lanes_bits(verdict.usual) & valid, unusual = lanes_bits(verdict.unusual) & valid;
   unsigned skipped = lanes_bits(verdict.skipped) & valid;
   unsigned by_ray = lanes_bits(s.by_ray) & valid,
-           fallback = view->method == CONIC_METHOD_RAY ? usual & ~by_ray : by_ray;
+           fallback = (conic_method_has_rays(view->method) ? 0 : by_ray) |
+                      (conic_method_has_ellipses(view->method) ? 0 : usual & ~by_ray);
   chunk->n_fallback += (size_t)__builtin_popcount(fallback);
   chunk->n_skipped += (size_t)__builtin_popcount(skipped);
   chunk->n_culled += (size_t)__builtin_popcount(valid & ~(usual | unusual | skipped));

@@ -93,6 +93,7 @@ void conic_project_chunk(const conic_view *view, const conic_splats *splats, siz
 typedef enum conic_outcome {
   CONIC_DRAWN_VARIANCE, /* by a variance on the screen: the dual conic's, or the centre's Jacobian's */
   CONIC_DRAWN_RAY,      /* by the exact ray–splat parameter */
+  CONIC_DRAWN_DOT,      /* by a circle or a pixel about the projected centre */
   CONIC_DRAWN_SEGMENT,  /* edge-on and reaching the near plane: by the variance of a segment */
   CONIC_CULLED,
   CONIC_SKIPPED

@@ -11,6 +11,7 @@
 #include "core/threads.h"
 #include "raster/bins.h"
 #include "raster/clip_lines.h"
+#include "raster/method.h"
 #include "raster/tile.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
@@ -51,11 +52,6 @@ static double seconds_now(void) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-const char *conic_method_name(conic_method method) {
-  static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine"};
-  return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 
 void conic_render_options_init(conic_render_options *options) {
@@ -262,9 +258,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
     n_rays += chunk->n_rays;
   }
   statistics->splats_in = f->splats->count;
-  statistics->splats_by_method[CONIC_METHOD_RAY] = n_rays;
-  conic_method by_variance = options->method == CONIC_METHOD_AFFINE ? CONIC_METHOD_AFFINE : CONIC_METHOD_CONIC;
-  statistics->splats_by_method[by_variance] = statistics->splats_drawn - n_rays;
+  conic_method_count(options->method, n_rays, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/message.h"
+#include "raster/method.h"
 
 static int camera_makes_sense(const conic_camera *camera) {
   if (camera->width < 1 || camera->width > 65535 || camera->height < 1 || camera->height > 65535)
@@ -56,6 +57,15 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
   return NULL;
 }
 
+/* Half a pixel a standard deviation; for `auto` where the errors of conic and ray are alike, but no thinner than a
+ * quarter (docs/picture.md, Auto). */
+static float thin_variance(const conic_render_options *options) {
+  float cutoff = options->kernel.cutoff, alike = 1.25f * options->prefilter / (cutoff * cutoff);
+  if (options->method != CONIC_METHOD_AUTO)
+    return 0.25f;
+  return alike > 0.0625f ? alike : 0.0625f;
+}
+
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length,
                              conic_view *view) {
@@ -76,6 +86,7 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
   }
   view->fx = camera->fx;
   view->fy = camera->fy;
+  view->focal_px = (float)sqrt(camera->fx * camera->fy);
   view->cx = camera->cx;
   view->cy = camera->cy;
   view->near_z = near_z;
@@ -86,6 +97,8 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
   view->prefilter = options->prefilter;
   view->growth_px = view->cutoff * sqrtf(view->prefilter);
   view->cull_back = options->cull_back;
+  view->thin = thin_variance(options);
+  view->auto_limit = (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS) * (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS);
   if (options->epsilon >= 0.0) {
     view->epsilon_scale = HUGE_VALF;
     view->epsilon_cap = (float)options->epsilon;

@@ -17,6 +17,7 @@ typedef struct conic_view {
   double translation[3];      /* of positions that are relative to the splat set's origin */
   float rotation_float[3][3]; /* for directions */
   double fx, fy, cx, cy;
+  float focal_px; /* √(fx·fy) */
   double near_z;
   conic_method method;
   conic_kernel kernel;
@@ -25,6 +26,8 @@ typedef struct conic_view {
   float prefilter; /* h, px² */
   float growth_px; /* F_g·√h: how far the prefilter moves an outline at most */
   int cull_back;
+  float thin;          /* px²: a projected variance with a smaller eigenvalue is not drawn by ray */
+  float auto_limit;    /* the square of the error at which `auto` takes ray, over that of its bound's factor */
   float epsilon_scale; /* ε = epsilon_scale · F_g·max(|t_u|, |t_v|) … */
   float epsilon_cap;   /* … at most this; with a fixed ε the scale is infinite */
 } conic_view;

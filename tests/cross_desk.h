@@ -96,8 +96,8 @@ static inline void choose(fixture *f, int number) {
   f->options.has_light = number % 4 == 1;
   f->options.has_background = number % 8 == 6;
   f->options.cull_back = number % 5 == 2;
-  f->options.prefilter = number % 6 == 3 ? 0.0f : 1.0f;
-  f->options.epsilon = number % 7 == 4 ? 0.0 : -1.0;
+  f->options.prefilter = number % 7 == 3 ? 0.0f : 1.0f;
+  f->options.epsilon = number % 11 == 4 ? 0.0 : -1.0;
 }
 
 static inline conic_finish finish_of(const fixture *f) {

@@ -22,7 +22,7 @@ library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
 c_compiler=$(setting CMAKE_C_COMPILER)
 cpp_compiler=$(setting CMAKE_CXX_COMPILER)
 
-for header in include/conic/*.h core/*.h raster/*.h cli/*.h; do
+for header in include/conic/*.h core/*.h raster/*.h lod/*.h cli/*.h; do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   printf '#include "%s"\ntypedef int not_empty;\n' "${header#include/}" > "$work/alone.c"
   "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. \

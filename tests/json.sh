@@ -52,6 +52,9 @@ declare -A wanted=(
   [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
 )
 wanted[prepare]=${wanted[make]}
+wanted[octree]="${wanted[make]} bytes_per_point inner_nodes levels"
+wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
+wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"

@@ -6,7 +6,7 @@
 #include "tests/las_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, las, xyz, camera, pfm, exr */
+  const char *target; /* the fuzz target that reads it: ply, obj, las, xyz, camera, pfm, exr, cot */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -178,6 +178,35 @@ static inline void seeds_picture(seed_set *set, conic_context *context, const ch
   seeds_add(set, target, target, 0, bytes, n);
 }
 
+/* Octrees, written by the library into the tests' folder, and removed there. */
+static inline void seeds_octree(seed_set *set, conic_context *context, size_t n, int quantize) {
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.cot");
+  conic_octree_options options;
+  conic_octree *octree;
+  conic_splats splats;
+  conic_octree_options_init(&options);
+  options.quantize = quantize;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, &splats) != CONIC_OK)
+    exit(1);
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)((i * (size_t)(7 + 4 * axis)) % 31);
+      splats.tangent_u[axis][i] = axis == 0 ? 1.0f : 0.0f;
+      splats.tangent_v[axis][i] = axis == 1 ? 0.75f : 0.0f;
+      splats.color[axis][i] = axis == 2 ? 0.3f : 1.0f;
+    }
+  if (conic_octree_build(context, &splats, &options, &octree) != CONIC_OK ||
+      conic_octree_write(octree, path) != CONIC_OK)
+    exit(1);
+  conic_octree_destroy(octree);
+  FILE *file = fopen(path, "rb");
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "cot", "cot", 0, bytes, n_bytes);
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -185,6 +214,9 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_ply(set);
   seeds_all_text(set);
   seeds_all_las(set);
+  seeds_octree(set, context, 1, 0);
+  seeds_octree(set, context, 40, 0);
+  seeds_octree(set, context, 40, 1);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
   seeds_picture(set, context, "exr", 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);

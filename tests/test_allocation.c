@@ -84,6 +84,51 @@ static conic_status write_all(conic_context *context, const conic_splats *splats
   return status == CONIC_ERROR_UNSUPPORTED ? CONIC_OK : status; /* without OpenEXR there is none to be written */
 }
 
+static conic_status choose(conic_octree *octree, const conic_camera *camera, conic_context *context) {
+  conic_selection selection;
+  conic_selection_options options;
+  conic_render_options render;
+  memset(&selection, 0, sizeof selection);
+  conic_selection_options_init(&options);
+  conic_render_options_init(&render);
+  conic_status status = conic_octree_select(octree, camera, &render, &options, &selection);
+  options.budget = 50;
+  if (status == CONIC_OK)
+    status = conic_octree_select(octree, camera, &render, &options, &selection);
+  conic_selection_release(context, &selection);
+  return status;
+}
+
+/* Built, written, read, chosen from. */
+static conic_status through_octree(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                   int quantize) {
+  conic_splats copy, leaves;
+  conic_octree *octree = NULL, *back = NULL;
+  conic_octree_options options;
+  const char *path = files_path("splats.cot");
+  memset(&copy, 0, sizeof copy);
+  memset(&leaves, 0, sizeof leaves);
+  conic_octree_options_init(&options);
+  options.quantize = quantize;
+  conic_status status = conic_splats_append(context, &copy, splats);
+  if (status == CONIC_OK)
+    status = conic_octree_build(context, &copy, &options, &octree);
+  if (status == CONIC_OK)
+    status = conic_octree_write(octree, path);
+  if (status == CONIC_OK)
+    status = conic_octree_read(context, path, &back);
+  unlink(path);
+  if (status == CONIC_OK)
+    status = conic_octree_leaves(back, &leaves);
+  if (status == CONIC_OK)
+    status = choose(back, camera, context);
+  conic_splats_release(context, &copy);
+  conic_splats_release(context, &leaves);
+  conic_octree_destroy(octree);
+  conic_octree_destroy(back);
+  return status;
+}
+
 /* The whole way for one input. */
 static conic_status run(const char *input, int threads) {
   conic_context *context;
@@ -107,6 +152,8 @@ static conic_status run(const char *input, int threads) {
     status = draw(context, &model.points, &camera, &image);
   if (status == CONIC_OK)
     status = write_all(context, &model.points, &image);
+  for (int quantize = 0; quantize < 2 && status == CONIC_OK; quantize++)
+    status = through_octree(context, &model.points, &camera, quantize);
   conic_image_release(context, &image);
   conic_model_release(context, &model);
   conic_context_destroy(context);

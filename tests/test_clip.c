@@ -305,7 +305,8 @@ static void test_oracle(fixture *f, conic_method method) {
                 reference.unstable_pixels);
       CHECK(verdict.planes[plane].max_abs <= verdict.planes[plane].bound);
     }
-    CHECK(reference.covered_pixels > 2000 && reference.unstable_pixels < reference.covered_pixels / 5);
+    CHECK(reference.covered_pixels > (method == CONIC_METHOD_POINT ? 50 : 2000));
+    CHECK(reference.unstable_pixels < reference.covered_pixels / 5);
     conic_reference_release(f->context, &reference);
   }
   drop_clips(f);
@@ -339,6 +340,8 @@ static void test_far(fixture *f) {
 static void test_solids(fixture *f) {
   for (int method = 0; method < CONIC_N_METHODS; method++)
     for (int lacks_octant = 0; lacks_octant < 2; lacks_octant++) {
+      if (method == CONIC_METHOD_POINT || method == CONIC_METHOD_DISC) /* neither fills faces nor ends at their edges */
+        continue;
       f->options.method = (conic_method)method;
       fixture_scene(f, lacks_octant ? CONIC_SCENE_CORNER : CONIC_SCENE_CUBE, 3000);
       CHECK(f->splats.n_clips > 300 && f->splats.n_clips < 3000);
@@ -363,9 +366,10 @@ int main(void) {
   fixture f = fixture_open(2);
   f.options.isa = CONIC_ISA_AUTO;
   for (int method = 0; method < CONIC_N_METHODS; method++) {
-    test_half_planes(&f, (conic_method)method, CONIC_CLIP_AND, 1);
-    test_half_planes(&f, (conic_method)method, CONIC_CLIP_AND, 2);
-    test_half_planes(&f, (conic_method)method, CONIC_CLIP_OR, 2);
+    for (int n_lines = 1; n_lines <= 2 && method != CONIC_METHOD_POINT; n_lines++)
+      test_half_planes(&f, (conic_method)method, CONIC_CLIP_AND, n_lines);
+    if (method != CONIC_METHOD_POINT)
+      test_half_planes(&f, (conic_method)method, CONIC_CLIP_OR, 2);
     test_oracle(&f, (conic_method)method);
     test_isas(&f, (conic_method)method, 3);
     test_isas(&f, (conic_method)method, 1);

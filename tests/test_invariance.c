@@ -91,7 +91,7 @@ static void check_defined(const fixture *f) {
 }
 
 int main(void) {
-  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 12};
+  static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 8};
   uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
@@ -112,7 +112,7 @@ int main(void) {
             check_defined(&f);
             check_instruction_sets(&f, expected);
             check_planes_alone(&f, expected);
-            CHECK(f.statistics.pixels_covered > 1000);
+            CHECK(f.statistics.pixels_covered > (f.options.method == CONIC_METHOD_POINT ? 200 : 1000));
           } else
             CHECK(memcmp(expected, hashes, sizeof hashes) == 0);
         }

@@ -1,7 +1,8 @@
 /* The largest weight error of the methods' bare formulas (no hand-overs) within the footprint, against the exactly
  * projected kernel, numerically convolved with the pixel's Gaussian of 1 px². All in double, apart from the renderer:
  * this is about the methods, not about their implementation. The figures are those of docs/accuracy.md. */
-#include "tests/check.h"
+#include "raster/projected.h"
+#include "tests/fixture.h"
 
 static const double pi = 3.14159265358979324, prefilter = 1.0;
 
@@ -139,15 +140,39 @@ static double exact_weight(const setting *s, const variance *r, double x, double
   return sum * step_a * step_b / (2.0 * pi * prefilter);
 }
 
+/* The bound of conic's error: how far its centre is from the projected p, in standard deviations, times the amplitude.
+ */
+static double conic_bound(const setting *s) {
+  variance affine = affine_variance(s), conic = conic_variance(s);
+  double xx = conic.xx + prefilter, yy = conic.yy + prefilter, det = xx * yy - conic.xy * conic.xy;
+  double dx = conic.x - affine.x, dy = conic.y - affine.y;
+  double q = (yy * dx * dx - 2.0 * conic.xy * dx * dy + xx * dy * dy) / det;
+  return 0.68 * conic.root / sqrt(det) * sqrt(q);
+}
+
+static double smaller_variance(const setting *s) {
+  variance r = conic_variance(s);
+  double sum = r.xx + r.yy, difference = r.xx - r.yy;
+  return 2.0 * r.root * r.root / (sum + sqrt(difference * difference + 4.0 * r.xy * r.xy));
+}
+
+static double thin_variance(double cutoff) {
+  return fmax(1.25 * prefilter / (cutoff * cutoff), 0.0625);
+}
+
+static int takes_ray(const setting *s) {
+  return smaller_variance(s) >= thin_variance(s->cutoff) && conic_bound(s) > 4e-3;
+}
+
 typedef struct errors {
-  double affine, conic, ray;
+  double affine, conic, ray, chosen;
   int n_compared;
 } errors;
 
 static errors worst_errors(double focal_px, double size, double tilt_deg, double cutoff) {
   setting s = make_setting(focal_px, size, pi * tilt_deg / 180.0, cutoff);
   variance affine = affine_variance(&s), conic = conic_variance(&s);
-  errors worst = {0, 0, 0, 0};
+  errors worst = {0, 0, 0, 0, 0};
   double half_x = cutoff * sqrt(conic.xx + prefilter), half_y = cutoff * sqrt(conic.yy + prefilter);
   for (int j = 0; j <= 40; j++)
     for (int i = 0; i <= 40; i++) {
@@ -159,6 +184,7 @@ static errors worst_errors(double focal_px, double size, double tilt_deg, double
       worst.affine = fmax(worst.affine, fabs(ewa_weight(&affine, x, y) - exact));
       worst.conic = fmax(worst.conic, fabs(ewa_weight(&conic, x, y) - exact));
       worst.ray = fmax(worst.ray, fabs(ray_weight(&s, x, y) - exact));
+      worst.chosen = takes_ray(&s) ? worst.ray : worst.conic;
       if (i % 10 == 5 && j % 10 == 5)
         CHECK_NEAR(exact, exact_weight(&s, &affine, x, y, 0.45), 1e-6);
     }
@@ -194,11 +220,113 @@ static void test_table(void) {
   }
 }
 
+/* --- auto, along the ellipse's axes --- */
+
+/* What the renderer's set-up takes, which is the same but on the border itself. */
+static void check_choice(fixture *f, const setting *s) {
+  conic_view view;
+  conic_chunk chunk;
+  conic_footprint footprint;
+  conic_box box;
+  conic_surface surface;
+  conic_ray ray;
+  conic_projected projected = {1, 1, &chunk, &footprint, &box, &surface, &ray, NULL};
+  double thinness = smaller_variance(s) / thin_variance(s->cutoff) - 1.0, error = conic_bound(s) / 4e-3 - 1.0;
+  if (fabs(thinness) < 1e-3 || fabs(error) < 1e-3)
+    return;
+  fixture_camera(f, 4000, 4000, s->focal_px);
+  fixture_set(f, 0, s->p, s->tu, s->tv, 1, 1, 1);
+  f->options.method = CONIC_METHOD_AUTO;
+  f->options.kernel.cutoff = (float)s->cutoff;
+  CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 1.0, &view));
+  conic_project_chunk(&view, &f->splats, 0, &projected);
+  CHECK(chunk.n_drawn == 1 && chunk.n_fallback == 0);
+  CHECK(chunk.n_rays == (size_t)takes_ray(s));
+}
+
+/* The largest error within the footprint, on a grid along the ellipse's own axes, so that thin ones are seen as well:
+ * conic's, and auto's. And the largest difference between conic and ray. */
+typedef struct auto_errors {
+  double conic, chosen, step;
+} auto_errors;
+
+static auto_errors measure_auto(const setting *s, int has_exact) {
+  variance affine = affine_variance(s), conic = conic_variance(s);
+  auto_errors worst = {0, 0, 0};
+  double half = 0.5 * atan2(2.0 * conic.xy, conic.xx - conic.yy), c = cos(half), sn = sin(half);
+  double minor = smaller_variance(s), major = conic.xx + conic.yy - minor;
+  double length = s->cutoff * sqrt(major + prefilter) / 12.0, width = s->cutoff * sqrt(minor + prefilter) / 12.0;
+  for (int j = -12; j <= 12; j++)
+    for (int i = -12; i <= 12; i++) {
+      double a = length * i, b = width * j, x = conic.x + c * a - sn * b, y = conic.y + sn * a + c * b;
+      double by_conic = ewa_weight(&conic, x, y), by_ray = ray_weight(s, x, y);
+      if (i * i + j * j <= 144) /* the footprint */
+        worst.step = fmax(worst.step, fabs(by_conic - by_ray));
+      double exact = has_exact ? exact_weight(s, &affine, x, y, 0.9) : 0.0;
+      if (exact <= 0.3 * exp(-0.5 * s->cutoff * s->cutoff))
+        continue;
+      worst.conic = fmax(worst.conic, fabs(by_conic - exact));
+      worst.chosen = fmax(worst.chosen, fabs((takes_ray(s) ? by_ray : by_conic) - exact));
+    }
+  return worst;
+}
+
+static void test_auto(fixture *f) {
+  static const double sizes[] = {0.003, 0.01, 0.03, 0.055, 0.1}, focals[] = {500, 2000},
+                      tilts[] = {0, 45, 75, 85, 88, 89, 89.3, 89.5, 89.7, 89.9};
+  for (int k = 0; k < 2; k++) {
+    double cutoff = k ? 3.0 : 1.5, worst = 0.0, worst_ratio = 0.0;
+    for (int i = 0; i < 100; i++) {
+      setting s = make_setting(focals[i / 50], sizes[i / 10 % 5], pi * tilts[i % 10] / 180.0, cutoff);
+      auto_errors found = measure_auto(&s, 1);
+      check_choice(f, &s);
+      if (found.chosen > worst) {
+        worst = found.chosen;
+        printf("F_g %g: %g px, size %g, tilt %g: %.2e by %s\n", cutoff, focals[i / 50], sizes[i / 10 % 5],
+               tilts[i % 10], worst, takes_ray(&s) ? "ray" : "conic");
+      }
+      if (found.conic > 1e-4)
+        worst_ratio = fmax(worst_ratio, found.conic / conic_bound(&s));
+    }
+    printf("auto, F_g %g, to 89.9 degrees: at most %.2e; conic at most %.2f of its bound\n", cutoff, worst,
+           worst_ratio);
+    CHECK(worst < (k ? 7.2e-2 : 2.7e-2));
+    CHECK(worst_ratio < 1.0);
+  }
+}
+
+/* Where a splat that grows or turns is handed over: by how much the weights differ. */
+static void test_hand_over(void) {
+  double by_bound = 0.0, by_thinness[2] = {0.0, 0.0};
+  for (int k = 0; k < 2; k++)
+    for (int i = 0; i < 90; i++) {
+      double low = 1e-4, high = 0.1, cutoff = k ? 3.0 : 1.5;
+      setting s;
+      for (int step = 0; step < 50; step++) { /* the tilt is i degrees */
+        s = make_setting(500.0, sqrt(low * high), pi * i / 180.0, cutoff);
+        *(conic_bound(&s) > 4e-3 ? &high : &low) = sqrt(low * high);
+      }
+      if (high < 0.1 && smaller_variance(&s) >= thin_variance(cutoff))
+        by_bound = fmax(by_bound, measure_auto(&s, 0).step);
+      low = 0.0, high = 0.5 * pi;
+      for (int step = 0; step < 50; step++) { /* the size goes from 0.001 to 0.1 */
+        s = make_setting(500.0, 1e-3 * pow(100.0, i / 89.0), 0.5 * (low + high), cutoff);
+        *(smaller_variance(&s) < thin_variance(cutoff) ? &high : &low) = 0.5 * (low + high);
+      }
+      if (low > 0.0 && conic_bound(&s) > 4e-3)
+        by_thinness[k] = fmax(by_thinness[k], measure_auto(&s, 0).step);
+    }
+  printf("hand-over steps: %.2e at the bound, %.2e and %.2e at the thin end\n", by_bound, by_thinness[0],
+         by_thinness[1]);
+  CHECK(by_bound > 1e-3 && by_bound < 1e-2);
+  CHECK(by_thinness[0] < 5e-2 && by_thinness[1] < 1.5e-1);
+}
+
 /* Everything else of the grid, at both focal lengths: the best of the three stays under a bound. */
 static void test_grid(void) {
   static const double focals[] = {500, 2000}, sizes[] = {0.003, 0.01, 0.03, 0.1}, tilts[] = {0, 60, 85},
                       cutoffs[] = {1.5, 3};
-  double worst_best = 0.0;
+  double worst_best = 0.0, worst_auto = 0.0;
   for (int f = 0; f < 2; f++)
     for (int i = 0; i < 24; i++) {
       double size = sizes[i / 6], tilt = tilts[i / 2 % 3], cutoff = cutoffs[i % 2];
@@ -206,14 +334,21 @@ static void test_grid(void) {
       printf("focal %g: %6g %5g %4g %10.2e %10.2e %10.2e (%d)\n", focals[f], size, tilt, cutoff, found.affine,
              found.conic, found.ray, found.n_compared);
       CHECK(found.n_compared > 250);
+      worst_auto = fmax(worst_auto, found.chosen);
       worst_best = fmax(worst_best, fmin(found.ray, fmin(found.affine, found.conic)));
     }
-  printf("best of the three: at most %.2e\n", worst_best);
+  printf("best of the three: at most %.2e; auto: %.2e\n", worst_best, worst_auto);
   CHECK(worst_best <= 4e-3);
+  CHECK(worst_auto <= 4.6e-3);
 }
 
 int main(void) {
   test_table();
   test_grid();
+  fixture f = fixture_open(1);
+  fixture_splats(&f, 1);
+  test_auto(&f);
+  test_hand_over();
+  fixture_close(&f);
   return check_result();
 }

@@ -65,9 +65,15 @@ static conic_status read_target(conic_context *context, const char *target, cons
   conic_model model;
   conic_camera camera;
   conic_image image;
+  conic_octree *octree;
   conic_status status;
   if (strcmp(target, "camera") == 0)
     return conic_camera_read(context, path, &camera);
+  if (strcmp(target, "cot") == 0) {
+    status = conic_octree_read(context, path, &octree);
+    conic_octree_destroy(octree);
+    return status;
+  }
   if (is_picture(target)) {
     status = conic_image_read(context, path, &image);
     if (status == CONIC_OK)

@@ -11,7 +11,7 @@ run 0 make knot -n 3000 -o knot.ply
 run 0 make sphere -n 2000 -o sphere.ply
 
 # The renderer keeps its bounds, with whatever options
-for method in conic ray; do
+for method in conic ray affine point disc auto; do
   run 0 verify knot.ply --size 160x120 --method $method
   has '^pass$'
   has '^Z  *max .* bound 1e-05'

@@ -8,6 +8,7 @@
 #include "conic/export.h"
 #include "conic/image.h"
 #include "conic/model.h"
+#include "conic/octree.h"
 #include "conic/oracle.h"
 #include "conic/render.h"
 #include "conic/scene.h"

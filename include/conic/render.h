@@ -19,12 +19,15 @@ extern "C" {
 
 /* How a splat is projected and weighed. */
 typedef enum conic_method {
-  CONIC_METHOD_CONIC = 0, /* EWA with the conic whose outline at the cutoff is the exact projection (PAS) */
-  CONIC_METHOD_RAY = 1,   /* exact ray–splat parameter, the pixel's filter mapped into the splat at the pixel */
-  CONIC_METHOD_AFFINE = 2 /* EWA with the Jacobian at the splat's centre (HQP §3.4) */
+  CONIC_METHOD_CONIC = 0,  /* EWA with the conic whose outline at the cutoff is the exact projection (PAS) */
+  CONIC_METHOD_RAY = 1,    /* exact ray–splat parameter, the pixel's filter mapped into the splat at the pixel */
+  CONIC_METHOD_AFFINE = 2, /* EWA with the Jacobian at the splat's centre (HQP §3.4) */
+  CONIC_METHOD_POINT = 3,  /* the pixel that holds the projected centre */
+  CONIC_METHOD_DISC = 4,   /* a circle on the screen about the projected centre (QSplat) */
+  CONIC_METHOD_AUTO = 5    /* conic where the bound of its error is small, else ray */
 } conic_method;
 
-#define CONIC_N_METHODS 3
+#define CONIC_N_METHODS 6
 
 /* "conic", "ray" …; null for a number that is no method. */
 CONIC_API const char *conic_method_name(conic_method method);
@@ -92,6 +95,7 @@ typedef struct conic_render_options {
 CONIC_API void conic_render_options_init(conic_render_options *options);
 
 typedef struct conic_render_milliseconds {
+  double lod; /* left at 0: whoever chooses what to draw (conic/octree.h) may add it, to frame too */
   double setup, bin, visibility, accumulate, resolve, frame;
 } conic_render_milliseconds;
 

@@ -1,0 +1,118 @@
+/* The point-octree: a hierarchy over a set of splats, so that no more of them are drawn than a picture needs
+ * (docs/octree.md). */
+#ifndef CONIC_OCTREE_H
+#define CONIC_OCTREE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_octree conic_octree;
+
+typedef struct conic_octree_options {
+  size_t size;  /* sizeof(conic_octree_options), set by the init function */
+  float cutoff; /* F_g of the kernel that will draw: every bound is about outlines */
+  int quantize; /* round the splats too, for a file of under half the size (docs/format-cot.md) */
+} conic_octree_options;
+
+CONIC_API void conic_octree_options_init(conic_octree_options *options);
+
+/* Builds the hierarchy of splats with tangent axes. It takes the arrays over: *splats is empty afterwards, on failure
+ * too. Splats that cannot be drawn are kept beside it. The result depends on the splats and the options only, never on
+ * the threads. On success the caller owns *octree, which must not outlive the context. Errors: ARGUMENT, INPUT (nothing
+ * to draw, or farther out than 1e15), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_octree_build(conic_context *context, conic_splats *splats,
+                                          const conic_octree_options *options, conic_octree **octree);
+
+/* Null is allowed. */
+CONIC_API void conic_octree_destroy(conic_octree *octree);
+
+/* Errors: MEMORY, IO. */
+CONIC_API conic_status conic_octree_write(conic_octree *octree, const char *path);
+
+/* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *octree, which
+ * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, MEMORY. */
+CONIC_API conic_status conic_octree_read(conic_context *context, const char *path, conic_octree **octree);
+
+/* Whether a file that can be read begins like a .cot. */
+CONIC_API int conic_octree_is_file(const char *path);
+
+typedef struct conic_octree_info {
+  size_t n_points; /* splats it was built from */
+  size_t n_leaves; /* of these, in the hierarchy; the others cannot be drawn */
+  size_t n_nodes;  /* inner nodes */
+  int n_levels;    /* of inner nodes */
+  int is_quantized;
+  float cutoff;
+  double minimum[3], maximum[3]; /* of the finite centres that it was built from, as conic_splats_bounds */
+  double splat_length;           /* as conic_splats_length of these */
+  double near_z;                 /* as conic_default_near of these */
+  double position_error;         /* no centre was moved farther, in world units; 0 unless quantised */
+  double radius[3];              /* of the inner nodes: least, median, greatest */
+  double cone[3];                /* cosines of half the opening of their normal cones, likewise */
+  uint64_t n_bytes;              /* of the file that holds it */
+} conic_octree_info;
+
+CONIC_API conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info);
+
+/* What of an octree is not as it must be: how many inner nodes are not within their bounds. */
+typedef struct conic_octree_defects {
+  size_t ellipses; /* a leaf's disc, seen along the normal, reaches out of the node's */
+  size_t spheres;  /* a leaf's disc, or the node's own, reaches out of the sphere */
+  size_t cones;    /* a leaf's normal is outside the cone */
+  size_t errors;   /* a leaf's disc is farther from the node's than the error says, or the error is over the diameter */
+  size_t splats;   /* leaves in the hierarchy that cannot be drawn */
+} conic_octree_defects;
+
+/* Looks at every leaf of every node. Errors: MEMORY, CANCELLED. */
+CONIC_API conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defects);
+
+/* The splats it was built from, in their order: what `error` 0 stands for. Unless quantised, bit for bit. The caller
+ * releases *splats. Errors: MEMORY. */
+CONIC_API conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats);
+
+typedef struct conic_selection_options {
+  size_t size;     /* sizeof(conic_selection_options), set by the init function */
+  double error_px; /* above 0: the greatest error on the screen */
+  uint64_t budget; /* or, where not 0: the least error that this many splats can give */
+} conic_selection_options;
+
+CONIC_API void conic_selection_options_init(conic_selection_options *options);
+
+/* A picture's splats, in the order of the hierarchy. Zero before the first use; the memory is kept from call to call.
+ */
+typedef struct conic_selection {
+  conic_splats splats;
+  uint32_t *ids;   /* index in the input; for an inner node n_points + its number */
+  size_t n_inner;  /* how many are inner nodes */
+  size_t n_culled; /* subtrees that are out of sight */
+  double error_px; /* asked for, or what the budget came to: infinite if it was for a single node of any size */
+  size_t room;     /* of the arrays */
+  void *scratch;   /* private */
+} conic_selection;
+
+/* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
+ * error is at most so many pixels wherever in its sphere it is projected. The kernel's cutoff must be the octree's.
+ * Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
+                                           const conic_render_options *render, const conic_selection_options *options,
+                                           conic_selection *selection);
+
+/* Replaces the numbers of an image's id plane, indices in the selection, by its ids. */
+CONIC_API void conic_selection_name(const conic_selection *selection, conic_image *image);
+
+CONIC_API void conic_selection_release(conic_context *context, conic_selection *selection);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,105 @@
+#include "lod/octree_view.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
+static void set_side(float side[3], int axis, double a, double b) {
+  double length = sqrt(a * a + b * b);
+  side[0] = side[1] = 0.0f;
+  side[axis] = (float)(a / length);
+  side[2] = (float)(b / length);
+}
+
+void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
+                            double near_z, conic_octree_view *view) {
+  const double *origin = octree->leaves.origin;
+  double translation[3], margin = (double)render->kernel.cutoff * sqrt((double)render->prefilter) + 1.0, farthest = 0.0;
+  memset(view, 0, sizeof *view);
+  for (int row = 0; row < 3; row++) {
+    const double *m = camera->cam_from_world[row];
+    translation[row] = ((m[0] * origin[0] + m[1] * origin[1]) + m[2] * origin[2]) + m[3];
+    view->translation[row] = (float)translation[row];
+    farthest += fabs(translation[row]);
+    for (int axis = 0; axis < 3; axis++)
+      view->rotation[row][axis] = (float)m[axis];
+  }
+  for (int axis = 0; axis < 3; axis++)
+    view->eye[axis] =
+        (float)-((camera->cam_from_world[0][axis] * translation[0] + camera->cam_from_world[1][axis] * translation[1]) +
+                 camera->cam_from_world[2][axis] * translation[2]);
+  set_side(view->side[0], 0, camera->fx, camera->cx + margin);
+  set_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
+  set_side(view->side[2], 1, camera->fy, camera->cy + margin);
+  set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  view->near_z = (float)near_z;
+  view->focal_px = (float)(camera->fx > camera->fy ? camera->fx : camera->fy);
+  view->slack = 1e-6f;
+  view->slack_offset = (float)(1e-6 * farthest);
+  view->cull_back = render->cull_back;
+}
+
+/* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
+ * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,
+ * and so does the way from the one to the other. */
+static void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
+                           float *pixels) {
+  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
+  const float *radius = octree->radius, *error = octree->error;
+  const conic_octree_view v = *view;
+  for (size_t i = begin; i < end; i++) {
+    float cx = ((v.rotation[0][0] * x[i] + v.rotation[0][1] * y[i]) + v.rotation[0][2] * z[i]) + v.translation[0];
+    float cy = ((v.rotation[1][0] * x[i] + v.rotation[1][1] * y[i]) + v.rotation[1][2] * z[i]) + v.translation[1];
+    float cz = ((v.rotation[2][0] * x[i] + v.rotation[2][1] * y[i]) + v.rotation[2][2] * z[i]) + v.translation[2];
+    float r = radius[i] + (v.slack * ((fabsf(x[i]) + fabsf(y[i])) + fabsf(z[i])) + v.slack_offset);
+    float distance = sqrtf((cx * cx + cy * cy) + cz * cz) + r, front = cz - r;
+    float size = v.focal_px * error[i] * distance / (front * front);
+    float left = v.side[0][0] * cx + v.side[0][2] * cz, right = v.side[1][0] * cx + v.side[1][2] * cz;
+    float top = v.side[2][1] * cy + v.side[2][2] * cz, bottom = v.side[3][1] * cy + v.side[3][2] * cz;
+    float least = left < right ? left : right;
+    least = top < least ? top : least;
+    least = bottom < least ? bottom : least;
+    float before = cz - v.near_z;
+    least = before < least ? before : least;
+    size = front > v.near_z ? size : HUGE_VALF;
+    pixels[i] = least < -r ? -1.0f : size;
+  }
+}
+
+int conic_octree_faces_away(const conic_octree *octree, const conic_octree_view *view, size_t i) {
+  float along = 0.0f;
+  for (int axis = 0; axis < 3; axis++)
+    along += (octree->center[axis][i] - view->eye[axis]) * octree->normal[axis][i];
+  return along > 0.0f;
+}
+
+/* Nodes all of whose leaves face away are out of sight. */
+static void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
+                       float *pixels) {
+  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
+  const float *nx = octree->normal[0], *ny = octree->normal[1], *nz = octree->normal[2];
+  const float *radius = octree->radius, *cone = octree->cone;
+  const conic_octree_view v = *view;
+  for (size_t i = begin; i < end; i++) {
+    float dx = x[i] - v.eye[0], dy = y[i] - v.eye[1], dz = z[i] - v.eye[2];
+    float along = (dx * nx[i] + dy * ny[i]) + dz * nz[i], distance = sqrtf((dx * dx + dy * dy) + dz * dz);
+    float r = radius[i] + (v.slack * ((fabsf(x[i]) + fabsf(y[i])) + fabsf(z[i])) + v.slack_offset);
+    /* α: half the angle under which the sphere is seen; γ: half the cone's. Away is where the angle between the ray and
+     * the axis, α and γ are less than a right angle together. */
+    float sin_a = r / distance, cos_a2 = 1.0f - sin_a * sin_a, cos_c = cone[i], sin_c2 = 1.0f - cos_c * cos_c;
+    float cos_a = sqrtf(cos_a2 > 0.0f ? cos_a2 : 0.0f), sin_c = sqrtf(sin_c2 > 0.0f ? sin_c2 : 0.0f);
+    float cos_both = cos_a * cos_c - sin_a * sin_c, sin_both = sin_a * cos_c + cos_a * sin_c;
+    float least = cos_c < cos_both ? cos_c : cos_both; /* all of these must be above 0 */
+    least = cos_a2 < least ? cos_a2 : least;
+    float beyond = along - distance * (sin_both + 1e-5f);
+    least = beyond < least ? beyond : least;
+    pixels[i] = least > 0.0f ? -1.0f : pixels[i];
+  }
+}
+
+void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
+                          float *pixels) {
+  measure_errors(octree, view, begin, end, pixels);
+  if (view->cull_back)
+    cull_backs(octree, view, begin, end, pixels);
+}
