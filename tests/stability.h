@@ -81,6 +81,12 @@ static inline size_t stability_uncovered(const conic_reference *reference, const
   return n;
 }
 
+/* Whether the method draws splats as they lie in space: `point` and `disc` do not, and close no surface seen aslant. */
+static inline int stability_fills(int method) {
+  const char *name = conic_method_name((conic_method)method);
+  return strcmp(name, "point") != 0 && strcmp(name, "disc") != 0;
+}
+
 /* The methods draw what the oracle says, to its bounds, in every plane; at most so large a share of the covered pixels
  * may hang on roundings. The image of the last method is left in the fixture. */
 static inline void stability_agree(fixture *f, const char *name, double unstable_share) {
@@ -101,7 +107,7 @@ static inline void stability_agree(fixture *f, const char *name, double unstable
                 conic_plane_describe((conic_plane)i)->name, verdict.planes[i].max_abs);
         check_failures++;
       }
-    CHECK(stability_uncovered(&reference, &f->image) == 0);
+    CHECK(!stability_fills(method) || stability_uncovered(&reference, &f->image) == 0);
     if (!(share <= unstable_share)) {
       fprintf(stderr, "%s, %s: %.3g of the pixels are unstable\n", name, conic_method_name((conic_method)method),
               share);
