@@ -78,8 +78,9 @@ static void evaluate_point(const oracle_view *view, const oracle_shape *shape, d
   values[ORACLE_MARGIN_RIGHT] = (x + 0.5) - shape->center[0];
   values[ORACLE_MARGIN_TOP] = shape->center[1] - (y - 0.5);
   values[ORACLE_MARGIN_BOTTOM] = (y + 0.5) - shape->center[1];
-  if (values[ORACLE_MARGIN_RIGHT] == 0.0 || values[ORACLE_MARGIN_BOTTOM] == 0.0)
-    values[ORACLE_MARGIN_FRONT] = -1.0;
+  for (int i = 0; i < ORACLE_N_MARGINS; i++) /* not its own, but in doubt */
+    if ((i == ORACLE_MARGIN_RIGHT || i == ORACLE_MARGIN_BOTTOM) && values[i] == 0.0)
+      values[i] = -1e-300;
   values[ORACLE_WEIGHT] = 1.0;
   values[ORACLE_IZ] = values[ORACLE_IZ_PLANE] = shape->center_iz;
 }

@@ -88,7 +88,8 @@ static inline int stability_fills(int method) {
 }
 
 /* The methods draw what the oracle says, to its bounds, in every plane; at most so large a share of the covered pixels
- * may hang on roundings. The image of the last method is left in the fixture. */
+ * may hang on roundings: of `point` any, since on a regular grid many points lie on the borders of pixels. The image of
+ * the last method is left in the fixture. */
 static inline void stability_agree(fixture *f, const char *name, double unstable_share) {
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     conic_reference reference;
@@ -108,7 +109,7 @@ static inline void stability_agree(fixture *f, const char *name, double unstable
         check_failures++;
       }
     CHECK(!stability_fills(method) || stability_uncovered(&reference, &f->image) == 0);
-    if (!(share <= unstable_share)) {
+    if (!(share <= unstable_share) && strcmp(conic_method_name((conic_method)method), "point") != 0) {
       fprintf(stderr, "%s, %s: %.3g of the pixels are unstable\n", name, conic_method_name((conic_method)method),
               share);
       check_failures++;
