@@ -293,7 +293,7 @@ CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, ind
 
 /* first, first + 1, … */
 CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
-  index_lanes ascending;
+  index_lanes ascending = {0};
   for (int lane = 0; lane < CONIC_LANES; lane++)
     ascending[lane] = first + (uint32_t)lane;
   return ascending;
