@@ -7,8 +7,6 @@
 #include "conic/image.h"
 #include "raster/projected.h"
 
-#define CONIC_NO_SPLAT 0xFFFFFFFFu
-
 /* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
 #define CONIC_LEAST_WEIGHT 0x1p-60f
 

@@ -29,7 +29,7 @@ typedef struct doubles {
 #define CONIC_HIGH_LANES 2, 3
 #endif
 
-/* lanes_join of the two floats, and of two masks; lanes_split is the way back. */
+/* Both halves in one vector. */
 CONIC_INLINE lanes lanes_join(half_floats low, half_floats high) {
   return __builtin_shufflevector(low, high, CONIC_ALL_LANES);
 }

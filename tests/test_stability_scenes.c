@@ -119,7 +119,7 @@ static void test_mixed_sizes(fixture *f) {
   }
   /* The giant is frontal: by `ray`, its range of depths is narrower than the oracle's bound of what roundings make of
    * it, so that all its pixels are in doubt. */
-  stability_agree(f, "huge and tiny tolerances mixed", 1.0);
+  stability_agree_but(f, "huge and tiny tolerances mixed", 0.02, "ray");
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     if (!stability_fills(method))
       continue;
