@@ -174,3 +174,14 @@ int cli_json_finish(cli_json_file *file) {
   free(file);
   return cli_exit_of(status);
 }
+
+void cli_json_skipped(cli_json *json, const conic_repairs *repairs) {
+  cli_json_object(json, "skipped");
+  cli_json_count(json, "nan", repairs->nan);
+  cli_json_count(json, "zero", repairs->zero);
+  cli_json_count(json, "duplicate", repairs->duplicate);
+  cli_json_count(json, "isolated", repairs->isolated);
+  cli_json_count(json, "failed", repairs->failed);
+  cli_json_count(json, "clip", repairs->clip);
+  cli_json_close(json);
+}

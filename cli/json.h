@@ -6,6 +6,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "conic/model.h"
+
 typedef struct cli_json {
   FILE *to;
   int depth, has_items[32];
@@ -21,6 +23,9 @@ void cli_json_number(cli_json *json, const char *key, double value);
 void cli_json_count(cli_json *json, const char *key, uint64_t value);
 void cli_json_bool(cli_json *json, const char *key, int value);
 void cli_json_hash(cli_json *json, const char *key, uint64_t value); /* 16 hex digits */
+
+/* The object "skipped": what was left out or put right, and why. */
+void cli_json_skipped(cli_json *json, const conic_repairs *repairs);
 
 struct cli_session;
 

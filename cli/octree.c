@@ -72,13 +72,7 @@ static int write_statistics(octree_job *job, double total_seconds) {
   cli_json_close(json);
   cli_json_number(json, "points_per_s", (double)job->n_in / job->work_seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  cli_json_object(json, "skipped");
-  cli_json_count(json, "nan", job->repairs.nan);
-  cli_json_count(json, "zero", job->repairs.zero);
-  cli_json_count(json, "duplicate", job->repairs.duplicate);
-  cli_json_count(json, "isolated", job->repairs.isolated);
-  cli_json_count(json, "failed", job->repairs.failed);
-  cli_json_close(json);
+  cli_json_skipped(json, &job->repairs);
   return cli_json_finish(file);
 }
 
