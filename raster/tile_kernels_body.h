@@ -186,7 +186,7 @@ CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint
 
 /* What the splat after the next few is read from, in this pass and the next. */
 CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
-  enum { AHEAD = 16 };
+  enum { AHEAD = 32 };
   uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
   __builtin_prefetch(&from->footprints[later]);
   __builtin_prefetch(&from->surfaces[later]);
