@@ -168,9 +168,11 @@ static unsigned keep_nearest(const conic_band *row, uint32_t i_footprint, int bl
 }
 
 static void nearest(conic_band *band) {
+  band->has_special = 0;
   memset(band->nearest, 0, (size_t)band->n_rows * (CONIC_BAND_BLOCKS + 1) * sizeof *band->nearest);
   for (size_t i = 0; i < band->n_entries; i++) {
     uint32_t word = band->entries[i].word;
+    band->has_special |= !(band->projected->footprints[band->entries[i].footprint].s3 > 0.0f);
     for (int i_row = 0; i_row < band->n_rows; i_row++) {
       conic_band row = *band;
       row.y += i_row * CONIC_BLOCK_EDGE;
@@ -183,7 +185,7 @@ static void nearest(conic_band *band) {
 }
 
 /* The nearest splats' colour, normal and weight. */
-static void take_block(conic_band *band, int block) {
+static void take_block(const conic_band *band, int block) {
   const conic_nearest_fragments *nearest = &band->nearest[block];
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
@@ -195,7 +197,6 @@ static void take_block(conic_band *band, int block) {
     blend(band, nearest->footprint[l], block, l, &fragment, &heaviest_weight);
     sums->nearest[l] = nearest->footprint[l];
     sums->count[l] = 1;
-    band->n_kept[block] = 1;
   }
 }
 
@@ -203,7 +204,10 @@ static void take_nearest(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
     band->n_kept[block] = 0;
     band->not_kept[block] = band->n;
-    take_block(band, block);
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      band->n_kept[block] |= band->nearest[block].iz[l] > 0.0f;
+    if (!conic_block_is_empty(band, block))
+      take_block(band, block);
   }
 }
 
