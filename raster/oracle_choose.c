@@ -13,7 +13,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   view.method = (int)options->method;
   view.thin_px = 0.5;
   if (options->method == CONIC_METHOD_AUTO)
-    view.thin_px = oracle_max(0.25, sqrt(1.25 * view.prefilter) / view.cutoff);
+    view.thin_px = 0.125 * sqrt(oracle_max(view.prefilter, 1.0));
   view.cull_back = options->cull_back;
   return view;
 }
@@ -79,7 +79,7 @@ oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORAC
   if (is_so[ORACLE_IS_THIN])
     return ORACLE_CONIC;
   if (view->method == CONIC_METHOD_AUTO)
-    return is_so[ORACLE_IS_COARSE] ? ORACLE_RAY : ORACLE_CONIC;
+    return is_so[ORACLE_IS_COARSE] ? ORACLE_LAPLACE : ORACLE_CONIC;
   if (view->method == CONIC_METHOD_RAY || is_so[ORACLE_IS_CLOSE])
     return ORACLE_RAY;
   return ORACLE_CONIC;

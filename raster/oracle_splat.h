@@ -44,6 +44,7 @@ typedef enum oracle_formula {
   ORACLE_CONIC,
   ORACLE_AFFINE,
   ORACLE_RAY,
+  ORACLE_LAPLACE,
   ORACLE_SEGMENT,
   ORACLE_DISC,
   ORACLE_POINT
@@ -73,14 +74,15 @@ typedef struct oracle_shape {
   double range[2];    /* of inverse depth: far end, near end */
   double box[2][2];   /* the widened box: minimum and maximum in x, y; of what the formula may cover */
   double gradient[2]; /* of the plane's inverse depth per pixel; zero where it is infinite */
-  /* all; a ray's center is what its pixels are counted from, a point's the projected p, others' that of the ellipse */
+  /* all; a ray's or laplace's center is what its pixels are counted from, a point's the projected p, others' that of
+   * the ellipse */
   double center[2];
-  /* all but ray */
+  /* all but ray, laplace */
   double center_iz;
-  oracle_symmetric variance, inverse; /* V and V⁻¹ */
+  oracle_symmetric variance, inverse; /* V and V⁻¹; laplace: of the Jacobian at p */
   double slope[2];                    /* of iz: V⁻¹R′g */
   double amplitude;
-  /* ray: U, V, iz at the place (x, y) are row 0·x + row 1·y + row 2 */
+  /* ray, laplace: U, V, iz at the place (x, y) are row 0·x + row 1·y + row 2 */
   double from_screen[3][3];
 } oracle_shape;
 

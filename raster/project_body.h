@@ -269,6 +269,17 @@ CONIC_INLINE void set_rays(const group_splats *g, const group_screen *s, records
   }
 }
 
+/* set_laplace of project.c. */
+CONIC_INLINE void set_laplaces(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
+  float h = view->prefilter;
+  lanes rxx = g->ux * g->ux + g->vx * g->vx, rxy = g->ux * g->uy + g->vx * g->vy, ryy = g->uy * g->uy + g->vy * g->vy;
+  lanes scale = h / ((g->area * g->area + h * (rxx + ryy)) + h * h);
+  r->footprint[5] = lanes_select(s->by_ray, lanes_of(1.0f), r->footprint[5]);
+  r->ray[0] = scale * (ryy + h);
+  r->ray[3] = scale * (rxx + h);
+  r->ray[6] = -(scale * rxy);
+}
+
 /* Returns 0, but NaN where the ray's record is not finite. */
 CONIC_INLINE lanes check_rays(const group_screen *s, const records *r) {
   lanes not_finite = lanes_of(0.0f);
@@ -379,6 +390,8 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
     not_finite += set_dots(view, &g, s, r);
   else
     not_finite += set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
+  if (view->method == CONIC_METHOD_AUTO && lanes_any(s->by_ray))
+    set_laplaces(view, &g, s, r);
   set_nearness(view, &g, longer, r);
   lanes opacity = lanes_load(from->columns[OPACITY] + at);
   r->footprint[15] *= opacity;
