@@ -121,7 +121,9 @@ CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lane
   lanes zero = lanes_of(0.0f);
   lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
   lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
-  return clip->is_or ? first | second : first & second;
+  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
+                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
+  return (clip->is_or ? first | second : first & second) & within;
 }
 
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
