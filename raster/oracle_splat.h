@@ -30,6 +30,8 @@ typedef struct oracle_view {
 /* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/picture.md, Auto. */
 #define ORACLE_AUTO_ERROR 4e-3
 #define ORACLE_AUTO_STEEPNESS 0.68
+/* And the relative change of inverse depth over the filter's standard deviation from which on it draws by laplace. */
+#define ORACLE_AUTO_CHANGE 1e-2
 
 /* A view of the options; `near_z` is taken as given. */
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z);
@@ -58,6 +60,7 @@ enum {
   ORACLE_IS_BAND_NARROW, /* … and stands edge-on */
   ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel, or what `auto` has for that */
   ORACLE_IS_COARSE,      /* conic's weights may be off by more than `auto` allows */
+  ORACLE_IS_STEEP,       /* the plane's inverse depth changes within a pixel's filter by more than `ray` follows */
   ORACLE_IS_CLOSE,       /* the disc is deep compared with its distance */
   ORACLE_HAS_NO_PLANE,   /* axes without a plane, or no area where nothing widens it */
   ORACLE_N_QUESTIONS

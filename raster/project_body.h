@@ -269,15 +269,18 @@ CONIC_INLINE void set_rays(const group_splats *g, const group_screen *s, records
   }
 }
 
-/* set_laplace of project.c. */
+/* is_steep and set_laplace of project.c. */
 CONIC_INLINE void set_laplaces(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
   float h = view->prefilter;
   lanes rxx = g->ux * g->ux + g->vx * g->vx, rxy = g->ux * g->uy + g->vx * g->vy, ryy = g->uy * g->uy + g->vy * g->vy;
   lanes scale = h / ((g->area * g->area + h * (rxx + ryy)) + h * h);
-  r->footprint[5] = lanes_select(s->by_ray, lanes_of(1.0f), r->footprint[5]);
-  r->ray[0] = scale * (ryy + h);
-  r->ray[3] = scale * (rxx + h);
-  r->ray[6] = -(scale * rxy);
+  lanes nx = g->uz * g->vy - g->uy * g->vz, ny = g->ux * g->vz - g->vx * g->uz;
+  float limit = CONIC_AUTO_CHANGE * CONIC_AUTO_CHANGE;
+  lanes_mask steep = s->by_ray & lanes_less(limit * (g->area * g->area), h * (nx * nx + ny * ny));
+  r->footprint[5] = lanes_select(steep, lanes_of(1.0f), r->footprint[5]);
+  r->ray[0] = lanes_select(steep, scale * (ryy + h), r->ray[0]);
+  r->ray[3] = lanes_select(steep, scale * (rxx + h), r->ray[3]);
+  r->ray[6] = lanes_select(steep, -(scale * rxy), r->ray[6]);
 }
 
 /* Returns 0, but NaN where the ray's record is not finite. */

@@ -197,8 +197,24 @@ static double smaller_variance(const setting *s) {
 
 static const double thin_variance = 1.0 / 64.0;
 
-static int takes_laplace(const setting *s) {
+static int takes_ray(const setting *s) {
   return smaller_variance(s) >= thin_variance && conic_bound(s) > 4e-3;
+}
+
+/* The relative change of inverse depth over a pixel, at p. */
+static double change(const setting *s) {
+  double n[3];
+  cross(s->tu, s->tv, n);
+  return hypot(n[0], n[1]) / s->focal_px * s->p[2] / fabs(dot(n, s->p)) * sqrt(prefilter);
+}
+
+/* What auto draws by where it is not conic. */
+static double other_weight(const setting *s, const variance *affine, double x, double y) {
+  return change(s) > 1e-2 ? laplace_weight(s, affine, x, y) : ray_weight(s, x, y);
+}
+
+static double chosen_weight(const setting *s, const variance *affine, const variance *conic, double x, double y) {
+  return takes_ray(s) ? other_weight(s, affine, x, y) : ewa_weight(conic, x, y);
 }
 
 typedef struct errors {
@@ -221,8 +237,7 @@ static errors worst_errors(double focal_px, double size, double tilt_deg, double
       worst.affine = fmax(worst.affine, fabs(ewa_weight(&affine, x, y) - exact));
       worst.conic = fmax(worst.conic, fabs(ewa_weight(&conic, x, y) - exact));
       worst.ray = fmax(worst.ray, fabs(ray_weight(&s, x, y) - exact));
-      double chosen = takes_laplace(&s) ? laplace_weight(&s, &affine, x, y) : ewa_weight(&conic, x, y);
-      worst.chosen = fmax(worst.chosen, fabs(chosen - exact));
+      worst.chosen = fmax(worst.chosen, fabs(chosen_weight(&s, &affine, &conic, x, y) - exact));
       if (i % 10 == 5 && j % 10 == 5)
         CHECK_NEAR(exact, exact_weight(&s, &affine, x, y, 0.45), 1e-6);
     }
@@ -276,7 +291,7 @@ static void check_fragments(const conic_view *view, const conic_projected *proje
       if (!conic_fragment_at(view, projected, footprint, x, y, &fragment))
         continue;
       double weight = (double)conic_final_weight(view, footprint, fragment.q, fragment.scale);
-      double expected = laplace_weight(s, &affine, x + 0.5 - view->cx, y + 0.5 - view->cy);
+      double expected = other_weight(s, &affine, x + 0.5 - view->cx, y + 0.5 - view->cy);
       worst_fragment = fmax(worst_fragment, fabs(weight - expected));
       n_fragments++;
     }
@@ -292,7 +307,7 @@ static void check_choice(fixture *f, const setting *s) {
   conic_ray ray;
   conic_projected projected = {1, 1, &chunk, &footprint, &box, &surface, &ray, NULL};
   double thinness = smaller_variance(s) / thin_variance - 1.0, error = conic_bound(s) / 4e-3 - 1.0;
-  if (fabs(thinness) < 1e-3 || fabs(error) < 1e-3)
+  if (fabs(thinness) < 1e-3 || fabs(error) < 1e-3 || fabs(100.0 * change(s) - 1.0) < 1e-3)
     return;
   fixture_camera(f, 4000, 4000, s->focal_px);
   fixture_set(f, 0, s->p, s->tu, s->tv, 1, 1, 1);
@@ -301,21 +316,23 @@ static void check_choice(fixture *f, const setting *s) {
   CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 1.0, &view));
   conic_project_chunk(&view, &f->splats, 0, &projected);
   CHECK(chunk.n_drawn == 1 && chunk.n_fallback == 0);
-  CHECK(chunk.n_rays == (size_t)takes_laplace(s));
-  if (takes_laplace(s))
-    check_fragments(&view, &projected, s);
+  CHECK(chunk.n_rays == (size_t)takes_ray(s));
+  if (!takes_ray(s))
+    return;
+  CHECK(conic_is_laplace(&footprint) == (change(s) > 1e-2));
+  check_fragments(&view, &projected, s);
 }
 
 /* The largest error within the footprint, on a grid along the ellipse's own axes, so that thin ones are seen as well:
- * conic's, auto's, and those of the best of affine, conic and ray. And the largest difference between conic and auto's
- * other formula. */
+ * conic's, auto's, and those of the best of affine, conic and ray. And the largest difference between conic and what
+ * auto has else, and between the two that it has. */
 typedef struct auto_errors {
-  double conic, chosen, best, step;
+  double conic, chosen, best, step, other_step;
 } auto_errors;
 
 static auto_errors measure_auto(const setting *s, int has_exact) {
   variance affine = affine_variance(s), conic = conic_variance(s);
-  auto_errors worst = {0, 0, 0, 0};
+  auto_errors worst = {0, 0, 0, 0, 0};
   double ray_error = 0.0, affine_error = 0.0, half = 0.5 * atan2(2.0 * conic.xy, conic.xx - conic.yy), c = cos(half),
          sn = sin(half);
   double minor = smaller_variance(s), major = conic.xx + conic.yy - minor;
@@ -323,14 +340,16 @@ static auto_errors measure_auto(const setting *s, int has_exact) {
   for (int j = -12; j <= 12; j++)
     for (int i = -12; i <= 12; i++) {
       double a = length * i, b = width * j, x = conic.x + c * a - sn * b, y = conic.y + sn * a + c * b;
-      double by_conic = ewa_weight(&conic, x, y), by_laplace = laplace_weight(s, &affine, x, y);
-      if (i * i + j * j <= 144) /* the footprint */
-        worst.step = fmax(worst.step, fabs(by_conic - by_laplace));
+      double by_conic = ewa_weight(&conic, x, y), by_other = other_weight(s, &affine, x, y);
+      if (i * i + j * j <= 144) { /* the footprint */
+        worst.step = fmax(worst.step, fabs(by_conic - by_other));
+        worst.other_step = fmax(worst.other_step, fabs(laplace_weight(s, &affine, x, y) - ray_weight(s, x, y)));
+      }
       double exact = has_exact ? exact_weight(s, &affine, x, y, 0.9) : 0.0;
       if (exact <= 0.3 * exp(-0.5 * s->cutoff * s->cutoff))
         continue;
       worst.conic = fmax(worst.conic, fabs(by_conic - exact));
-      worst.chosen = fmax(worst.chosen, fabs((takes_laplace(s) ? by_laplace : by_conic) - exact));
+      worst.chosen = fmax(worst.chosen, fabs((takes_ray(s) ? by_other : by_conic) - exact));
       affine_error = fmax(affine_error, fabs(ewa_weight(&affine, x, y) - exact));
       ray_error = fmax(ray_error, fabs(ray_weight(s, x, y) - exact));
     }
@@ -351,7 +370,10 @@ static void test_auto(fixture *f) {
       if (found.chosen > worst) {
         worst = found.chosen;
         printf("F_g %g: %g px, size %g, tilt %g: %.2e by %s\n", cutoff, focals[i / 60], sizes[i / 12 % 5],
-               tilts[i % 12], worst, takes_laplace(&s) ? "laplace" : "conic");
+               tilts[i % 12], worst,
+               !takes_ray(&s)      ? "conic"
+               : change(&s) > 1e-2 ? "laplace"
+                                   : "ray");
       }
       if (found.conic > 1e-4)
         worst_ratio = fmax(worst_ratio, found.conic / conic_bound(&s));
@@ -367,7 +389,7 @@ static void test_auto(fixture *f) {
 
 /* Where a splat that grows or turns is handed over: by how much the weights differ. */
 static void test_hand_over(void) {
-  double by_bound = 0.0, by_thinness[2] = {0.0, 0.0};
+  double by_bound = 0.0, by_change = 0.0, by_thinness[2] = {0.0, 0.0};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < 90; i++) {
       double low = 1e-4, high = 0.1, cutoff = k ? 3.0 : 1.5;
@@ -385,9 +407,17 @@ static void test_hand_over(void) {
       }
       if (low > 0.0 && conic_bound(&s) > 4e-3)
         by_thinness[k] = fmax(by_thinness[k], measure_auto(&s, 0).step);
+      low = 0.0, high = 0.5 * pi;
+      for (int step = 0; step < 50; step++) {
+        s = make_setting(500.0, 1e-3 * pow(100.0, i / 89.0), 0.5 * (low + high), cutoff);
+        *(change(&s) > 1e-2 ? &high : &low) = 0.5 * (low + high);
+      }
+      if (low > 0.0 && takes_ray(&s))
+        by_change = fmax(by_change, measure_auto(&s, 0).other_step);
     }
-  printf("hand-over steps: %.2e at the bound, %.2e and %.2e at the thin end\n", by_bound, by_thinness[0],
-         by_thinness[1]);
+  printf("hand-over steps: %.2e at the bound, %.2e between ray and laplace, %.2e and %.2e at the thin end\n", by_bound,
+         by_change, by_thinness[0], by_thinness[1]);
+  CHECK(by_change > 1e-4 && by_change < 4e-3);
   CHECK(by_bound > 1e-3 && by_bound < 1e-2);
   CHECK(by_thinness[0] < 7e-3 && by_thinness[1] < 3e-2);
 }
