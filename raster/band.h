@@ -41,7 +41,7 @@ static inline int conic_word_has(uint32_t word, uint32_t column) {
 }
 
 /* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
-#define CONIC_KEPT_SPLATS 128
+#define CONIC_KEPT_SPLATS 512
 
 typedef struct conic_kept_fragments {
   float q[CONIC_BLOCK_PIXELS];
