@@ -174,12 +174,12 @@ static void compare_bands(const desk *a, const desk *b) {
   compare_arenas(a, b, LIST, IMAGE);
 }
 
-/* Bits first … last of a band's blocks, for columns of pixels of the image. */
+/* The first and last of a band's blocks that the box meets, as words name them. */
 static uint32_t blocks_of(const conic_band *band, const conic_box *box) {
   int first = (box->x_begin - band->x) / CONIC_BLOCK_EDGE, last = (box->x_end - 1 - band->x) / CONIC_BLOCK_EDGE;
   first = box->x_begin < band->x ? 0 : first;
   last = last < band->n_blocks ? last : band->n_blocks - 1;
-  return (UINT32_C(2) << last) - (UINT32_C(1) << first);
+  return (uint32_t)first | (uint32_t)last << 8;
 }
 
 /* The band's list, as its tile would make it; the upper half of the words is for select alone. */
