@@ -84,7 +84,7 @@ static void find_places(const oracle_view *view, const oracle_placed *s, clipped
 /* The box of what the lines leave of the disc before near, all of them or, one by one, either. */
 static void set_box(const oracle_view *view, const oracle_placed *s, const conic_clip *given, oracle_clip *clip) {
   double lines[2][3];
-  int n_lines = 0, n_points = 0;
+  int n_lines = 0;
   for (int i = 0; i < given->n_lines && i < 2; i++)
     if (is_line(given->lines[i])) {
       for (int k = 0; k < 3; k++)
@@ -106,7 +106,6 @@ static void set_box(const oracle_view *view, const oracle_placed *s, const conic
         part.n_lines++;
       }
     find_places(view, s, &part);
-    n_points += part.n_points;
     for (int i = 0; i < 2 && part.n_points; i++) {
       clip->box[0][i] = oracle_min(clip->box[0][i], part.places[0][i] - view->reach_px - overlap_px);
       clip->box[1][i] = oracle_max(clip->box[1][i], part.places[1][i] + view->reach_px + overlap_px);
