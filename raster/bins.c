@@ -192,19 +192,27 @@ void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_
   copy_clips(sorter, first, projected);
 }
 
-size_t conic_bins_length(const conic_bins *bins, size_t i_tile) {
-  size_t length = 0;
+size_t conic_bins_measure(conic_bins *bins) {
+  size_t greatest = 0;
+  memset(bins->length, 0, bins->n_tiles * sizeof *bins->length);
   for (size_t i = 0; i < bins->n_chunks; i++) {
-    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    length += begin[1] - begin[0];
+    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1);
+    for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+      bins->length[i_tile] += begin[i_tile + 1] - begin[i_tile];
   }
-  return length;
+  for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+    greatest = bins->length[i_tile] > greatest ? bins->length[i_tile] : greatest;
+  return greatest;
 }
 
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries) {
   for (size_t i = 0; i < bins->n_chunks; i++) {
     const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    memcpy(entries, bins->entries + bins->chunk_begin[i] + begin[0], (begin[1] - begin[0]) * sizeof *entries);
-    entries += begin[1] - begin[0];
+    const conic_tile_entry *from = bins->entries + bins->chunk_begin[i] + begin[0];
+    size_t n = begin[1] - begin[0];
+    /* Pairs in place of a call: a chunk has some dozen entries in a tile. There is a place behind all. */
+    for (size_t k = 0; k < n; k += 2)
+      memcpy(entries + k, from + k, 2 * sizeof *entries);
+    entries += n;
   }
 }
