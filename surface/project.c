@@ -1,0 +1,179 @@
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "surface/surface.h"
+
+enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
+
+/* Feet are looked for within half of h (PSS §3.3); most are found much nearer, among fewer neighbours. */
+static const double FIRST_MARGIN = 0.125, LAST_MARGIN = 0.5;
+
+double conic_surface_margin(const conic_surface *surface, double h) {
+  int is_fast = surface->options.type == CONIC_SURFACE_MLS && surface->options.plane == CONIC_PLANE_FAST;
+  return is_fast ? 0.0 : FIRST_MARGIN * h;
+}
+
+/* The unit normal of a polynomial with these slopes over a frame. */
+static void slope_normal(double frame[3][3], const double slope[2], double normal[3]) {
+  double length2 = 1.0 + slope[0] * slope[0] + slope[1] * slope[1], inverse = 1.0 / sqrt(length2);
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = (frame[2][axis] - slope[0] * frame[0][axis] - slope[1] * frame[1][axis]) * inverse;
+}
+
+/* From a plane to the polynomial's point over q = r + t·n. */
+static conic_surface_outcome climb(const conic_surface *surface, double h, conic_workspace *workspace,
+                                   double frame[3][3], double t, conic_projection *projection) {
+  double sums[CONIC_N_MOMENTS], q[3];
+  conic_fit fit;
+  for (int axis = 0; axis < 3; axis++)
+    q[axis] = t * frame[2][axis];
+  surface->kernels->moments(&workspace->near, &surface->weighing, q, sums);
+  projection->n_neighbours = (int)sums[CONIC_MOMENT_COUNT];
+  if (projection->n_neighbours < conic_n_coefficients(surface->options.degree))
+    return CONIC_SURFACE_TOO_FEW;
+  conic_surface_outcome outcome = conic_surface_fit(surface, h, workspace, frame, t, &fit);
+  if (outcome != CONIC_SURFACE_DONE)
+    return outcome;
+  for (int axis = 0; axis < 3; axis++) {
+    projection->offset[axis] = (t + fit.value) * frame[2][axis];
+    projection->foot[axis] = q[axis];
+    projection->plane_normal[axis] = frame[2][axis];
+  }
+  slope_normal(frame, fit.slope, projection->normal);
+  return CONIC_SURFACE_DONE;
+}
+
+static conic_surface_outcome project_over_plane(const conic_surface *surface, double h, double margin,
+                                                conic_workspace *workspace, conic_projection *projection, int *beyond) {
+  double frame[3][3], t = 0.0;
+  size_t n_least = (size_t)conic_n_coefficients(surface->options.degree);
+  conic_surface_outcome outcome = conic_surface_first_plane(surface, n_least, workspace, frame, &t);
+  if (outcome != CONIC_SURFACE_DONE)
+    return outcome;
+  if (surface->options.plane == CONIC_PLANE_FAST)
+    t = 0.0;
+  else {
+    *beyond = !(fabs(t) <= margin);
+    if (*beyond && margin < LAST_MARGIN * h)
+      return CONIC_SURFACE_NO_MINIMUM;
+    t = *beyond ? 0.0 : t;
+    outcome = conic_surface_find_plane(surface, h, margin, workspace, frame, &t, beyond);
+  }
+  return outcome == CONIC_SURFACE_DONE ? climb(surface, h, workspace, frame, t, projection) : outcome;
+}
+
+static conic_surface_outcome project_with(const conic_surface *surface, double h, double margin,
+                                          conic_workspace *workspace, conic_projection *projection, int *beyond) {
+  *beyond = 0;
+  workspace->n_evaluations++;
+  if (surface->options.type == CONIC_SURFACE_APSS)
+    return conic_surface_find_sphere(surface, h, margin, workspace, projection, beyond);
+  return project_over_plane(surface, h, margin, workspace, projection, beyond);
+}
+
+static int is_finite(const double r[3]) {
+  return r[0] - r[0] == 0.0 && r[1] - r[1] == 0.0 && r[2] - r[2] == 0.0;
+}
+
+/* Gathers for r alone, and projects it among what is within the margin. */
+static conic_surface_outcome project_alone(const conic_surface *surface, const double r[3], double h, double margin,
+                                           uint32_t except, conic_workspace *workspace, conic_projection *projection,
+                                           int *beyond) {
+  const double box[6] = {r[0], r[1], r[2], r[0], r[1], r[2]};
+  conic_surface_gather(surface, box, margin, workspace, &workspace->single);
+  conic_surface_select(surface, &workspace->single, r, margin, except, workspace);
+  return project_with(surface, h, margin, workspace, projection, beyond);
+}
+
+void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
+                               int has_shared, conic_workspace *workspace, conic_projection *projection) {
+  double margin = conic_surface_margin(surface, h);
+  conic_surface_outcome outcome = is_finite(r) ? CONIC_SURFACE_TOO_FEW : CONIC_SURFACE_NOT_FINITE;
+  int beyond = 0;
+  memset(projection, 0, sizeof *projection);
+  if (is_finite(r) && h > 0.0) {
+    if (has_shared && !surface->clusters.mass) {
+      conic_surface_select(surface, &workspace->shared, r, margin, except, workspace);
+      outcome = project_with(surface, h, margin, workspace, projection, &beyond);
+    } else
+      outcome = project_alone(surface, r, h, margin, except, workspace, projection, &beyond);
+    if (beyond)
+      outcome = project_alone(surface, r, h, LAST_MARGIN * h, except, workspace, projection, &beyond);
+  }
+  if (outcome != CONIC_SURFACE_DONE)
+    memset(projection, 0, sizeof *projection);
+  projection->h = h;
+  projection->outcome = outcome;
+}
+
+/* --- points that a caller brings --- */
+
+typedef struct projecting {
+  conic_surface *surface;
+  const double (*positions)[3];
+  conic_surface_point *points;
+  size_t first, end;
+  conic_workspace *workspaces;
+} projecting;
+
+/* The surface's normal on the samples' side. */
+static void turn_to(const double side[3], double normal[3]) {
+  if (side[0] * normal[0] + side[1] * normal[1] + side[2] * normal[2] < 0.0)
+    for (int axis = 0; axis < 3; axis++)
+      normal[axis] = -normal[axis];
+}
+
+static void project_position(const conic_surface *surface, const double position[3], conic_workspace *workspace,
+                             conic_surface_point *point) {
+  conic_projection projection;
+  double r[3], side[3];
+  for (int axis = 0; axis < 3; axis++)
+    r[axis] = position[axis] - surface->points.origin[axis];
+  double h = is_finite(r) ? conic_surface_scale(surface, r) : 0.0;
+  conic_surface_project_one(surface, r, h, CONIC_NO_SLOT, 0, workspace, &projection);
+  memset(point, 0, sizeof *point);
+  point->outcome = projection.outcome;
+  point->h = h;
+  for (int axis = 0; axis < 3; axis++)
+    point->position[axis] = position[axis];
+  if (point->outcome != CONIC_SURFACE_DONE)
+    return;
+  point->n_neighbours = projection.n_neighbours;
+  conic_surface_attributes(surface, workspace, side, point->color);
+  for (int axis = 0; axis < 3; axis++) {
+    point->position[axis] = surface->points.origin[axis] + (r[axis] + projection.offset[axis]);
+    point->foot[axis] = surface->points.origin[axis] + (r[axis] + projection.foot[axis]);
+    point->normal[axis] = projection.normal[axis];
+    point->plane_normal[axis] = projection.plane_normal[axis];
+  }
+  turn_to(side, point->normal);
+}
+
+static void project_chunk(void *data, size_t i_item, int i_thread) {
+  projecting *work = data;
+  size_t begin = work->first + i_item * CHUNK, end = begin + CHUNK < work->end ? begin + CHUNK : work->end;
+  for (size_t i = begin; i < end; i++)
+    project_position(work->surface, work->positions[i], &work->workspaces[i_thread], &work->points[i]);
+}
+
+conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
+                                   conic_surface_point *points) {
+  conic_context *context = surface->context;
+  projecting work = {surface, positions, points, 0, count, NULL};
+  conic_status status = conic_workspaces_create(context, &work.workspaces);
+  size_t n_chunks = (count + CHUNK - 1) / CHUNK;
+  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
+    size_t n = n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT;
+    work.first = i * CHUNK;
+    status = conic_progress(context, "project", (double)i / (double)n_chunks);
+    if (status == CONIC_OK)
+      conic_parallel_for(context, n, project_chunk, &work);
+    if (status == CONIC_OK)
+      status = conic_workspaces_check(context, work.workspaces);
+  }
+  conic_workspaces_release(context, work.workspaces);
+  return status;
+}
