@@ -36,7 +36,7 @@ typedef struct conic_weighing {
 } conic_weighing;
 
 enum { CONIC_MOMENT_COUNT = 10, CONIC_N_MOMENTS = 11 };
-enum { CONIC_N_PLANE_SUMS = 10 };
+enum { CONIC_N_PLANE_SUMS = 12 };
 enum { CONIC_N_SPHERE_SUMS = 10 };
 
 typedef struct conic_surface_kernels {
@@ -44,8 +44,10 @@ typedef struct conic_surface_kernels {
   /* Weights about q (relative to r), and the sums of w, w·d (3), w·d·dᵀ (xx xy xz yy yz zz) with d from q, and how many
    * weigh something. */
   void (*moments)(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]);
-  /* The energy of the plane through q = t·n with the frame's third row as n, its gradient and Hessian by (a, b, t),
-   * where n tilts by a and b towards the frame's other rows: E, E_a, E_b, E_t, aa, ab, at, bb, bt, tt. */
+  /* The plane through q = t·n with the frame's third row as n, and what must vanish there: G, the energy's derivative
+   * by tilts of n while q and the weights stay, and K, -½ of that by t. Their derivatives by (a, b, t), where n tilts
+   * by a and b towards the frame's other rows and takes q along: G_a, G_b, K, G_aa, G_ab, G_bb, G_at, G_bt, K_a, K_b,
+   * K_t; the last is the energy. */
   void (*plane)(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
                 double sums[CONIC_N_PLANE_SUMS]);
   /* The triangular factor of the weighted monomials over the plane, times `scale`, up to `degree`, and of the heights

@@ -152,8 +152,8 @@ static void moments(conic_near *near, const conic_weighing *weighing, const doub
 
 INLINE void plane_of(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
                      double sums[CONIC_N_PLANE_SUMS], int is_compact) {
-  wide energy = {0}, e_a = {0}, e_b = {0}, e_t = {0};
-  wide aa = {0}, ab = {0}, at = {0}, bb = {0}, bt = {0}, tt = {0};
+  wide g_a = {0}, g_b = {0}, k = {0}, aa = {0}, ab = {0}, bb = {0}, at = {0}, bt = {0}, ka = {0}, kb = {0}, kt = {0};
+  wide energy = {0};
   for (size_t i = 0; i < near->n_padded; i += CONIC_NEAR_LANES) {
     wide dx = wide_load(near->offset[0] + i), dy = wide_load(near->offset[1] + i);
     wide dz = wide_load(near->offset[2] + i), h2 = wide_load(near->inverse_h2 + i);
@@ -163,25 +163,27 @@ INLINE void plane_of(const conic_near *near, const conic_weighing *weighing, dou
     wide s = S - t, s2 = s * s, mass = wide_load(near->mass + i);
     wide_theta theta = wide_weight(weighing, ((x * x + y * y) + s2) * h2, is_compact);
     wide value = theta.value * mass, first = theta.first * (mass * h2), second = theta.second * (mass * h2 * h2);
-    wide sv = s * value, sf = s * first, s2f = s * sf, s2s = s2 * second;
-    wide f_S = 2.0 * (sv - t * s2f);
-    wide f_SS = 2.0 * (value - 4.0 * (t * sf) + 2.0 * ((t * t) * s2s));
-    wide f_St = -2.0 * (value + 3.0 * s2f - 2.0 * (t * sf) - 2.0 * ((t * s) * s2s));
-    wide tilt = f_S * S, x_SS = f_SS * x, y_SS = f_SS * y;
+    wide sv = s * value, s2f = s2 * first, turn = value - 2.0 * (t * s) * first, lift = sv * S;
+    wide slip = value + 2.0 * s2f;
+    wide lean = (value + 3.0 * s2f) - 2.0 * (t * s) * (first + s2 * second);
+    wide sink = (value + 5.0 * s2f) + 2.0 * (s2 * s2) * second;
+    wide xt = x * turn, yt = y * turn;
+    g_a += sv * x;
+    g_b += sv * y;
+    k += sv + s * s2f;
+    aa += xt * x - lift;
+    ab += xt * y;
+    bb += yt * y - lift;
+    at += -x * slip;
+    bt += -y * slip;
+    ka += x * lean;
+    kb += y * lean;
+    kt += -sink;
     energy += s * sv;
-    e_a += f_S * x;
-    e_b += f_S * y;
-    e_t += -2.0 * (sv + s * s2f);
-    aa += x_SS * x - tilt;
-    ab += x_SS * y;
-    at += f_St * x;
-    bb += y_SS * y - tilt;
-    bt += f_St * y;
-    tt += 2.0 * (value + 5.0 * s2f + 2.0 * (s2 * s2s));
   }
-  const wide partials[CONIC_N_PLANE_SUMS] = {energy, e_a, e_b, e_t, aa, ab, at, bb, bt, tt};
-  for (int k = 0; k < CONIC_N_PLANE_SUMS; k++)
-    sums[k] = wide_total(partials[k]);
+  const wide partials[CONIC_N_PLANE_SUMS] = {g_a, g_b, k, aa, ab, bb, at, bt, ka, kb, kt, energy};
+  for (int i = 0; i < CONIC_N_PLANE_SUMS; i++)
+    sums[i] = wide_total(partials[i]);
 }
 
 static void plane(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,

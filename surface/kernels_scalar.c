@@ -29,7 +29,7 @@ static void moments(conic_near *near, const conic_weighing *weighing, const doub
   totals(partials, CONIC_N_MOMENTS, sums);
 }
 
-/* With S = n·D, D the offset from r, s = S - t: a sample's energy is s² θ(D·D - 2tS + t²), which n moves by S alone. */
+/* With D the offset from r, S = n·D and s = S - t: a sample's energy is s² θ(ρ), ρ = D·D - 2tS + t². */
 static void plane(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
                   double sums[CONIC_N_PLANE_SUMS]) {
   partial partials[CONIC_N_PLANE_SUMS] = {{0}};
@@ -42,14 +42,13 @@ static void plane(const conic_near *near, const conic_weighing *weighing, double
     double s = S - t, s2 = s * s, mass = near->mass[i];
     conic_theta theta = conic_weight_at(weighing, ((x * x + y * y) + s2) * h2);
     double value = theta.value * mass, first = theta.first * (mass * h2), second = theta.second * (mass * h2 * h2);
-    double sv = s * value, sf = s * first, s2f = s * sf, s2s = s2 * second;
-    double f_S = 2.0 * (sv - t * s2f), f_t = -2.0 * (sv + s * s2f);
-    double f_SS = 2.0 * (value - 4.0 * (t * sf) + 2.0 * ((t * t) * s2s));
-    double f_St = -2.0 * (value + 3.0 * s2f - 2.0 * (t * sf) - 2.0 * ((t * s) * s2s));
-    double f_tt = 2.0 * (value + 5.0 * s2f + 2.0 * (s2 * s2s));
-    double tilt = f_S * S, xx = f_SS * x, yy = f_SS * y;
-    const double terms[CONIC_N_PLANE_SUMS] = {s * sv, f_S * x,  f_S * y,       f_t,      xx * x - tilt,
-                                              xx * y, f_St * x, yy * y - tilt, f_St * y, f_tt};
+    double sv = s * value, s2f = s2 * first, turn = value - 2.0 * (t * s) * first, lift = sv * S;
+    double slip = value + 2.0 * s2f;
+    double lean = (value + 3.0 * s2f) - 2.0 * (t * s) * (first + s2 * second);
+    double sink = (value + 5.0 * s2f) + 2.0 * (s2 * s2) * second;
+    double xt = x * turn, yt = y * turn;
+    const double terms[CONIC_N_PLANE_SUMS] = {sv * x,    sv * y,    sv + s * s2f, xt * x - lift, xt * y, yt * y - lift,
+                                              -x * slip, -y * slip, x * lean,     y * lean,      -sink,  s * sv};
     for (int k = 0; k < CONIC_N_PLANE_SUMS; k++)
       partials[k][lane] += terms[k];
   }

@@ -1,18 +1,23 @@
-/* The local reference plane: the minimum of PSS Eq. 2.
+/* The local reference plane (PSS §3.1, step 1): n and t such that, for q = r + t·n,
+ *   - among all planes through q, with weights about q, that across n has the least energy, and
+ *   - along n, q is at a local minimum of the energy.
+ * Eq. 2 as printed, minimised over n and t together, lets q swing about r: its minimum depends on r and not on q alone,
+ * and projecting twice moves a point again (docs/surfaces.md has how far). The two conditions are Levin's; they know
+ * nothing of r but that it lies on the line through q along n, so what they define is a projection.
  *
- * The paper takes turns between t and q; here all three unknowns, two tilts of n and t, take Newton steps together,
- * damped until the energy falls. The minimum is the same, and it is reached to the last digits in a few sums. */
+ * Newton steps in all three unknowns reach the last digits in a few sums. Where they can't be trusted, the paper's
+ * turns are taken: a safeguarded search along n by Eq. 6 (corrected), then a new normal by the covariance about q. */
 #include <math.h>
 #include <string.h>
 
 #include "core/eigen.h"
 #include "surface/surface.h"
 
-enum { MAX_STEPS = 60 };
+enum { MAX_STEPS = 40, MAX_TURNS = 30, MAX_SEARCH = 40 };
 
-/* Both in units of h: a step shorter than the first is the last, as Newton's squares what is left; none is longer than
- * the second. */
-static const double LAST_STEP = 1e-6, LONGEST_STEP = 0.5;
+/* In units of h: a Newton step shorter than the first is the last, as the next would square what is left; one longer
+ * than the second is not trusted; a search along the normal ends at the third. */
+static const double LAST_STEP = 1e-6, LONGEST_STEP = 0.25, SEARCHED = 1e-3;
 
 static void cross(const double a[3], const double b[3], double c[3]) {
   for (int axis = 0; axis < 3; axis++)
@@ -38,57 +43,51 @@ conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, si
   return CONIC_SURFACE_DONE;
 }
 
-/* The energy about a plane, with lengths in units of h. */
+/* What must vanish about a plane, and how it changes; lengths in units of h. */
 typedef struct well {
-  double energy, gradient[3], hessian[3][3];
+  double misfit[3];
+  double slope[3][3];
 } well;
 
 static well look(const conic_surface *surface, const conic_workspace *workspace, double h, double frame[3][3],
                  double t) {
-  double sums[CONIC_N_PLANE_SUMS], inverse = 1.0 / h;
+  double sums[CONIC_N_PLANE_SUMS], inverse = 1.0 / h, inverse2 = inverse * inverse;
   well here;
   surface->kernels->plane(&workspace->near, &surface->weighing, frame, t, sums);
-  here.energy = sums[0];
-  here.gradient[0] = sums[1] * inverse; /* a tilt of 1 moves what is h away by h */
-  here.gradient[1] = sums[2] * inverse;
-  here.gradient[2] = sums[3];
-  here.hessian[0][0] = sums[4] * inverse * inverse;
-  here.hessian[0][1] = here.hessian[1][0] = sums[5] * inverse * inverse;
-  here.hessian[0][2] = here.hessian[2][0] = sums[6] * inverse;
-  here.hessian[1][1] = sums[7] * inverse * inverse;
-  here.hessian[1][2] = here.hessian[2][1] = sums[8] * inverse;
-  here.hessian[2][2] = sums[9];
+  here.misfit[0] = sums[0] * inverse;
+  here.misfit[1] = sums[1] * inverse;
+  here.misfit[2] = sums[2];
+  here.slope[0][0] = sums[3] * inverse2; /* a tilt of 1 moves what is h away by h */
+  here.slope[0][1] = here.slope[1][0] = sums[4] * inverse2;
+  here.slope[1][1] = sums[5] * inverse2;
+  here.slope[0][2] = sums[6] * inverse;
+  here.slope[1][2] = sums[7] * inverse;
+  here.slope[2][0] = sums[8] * inverse;
+  here.slope[2][1] = sums[9] * inverse;
+  here.slope[2][2] = sums[10];
   return here;
 }
 
-/* Solves (H + damping · 1) step = -gradient by Cholesky's factors; 0 where the matrix is not positive definite. */
-static int solve(const well *here, double damping, double step[3]) {
-  double l[3][3] = {{0}};
-  for (int j = 0; j < 3; j++) {
-    double diagonal = here->hessian[j][j] + damping;
-    for (int k = 0; k < j; k++)
-      diagonal -= l[j][k] * l[j][k];
-    if (!(diagonal > 1e-12 * (fabs(here->hessian[j][j]) + damping)))
-      return 0;
-    l[j][j] = sqrt(diagonal);
-    for (int i = j + 1; i < 3; i++) {
-      double sum = here->hessian[i][j];
-      for (int k = 0; k < j; k++)
-        sum -= l[i][k] * l[j][k];
-      l[i][j] = sum / l[j][j];
-    }
-  }
-  for (int i = 0; i < 3; i++) {
-    double sum = -here->gradient[i];
-    for (int k = 0; k < i; k++)
-      sum -= l[i][k] * step[k];
-    step[i] = sum / l[i][i];
-  }
-  for (int i = 3; i-- > 0;) {
-    for (int k = i + 1; k < 3; k++)
-      step[i] -= l[k][i] * step[k];
-    step[i] /= l[i][i];
-  }
+/* Whether the energy has a minimum here, were the misfit zero: by the tilts, and along n. */
+static int is_hollow(const well *here) {
+  double determinant = here->slope[0][0] * here->slope[1][1] - here->slope[0][1] * here->slope[1][0];
+  return here->slope[0][0] > 0.0 && determinant > 0.0 && here->slope[2][2] < 0.0;
+}
+
+/* Newton's step by Cramer's rule; 0 where there is none. */
+static int newton_step(const well *here, double step[3]) {
+  const double(*m)[3] = here->slope;
+  double minors[3][3], determinant = 0.0;
+  for (int i = 0; i < 3; i++)
+    cross(m[(i + 1) % 3], m[(i + 2) % 3], minors[i]);
+  for (int axis = 0; axis < 3; axis++)
+    determinant += m[0][axis] * minors[0][axis];
+  if (!(fabs(determinant) > 1e-12 * fabs(m[0][0] * m[1][1] * m[2][2])))
+    return 0;
+  for (int axis = 0; axis < 3; axis++)
+    step[axis] =
+        -(here->misfit[0] * minors[0][axis] + here->misfit[1] * minors[1][axis] + here->misfit[2] * minors[2][axis]) /
+        determinant;
   return 1;
 }
 
@@ -97,71 +96,115 @@ static double length_of(const double v[3]) {
 }
 
 /* Tilts n by a and b towards the other two axes. */
-static void tilt(double frame[3][3], double a, double b, double tilted[3][3]) {
+static void tilt(double frame[3][3], double a, double b) {
   double n[3], along = 0.0;
   for (int axis = 0; axis < 3; axis++)
     n[axis] = frame[2][axis] + a * frame[0][axis] + b * frame[1][axis];
   double inverse = 1.0 / length_of(n);
   for (int axis = 0; axis < 3; axis++) {
-    tilted[2][axis] = n[axis] * inverse;
-    along += frame[0][axis] * tilted[2][axis];
+    frame[2][axis] = n[axis] * inverse;
+    along += frame[0][axis] * frame[2][axis];
   }
   for (int axis = 0; axis < 3; axis++)
-    n[axis] = frame[0][axis] - along * tilted[2][axis];
+    n[axis] = frame[0][axis] - along * frame[2][axis];
   inverse = 1.0 / length_of(n);
   for (int axis = 0; axis < 3; axis++)
-    tilted[0][axis] = n[axis] * inverse;
-  cross(tilted[2], tilted[0], tilted[1]);
+    frame[0][axis] = n[axis] * inverse;
+  cross(frame[2], frame[0], frame[1]);
 }
 
-/* One damped step from `here`; returns its length in units of h, or -1 where no damping makes the matrix definite.
- * *damping grows until it does. */
-static double damped_step(const well *here, double h, double *damping, double step[3]) {
-  double trace = fabs(here->hessian[0][0]) + fabs(here->hessian[1][1]) + fabs(here->hessian[2][2]);
-  while (!solve(here, *damping * trace, step)) {
-    *damping = *damping > 0.0 ? *damping * 4.0 : 1e-2;
-    if (!(*damping < 1e4))
-      return -1.0;
+/* The local minimum along n that is downhill from t, within the margin: Newton's steps, halvings where those leave what
+ * brackets it. 0 where there is none. */
+static int search_along(const conic_surface *surface, double h, double margin, const conic_workspace *workspace,
+                        double frame[3][3], double *t) {
+  double low = -margin, high = margin;
+  int is_low_sure = 0, is_high_sure = 0;
+  for (int i = 0; i < MAX_SEARCH; i++) {
+    well here = look(surface, workspace, h, frame, *t);
+    double downhill = here.misfit[2]; /* K: -½ of the energy's derivative, so that it points down */
+    if (downhill > 0.0) {
+      low = *t;
+      is_low_sure = 1;
+    } else {
+      high = *t;
+      is_high_sure = 1;
+    }
+    double next = here.slope[2][2] < 0.0 ? *t - downhill / here.slope[2][2] : *t + (downhill > 0.0 ? h : -h) * 0.125;
+    if (is_low_sure && is_high_sure && !(next > low && next < high))
+      next = 0.5 * (low + high);
+    if (!(fabs(next) <= margin))
+      return 0;
+    double moved = fabs(next - *t);
+    *t = next;
+    if (moved <= SEARCHED * h)
+      return is_low_sure || is_high_sure;
   }
-  double length = length_of(step) / h;
-  if (length > LONGEST_STEP) {
-    for (int i = 0; i < 3; i++)
-      step[i] *= LONGEST_STEP / length;
-    length = LONGEST_STEP;
+  return 0;
+}
+
+/* Across the least spread of the neighbours about q, which stays. */
+static void turn_normal(const conic_surface *surface, conic_workspace *workspace, double frame[3][3], double t) {
+  double sums[CONIC_N_MOMENTS], values[3];
+  const double q[3] = {t * frame[2][0], t * frame[2][1], t * frame[2][2]};
+  surface->kernels->moments(&workspace->near, &surface->weighing, q, sums);
+  conic_eigen3(sums + 4, values, frame);
+  cross(frame[2], frame[0], frame[1]);
+}
+
+/* The paper's turns, until they change little. 0 where the search finds no minimum. */
+static int take_turns(const conic_surface *surface, double h, double margin, conic_workspace *workspace,
+                      double frame[3][3], double *t) {
+  for (int i = 0; i < MAX_TURNS; i++) {
+    double before[3], changed = 0.0, agreed = 0.0;
+    memcpy(before, frame[2], sizeof before);
+    if (!search_along(surface, h, margin, workspace, frame, t))
+      return 0;
+    turn_normal(surface, workspace, frame, *t);
+    for (int axis = 0; axis < 3; axis++)
+      agreed += before[axis] * frame[2][axis];
+    if (agreed < 0.0) { /* the same line, looked at from the other end */
+      for (int axis = 0; axis < 3; axis++)
+        frame[2][axis] = -frame[2][axis];
+      cross(frame[2], frame[0], frame[1]);
+    }
+    for (int axis = 0; axis < 3; axis++)
+      changed += (before[axis] - frame[2][axis]) * (before[axis] - frame[2][axis]);
+    if (changed < 1e-4)
+      return 1;
   }
-  return length;
+  return 1;
+}
+
+/* Newton's steps from a plane near by. DONE, or NO_MINIMUM where they don't close in on one. */
+static conic_surface_outcome close_in(const conic_surface *surface, double h, double margin,
+                                      const conic_workspace *workspace, double frame[3][3], double *t) {
+  double before = LONGEST_STEP;
+  for (int i = 0; i < MAX_STEPS; i++) {
+    double step[3];
+    well here = look(surface, workspace, h, frame, *t);
+    if (!is_hollow(&here) || !newton_step(&here, step))
+      return CONIC_SURFACE_NO_MINIMUM;
+    double length = length_of(step) / h;
+    if (!(length <= before) || !(fabs(*t + step[2]) <= margin))
+      return CONIC_SURFACE_NO_MINIMUM;
+    *t += step[2];
+    tilt(frame, step[0] / h, step[1] / h);
+    if (length <= LAST_STEP)
+      return CONIC_SURFACE_DONE;
+    before = 0.5 * length > LAST_STEP ? 0.5 * length : LAST_STEP;
+  }
+  return CONIC_SURFACE_NO_MINIMUM;
 }
 
 conic_surface_outcome conic_surface_find_plane(const conic_surface *surface, double h, double margin,
-                                               conic_workspace *workspace, double frame[3][3], double *t, int *beyond) {
-  double damping = 0.0, trial[3][3], step[3];
-  well here = look(surface, workspace, h, frame, *t);
-  *beyond = 0;
-  for (int i = 0; i < MAX_STEPS; i++) {
-    double length = damped_step(&here, h, &damping, step);
-    if (!(length >= 0.0))
-      return CONIC_SURFACE_NO_MINIMUM;
-    double trial_t = *t + step[2];
-    tilt(frame, step[0] / h, step[1] / h, trial);
-    if (!(fabs(trial_t) <= margin)) {
-      *beyond = 1;
-      return CONIC_SURFACE_NO_MINIMUM;
-    }
-    int is_last = damping == 0.0 && length <= LAST_STEP;
-    well there = here;
-    if (!is_last)
-      there = look(surface, workspace, h, trial, trial_t);
-    if (there.energy <= here.energy * (1.0 + 1e-13)) {
-      memcpy(frame, trial, sizeof trial);
-      *t = trial_t;
-      here = there;
-      damping = damping > 1e-3 ? damping * 0.25 : 0.0;
-    } else
-      damping = damping > 0.0 ? damping * 4.0 : 1e-2;
-    if (is_last)
-      return CONIC_SURFACE_DONE;
-    if (!(damping < 1e8))
-      return CONIC_SURFACE_NO_MINIMUM;
-  }
-  return CONIC_SURFACE_NO_MINIMUM;
+                                               conic_workspace *workspace, double frame[3][3], double *t) {
+  double first[3][3], first_t = *t;
+  memcpy(first, frame, sizeof first);
+  if (close_in(surface, h, margin, workspace, frame, t) == CONIC_SURFACE_DONE)
+    return CONIC_SURFACE_DONE;
+  memcpy(frame, first, sizeof first);
+  *t = first_t;
+  if (!take_turns(surface, h, margin, workspace, frame, t))
+    return CONIC_SURFACE_NO_MINIMUM;
+  return close_in(surface, h, margin, workspace, frame, t);
 }

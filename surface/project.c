@@ -47,8 +47,8 @@ static conic_surface_outcome climb(const conic_surface *surface, double h, conic
 }
 
 static conic_surface_outcome project_over_plane(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection, int *beyond) {
-  double frame[3][3], t = 0.0;
+                                                conic_workspace *workspace, conic_projection *projection) {
+  double frame[3][3], t;
   size_t n_least = (size_t)conic_n_coefficients(surface->options.degree);
   conic_surface_outcome outcome = conic_surface_first_plane(surface, n_least, workspace, frame, &t);
   if (outcome != CONIC_SURFACE_DONE)
@@ -56,22 +56,18 @@ static conic_surface_outcome project_over_plane(const conic_surface *surface, do
   if (surface->options.plane == CONIC_PLANE_FAST)
     t = 0.0;
   else {
-    *beyond = !(fabs(t) <= margin);
-    if (*beyond && margin < LAST_MARGIN * h)
-      return CONIC_SURFACE_NO_MINIMUM;
-    t = *beyond ? 0.0 : t;
-    outcome = conic_surface_find_plane(surface, h, margin, workspace, frame, &t, beyond);
+    t = fabs(t) <= margin ? t : 0.0;
+    outcome = conic_surface_find_plane(surface, h, margin, workspace, frame, &t);
   }
   return outcome == CONIC_SURFACE_DONE ? climb(surface, h, workspace, frame, t, projection) : outcome;
 }
 
 static conic_surface_outcome project_with(const conic_surface *surface, double h, double margin,
-                                          conic_workspace *workspace, conic_projection *projection, int *beyond) {
-  *beyond = 0;
+                                          conic_workspace *workspace, conic_projection *projection) {
   workspace->n_evaluations++;
   if (surface->options.type == CONIC_SURFACE_APSS)
-    return conic_surface_find_sphere(surface, h, margin, workspace, projection, beyond);
-  return project_over_plane(surface, h, margin, workspace, projection, beyond);
+    return conic_surface_find_sphere(surface, h, margin, workspace, projection);
+  return project_over_plane(surface, h, margin, workspace, projection);
 }
 
 static int is_finite(const double r[3]) {
@@ -80,28 +76,26 @@ static int is_finite(const double r[3]) {
 
 /* Gathers for r alone, and projects it among what is within the margin. */
 static conic_surface_outcome project_alone(const conic_surface *surface, const double r[3], double h, double margin,
-                                           uint32_t except, conic_workspace *workspace, conic_projection *projection,
-                                           int *beyond) {
+                                           uint32_t except, conic_workspace *workspace, conic_projection *projection) {
   const double box[6] = {r[0], r[1], r[2], r[0], r[1], r[2]};
   conic_surface_gather(surface, box, margin, workspace, &workspace->single);
   conic_surface_select(surface, &workspace->single, r, margin, except, workspace);
-  return project_with(surface, h, margin, workspace, projection, beyond);
+  return project_with(surface, h, margin, workspace, projection);
 }
 
 void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
                                int has_shared, conic_workspace *workspace, conic_projection *projection) {
   double margin = conic_surface_margin(surface, h);
   conic_surface_outcome outcome = is_finite(r) ? CONIC_SURFACE_TOO_FEW : CONIC_SURFACE_NOT_FINITE;
-  int beyond = 0;
   memset(projection, 0, sizeof *projection);
   if (is_finite(r) && h > 0.0) {
     if (has_shared && !surface->clusters.mass) {
       conic_surface_select(surface, &workspace->shared, r, margin, except, workspace);
-      outcome = project_with(surface, h, margin, workspace, projection, &beyond);
+      outcome = project_with(surface, h, margin, workspace, projection);
     } else
-      outcome = project_alone(surface, r, h, margin, except, workspace, projection, &beyond);
-    if (beyond)
-      outcome = project_alone(surface, r, h, LAST_MARGIN * h, except, workspace, projection, &beyond);
+      outcome = project_alone(surface, r, h, margin, except, workspace, projection);
+    if (outcome == CONIC_SURFACE_NO_MINIMUM && margin > 0.0) /* it may lie farther out */
+      outcome = project_alone(surface, r, h, LAST_MARGIN * h, except, workspace, projection);
   }
   if (outcome != CONIC_SURFACE_DONE)
     memset(projection, 0, sizeof *projection);

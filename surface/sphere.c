@@ -49,9 +49,8 @@ static int drop(const sphere *s, const double from[3], double foot[3], double no
 }
 
 conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection, int *beyond) {
+                                                conic_workspace *workspace, conic_projection *projection) {
   double foot[3] = {0.0, 0.0, 0.0}, normal[3], sums[CONIC_N_SPHERE_SUMS];
-  *beyond = 0;
   for (int i = 0; i < MAX_ROUNDS; i++) {
     sphere s;
     double from[3], step[3];
@@ -65,10 +64,8 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
     double moved = sqrt(dot(step, step));
     for (int axis = 0; axis < 3; axis++)
       foot[axis] += step[axis];
-    if (!(dot(foot, foot) <= margin * margin)) {
-      *beyond = 1;
+    if (!(dot(foot, foot) <= margin * margin))
       return CONIC_SURFACE_NO_MINIMUM;
-    }
     if (moved <= SETTLED * h) {
       for (int axis = 0; axis < 3; axis++) {
         projection->offset[axis] = projection->foot[axis] = foot[axis];

@@ -93,10 +93,10 @@ void conic_surface_attributes(const conic_surface *surface, const conic_workspac
 /* The scale about a place: the option's, or that of the nearest slot. */
 double conic_surface_scale(const conic_surface *surface, const double r[3]);
 
-/* The plane of Eq. 2 near r from the workspace's neighbours, which reach r with `margin`. On DONE, frame's third row is
- * n and t the height of q = r + t·n. `beyond` is set, and nothing else, where |t| passed the margin. */
+/* The reference plane near r from the workspace's neighbours, which reach r with `margin`; |t| stays within it. Begins
+ * at the frame and t given. On DONE, frame's third row is n and q = r + t·n. */
 conic_surface_outcome conic_surface_find_plane(const conic_surface *surface, double h, double margin,
-                                               conic_workspace *workspace, double frame[3][3], double *t, int *beyond);
+                                               conic_workspace *workspace, double frame[3][3], double *t);
 
 /* A frame whose third row is across the neighbours, by their covariance about their centroid, with weights about r;
  * also the centroid's height over r. TOO_FEW where it has no meaning. */
@@ -113,6 +113,6 @@ conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, 
 
 /* The algebraic sphere's point for r. */
 conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection, int *beyond);
+                                                conic_workspace *workspace, conic_projection *projection);
 
 #endif
