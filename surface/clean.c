@@ -46,7 +46,7 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
   for (int i = 0; i < 6; i++)
     box[i] = (double)bounds[i];
   for (size_t slot = begin; slot < end; slot++) {
-    double own = conic_surface_margin(surface, (double)surface->h[slot]);
+    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
     margin = own > margin ? own : margin;
   }
   conic_surface_gather(surface, box, margin, workspace, &workspace->shared);

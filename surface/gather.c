@@ -33,6 +33,7 @@ void conic_workspaces_release(conic_context *context, conic_workspace *workspace
     conic_memory_release(context, workspaces[i].shared.sources);
     conic_memory_release(context, workspaces[i].single.sources);
     release_near(context, &workspaces[i].near);
+    release_near(context, &workspaces[i].other_near);
   }
   conic_memory_release(context, workspaces);
 }

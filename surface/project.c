@@ -11,6 +11,9 @@ enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 /* Feet are looked for within half of h (PSS §3.3); most are found much nearer, among fewer neighbours. */
 static const double FIRST_MARGIN = 0.125, LAST_MARGIN = 0.5;
 
+/* Feet nearer than this, in units of h, are the same. */
+static const double SAME_FOOT = 1e-8;
+
 double conic_surface_margin(const conic_surface *surface, double h) {
   int is_fast = surface->options.type == CONIC_SURFACE_MLS && surface->options.plane == CONIC_PLANE_FAST;
   return is_fast ? 0.0 : FIRST_MARGIN * h;
@@ -46,56 +49,108 @@ static conic_surface_outcome climb(const conic_surface *surface, double h, conic
   return CONIC_SURFACE_DONE;
 }
 
-static conic_surface_outcome project_over_plane(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection) {
-  double frame[3][3], t;
-  size_t n_least = (size_t)conic_n_coefficients(surface->options.degree);
-  conic_surface_outcome outcome = conic_surface_first_plane(surface, n_least, workspace, frame, &t);
-  if (outcome != CONIC_SURFACE_DONE)
-    return outcome;
-  if (surface->options.plane == CONIC_PLANE_FAST)
-    t = 0.0;
-  else {
-    t = fabs(t) <= margin ? t : 0.0;
-    outcome = conic_surface_find_plane(surface, h, margin, workspace, frame, &t);
-  }
-  return outcome == CONIC_SURFACE_DONE ? climb(surface, h, workspace, frame, t, projection) : outcome;
+static int is_full(const conic_surface *surface) {
+  return surface->options.type == CONIC_SURFACE_MLS && surface->options.plane == CONIC_PLANE_FULL;
 }
 
-static conic_surface_outcome project_with(const conic_surface *surface, double h, double margin,
-                                          conic_workspace *workspace, conic_projection *projection) {
-  workspace->n_evaluations++;
-  if (surface->options.type == CONIC_SURFACE_APSS)
-    return conic_surface_find_sphere(surface, h, margin, workspace, projection);
-  return project_over_plane(surface, h, margin, workspace, projection);
+/* The plane for the point that the workspace's neighbours are about. */
+static conic_surface_outcome find_plane(const conic_surface *surface, double h, double margin,
+                                        conic_workspace *workspace, double frame[3][3], double *t) {
+  size_t n_least = (size_t)conic_n_coefficients(surface->options.degree);
+  conic_surface_outcome outcome = conic_surface_first_plane(surface, n_least, workspace, frame, t);
+  if (!is_full(surface)) {
+    *t = 0.0;
+    return outcome;
+  }
+  if (outcome != CONIC_SURFACE_DONE)
+    return outcome;
+  *t = fabs(*t) <= margin ? *t : 0.0;
+  return conic_surface_find_plane(surface, h, margin, workspace, frame, t);
+}
+
+/* A point that is to be projected. */
+typedef struct place {
+  double r[3], h;
+  uint32_t except;
+  const conic_candidates *candidates; /* null: gathered for it alone */
+} place;
+
+/* The plane (or sphere) for a place: among what is near first, then among all within LAST_MARGIN. */
+static conic_surface_outcome find_foot(const conic_surface *surface, const place *at, conic_workspace *workspace,
+                                       double frame[3][3], double *t, conic_projection *sphere) {
+  const double box[6] = {at->r[0], at->r[1], at->r[2], at->r[0], at->r[1], at->r[2]};
+  const conic_candidates *candidates = surface->clusters.mass ? NULL : at->candidates;
+  double margin = conic_surface_margin(surface, at->h);
+  conic_surface_outcome outcome = CONIC_SURFACE_TOO_FEW;
+  for (int i = 0; i < 2; i++) {
+    if (!candidates)
+      conic_surface_gather(surface, box, margin, workspace, &workspace->single);
+    conic_surface_select(surface, candidates ? candidates : &workspace->single, at->r, margin, at->except, workspace);
+    workspace->n_evaluations++;
+    outcome = surface->options.type == CONIC_SURFACE_APSS
+                  ? conic_surface_find_sphere(surface, at->h, margin, workspace, sphere)
+                  : find_plane(surface, at->h, margin, workspace, frame, t);
+    if (outcome != CONIC_SURFACE_NO_MINIMUM || !(margin > 0.0))
+      break;
+    margin = LAST_MARGIN * at->h; /* it may lie farther out */
+    candidates = NULL;
+  }
+  return outcome;
+}
+
+static void swap_near(conic_workspace *workspace) {
+  conic_near near = workspace->near;
+  workspace->near = workspace->other_near;
+  workspace->other_near = near;
+}
+
+/* Whether the point found is found again from itself. Where the samples lie in several layers there are several minima,
+ * and it may be another one: such a point is not of the surface. */
+static int is_found_again(const conic_surface *surface, const place *at, conic_workspace *workspace,
+                          const conic_projection *projection) {
+  place again = *at;
+  double frame[3][3], t, apart2 = 0.0, moved2 = 0.0, margin = conic_surface_margin(surface, at->h);
+  for (int axis = 0; axis < 3; axis++) {
+    again.r[axis] += projection->offset[axis];
+    moved2 += projection->offset[axis] * projection->offset[axis];
+  }
+  if (moved2 > margin * margin)
+    again.candidates = NULL; /* it may have left what they were gathered for */
+  swap_near(workspace);
+  conic_surface_outcome outcome = find_foot(surface, &again, workspace, frame, &t, NULL);
+  swap_near(workspace);
+  if (outcome != CONIC_SURFACE_DONE)
+    return 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double apart = projection->offset[axis] + t * frame[2][axis] - projection->foot[axis];
+    apart2 += apart * apart;
+  }
+  return apart2 <= (SAME_FOOT * at->h) * (SAME_FOOT * at->h);
+}
+
+static conic_surface_outcome project_place(const conic_surface *surface, const place *at, conic_workspace *workspace,
+                                           conic_projection *projection) {
+  double frame[3][3], t;
+  conic_surface_outcome outcome = find_foot(surface, at, workspace, frame, &t, projection);
+  if (outcome != CONIC_SURFACE_DONE || surface->options.type == CONIC_SURFACE_APSS)
+    return outcome;
+  outcome = climb(surface, at->h, workspace, frame, t, projection);
+  if (outcome == CONIC_SURFACE_DONE && is_full(surface) && !is_found_again(surface, at, workspace, projection))
+    return CONIC_SURFACE_NO_MINIMUM;
+  return outcome;
 }
 
 static int is_finite(const double r[3]) {
   return r[0] - r[0] == 0.0 && r[1] - r[1] == 0.0 && r[2] - r[2] == 0.0;
 }
 
-/* Gathers for r alone, and projects it among what is within the margin. */
-static conic_surface_outcome project_alone(const conic_surface *surface, const double r[3], double h, double margin,
-                                           uint32_t except, conic_workspace *workspace, conic_projection *projection) {
-  const double box[6] = {r[0], r[1], r[2], r[0], r[1], r[2]};
-  conic_surface_gather(surface, box, margin, workspace, &workspace->single);
-  conic_surface_select(surface, &workspace->single, r, margin, except, workspace);
-  return project_with(surface, h, margin, workspace, projection);
-}
-
 void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
                                int has_shared, conic_workspace *workspace, conic_projection *projection) {
-  double margin = conic_surface_margin(surface, h);
   conic_surface_outcome outcome = is_finite(r) ? CONIC_SURFACE_TOO_FEW : CONIC_SURFACE_NOT_FINITE;
   memset(projection, 0, sizeof *projection);
   if (is_finite(r) && h > 0.0) {
-    if (has_shared && !surface->clusters.mass) {
-      conic_surface_select(surface, &workspace->shared, r, margin, except, workspace);
-      outcome = project_with(surface, h, margin, workspace, projection);
-    } else
-      outcome = project_alone(surface, r, h, margin, except, workspace, projection);
-    if (outcome == CONIC_SURFACE_NO_MINIMUM && margin > 0.0) /* it may lie farther out */
-      outcome = project_alone(surface, r, h, LAST_MARGIN * h, except, workspace, projection);
+    const place at = {{r[0], r[1], r[2]}, h, except, has_shared ? &workspace->shared : NULL};
+    outcome = project_place(surface, &at, workspace, projection);
   }
   if (outcome != CONIC_SURFACE_DONE)
     memset(projection, 0, sizeof *projection);

@@ -46,6 +46,7 @@ typedef struct conic_workspace {
   conic_candidates shared; /* for the points of a box */
   conic_candidates single; /* for one point */
   conic_near near;
+  conic_near other_near; /* of a second point, while those of the first are still wanted */
   size_t n_evaluations;
   int is_out_of_memory; /* set by whoever could not get some; what was asked for is then not there */
 } conic_workspace;
@@ -78,7 +79,7 @@ typedef struct conic_projection {
 } conic_projection;
 
 /* Projects r, with h the scale there. `has_shared`: the workspace's shared candidates are those of a box that holds r,
- * with a margin no less than conic_surface_margin(h); else it gathers its own. */
+ * with a margin no less than twice conic_surface_margin(h); else it gathers its own. */
 void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
                                int has_shared, conic_workspace *workspace, conic_projection *projection);
 
