@@ -135,9 +135,9 @@ static conic_surface_outcome project_place(const conic_surface *surface, const p
   if (outcome != CONIC_SURFACE_DONE || surface->options.type == CONIC_SURFACE_APSS)
     return outcome;
   outcome = climb(surface, at->h, workspace, frame, t, projection);
-  if (outcome == CONIC_SURFACE_DONE && is_full(surface) && !is_found_again(surface, at, workspace, projection))
-    return CONIC_SURFACE_NO_MINIMUM;
-  return outcome;
+  if (outcome != CONIC_SURFACE_DONE || !is_full(surface) || workspace->is_trusting)
+    return outcome;
+  return is_found_again(surface, at, workspace, projection) ? CONIC_SURFACE_DONE : CONIC_SURFACE_NO_MINIMUM;
 }
 
 static int is_finite(const double r[3]) {

@@ -48,6 +48,7 @@ typedef struct conic_workspace {
   conic_near near;
   conic_near other_near; /* of a second point, while those of the first are still wanted */
   size_t n_evaluations;
+  int is_trusting;      /* points found are not looked for again: for measures, not for results */
   int is_out_of_memory; /* set by whoever could not get some; what was asked for is then not there */
 } conic_workspace;
 
