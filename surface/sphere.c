@@ -6,7 +6,9 @@
 
 enum { MAX_ROUNDS = 100, LEAST_SAMPLES = 4 };
 
-static const double SETTLED = 1e-10; /* in units of h */
+/* In units of h: a step shorter than this is the last; a mean sample farther from the foot than this lies to one side,
+ * and the sphere there is led by what it was not told. */
+static const double SETTLED = 1e-10, FARTHEST_MEAN = 0.75;
 
 typedef struct sphere {
   double constant, linear[3], square; /* about the place of its weights */
@@ -67,6 +69,8 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
     if (!(dot(foot, foot) <= margin * margin))
       return CONIC_SURFACE_NO_MINIMUM;
     if (moved <= SETTLED * h) {
+      if (dot(sums + 1, sums + 1) > (FARTHEST_MEAN * h * sums[0]) * (FARTHEST_MEAN * h * sums[0]))
+        return CONIC_SURFACE_ILL_CONDITIONED;
       for (int axis = 0; axis < 3; axis++) {
         projection->offset[axis] = projection->foot[axis] = foot[axis];
         projection->normal[axis] = projection->plane_normal[axis] = normal[axis];

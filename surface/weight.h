@@ -14,7 +14,7 @@
 #define CONIC_WEIGHT_LN2_HIGH 0x1.62e42fee00000p-1
 #define CONIC_WEIGHT_LN2_LOW 0x1.a39ef35793c76p-33
 
-/* Taylor's series of the exponential: on |r| < 0.347 what is left out is under 7e-15. */
+/* Taylor's series of the exponential: on |r| < 0.347 what is left out is under 7e-15, 9e-15 of the least value. */
 #define CONIC_EXP_2 (1.0 / 2.0)
 #define CONIC_EXP_3 (1.0 / 6.0)
 #define CONIC_EXP_4 (1.0 / 24.0)
@@ -33,7 +33,7 @@ typedef struct conic_theta {
   double value, first, second; /* derivatives by s */
 } conic_theta;
 
-/* e^-s for 0 ≤ s ≤ 700; relative error under 8e-15. */
+/* e^-s for 0 ≤ s ≤ 700; relative error under 1e-14 (the series leaves out 9e-15). */
 static inline double conic_weight_exp(double s) {
   double x = -s, k = x * CONIC_WEIGHT_LOG2E + CONIC_WEIGHT_ROUND;
   uint64_t k_bits, bits;
