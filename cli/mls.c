@@ -27,11 +27,10 @@ typedef struct mls_job {
   conic_surface *surface;
   conic_splats result;
   conic_surface_report report;
-  conic_surface_distance there, back; /* of thin: from the old surface to the new one, and back */
   conic_repairs repairs;
   size_t n_in;
   double unit; /* the median spacing, where a length is in it */
-  double read_seconds, estimate_seconds, work_seconds, measure_seconds, write_seconds;
+  double read_seconds, estimate_seconds, work_seconds, write_seconds;
 } mls_job;
 
 /* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
@@ -66,6 +65,7 @@ static conic_status thin(mls_job *job) {
   conic_thin_options_init(&options);
   options.count = job->has_count ? (size_t)job->count : 0;
   options.max_error = in_world(job, &job->max_error);
+  options.is_measured = 1;
   return conic_surface_thin(job->surface, &options, &job->result, &job->report);
 }
 
@@ -76,20 +76,6 @@ static conic_status densify(mls_job *job) {
   options.hole = in_world(job, &job->hole);
   options.max_count = job->has_count ? (size_t)job->count : 0;
   return conic_surface_densify(job->surface, &options, &job->result, &job->report);
-}
-
-/* How far the surface of what is left lies from that of all. */
-static conic_status measure(mls_job *job) {
-  double start = cli_seconds();
-  conic_surface *thinned;
-  conic_status status = conic_surface_create(job->session->context, &job->result, &job->options, &thinned);
-  if (status == CONIC_OK)
-    status = conic_surface_deviation(job->surface, thinned, &job->there);
-  if (status == CONIC_OK)
-    status = conic_surface_deviation(thinned, job->surface, &job->back);
-  conic_surface_destroy(thinned);
-  job->measure_seconds = cli_seconds() - start;
-  return status;
 }
 
 static conic_status work(mls_job *job) {
@@ -105,8 +91,6 @@ static conic_status work(mls_job *job) {
     status = job->action == MLS_PROJECT ? conic_surface_clean(job->surface, &job->result, &job->report)
                                         : actions[job->action](job);
   job->work_seconds = cli_seconds() - start;
-  if (status == CONIC_OK && job->action == MLS_THIN)
-    status = measure(job);
   return status;
 }
 
@@ -162,8 +146,6 @@ static void write_seconds(cli_json *json, const mls_job *job, double total_secon
   cli_json_number(json, "read", job->read_seconds);
   cli_json_number(json, "estimate", job->estimate_seconds);
   cli_json_number(json, "work", job->work_seconds);
-  if (job->action == MLS_THIN)
-    cli_json_number(json, "measure", job->measure_seconds);
   cli_json_number(json, "write", job->write_seconds);
   cli_json_number(json, "total", total_seconds);
   cli_json_close(json);
@@ -183,9 +165,9 @@ static int write_statistics(mls_job *job, double total_seconds) {
     write_projected(json, report);
   if (job->action == MLS_THIN) {
     cli_json_number(json, "error", report->error);
-    write_distance(json, "to_thinned", &job->there);
-    write_distance(json, "from_thinned", &job->back);
-    cli_json_number(json, "hausdorff", job->there.max > job->back.max ? job->there.max : job->back.max);
+    write_distance(json, "to_thinned", &report->there);
+    write_distance(json, "from_thinned", &report->back);
+    cli_json_number(json, "hausdorff", report->there.max > report->back.max ? report->there.max : report->back.max);
   }
   cli_json_count(json, "evaluations", report->n_evaluations);
   write_seconds(json, job, total_seconds);
@@ -314,7 +296,7 @@ static int run(cli_session *session, int argc, char **argv) {
        .type = CLI_PARSED,
        .value = &job.max_error,
        .argument = "E",
-       .help = "thin: remove no point farther than E from the surface of the others",
+       .help = "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
       {.name = "spacing",
        .type = CLI_PARSED,

@@ -16,7 +16,7 @@ typedef struct cleaning {
   conic_workspace *workspaces;
 } cleaning;
 
-static void keep(cleaning *work, size_t slot, const double r[3], const conic_projection *projection,
+static void keep(cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
                  const conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   conic_own_points *own = work->own;
@@ -51,7 +51,7 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
   }
   conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
   for (size_t slot = begin; slot < end; slot++) {
-    conic_projection projection;
+    conic_landing projection;
     const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                          (double)tree->position[2][slot]};
     conic_surface_project_one(surface, r, (double)surface->h[slot], CONIC_NO_SLOT, 1, workspace, &projection);

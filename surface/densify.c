@@ -57,7 +57,7 @@ static void position_of(const densifying *work, size_t i, double position[3]) {
 static void find_plane_of(densifying *work, size_t i, conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   site *own = &work->sites[i];
-  conic_projection projection;
+  conic_landing projection;
   double r[3];
   memset(own, 0, sizeof *own);
   position_of(work, i, r);
@@ -129,7 +129,7 @@ static void touch(densifying *work, const double place[3], double radius) {
     work->sites[work->tree.point_of_slot[slots[i]]].is_dirty = 1;
 }
 
-static void append(densifying *work, const double place[3], const conic_projection *projection) {
+static void append(densifying *work, const double place[3], const conic_landing *projection) {
   conic_splats *points = work->points;
   size_t i = points->count++;
   double side[3], color[3], turn = 0.0;
@@ -153,7 +153,7 @@ static void append(densifying *work, const double place[3], const conic_projecti
  * changes about it. Errors: MEMORY. */
 static conic_status fill(densifying *work, size_t i) {
   conic_gap gap = work->sites[i].gap;
-  conic_projection projection;
+  conic_landing projection;
   double place[3], distance2;
   uint32_t slot;
   work->sites[i].gap.radius = 0.0;

@@ -18,7 +18,7 @@ typedef struct measuring {
 } measuring;
 
 static double distance2_to(const measuring *work, size_t slot, conic_workspace *workspace) {
-  conic_projection projection;
+  conic_landing projection;
   double r[3], sum = 0.0;
   if (work->own->outcomes[slot] != CONIC_SURFACE_DONE)
     return -1.0;

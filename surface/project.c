@@ -28,7 +28,7 @@ static void slope_normal(double frame[3][3], const double slope[2], double norma
 
 /* From a plane to the polynomial's point over q = r + t·n. */
 static conic_surface_outcome climb(const conic_surface *surface, double h, conic_workspace *workspace,
-                                   double frame[3][3], double t, conic_projection *projection) {
+                                   double frame[3][3], double t, conic_landing *projection) {
   double sums[CONIC_N_MOMENTS], q[3];
   conic_fit fit;
   for (int axis = 0; axis < 3; axis++)
@@ -77,7 +77,7 @@ typedef struct place {
 
 /* The plane (or sphere) for a place: among what is near first, then among all within LAST_MARGIN. */
 static conic_surface_outcome find_foot(const conic_surface *surface, const place *at, conic_workspace *workspace,
-                                       double frame[3][3], double *t, conic_projection *sphere) {
+                                       double frame[3][3], double *t, conic_landing *sphere) {
   const double box[6] = {at->r[0], at->r[1], at->r[2], at->r[0], at->r[1], at->r[2]};
   const conic_candidates *candidates = surface->clusters.mass ? NULL : at->candidates;
   double margin = conic_surface_margin(surface, at->h);
@@ -107,7 +107,7 @@ static void swap_near(conic_workspace *workspace) {
 /* Whether the point found is found again from itself. Where the samples lie in several layers there are several minima,
  * and it may be another one: such a point is not of the surface. */
 static int is_found_again(const conic_surface *surface, const place *at, conic_workspace *workspace,
-                          const conic_projection *projection) {
+                          const conic_landing *projection) {
   place again = *at;
   double frame[3][3], t, apart2 = 0.0, moved2 = 0.0, margin = conic_surface_margin(surface, at->h);
   for (int axis = 0; axis < 3; axis++) {
@@ -129,14 +129,15 @@ static int is_found_again(const conic_surface *surface, const place *at, conic_w
 }
 
 static conic_surface_outcome project_place(const conic_surface *surface, const place *at, conic_workspace *workspace,
-                                           conic_projection *projection) {
+                                           conic_landing *projection) {
   double frame[3][3], t;
   conic_surface_outcome outcome = find_foot(surface, at, workspace, frame, &t, projection);
   if (outcome != CONIC_SURFACE_DONE || surface->options.type == CONIC_SURFACE_APSS)
     return outcome;
   outcome = climb(surface, at->h, workspace, frame, t, projection);
-  if (outcome != CONIC_SURFACE_DONE || !is_full(surface) || workspace->is_trusting)
-    return outcome;
+  if (outcome != CONIC_SURFACE_DONE || !is_full(surface) || workspace->is_trusting || surface->clusters.mass)
+    return outcome; /* clusters are others about every point: what they stand for is not found again to the last digits
+                     */
   return is_found_again(surface, at, workspace, projection) ? CONIC_SURFACE_DONE : CONIC_SURFACE_NO_MINIMUM;
 }
 
@@ -145,7 +146,7 @@ static int is_finite(const double r[3]) {
 }
 
 void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
-                               int has_shared, conic_workspace *workspace, conic_projection *projection) {
+                               int has_shared, conic_workspace *workspace, conic_landing *projection) {
   conic_surface_outcome outcome = is_finite(r) ? CONIC_SURFACE_TOO_FEW : CONIC_SURFACE_NOT_FINITE;
   memset(projection, 0, sizeof *projection);
   if (is_finite(r) && h > 0.0) {
@@ -177,7 +178,7 @@ static void turn_to(const double side[3], double normal[3]) {
 
 static void project_position(const conic_surface *surface, const double position[3], conic_workspace *workspace,
                              conic_surface_point *point) {
-  conic_projection projection;
+  conic_landing projection;
   double r[3], side[3];
   for (int axis = 0; axis < 3; axis++)
     r[axis] = position[axis] - surface->points.origin[axis];

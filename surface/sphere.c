@@ -51,7 +51,7 @@ static int drop(const sphere *s, const double from[3], double foot[3], double no
 }
 
 conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection) {
+                                                conic_workspace *workspace, conic_landing *projection) {
   double foot[3] = {0.0, 0.0, 0.0}, normal[3], sums[CONIC_N_SPHERE_SUMS];
   for (int i = 0; i < MAX_ROUNDS; i++) {
     sphere s;

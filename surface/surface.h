@@ -69,7 +69,7 @@ void conic_surface_select(const conic_surface *surface, const conic_candidates *
                           double margin, uint32_t except, conic_workspace *workspace);
 
 /* Where r, relative to the set's origin, is projected to. */
-typedef struct conic_projection {
+typedef struct conic_landing {
   double offset[3]; /* from r */
   double normal[3];
   double foot[3]; /* q - r */
@@ -77,12 +77,12 @@ typedef struct conic_projection {
   double h;
   int n_neighbours;
   conic_surface_outcome outcome;
-} conic_projection;
+} conic_landing;
 
 /* Projects r, with h the scale there. `has_shared`: the workspace's shared candidates are those of a box that holds r,
  * with a margin no less than twice conic_surface_margin(h); else it gathers its own. */
 void conic_surface_project_one(const conic_surface *surface, const double r[3], double h, uint32_t except,
-                               int has_shared, conic_workspace *workspace, conic_projection *projection);
+                               int has_shared, conic_workspace *workspace, conic_landing *projection);
 
 /* How far a foot may lie from its point before neighbours must be gathered anew. */
 double conic_surface_margin(const conic_surface *surface, double h);
@@ -115,6 +115,6 @@ conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, 
 
 /* The algebraic sphere's point for r. */
 conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, double h, double margin,
-                                                conic_workspace *workspace, conic_projection *projection);
+                                                conic_workspace *workspace, conic_landing *projection);
 
 #endif

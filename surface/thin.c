@@ -15,6 +15,10 @@
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */
 enum { BATCH = 64, REMOVALS_A_REPORT = 4096 };
 
+/* Tries to keep the measured distance below the limit, and how much smaller than that the next one's is made. */
+enum { MAX_TRIES = 8 };
+static const double TRY_SHARE = 0.85;
+
 /* A stage ends when so many are left of its points: neighbours, scales and tree are then found anew. */
 static const double STAGE_SHARE = 0.6;
 
@@ -37,7 +41,7 @@ static double contribution(const thinning *work, uint32_t slot, conic_workspace 
   const conic_surface *surface = work->surface;
   const double r[3] = {(double)surface->tree.position[0][slot], (double)surface->tree.position[1][slot],
                        (double)surface->tree.position[2][slot]};
-  conic_projection projection;
+  conic_landing projection;
   conic_surface_project_one(surface, r, (double)surface->h[slot], slot, 0, workspace, &projection);
   const double *moved = projection.offset;
   return projection.outcome == CONIC_SURFACE_DONE
@@ -187,23 +191,18 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
   return status;
 }
 
-conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *options, conic_splats *thinned,
-                                conic_surface_report *report) {
+/* Stage after stage, until there are `count` or a stage removes nothing. */
+static conic_status thin_once(const conic_surface *surface, const conic_thin_options *wanted, conic_splats *thinned,
+                              conic_surface_report *report) {
   conic_context *context = surface->context;
   conic_surface_options stage_options = surface->options;
-  conic_surface_report counted;
   conic_splats now = surface->points, next;
-  int is_own = 0;
-  memset(thinned, 0, sizeof *thinned);
-  memset(&counted, 0, sizeof counted);
-  if (options->size != sizeof *options || !(options->max_error >= 0.0) ||
-      (options->count == 0 && !(options->max_error > 0.0)))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "thin: neither a count nor an error is given");
-  stage_options.cluster = 0.0; /* cells have no way to lose a point */
   conic_status status = CONIC_OK;
-  for (size_t before = SIZE_MAX; status == CONIC_OK && now.count < before && (now.count > options->count || !is_own);) {
+  int is_own = 0;
+  stage_options.cluster = 0.0; /* cells have no way to lose a point */
+  for (size_t before = SIZE_MAX; now.count < before && (now.count > wanted->count || !is_own);) {
     before = now.count;
-    status = thin_stage(context, &stage_options, options, &now, &next, &counted);
+    status = thin_stage(context, &stage_options, wanted, &now, &next, report);
     if (status != CONIC_OK)
       break;
     if (is_own)
@@ -211,14 +210,55 @@ conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options
     now = next;
     is_own = 1;
   }
+  if (status == CONIC_OK)
+    *thinned = now;
+  else if (is_own)
+    conic_splats_release(context, &now);
+  return status;
+}
+
+static conic_status measure_both(conic_surface *surface, const conic_splats *thinned, conic_surface_report *report) {
+  conic_surface *left;
+  conic_status status = conic_surface_create(surface->context, thinned, &surface->options, &left);
+  if (status == CONIC_OK)
+    status = conic_surface_deviation(surface, left, &report->there);
+  if (status == CONIC_OK)
+    status = conic_surface_deviation(left, surface, &report->back);
+  conic_surface_destroy(left);
+  return status;
+}
+
+/* Each removal is measured against what is left, so that errors add up: where their sum passes the limit, the whole is
+ * done again with a smaller one for each. */
+conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *options, conic_splats *thinned,
+                                conic_surface_report *report) {
+  conic_context *context = surface->context;
+  conic_surface_report counted;
+  conic_thin_options wanted = *options;
+  memset(thinned, 0, sizeof *thinned);
+  memset(&counted, 0, sizeof counted);
+  if (options->size != sizeof *options || !(options->max_error >= 0.0) ||
+      (options->count == 0 && !(options->max_error > 0.0)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "thin: neither a count nor an error is given");
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < MAX_TRIES; i++) {
+    counted.error = 0.0;
+    status = thin_once(surface, &wanted, thinned, &counted);
+    if (status == CONIC_OK && (options->max_error > 0.0 || options->is_measured))
+      status = measure_both(surface, thinned, &counted);
+    double distance = counted.there.max > counted.back.max ? counted.there.max : counted.back.max;
+    if (status != CONIC_OK || !(options->max_error > 0.0) || distance <= options->max_error)
+      break;
+    wanted.max_error *= TRY_SHARE * options->max_error / distance;
+    if (i < MAX_TRIES - 1)
+      conic_splats_release(context, thinned);
+  }
   if (status != CONIC_OK) {
-    if (is_own)
-      conic_splats_release(context, &now);
+    conic_splats_release(context, thinned);
     return status;
   }
-  *thinned = now;
   counted.n_in = surface->points.count;
-  counted.n_out = now.count;
+  counted.n_out = thinned->count;
   counted.h = surface->median_h;
   if (report)
     *report = counted;

@@ -329,7 +329,7 @@ static void check_clusters(conic_context *context) {
   size_t n = shape_project(surface, &samples, 100, &exact);
   conic_surface_destroy(surface);
   double before = 0.0;
-  for (options.cluster = 0.1; options.cluster < 0.45; options.cluster += 0.1) {
+  for (options.cluster = 0.2; options.cluster < 0.45; options.cluster += 0.1) {
     double sum2 = 0.0, neighbours = 0.0, all = 0.0;
     surface = shape_surface(context, &samples, &options);
     CHECK(shape_project(surface, &samples, 100, &summed) == n);
@@ -343,7 +343,7 @@ static void check_clusters(conic_context *context) {
     double error = sqrt(sum2 / (double)n) / options.h;
     printf("clusters of %.1f: %.0f neighbours for %.0f, %.2g h off\n", options.cluster, neighbours / (double)n,
            all / (double)n, error);
-    CHECK(error > before && error <= 0.1 * options.cluster * options.cluster);
+    CHECK(error > before && error <= 0.01 * options.cluster * options.cluster);
     CHECK(neighbours < all);
     before = error;
     free(summed);

@@ -92,14 +92,22 @@ typedef struct conic_surface_point {
 CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
                                              conic_surface_point *points);
 
+/* The distances from points of one surface to another. */
+typedef struct conic_surface_distance {
+  double max, rms;
+  size_t n_measured, n_failed; /* points that could not be projected onto either */
+} conic_surface_distance;
+
 /* How points were moved, and how many could not be. */
 typedef struct conic_surface_report {
   size_t n_in, n_out;
   size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points projected */
   double moved_rms, moved_max;               /* in world units, over the DONE */
   double mean_neighbours;
-  double h;             /* the median of the samples' */
-  double error;         /* thin: the greatest contribution of a point that was removed; densify: the widest gap left */
+  double h;     /* the median of the samples' */
+  double error; /* thin: the greatest contribution of a point that was removed; densify: the widest gap left */
+  conic_surface_distance there,
+      back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
   size_t n_evaluations; /* projections that were computed */
 } conic_surface_report;
 
@@ -112,7 +120,8 @@ CONIC_API conic_status conic_surface_clean(conic_surface *surface, conic_splats 
 typedef struct conic_thin_options {
   size_t size;      /* sizeof(conic_thin_options), set by the init function */
   size_t count;     /* points to keep; 0: no fewer than the error allows */
-  double max_error; /* no point is removed that lies farther than this from the surface of the others; 0: no limit */
+  double max_error; /* the two surfaces stay within this of each other, as far as can be measured; 0: no limit */
+  int is_measured;  /* measure how far they are from each other where there is no limit, too */
 } conic_thin_options;
 
 CONIC_API void conic_thin_options_init(conic_thin_options *options);
@@ -138,12 +147,6 @@ CONIC_API void conic_densify_options_init(conic_densify_options *options);
  * are. The old points come first, as they were. The caller releases *dense. Errors: ARGUMENT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_surface_densify(conic_surface *surface, const conic_densify_options *options,
                                              conic_splats *dense, conic_surface_report *report);
-
-/* The distances from points of one surface to another. */
-typedef struct conic_surface_distance {
-  double max, rms;
-  size_t n_measured, n_failed; /* points that could not be projected onto either */
-} conic_surface_distance;
 
 /* Projects the points of `from` onto `from`, and those onto `to`; the distances of the second step. Both ways together
  * are the Hausdorff distance, as far as the points tell. Errors: MEMORY, CANCELLED. */
