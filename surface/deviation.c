@@ -9,10 +9,13 @@
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 
+/* In place of a distance: the point is not on its own surface; or the other has nothing there. */
+static const double NOWHERE = -1.0, LOST = -2.0;
+
 typedef struct measuring {
   const conic_surface *from, *to;
   const conic_own_points *own;
-  double *distances2; /* by slot; negative where there is none */
+  double *distances2; /* by slot; NOWHERE, or LOST */
   size_t first;
   conic_workspace *workspaces;
 } measuring;
@@ -21,14 +24,14 @@ static double distance2_to(const measuring *work, size_t slot, conic_workspace *
   conic_landing projection;
   double r[3], sum = 0.0;
   if (work->own->outcomes[slot] != CONIC_SURFACE_DONE)
-    return -1.0;
+    return NOWHERE;
   for (int axis = 0; axis < 3; axis++)
     r[axis] =
         (double)work->own->position[axis][slot] + (work->from->points.origin[axis] - work->to->points.origin[axis]);
   conic_surface_project_one(work->to, r, conic_surface_scale(work->to, r), CONIC_NO_SLOT, 0, workspace, &projection);
   for (int axis = 0; axis < 3; axis++)
     sum += projection.offset[axis] * projection.offset[axis];
-  return projection.outcome == CONIC_SURFACE_DONE ? sum : -1.0;
+  return projection.outcome == CONIC_SURFACE_DONE ? sum : LOST;
 }
 
 static void measure_chunk(void *data, size_t i_item, int i_thread) {
@@ -42,6 +45,8 @@ static conic_status measure(measuring *work) {
   conic_context *context = work->from->context;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
   size_t n_chunks = (work->from->tree.n_slots + CHUNK - 1) / CHUNK;
+  for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
+    work->workspaces[i].is_trusting = 1;
   for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
     work->first = i * CHUNK;
     status = conic_progress(context, "measure", (double)i / (double)n_chunks);
@@ -58,10 +63,9 @@ static void sum_up(const measuring *work, conic_surface_distance *distance) {
   double sum2 = 0.0, greatest2 = 0.0;
   for (size_t slot = 0; slot < work->from->tree.n_slots; slot++) {
     double distance2 = work->distances2[slot];
-    if (distance2 < 0.0) {
-      distance->n_failed++;
+    distance->n_failed += distance2 == LOST;
+    if (distance2 < 0.0)
       continue;
-    }
     distance->n_measured++;
     sum2 += distance2;
     greatest2 = distance2 > greatest2 ? distance2 : greatest2;

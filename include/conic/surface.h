@@ -95,7 +95,7 @@ CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t coun
 /* The distances from points of one surface to another. */
 typedef struct conic_surface_distance {
   double max, rms;
-  size_t n_measured, n_failed; /* points that could not be projected onto either */
+  size_t n_measured, n_failed; /* points of the first surface; those of them with nothing of the second about them */
 } conic_surface_distance;
 
 /* How points were moved, and how many could not be. */
