@@ -20,7 +20,7 @@ for options in "" "--plane fast" "--type apss" "--weight compact --degree 2" "--
   run 0 mls project torus.ply -o clean.ply $options --json clean.json
   n_in=$(value points_in clean.json) n_out=$(value points_out clean.json)
   [[ $n_in == 20000 && $((n_in - n_out)) == "$(value failed clean.json)" ]] || fail "mls project $options: counts"
-  [[ $n_out -gt 19000 && $(value done clean.json) == "$n_out" ]] || fail "mls project $options: $n_out points"
+  [[ $n_out -gt 19000 && $(value "done" clean.json) == "$n_out" ]] || fail "mls project $options: $n_out points"
   run 0 info clean.ply --check
 done
 run 0 mls project torus.ply -o all.ply

@@ -39,23 +39,23 @@ static double hausdorff(conic_surface *a, const conic_splats *b_points, const co
 }
 
 static void check_thin_count(conic_context *context) {
-  conic_splats samples = shape_sample(context, SHAPE_TORUS, 20000, 0.0, 4), thinned, again, random;
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4), thinned, again, random;
   conic_surface_options options;
   conic_thin_options wanted;
   conic_surface_report report;
   conic_surface_options_init(&options);
   conic_thin_options_init(&wanted);
-  wanted.count = 4000;
+  wanted.count = 1500;
   conic_surface *surface = shape_surface(context, &samples, &options);
   CHECK_OK(conic_surface_thin(surface, &wanted, &thinned, &report));
-  CHECK(thinned.count == 4000 && report.n_out == 4000 && report.n_in == 20000);
+  CHECK(thinned.count == 1500 && report.n_out == 1500 && report.n_in == 6000);
   CHECK(is_subset(&thinned, &samples));
   double error = hausdorff(surface, &thinned, &options, context);
   /* The same number chosen at random, as a yardstick. */
-  random = shape_sample(context, SHAPE_TORUS, 20000, 0.0, 4);
-  CHECK_OK(conic_splats_thin(context, &random, 4000, 1));
+  random = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4);
+  CHECK_OK(conic_splats_thin(context, &random, 1500, 1));
   double random_error = hausdorff(surface, &random, &options, context);
-  printf("20000 to 4000: Hausdorff distance %.2g, chosen at random %.2g; %zu measures\n", error, random_error,
+  printf("6000 to 1500: Hausdorff distance %.2g, chosen at random %.2g; %zu measures\n", error, random_error,
          report.n_evaluations);
   CHECK(error < 0.5 * random_error);
   conic_context *one = check_context(1);
@@ -74,15 +74,15 @@ static void check_thin_count(conic_context *context) {
 }
 
 static void check_thin_error(conic_context *context) {
-  conic_splats samples = shape_sample(context, SHAPE_TORUS, 20000, 0.0, 4), thinned;
+  conic_splats samples = shape_sample(context, SHAPE_TORUS, 6000, 0.0, 4), thinned;
   conic_surface_options options;
   conic_thin_options wanted;
   conic_surface_report report;
   conic_surface_options_init(&options);
   conic_thin_options_init(&wanted);
-  size_t before = 20000;
+  size_t before = 6000;
   conic_surface *surface = shape_surface(context, &samples, &options);
-  for (wanted.max_error = 1e-4; wanted.max_error < 2e-3; wanted.max_error *= 10.0) {
+  for (wanted.max_error = 3e-4; wanted.max_error < 4e-3; wanted.max_error *= 10.0) {
     CHECK_OK(conic_surface_thin(surface, &wanted, &thinned, &report));
     double error = hausdorff(surface, &thinned, &options, context);
     printf("within %.0e: %zu left, Hausdorff distance %.2g\n", wanted.max_error, thinned.count, error);
@@ -116,7 +116,7 @@ static void check_thin_little(conic_context *context) {
 
 /* The farthest that a place on the torus is from the nearest point. */
 static double widest_gap(conic_context *context, const conic_splats *splats) {
-  conic_splats places = shape_sample(context, SHAPE_TORUS, 40000, 0.0, 77);
+  conic_splats places = shape_sample(context, SHAPE_TORUS, 10000, 0.0, 77);
   conic_neighbours tree;
   double widest = 0.0;
   CHECK_OK(conic_neighbours_build(context, (const float *const *)splats->position, splats->count, &tree));

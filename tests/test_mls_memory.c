@@ -44,9 +44,9 @@ static conic_status run(conic_context *context, const conic_splats *samples, dou
   conic_thin_options_init(&thin);
   conic_densify_options_init(&densify);
   options.cluster = cluster;
-  thin.count = 200;
+  thin.count = 110;
   thin.is_measured = 1;
-  densify.spacing = 0.15;
+  densify.spacing = 0.3;
   conic_status status = conic_surface_create(context, samples, &options, &surface);
   if (status != CONIC_OK)
     return status;
@@ -66,7 +66,7 @@ static conic_status run(conic_context *context, const conic_splats *samples, dou
 
 int main(void) {
   conic_context *plain = check_context(1);
-  conic_splats samples = shape_sample(plain, SHAPE_TORUS, 300, 0.1, 3);
+  conic_splats samples = shape_sample(plain, SHAPE_TORUS, 150, 0.1, 3);
   long n_failures = 0;
   for (double cluster = 0.0; cluster < 0.4; cluster += 0.3) {
     for (long i = 1;; i++) {
