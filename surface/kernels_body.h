@@ -1,5 +1,6 @@
-/* The kernels in vectors of eight doubles, whatever the registers hold: included by one file an instruction set, with
- * TABLE and NAME. Each lane does what surface/kernels_scalar.c and surface/weight.h do, in their order. */
+/* The kernels in vectors as wide as a register: included by one file an instruction set, with TABLE and NAME. Eight
+ * partial sums a total, whatever the width: a narrow vector goes through all neighbours once for each part of the
+ * eight. Each lane does what surface/kernels_scalar.c and surface/weight.h do, in their order. */
 #include "surface/kernels.h"
 #include "surface/weight.h"
 
@@ -7,15 +8,18 @@
 #include <immintrin.h>
 #endif
 
-/* Everything here is inlined: no vector crosses a call, whatever the calling convention would do with it. */
-#pragma GCC diagnostic ignored "-Wpsabi"
+#if defined(__AVX512F__)
+#define WIDTH 8
+#elif defined(__AVX2__)
+#define WIDTH 4
+#else
+#define WIDTH 2
+#endif
 
 #define INLINE static inline __attribute__((always_inline))
 
-typedef double wide __attribute__((vector_size(64)));
-typedef double wide_half __attribute__((vector_size(32)));
-typedef double wide_quarter __attribute__((vector_size(16)));
-typedef int64_t wide_bits __attribute__((vector_size(64)));
+typedef double wide __attribute__((vector_size(8 * WIDTH)));
+typedef int64_t wide_bits __attribute__((vector_size(8 * WIDTH)));
 
 INLINE wide wide_load(const double *from) {
   wide value;
@@ -43,32 +47,18 @@ INLINE wide wide_sqrt(wide value) {
 #if defined(__AVX512F__)
   return (wide)_mm512_sqrt_pd((__m512d)value);
 #elif defined(__AVX2__)
-  double lanes[8];
-  wide_store(lanes, value);
-  for (int i = 0; i < 8; i += 4)
-    _mm256_storeu_pd(lanes + i, _mm256_sqrt_pd(_mm256_loadu_pd(lanes + i)));
-  return wide_load(lanes);
+  return (wide)_mm256_sqrt_pd((__m256d)value);
 #elif defined(__SSE2__)
-  double lanes[8];
-  wide_store(lanes, value);
-  for (int i = 0; i < 8; i += 2)
-    _mm_storeu_pd(lanes + i, _mm_sqrt_pd(_mm_loadu_pd(lanes + i)));
-  return wide_load(lanes);
+  return (wide)_mm_sqrt_pd((__m128d)value);
 #else
-  double lanes[8];
-  wide_store(lanes, value);
-  for (int i = 0; i < 8; i++)
-    lanes[i] = __builtin_sqrt(lanes[i]);
-  return wide_load(lanes);
+  return (wide){__builtin_sqrt(value[0]), __builtin_sqrt(value[1])};
 #endif
 }
 
 /* The order that every total has. */
-INLINE double wide_total(wide value) {
-  wide_half half =
-      __builtin_shufflevector(value, value, 0, 1, 2, 3) + __builtin_shufflevector(value, value, 4, 5, 6, 7);
-  wide_quarter quarter = __builtin_shufflevector(half, half, 0, 1) + __builtin_shufflevector(half, half, 2, 3);
-  return quarter[0] + quarter[1];
+INLINE double total(const double partial[CONIC_NEAR_LANES]) {
+  return ((partial[0] + partial[4]) + (partial[2] + partial[6])) +
+         ((partial[1] + partial[5]) + (partial[3] + partial[7]));
 }
 
 typedef struct wide_theta {
@@ -115,11 +105,24 @@ INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, int is_com
   return theta;
 }
 
-INLINE void moments_of(conic_near *near, const conic_weighing *weighing, const double q[3],
-                       double sums[CONIC_N_MOMENTS], int is_compact) {
+/* Sums of so many terms: partial sums `lane` to lane + WIDTH of each. */
+typedef double partial_sums[CONIC_NEAR_LANES];
+
+INLINE void store_parts(const wide *parts, int n, partial_sums *partials, size_t lane) {
+  for (int k = 0; k < n; k++)
+    wide_store(partials[k] + lane, parts[k]);
+}
+
+INLINE void add_up(partial_sums *partials, int n, double *sums) {
+  for (int k = 0; k < n; k++)
+    sums[k] = total(partials[k]);
+}
+
+INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
+                         size_t lane, int is_compact) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, count = {0};
   wide xx = {0}, xy = {0}, xz = {0}, yy = {0}, yz = {0}, zz = {0};
-  for (size_t i = 0; i < near->n_padded; i += CONIC_NEAR_LANES) {
+  for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
     wide x = wide_load(near->offset[0] + i) - q[0], y = wide_load(near->offset[1] + i) - q[1];
     wide z = wide_load(near->offset[2] + i) - q[2];
     wide s = ((x * x + y * y) + z * z) * wide_load(near->inverse_h2 + i);
@@ -138,23 +141,25 @@ INLINE void moments_of(conic_near *near, const conic_weighing *weighing, const d
     zz += wz * z;
     count += wide_keep(w > 0.0, wide_of(1.0));
   }
-  const wide partials[CONIC_N_MOMENTS] = {w_sum, x_sum, y_sum, z_sum, xx, xy, xz, yy, yz, zz, count};
-  for (int k = 0; k < CONIC_N_MOMENTS; k++)
-    sums[k] = wide_total(partials[k]);
+  const wide parts[CONIC_N_MOMENTS] = {w_sum, x_sum, y_sum, z_sum, xx, xy, xz, yy, yz, zz, count};
+  store_parts(parts, CONIC_N_MOMENTS, partials, lane);
 }
 
 static void moments(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]) {
-  if (weighing->is_compact)
-    moments_of(near, weighing, q, sums, 1);
-  else
-    moments_of(near, weighing, q, sums, 0);
+  partial_sums partials[CONIC_N_MOMENTS];
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+    if (weighing->is_compact)
+      moments_part(near, weighing, q, partials, lane, 1);
+    else
+      moments_part(near, weighing, q, partials, lane, 0);
+  add_up(partials, CONIC_N_MOMENTS, sums);
 }
 
-INLINE void plane_of(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
-                     double sums[CONIC_N_PLANE_SUMS], int is_compact) {
+INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
+                       partial_sums *partials, size_t lane, int is_compact) {
   wide g_a = {0}, g_b = {0}, k = {0}, aa = {0}, ab = {0}, bb = {0}, at = {0}, bt = {0}, ka = {0}, kb = {0}, kt = {0};
   wide energy = {0};
-  for (size_t i = 0; i < near->n_padded; i += CONIC_NEAR_LANES) {
+  for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
     wide dx = wide_load(near->offset[0] + i), dy = wide_load(near->offset[1] + i);
     wide dz = wide_load(near->offset[2] + i), h2 = wide_load(near->inverse_h2 + i);
     wide x = (dx * frame[0][0] + dy * frame[0][1]) + dz * frame[0][2];
@@ -181,23 +186,25 @@ INLINE void plane_of(const conic_near *near, const conic_weighing *weighing, dou
     kt += -sink;
     energy += s * sv;
   }
-  const wide partials[CONIC_N_PLANE_SUMS] = {g_a, g_b, k, aa, ab, bb, at, bt, ka, kb, kt, energy};
-  for (int i = 0; i < CONIC_N_PLANE_SUMS; i++)
-    sums[i] = wide_total(partials[i]);
+  const wide parts[CONIC_N_PLANE_SUMS] = {g_a, g_b, k, aa, ab, bb, at, bt, ka, kb, kt, energy};
+  store_parts(parts, CONIC_N_PLANE_SUMS, partials, lane);
 }
 
 static void plane(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
                   double sums[CONIC_N_PLANE_SUMS]) {
-  if (weighing->is_compact)
-    plane_of(near, weighing, frame, t, sums, 1);
-  else
-    plane_of(near, weighing, frame, t, sums, 0);
+  partial_sums partials[CONIC_N_PLANE_SUMS];
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+    if (weighing->is_compact)
+      plane_part(near, weighing, frame, t, partials, lane, 1);
+    else
+      plane_part(near, weighing, frame, t, partials, lane, 0);
+  add_up(partials, CONIC_N_PLANE_SUMS, sums);
 }
 
 static void fill_columns(conic_near *near, double frame[3][3], double t, double scale, int degree) {
   size_t n = near->n_padded;
   int n_coefficients = conic_n_coefficients(degree);
-  for (size_t i = 0; i < n; i += CONIC_NEAR_LANES) {
+  for (size_t i = 0; i < n; i += WIDTH) {
     wide dx = wide_load(near->offset[0] + i), dy = wide_load(near->offset[1] + i), dz = wide_load(near->offset[2] + i);
     wide x = ((dx * frame[0][0] + dy * frame[0][1]) + dz * frame[0][2]) * scale;
     wide y = ((dx * frame[1][0] + dy * frame[1][1]) + dz * frame[1][2]) * scale;
@@ -213,13 +220,15 @@ static void fill_columns(conic_near *near, double frame[3][3], double t, double 
   }
 }
 
-INLINE double weighted_square(const conic_near *near, const double *a) {
-  wide sum = {0};
-  for (size_t i = 0; i < near->n_padded; i += CONIC_NEAR_LANES) {
-    wide value = wide_load(a + i);
-    sum += (wide_load(near->weights + i) * value) * value;
+INLINE double weighted_product(const conic_near *near, const double *a, const double *b) {
+  partial_sums partial;
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH) {
+    wide sum = {0};
+    for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES)
+      sum += (wide_load(near->weights + i) * wide_load(a + i)) * wide_load(b + i);
+    wide_store(partial + lane, sum);
   }
-  return wide_total(sum);
+  return total(partial);
 }
 
 static void factor(conic_near *near, double frame[3][3], double t, double scale, int degree,
@@ -229,29 +238,26 @@ static void factor(conic_near *near, double frame[3][3], double t, double scale,
   int n_coefficients = conic_n_coefficients(degree);
   fill_columns(near, frame, t, scale, degree);
   for (int k = 0; k < n_coefficients; k++)
-    before2[k] = weighted_square(near, near->columns + (size_t)k * n);
+    before2[k] = weighted_product(near, near->columns + (size_t)k * n, near->columns + (size_t)k * n);
   for (int j = 0; j < n_coefficients; j++) {
     const double *pivot = near->columns + (size_t)j * n;
-    norms2[j] = weighted_square(near, pivot);
+    norms2[j] = weighted_product(near, pivot, pivot);
     double inverse = norms2[j] > 0.0 ? 1.0 / norms2[j] : 0.0;
     for (int k = j + 1; k <= n_coefficients; k++) {
       double *column = near->columns + (size_t)k * n;
-      wide sum = {0};
-      for (size_t i = 0; i < n; i += CONIC_NEAR_LANES)
-        sum += (wide_load(near->weights + i) * wide_load(pivot + i)) * wide_load(column + i);
-      double share = wide_total(sum) * inverse;
+      double share = weighted_product(near, pivot, column) * inverse;
       upper[j][k] = share;
-      for (size_t i = 0; i < n; i += CONIC_NEAR_LANES)
+      for (size_t i = 0; i < n; i += WIDTH)
         wide_store(column + i, wide_load(column + i) - share * wide_load(pivot + i));
     }
   }
 }
 
-INLINE void sphere_of(conic_near *near, const conic_weighing *weighing, const double q[3],
-                      double sums[CONIC_N_SPHERE_SUMS], int is_compact) {
+INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
+                        size_t lane, int is_compact) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, nx_sum = {0}, ny_sum = {0}, nz_sum = {0};
   wide d2_sum = {0}, dn_sum = {0}, count = {0};
-  for (size_t i = 0; i < near->n_padded; i += CONIC_NEAR_LANES) {
+  for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
     wide x = wide_load(near->offset[0] + i) - q[0], y = wide_load(near->offset[1] + i) - q[1];
     wide z = wide_load(near->offset[2] + i) - q[2];
     wide nx = wide_load(near->normal[0] + i), ny = wide_load(near->normal[1] + i);
@@ -269,18 +275,19 @@ INLINE void sphere_of(conic_near *near, const conic_weighing *weighing, const do
     dn_sum += w * ((x * nx + y * ny) + z * nz);
     count += wide_keep(w > 0.0, wide_of(1.0));
   }
-  const wide partials[CONIC_N_SPHERE_SUMS] = {w_sum,  x_sum,  y_sum,  z_sum,  nx_sum,
-                                              ny_sum, nz_sum, d2_sum, dn_sum, count};
-  for (int k = 0; k < CONIC_N_SPHERE_SUMS; k++)
-    sums[k] = wide_total(partials[k]);
+  const wide parts[CONIC_N_SPHERE_SUMS] = {w_sum, x_sum, y_sum, z_sum, nx_sum, ny_sum, nz_sum, d2_sum, dn_sum, count};
+  store_parts(parts, CONIC_N_SPHERE_SUMS, partials, lane);
 }
 
 static void sphere(conic_near *near, const conic_weighing *weighing, const double q[3],
                    double sums[CONIC_N_SPHERE_SUMS]) {
-  if (weighing->is_compact)
-    sphere_of(near, weighing, q, sums, 1);
-  else
-    sphere_of(near, weighing, q, sums, 0);
+  partial_sums partials[CONIC_N_SPHERE_SUMS];
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+    if (weighing->is_compact)
+      sphere_part(near, weighing, q, partials, lane, 1);
+    else
+      sphere_part(near, weighing, q, partials, lane, 0);
+  add_up(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 
 const conic_surface_kernels TABLE = {
