@@ -83,6 +83,10 @@ CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
   return mask;
 }
 
+CONIC_INLINE lanes_mask lanes_mask_of(unsigned bits) {
+  return (lanes_mask)bits;
+}
+
 CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
   return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 }
@@ -93,6 +97,15 @@ CONIC_INLINE lanes lanes_select(lanes_mask mask, lanes yes, lanes no) {
 
 CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, index_lanes no) {
   return (index_lanes)_mm512_mask_blend_epi32(mask, (__m512i)no, (__m512i)yes);
+}
+
+/* Writes value where the mask holds. */
+CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
+  _mm512_mask_storeu_ps(to, mask, (__m512)value);
+}
+
+CONIC_INLINE void lanes_replace_indices(uint32_t *to, lanes_mask mask, index_lanes value) {
+  _mm512_mask_storeu_epi32(to, mask, (__m512i)value);
 }
 
 /* value where the mask holds, else +0. */
@@ -164,6 +177,14 @@ CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, 
   return ((index_lanes)mask & yes) | (~(index_lanes)mask & no);
 }
 
+CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
+  lanes_store(to, lanes_select(mask, value, lanes_load(to)));
+}
+
+CONIC_INLINE void lanes_replace_indices(uint32_t *to, lanes_mask mask, index_lanes value) {
+  lanes_store_indices(to, lanes_select_indices(mask, value, lanes_load_indices(to)));
+}
+
 /* value where the mask holds, else +0. */
 CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
   return (lanes)(mask & (int_lanes)value);
@@ -172,6 +193,13 @@ CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
 /* value + 1 where the mask holds. */
 CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
   return value - (index_lanes)mask;
+}
+
+CONIC_INLINE lanes_mask lanes_mask_of(unsigned bits) {
+  lanes_mask mask = {0};
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    mask[lane] = -(int32_t)(bits >> lane & 1);
+  return mask;
 }
 
 CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint32_t mask) {

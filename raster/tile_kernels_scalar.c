@@ -12,6 +12,24 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words,
+                 uint32_t *beyond) {
+  for (size_t i = 0; i < n; i++) {
+    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x);
+    tiles[i] = key.tile;
+    words[i] = key.word;
+    beyond[i] = key.beyond;
+  }
+}
+
+static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
+                 conic_surface *surfaces) {
+  for (size_t i = 0; i < n; i++) {
+    footprints[i] = from->footprints[order[i]];
+    surfaces[i] = from->surfaces[order[i]];
+  }
+}
+
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
   size_t n_selected = 0;
@@ -38,7 +56,6 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
   size_t place = band->n_kept[block];
   unsigned n_covered = 0;
   kept->footprint[place] = i_footprint;
-  kept->amplitude[place] = band->projected->footprints[i_footprint].amplitude;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
@@ -66,7 +83,8 @@ static void visibility(conic_band *band) {
   }
   for (size_t i = 0; i < band->n; i++)
     for (int block = 0; block < band->n_blocks; block++) {
-      unsigned n_covered = band->words[i] >> block & 1 ? pass_block(band, band->indices[i], block) : 0;
+      unsigned n_covered =
+          conic_word_has(band->words[i], (uint32_t)block) ? pass_block(band, band->indices[i], block) : 0;
       band->n_fragments += n_covered;
       if (n_covered == 0)
         continue;
@@ -106,8 +124,8 @@ static void accumulate_pixel(const conic_band *band, int block, int l) {
       blend(band, kept->footprint[i], block, l, &fragment, &heaviest_weight);
   }
   for (size_t i = band->not_kept[block]; i < band->n; i++) {
-    if (!(band->words[i] >> block & 1) || !fragment_of(band, band->indices[i], block, l, &fragment) ||
-        !(seen_iz_of(&fragment) >= kept->threshold[l]))
+    if (!(conic_word_has(band->words[i], (uint32_t)block)) ||
+        !fragment_of(band, band->indices[i], block, l, &fragment) || !(seen_iz_of(&fragment) >= kept->threshold[l]))
       continue;
     blend(band, band->indices[i], block, l, &fragment, &heaviest_weight);
     if (!band->keeps_indices)
@@ -130,13 +148,18 @@ static void accumulate(conic_band *band) {
   }
 }
 
+/* The fragments of row i_row of the tile, where the nearest splat wins. */
+static conic_nearest_fragments *nearest_row(const conic_band *band, int i_row) {
+  return band->nearest + i_row * (CONIC_BAND_BLOCKS + 1);
+}
+
 /* Returns how many of the block's pixels the splat covers. */
-static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int block) {
-  conic_nearest_fragments *nearest = &band->nearest[block];
+static unsigned keep_nearest(const conic_band *row, uint32_t i_footprint, int block) {
+  conic_nearest_fragments *nearest = &row->nearest[block];
   unsigned n_covered = 0;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment;
-    if (!fragment_of(band, i_footprint, block, l, &fragment))
+    if (!fragment_of(row, i_footprint, block, l, &fragment))
       continue;
     n_covered++;
     if (!(nearest->iz[l] < fragment.iz))
@@ -149,8 +172,25 @@ static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int b
   return n_covered;
 }
 
+static void nearest(conic_band *band) {
+  band->has_special = 0;
+  memset(band->nearest, 0, (size_t)band->n_rows * (CONIC_BAND_BLOCKS + 1) * sizeof *band->nearest);
+  for (size_t i = 0; i < band->n_entries; i++) {
+    uint32_t word = band->entries[i].word;
+    band->has_special |= !(band->projected->footprints[band->entries[i].footprint].s3 > 0.0f);
+    for (int i_row = 0; i_row < band->n_rows; i_row++) {
+      conic_band row = *band;
+      row.y += i_row * CONIC_BLOCK_EDGE;
+      row.nearest = nearest_row(band, i_row);
+      for (int block = 0; block < band->n_blocks && word >> (16 + i_row) & 1; block++)
+        if (conic_word_has(word, (uint32_t)block))
+          band->n_fragments += keep_nearest(&row, band->entries[i].footprint, block);
+    }
+  }
+}
+
 /* The nearest splats' colour, normal and weight. */
-static void take_nearest(const conic_band *band, int block) {
+static void take_block(const conic_band *band, int block) {
   const conic_nearest_fragments *nearest = &band->nearest[block];
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
@@ -165,23 +205,17 @@ static void take_nearest(const conic_band *band, int block) {
   }
 }
 
-static void nearest(conic_band *band) {
+static void take_nearest(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
-    memset(&band->nearest[block], 0, sizeof band->nearest[block]);
     band->n_kept[block] = 0;
     band->not_kept[block] = band->n;
-  }
-  for (size_t i = 0; i < band->n; i++)
-    for (int block = 0; block < band->n_blocks; block++)
-      if (band->words[i] >> block & 1) {
-        unsigned n_covered = keep_nearest(band, band->indices[i], block);
-        band->n_fragments += n_covered;
-        band->n_kept[block] += n_covered > 0;
-      }
-  for (int block = 0; block < band->n_blocks; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      band->n_kept[block] |= band->nearest[block].iz[l] > 0.0f;
     if (!conic_block_is_empty(band, block))
-      take_nearest(band, block);
+      take_block(band, block);
+  }
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {
-    "scalar", conic_project_chunk, select_references, visibility, accumulate, nearest, conic_band_resolve};
+const conic_tile_kernels conic_tile_kernels_scalar = {"scalar",          conic_project_range, keys,       move,
+                                                      select_references, visibility,          accumulate, nearest,
+                                                      take_nearest,      conic_band_resolve};
