@@ -228,6 +228,25 @@ static void check_own_points(conic_context *context, const conic_splats *samples
   conic_surface_destroy(surface);
 }
 
+/* Map coordinates lose nothing: what is done is done from the set's origin. */
+static void check_far(conic_context *context, const conic_splats *samples) {
+  conic_splats far = *samples, near_out, far_out;
+  conic_surface_options options;
+  conic_surface_options_init(&options);
+  far.origin[0] = 4.5e6;
+  far.origin[1] = -1e7;
+  conic_surface *a = shape_surface(context, samples, &options), *b = shape_surface(context, &far, &options);
+  CHECK_OK(conic_surface_clean(a, &near_out, NULL));
+  CHECK_OK(conic_surface_clean(b, &far_out, NULL));
+  CHECK(far_out.count == near_out.count && far_out.origin[1] == -1e7);
+  for (int axis = 0; axis < 3; axis++)
+    CHECK(memcmp(near_out.position[axis], far_out.position[axis], near_out.count * sizeof(float)) == 0);
+  conic_splats_release(context, &near_out);
+  conic_splats_release(context, &far_out);
+  conic_surface_destroy(a);
+  conic_surface_destroy(b);
+}
+
 /* --- a scan with noise --- */
 
 static double median_nearest(conic_context *context, const conic_splats *samples) {
@@ -360,6 +379,7 @@ int main(int argc, char **argv) {
   check_projection(context, &noisy, 0.0, "noisy torus");
   check_bits(&noisy);
   check_own_points(context, &noisy);
+  check_far(context, &noisy);
   check_clusters(context);
   if (argc > 1)
     check_scan(context, argv[1]);
