@@ -126,7 +126,7 @@ static int is_within(const cli_option *option, double value) {
 }
 
 static const char *dashes(const cli_option *option) {
-  return option->name[1] || option->is_long ? "--" : "-";
+  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
 }
 
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
@@ -203,7 +203,7 @@ static const cli_option *find_option(const option_set *set, const char *name, si
     for (int i = 0; i < set->counts[table]; i++) {
       const cli_option *option = &set->tables[table][i];
       if (strlen(option->name) == length && strncmp(option->name, name, length) == 0 &&
-          is_long == (option->name[1] || option->is_long))
+          is_long == (dashes(option)[1] == '-'))
         return option;
     }
   return NULL;

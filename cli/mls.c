@@ -263,7 +263,7 @@ static int run(cli_session *session, int argc, char **argv) {
        .argument = "H",
        .help = "what is smaller is smoothed away; world units, or 2x: two spacings [local, by -k]",
        .parse = cli_parse_length,
-       .is_long = 1},
+       .dashes = "--"},
       {.name = "k",
        .type = CLI_INT,
        .value = &job.options.n_local,

@@ -24,7 +24,7 @@ static double gain_at_origin(int n_coefficients, double upper[CONIC_MAX_COLUMNS]
 conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, conic_workspace *workspace,
                                         double frame[3][3], double t, conic_fit *fit) {
   double upper[CONIC_MAX_COLUMNS][CONIC_MAX_COLUMNS], norms2[CONIC_MAX_COLUMNS], before2[CONIC_MAX_COLUMNS];
-  double coefficients[CONIC_MAX_COLUMNS];
+  double coefficients[CONIC_MAX_COLUMNS] = {0.0};
   int n = conic_n_coefficients(surface->options.degree);
   surface->kernels->factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, upper, norms2, before2);
   for (int k = 0; k < n; k++)
