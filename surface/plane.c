@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/eigen.h"
+#include "surface/least_spread.h"
 #include "surface/surface.h"
 
 enum { MAX_STEPS = 40, MAX_TURNS = 30, MAX_SEARCH = 40 };
@@ -27,7 +27,7 @@ static void cross(const double a[3], const double b[3], double c[3]) {
 conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, size_t n_least,
                                                 conic_workspace *workspace, double frame[3][3], double *height) {
   static const double origin[3] = {0.0, 0.0, 0.0};
-  double sums[CONIC_N_MOMENTS], mean[3], covariance[6], values[3];
+  double sums[CONIC_N_MOMENTS], mean[3], covariance[6];
   surface->kernels->moments(&workspace->near, &surface->weighing, origin, sums);
   if (!(sums[CONIC_MOMENT_COUNT] >= (double)n_least))
     return CONIC_SURFACE_TOO_FEW;
@@ -37,8 +37,7 @@ conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, si
   for (int i = 0, k = 0; i < 3; i++)
     for (int j = i; j < 3; j++, k++)
       covariance[k] = sums[4 + k] * inverse - mean[i] * mean[j];
-  conic_eigen3(covariance, values, frame);
-  cross(frame[2], frame[0], frame[1]);
+  conic_least_spread(covariance, frame);
   *height = frame[2][0] * mean[0] + frame[2][1] * mean[1] + frame[2][2] * mean[2];
   return CONIC_SURFACE_DONE;
 }
@@ -144,11 +143,10 @@ static int search_along(const conic_surface *surface, double h, double margin, c
 
 /* Across the least spread of the neighbours about q, which stays. */
 static void turn_normal(const conic_surface *surface, conic_workspace *workspace, double frame[3][3], double t) {
-  double sums[CONIC_N_MOMENTS], values[3];
+  double sums[CONIC_N_MOMENTS];
   const double q[3] = {t * frame[2][0], t * frame[2][1], t * frame[2][2]};
   surface->kernels->moments(&workspace->near, &surface->weighing, q, sums);
-  conic_eigen3(sums + 4, values, frame);
-  cross(frame[2], frame[0], frame[1]);
+  conic_least_spread(sums + 4, frame);
 }
 
 /* The paper's turns, until they change little. 0 where the search finds no minimum. */

@@ -1,6 +1,8 @@
 /* The kernels against plain C bit for bit, their derivatives against differences, and the weights. */
+#include "core/eigen.h"
 #include "core/gaussian.h"
 #include "surface/kernels.h"
+#include "surface/least_spread.h"
 #include "surface/weight.h"
 #include "tests/surface_shapes.h"
 
@@ -158,7 +160,54 @@ static void check_weights(void) {
   }
 }
 
+/* The least spread by Newton's steps against Jacobi's rotations: flat, thick, thin as a thread, and alike all round. */
+static void check_least_spread(void) {
+  uint64_t seed = 4;
+  for (int i = 0; i < 3000; i++) {
+    double m[6] = {0}, frame_found[3][3], values[3], vectors[3][3], apart2 = 0.0, length2 = 0.0;
+    double sizes[3] = {1.0, i % 3 == 1 ? 1e-4 : 0.7, i % 3 == 2 ? 0.69999 : 1e-3 * random_unit(&seed)};
+    double scale = i % 7 ? 1.0 : 1e-14;
+    for (int k = 0; k < 12; k++) {
+      double p[3] = {0}, axes[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}};
+      for (int j = 0; j < 3; j++) {
+        double size = sizes[j] * (2.0 * random_unit(&seed) - 1.0);
+        for (int axis = 0; axis < 3; axis++)
+          p[axis] += size * axes[j][axis];
+      }
+      for (int row = 0, at = 0; row < 3; row++)
+        for (int column = row; column < 3; column++)
+          m[at++] += scale * p[row] * p[column];
+    }
+    conic_least_spread(m, frame_found);
+    conic_eigen3(m, values, vectors);
+    for (int axis = 0; axis < 3; axis++) {
+      int next = (axis + 1) % 3, last = (axis + 2) % 3;
+      double across = frame_found[2][next] * vectors[2][last] - frame_found[2][last] * vectors[2][next];
+      apart2 += across * across;
+      length2 += frame_found[2][axis] * frame_found[2][axis];
+    }
+    double gap = (values[1] - values[2]) / values[0];
+    CHECK_NEAR(length2, 1.0, 1e-14);
+    CHECK_NEAR(sqrt(apart2), 0.0, 1e-14 / gap); /* rounding turns a vector by so much */
+    for (int j = 0; j < 2; j++) {
+      double upright = 0.0, unit = 0.0;
+      for (int axis = 0; axis < 3; axis++) {
+        upright += frame_found[j][axis] * frame_found[2][axis];
+        unit += frame_found[j][axis] * frame_found[j][axis];
+      }
+      CHECK_NEAR(upright, 0.0, 1e-14);
+      CHECK_NEAR(unit, 1.0, 1e-13);
+    }
+  }
+  /* Nothing to go by is no reason to fail. */
+  double none[6] = {0}, ball[6] = {1, 0, 0, 1, 0, 1}, found[3][3];
+  conic_least_spread(none, found);
+  conic_least_spread(ball, found);
+  CHECK_NEAR(found[2][0] * found[2][0] + found[2][1] * found[2][1] + found[2][2] * found[2][2], 1.0, 1e-14);
+}
+
 int main(void) {
+  check_least_spread();
   compare_tables();
   check_derivatives();
   check_weights();
