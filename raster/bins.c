@@ -84,7 +84,7 @@ static inline void tiles_beyond(const conic_bins *bins, uint32_t home, uint32_t 
   tiles[2] = (beyond & CONIC_BEYOND_X) && (beyond & CONIC_BEYOND_Y) ? below + 1 : none;
 }
 
-static void count_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i) {
+static __attribute__((noinline)) void count_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i) {
   uint32_t tiles[3];
   if (__builtin_expect(!(sorter->beyond[i] & CONIC_BEYOND_MORE), 1)) {
     tiles_beyond(bins, sorter->tile[i], sorter->beyond[i], tiles);
@@ -124,9 +124,9 @@ static uint32_t place(const conic_bins *bins, conic_sorter *sorter, uint32_t *ti
   return n_entries;
 }
 
-/* The entries of a record in all of its tiles, which are many. */
-static void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record, uint32_t *next,
-                      conic_tile_entry *entries) {
+/* The entries of a record in all of its tiles, which are many. Kept out of the loop, which needs the registers. */
+static __attribute__((noinline)) void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record,
+                                                uint32_t *next, conic_tile_entry *entries) {
   tile_range range = tiles_of(bins, box);
   for (int y = range.y_begin; y < range.y_end; y++)
     for (int x = range.x_begin; x < range.x_end; x++)
@@ -134,8 +134,8 @@ static void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_r
 }
 
 /* Those beyond its home; what it does not meet is written to the place behind all. */
-static void enter_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i, uint32_t i_record,
-                         conic_tile_entry *entries) {
+static __attribute__((noinline)) void enter_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i,
+                                                   uint32_t i_record, conic_tile_entry *entries) {
   uint32_t *next = sorter->next_entry, tiles[3], word = sorter->word[i], beyond = sorter->beyond[i];
   uint32_t columns = (beyond & 0xff) << 8, rows = ((UINT32_C(2) << (beyond >> 8 & 0xff)) - 1) << 16;
   uint32_t words[3] = {columns | (word & 0xffff0000), (word & 0xffff) | rows, columns | rows};
@@ -192,19 +192,27 @@ void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_
   copy_clips(sorter, first, projected);
 }
 
-size_t conic_bins_length(const conic_bins *bins, size_t i_tile) {
-  size_t length = 0;
+size_t conic_bins_measure(conic_bins *bins) {
+  size_t greatest = 0;
+  memset(bins->length, 0, bins->n_tiles * sizeof *bins->length);
   for (size_t i = 0; i < bins->n_chunks; i++) {
-    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    length += begin[1] - begin[0];
+    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1);
+    for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+      bins->length[i_tile] += begin[i_tile + 1] - begin[i_tile];
   }
-  return length;
+  for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+    greatest = bins->length[i_tile] > greatest ? bins->length[i_tile] : greatest;
+  return greatest;
 }
 
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries) {
   for (size_t i = 0; i < bins->n_chunks; i++) {
     const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    memcpy(entries, bins->entries + bins->chunk_begin[i] + begin[0], (begin[1] - begin[0]) * sizeof *entries);
-    entries += begin[1] - begin[0];
+    const conic_tile_entry *from = bins->entries + bins->chunk_begin[i] + begin[0];
+    size_t n = begin[1] - begin[0];
+    /* Pairs in place of a call: a chunk has some dozen entries in a tile. There is a place behind all. */
+    for (size_t k = 0; k < n; k += 2)
+      memcpy(entries + k, from + k, 2 * sizeof *entries);
+    entries += n;
   }
 }

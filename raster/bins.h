@@ -16,6 +16,7 @@ typedef struct conic_bins {
   size_t n_tiles, n_chunks;
   uint32_t *tile_begin; /* [chunk][n_tiles + 1]: where a tile's entries begin among the chunk's */
   size_t *chunk_begin;  /* [chunk]: where the chunk's entries begin */
+  size_t *length;       /* [n_tiles]: how many entries a tile has */
   conic_tile_entry *entries;
   size_t n_room;        /* so many entries */
   atomic_size_t n_used; /* or needed, where that is more than there is room for */
@@ -67,10 +68,12 @@ void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips
 void conic_bins_sort(conic_bins *bins, const struct conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected);
 
-/* How many entries a tile has. */
-size_t conic_bins_length(const conic_bins *bins, size_t i_tile);
+/* Finds how many entries each tile has; returns the most. */
+size_t conic_bins_measure(conic_bins *bins);
 
-/* Writes them to `entries`, in file order. */
+/* Writes a tile's entries, in file order; up to CONIC_GATHER_SLACK more places may be written to. */
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries);
+
+#define CONIC_GATHER_SLACK 1
 
 #endif

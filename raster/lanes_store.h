@@ -32,6 +32,19 @@ CONIC_INLINE quad lanes_column(lanes value, int column) {
   return rows;
 }
 
+/* Copies a row of pixels past the caches, whole lines where it can. */
+CONIC_INLINE void lanes_stream_row(float *to, const float *from, size_t n) {
+  size_t i = 0;
+#if defined(__AVX512F__)
+  for (; (uintptr_t)to % 64 == 0 && i + 16 <= n; i += 16)
+    _mm512_stream_ps(to + i, _mm512_loadu_ps(from + i));
+#elif defined(__AVX2__)
+  for (; (uintptr_t)to % 32 == 0 && i + 8 <= n; i += 8)
+    _mm256_stream_ps(to + i, _mm256_loadu_ps(from + i));
+#endif
+  conic_stream_copy(to + i, from + i, (n - i) * sizeof *to);
+}
+
 /* a[0…3] become rows of four. */
 CONIC_INLINE void quad_transpose(quad a[4]) {
   quad low01 = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5),

@@ -1,6 +1,7 @@
 /* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
 #include "raster/coverage.h"
 #include "raster/lanes_store.h"
+#include "raster/laplace_body.h"
 #include "raster/tile_kernels.h"
 
 /* A block is so many vectors. */
@@ -157,12 +158,25 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   f->scale = 1.0f / lanes_sqrt(determinant);
 }
 
+/* conic_laplace_fragment of coverage.h, lane by lane. */
+CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                    lanes dx, lanes dy, fragments *f) {
+  laplaces at = laplaces_at(view, footprint, ray, dx, dy);
+  f->covered = at.covered;
+  f->q = at.q;
+  f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = at.plane_iz;
+  f->scale = at.scale;
+}
+
 /* conic_clip_keeps, lane by lane. */
 CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
   lanes zero = lanes_of(0.0f);
   lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
   lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
-  return clip->is_or ? first | second : first & second;
+  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
+                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
+  return (clip->is_or ? first | second : first & second) & within;
 }
 
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
@@ -189,7 +203,9 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
                            int is_special, fragments *f) {
   lanes dx = (x - rows->x) + rows->dx0;
-  if (is_special && footprint->s3 == 0.0f)
+  if (is_special && conic_is_laplace(footprint))
+    laplace_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  else if (is_special && footprint->s3 == 0.0f)
     ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
   else
     ellipse_fragments(rows, from->support, dx, f);
