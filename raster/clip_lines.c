@@ -5,8 +5,6 @@
 /* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */
 #define OVERLAP_PX (1.0 / 256.0)
 
-static const conic_clip_record keeps_all = {{1.0f, 1.0f}, {0.0f, 0.0f}, {0.0f, 0.0f}, 0, 0};
-
 static double row_times(const double m[3], const float *const v[3], size_t i) {
   return (m[0] * (double)v[0][i] + m[1] * (double)v[1][i]) + m[2] * (double)v[2][i];
 }
@@ -61,7 +59,7 @@ static int set_line(const conic_view *view, const conic_footprint *footprint, co
 static conic_clip_record project_clip(const conic_view *view, const conic_splats *splats, const conic_clip *clip,
                                       const conic_footprint *footprint) {
   double columns[3][3], sign = adjugate(view, splats, clip->splat, columns);
-  conic_clip_record record = keeps_all;
+  conic_clip_record record = {{1.0f, 1.0f}, {0.0f, 0.0f}, {0.0f, 0.0f}, 0, 0}; /* keeps all */
   int n_lines = 0;
   for (int i = 0; i < clip->n_lines && i < 2; i++)
     if (conic_clip_is_line(clip->lines[i]))

@@ -1,0 +1,3 @@
+__kernel void lanes_visibility(void){}
+__kernel void lanes_accumulate(void){}
+__kernel void lanes_nearest(void){}
