@@ -1,3 +1,530 @@
-__kernel void lanes_visibility(void){}
-__kernel void lanes_accumulate(void){}
-__kernel void lanes_nearest(void){}
+/* The raster a tile a work-item, a block's 16 pixels a vector: for CPUs. The same operations in the same order in every lane
+ * as coverage.h, raster/resolve.c and raster/shade.c have; what does not concern a lane is masked by selection. */
+
+#define N_TILE_BLOCKS 16 /* of a tile: 4 × 4 */
+
+typedef float16 lanes;
+
+/* A lane's column and row in its block. */
+#define LANE_COLUMNS ((lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
+#define LANE_ROWS ((lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+
+typedef struct lanes_fragment {
+  lanes q, iz, plane_iz, scale;
+  int16 is_covered;
+} lanes_fragment;
+
+/* A splat on one row of blocks. */
+typedef struct lanes_row {
+  lanes dy, q_offset, q_rest, iz_offset, plane_offset;
+} lanes_row;
+
+static lanes lanes_clamp_iz(const conic_footprint *footprint, lanes iz) {
+  iz = iz > footprint->iz_far ? iz : footprint->iz_far;
+  return iz < footprint->iz_near ? iz : footprint->iz_near;
+}
+
+static lanes_row lanes_row_begin(const conic_footprint *footprint, int y) {
+  lanes_row row;
+  row.dy = (((float)y + LANE_ROWS) - footprint->y) + footprint->dy0;
+  lanes minor = footprint->s3 * row.dy;
+  row.q_offset = footprint->s2 * row.dy;
+  row.q_rest = minor * minor;
+  row.iz_offset = footprint->iz0 + footprint->iz_dy * row.dy;
+  row.plane_offset = footprint->iz0 + footprint->plane_dy * row.dy;
+  return row;
+}
+
+static int16 lanes_clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+  int16 first = (clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx >= 0.0f;
+  int16 second = (clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx >= 0.0f;
+  return clip->is_or ? first | second : first & second;
+}
+
+/* conic_ray_fragment */
+static void lanes_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray, lanes dx,
+                               lanes dy, lanes_fragment *fragment) {
+  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  int16 is_covered = (iz > 0.0f) & (iz >= ray->iz_low) & (iz <= ray->iz_high) & (dx >= ray->dx_low) &
+                     (dx <= ray->dx_high) & (dy >= ray->dy_low) & (dy <= ray->dy_high);
+  lanes r = 1.0f / iz;
+  lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
+  lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
+  lanes u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
+  lanes v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
+  float h = view->prefilter;
+  lanes s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
+  lanes s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  lanes s_uv = h * (u_x * v_x + u_y * v_y);
+  lanes area = u_x * v_y - u_y * v_x;
+  lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
+  lanes along = u * s_uv - v * s_uu;
+  fragment->q = u * u / s_uu + along * along / (s_uu * determinant);
+  fragment->iz = lanes_clamp_iz(footprint, iz);
+  fragment->plane_iz = iz;
+  fragment->scale = 1.0f / sqrt(determinant);
+  fragment->is_covered = is_covered & (fragment->q < view->support);
+}
+
+/* conic_fragment_at, for the block whose first pixel has column x. `clip` is only read where there are clip lines. */
+static void lanes_fragment_at(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                              const conic_clip_record *clip, const lanes_row *row, int x, lanes_fragment *fragment) {
+  lanes dx = (((float)x + LANE_COLUMNS) - footprint->x) + footprint->dx0;
+  if (footprint->s3 == 0.0f) {
+    lanes_ray_fragment(view, footprint, ray, dx, row->dy, fragment);
+  } else {
+    lanes major = footprint->s1 * dx + row->q_offset;
+    fragment->q = major * major + row->q_rest;
+    fragment->iz = lanes_clamp_iz(footprint, row->iz_offset + footprint->iz_dx * dx);
+    fragment->plane_iz = row->plane_offset + footprint->plane_dx * dx;
+    fragment->scale = 1.0f;
+    fragment->is_covered = fragment->q < view->support;
+  }
+  if (conic_is_clipped(footprint))
+    fragment->is_covered &= lanes_clip_keeps(clip, dx, row->dy);
+}
+
+static lanes lanes_seen_iz(const lanes_fragment *fragment) {
+  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
+}
+
+static lanes lanes_offset_iz(const conic_footprint *footprint, const lanes_fragment *fragment) {
+  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+}
+
+/* conic_exp_negative */
+static lanes lanes_exp_negative(lanes x) {
+  x = x > -80.0f ? x : -80.0f;
+  int16 k = convert_int16(x * 0x1.715476p+0f - 0.5f);
+  lanes k_float = convert_float16(k);
+  lanes r = (x - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
+  lanes p = 0x1.6a23cap-10f;
+  p = p * r + 0x1.123a20p-7f;
+  p = p * r + 0x1.5558f2p-5f;
+  p = p * r + 0x1.555492p-3f;
+  p = p * r + 0x1.fffffcp-2f;
+  p = (p * (r * r) + r) + 1.0f;
+  return as_float16(as_int16(p) + k * (1 << 23));
+}
+
+/* conic_gauss_narrow */
+static lanes lanes_gauss_narrow(lanes q) {
+  lanes t = q - 1.125f, t2 = t * t, t4 = t2 * t2;
+  lanes a = 0x1.23ba94p-1f + -0x1.23ba94p-2f * t, b = 0x1.23ba98p-4f + -0x1.84f89ap-7f * t;
+  lanes c = 0x1.84f19cp-10f + -0x1.373c6ep-13f * t, d = 0x1.a3885cp-17f + -0x1.d6063cp-21f * t;
+  return (a + t2 * b) + t4 * (c + t2 * d);
+}
+
+/* conic_kernel_confetti */
+static lanes lanes_kernel_confetti(const conic_kernel *kernel, lanes q) {
+  lanes r = sqrt(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  lanes rest = 1.0f - power, value = lanes_exp_negative(-kernel->a * power / rest);
+  return rest > 0.0f ? value : 0.0f;
+}
+
+static lanes lanes_kernel_value(const conic_kernel *kernel, lanes q) {
+  switch (kernel->type) {
+  case CONIC_KERNEL_CONFETTI:
+    return lanes_kernel_confetti(kernel, q);
+  case CONIC_KERNEL_HAT:
+    return 1.0f - sqrt(q) / kernel->cutoff;
+  case CONIC_KERNEL_BOX:
+    return 1.0f;
+  default:
+    return conic_kernel_is_narrow(kernel) ? lanes_gauss_narrow(q) : lanes_exp_negative(-0.5f * q);
+  }
+}
+
+/* conic_final_weight */
+static lanes lanes_final_weight(const conic_view *view, const conic_footprint *footprint, lanes q, lanes scale) {
+  lanes weight = (footprint->amplitude * scale) * lanes_kernel_value(&view->kernel, q);
+  return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
+}
+
+/* --- a tile --- */
+
+typedef struct lanes_tile {
+  uint index;
+  int x, y; /* its first pixel */
+  uint first_block;
+  int is_at_border; /* pixels of it are outside of the image */
+  int width, height;
+} lanes_tile;
+
+static lanes_tile lanes_tile_of(const conic_device_frame *frame) {
+  lanes_tile t;
+  t.index = (uint)get_global_id(0);
+  t.x = (int)(t.index % (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
+  t.y = (int)(t.index / (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
+  t.first_block = (uint)(t.y / 4) * (uint)frame->n_blocks_x + (uint)(t.x / 4);
+  t.is_at_border = t.x + CONIC_DEVICE_TILE > frame->width || t.y + CONIC_DEVICE_TILE > frame->height;
+  t.width = frame->width;
+  t.height = frame->height;
+  return t;
+}
+
+/* Where block (column, row) of the tile lies in memory that is [block] of the whole image. */
+static ulong lanes_block(const lanes_tile *t, const conic_device_frame *frame, uint block) {
+  return t->first_block + (ulong)(block / 4) * (ulong)frame->n_blocks_x + block % 4;
+}
+
+static int16 lanes_inside(const lanes_tile *t, int x, int y) {
+  return ((float)x + LANE_COLUMNS < (float)t->width) & ((float)y + LANE_ROWS < (float)t->height);
+}
+
+static uint lanes_sum(int16 ones) {
+  int8 a = ones.lo + ones.hi;
+  int4 b = a.lo + a.hi;
+  int2 c = b.lo + b.hi;
+  return (uint)(c.x + c.y);
+}
+
+/* A reference's splat, with what of it is not in every one. */
+typedef struct lanes_splat {
+  uint index;
+  conic_footprint footprint;
+  conic_ray ray;
+  conic_clip_record clip;
+  uint column_begin, column_last, row_begin, row_last; /* of the tile's blocks */
+} lanes_splat;
+
+static void lanes_fetch(__global const conic_device_reference *reference, __global const conic_footprint *footprints,
+                        __global const conic_ray *rays, __global const conic_clip_record *clips, lanes_splat *splat) {
+  uint blocks = reference->blocks;
+  splat->index = reference->footprint;
+  splat->footprint = footprints[splat->index];
+  splat->column_begin = blocks & 15;
+  splat->column_last = blocks >> 4 & 15;
+  splat->row_begin = blocks >> 8 & 15;
+  splat->row_last = blocks >> 12;
+  if (splat->footprint.s3 == 0.0f)
+    splat->ray = rays[splat->footprint.i_ray];
+  if (conic_is_clipped(&splat->footprint))
+    splat->clip = clips[splat->index];
+}
+
+/* Its fragments in block (column, row) of the tile; 0 where it covers none of its pixels. */
+static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const lanes_row *row,
+                       uint column, uint i_row, lanes_fragment *fragment) {
+  int x = t->x + 4 * (int)column;
+  lanes_fragment_at(view, &splat->footprint, &splat->ray, &splat->clip, row, x, fragment);
+  if (t->is_at_border)
+    fragment->is_covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);
+  return any(fragment->is_covered);
+}
+
+/* Goes through the tile's splats in order and, of each, through the blocks that it covers. The body sees `splat`,
+ * `fragment`, `block`, `column` and `i_row`. */
+#define LANES_FOR_FRAGMENTS(body)                                                                                      \
+  for (ulong i = tile_begin[t.index]; i < tile_begin[t.index + 1]; i++) {                                              \
+    lanes_splat splat;                                                                                                 \
+    lanes_fetch(&references[i], footprints, rays, clips, &splat);                                                      \
+    for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
+      lanes_row row = lanes_row_begin(&splat.footprint, t.y + 4 * (int)i_row);                                         \
+      for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
+        uint block = 4 * i_row + column;                                                                               \
+        lanes_fragment fragment;                                                                                       \
+        if (lanes_cover(&view, &t, &splat, &row, column, i_row, &fragment)) {                                          \
+          body                                                                                                         \
+        }                                                                                                              \
+      }                                                                                                                \
+    }                                                                                                                  \
+  }
+
+/* Pass 1 */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_visibility(GATHER_RECORDS,
+                                                                              __global lanes *thresholds,
+                                                                              __global uint *n_fragments) {
+  conic_view view = *frame_view;
+  conic_device_frame frame = *frame_constants;
+  lanes_tile t = lanes_tile_of(&frame);
+  lanes threshold[N_TILE_BLOCKS];
+  int16 found = 0;
+  for (uint block = 0; block < N_TILE_BLOCKS; block++)
+    threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
+  LANES_FOR_FRAGMENTS({
+    lanes offset_iz = lanes_offset_iz(&splat.footprint, &fragment);
+    threshold[block] = fragment.is_covered & (offset_iz > threshold[block]) ? offset_iz : threshold[block];
+    found -= fragment.is_covered;
+  })
+  for (uint block = 0; block < N_TILE_BLOCKS; block++)
+    thresholds[lanes_block(&t, &frame, block)] = threshold[block];
+  n_fragments[t.index] = lanes_sum(found);
+}
+
+/* The sums of a block, by CONIC_SUM_WEIGHT …; and whose fragment was the heaviest or nearest of this part. */
+typedef struct lanes_sums {
+  lanes values[CONIC_N_SUMS];
+  int16 taken; /* -1: none */
+} lanes_sums;
+
+static void lanes_blend(const conic_view *view, const conic_footprint *footprint, const conic_surface *surface,
+                        uint i_footprint, const lanes_fragment *fragment, int16 is_visible, lanes_sums *s) {
+  lanes weight = lanes_final_weight(view, footprint, fragment->q, fragment->scale);
+  weight = is_visible ? weight : 0.0f; /* what a finite colour makes of that adds nothing, not even a sign */
+  s->values[CONIC_SUM_WEIGHT] += weight;
+  for (int axis = 0; axis < 3; axis++) {
+    s->values[CONIC_SUM_COLOR + axis] += weight * surface->color[axis];
+    s->values[CONIC_SUM_NORMAL + axis] += weight * surface->normal[axis];
+  }
+  int16 is_heaviest = s->values[CONIC_SUM_HEAVIEST_WEIGHT] < weight;
+  s->values[CONIC_SUM_HEAVIEST_WEIGHT] = is_heaviest ? weight : s->values[CONIC_SUM_HEAVIEST_WEIGHT];
+  s->taken = is_heaviest ? (int16)(int)i_footprint : s->taken;
+}
+
+static void lanes_count(const conic_surface *surface, const lanes_fragment *fragment, int16 is_visible, lanes_sums *s) {
+  int16 is_nearest = is_visible & (s->values[CONIC_SUM_NEAREST_IZ] < fragment->iz);
+  s->values[CONIC_SUM_COUNT] = as_float16(as_int16(s->values[CONIC_SUM_COUNT]) - is_visible);
+  s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment->iz : s->values[CONIC_SUM_NEAREST_IZ];
+  s->values[CONIC_SUM_ID] =
+      as_float16(is_nearest ? (int16)(int)surface->index : as_int16(s->values[CONIC_SUM_ID]));
+}
+
+/* What of each pixel's heaviest splat the picture shows beside the sums. */
+static void lanes_keep_heaviest(__global const conic_footprint *footprints, __global const conic_surface *surfaces, int x,
+                                int y, lanes_sums *s) {
+  for (int lane = 0; lane < 16; lane++) {
+    int i_heaviest = ((const int *)&s->taken)[lane];
+    if (i_heaviest < 0)
+      continue;
+    conic_footprint footprint = footprints[i_heaviest];
+    gather_pixel p;
+    p.x = x + lane / 4;
+    p.y = y + lane % 4;
+    ((float *)&s->values[CONIC_SUM_Z])[lane] = gather_plane_z(&footprint, &p);
+    for (int axis = 0; axis < 3; axis++)
+      ((float *)&s->values[CONIC_SUM_HEAVIEST_NORMAL + axis])[lane] = surfaces[i_heaviest].normal[axis];
+  }
+}
+
+static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *t, __global const lanes *sums,
+                             lanes_sums *of_blocks) {
+  for (uint block = 0; block < N_TILE_BLOCKS; block++) {
+    __global const lanes *from = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
+    for (int i = 0; i < CONIC_N_SUMS; i++)
+      of_blocks[block].values[i] = frame->is_first ? (lanes)0.0f : from[i];
+    of_blocks[block].taken = -1;
+  }
+}
+
+/* --- pass 3 --- */
+
+/* A block's finished pixels. */
+typedef struct lanes_pixels {
+  lanes rgba[4], normal[3], albedo[3];
+} lanes_pixels;
+
+static lanes lanes_dot(const lanes a[3], const lanes b[3]) {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+static lanes lanes_at_least_zero(lanes x) {
+  return x > 0.0f ? x : 0.0f;
+}
+
+static lanes lanes_gloss(lanes x) {
+  for (int i = 0; i < 5; i++)
+    x *= x;
+  return x;
+}
+
+/* conic_shade */
+static void lanes_shade(const conic_device_frame *frame, const lanes albedo[3], const lanes normal[3],
+                        const lanes mean_normal[3], const lanes viewer[3], lanes shaded[3]) {
+  lanes light[3], glossy = 0.0f;
+  for (int i = 0; i < 3; i++)
+    shaded[i] = albedo[i];
+  if (frame->shading == CONIC_SHADE_NONE)
+    return;
+  for (int i = 0; i < 3; i++)
+    light[i] = frame->has_light ? (lanes)frame->light[i] : viewer[i];
+  lanes towards_light = lanes_dot(normal, light);
+  lanes lit = CONIC_AMBIENT + CONIC_DIFFUSE * lanes_at_least_zero(lanes_dot(mean_normal, light));
+  if (frame->shading == CONIC_SHADE_PHONG) {
+    lanes reflected[3];
+    for (int i = 0; i < 3; i++)
+      reflected[i] = 2.0f * towards_light * normal[i] - light[i];
+    glossy = CONIC_SPECULAR * lanes_gloss(lanes_at_least_zero(lanes_dot(reflected, viewer))) *
+             lanes_dot(mean_normal, mean_normal);
+    glossy = towards_light > 0.0f ? glossy : 0.0f;
+  }
+  for (int i = 0; i < 3; i++)
+    shaded[i] = albedo[i] * lit + glossy;
+}
+
+/* finish_covered and finish_uncovered; dx and dy are the pixels' directions. */
+static void lanes_finish_pixels(const conic_device_frame *frame, const lanes_sums *s, lanes dx, lanes dy,
+                                lanes_pixels *p) {
+  lanes weight = s->values[CONIC_SUM_WEIGHT], part = 1.0f / weight, mean[3], viewer[3], shaded[3];
+  int16 is_covered = weight > 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    p->albedo[axis] = s->values[CONIC_SUM_COLOR + axis] * part;
+    mean[axis] = s->values[CONIC_SUM_NORMAL + axis] * part;
+  }
+  lanes norm = sqrt((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]), scale = 1.0f / norm;
+  for (int axis = 0; axis < 3; axis++)
+    p->normal[axis] = norm > 0.0f ? mean[axis] * scale : s->values[CONIC_SUM_HEAVIEST_NORMAL + axis];
+  lanes towards = -1.0f / sqrt((dx * dx + dy * dy) + 1.0f);
+  for (int i = 0; i < 3; i++) {
+    const float *m = frame->world_from_cam[i];
+    viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * towards;
+  }
+  lanes_shade(frame, p->albedo, p->normal, mean, viewer, shaded);
+  for (int axis = 0; axis < 3; axis++) {
+    p->rgba[axis] = is_covered ? shaded[axis] * frame->exposure : frame->background[axis];
+    p->albedo[axis] = is_covered ? p->albedo[axis] : 0.0f;
+    p->normal[axis] = is_covered ? p->normal[axis] : 0.0f;
+  }
+  p->rgba[3] = is_covered ? 1.0f : frame->background[3];
+}
+
+/* A pixel's channels, side by side. */
+static void lanes_store_channels(const lanes *channels, int n_channels, int lane, __global float *plane, ulong at) {
+  for (int channel = 0; channel < n_channels; channel++)
+    plane[at * (ulong)n_channels + (ulong)channel] = ((const float *)&channels[channel])[lane];
+}
+
+/* Writes a block's pixels, as far as they are in the image; returns how many are covered. */
+static uint lanes_store_pixels(const conic_device_frame *frame, const lanes_sums *s, const lanes_pixels *p, int x, int y,
+                               PIXEL_PLANES) {
+  int planes = frame->planes;
+  uint covered = 0;
+  for (int lane = 0; lane < 16; lane++) {
+    int px = x + lane / 4, py = y + lane % 4;
+    if (px >= frame->width || py >= frame->height)
+      continue;
+    ulong at = (ulong)py * (ulong)frame->width + (ulong)px;
+    int is_covered = ((const float *)&s->values[CONIC_SUM_WEIGHT])[lane] > 0.0f;
+    covered += (uint)is_covered;
+    if (planes & 1 << CONIC_PLANE_RGBA)
+      lanes_store_channels(p->rgba, 4, lane, rgba, at);
+    if (planes & 1 << CONIC_PLANE_NORMAL)
+      lanes_store_channels(p->normal, 3, lane, normal_plane, at);
+    if (planes & 1 << CONIC_PLANE_ALBEDO)
+      lanes_store_channels(p->albedo, 3, lane, albedo_plane, at);
+    if (planes & 1 << CONIC_PLANE_WEIGHT)
+      lanes_store_channels(&s->values[CONIC_SUM_WEIGHT], 1, lane, weight_plane, at);
+    if (planes & 1 << CONIC_PLANE_Z)
+      z_plane[at] = is_covered ? ((const float *)&s->values[CONIC_SUM_Z])[lane] : 0.0f;
+    if (planes & 1 << CONIC_PLANE_COUNT)
+      count_plane[at] = is_covered ? ((const uint *)&s->values[CONIC_SUM_COUNT])[lane] : 0;
+    if (planes & 1 << CONIC_PLANE_ID)
+      id_plane[at] = is_covered ? ((const uint *)&s->values[CONIC_SUM_ID])[lane] : CONIC_NO_ID;
+  }
+  return covered;
+}
+
+static lanes lanes_of_columns(__global const float *columns, int x, int width) {
+  lanes result;
+  for (int lane = 0; lane < 16; lane++)
+    ((float *)&result)[lane] = columns[x + lane / 4 < width ? x + lane / 4 : width - 1];
+  return result;
+}
+
+static lanes lanes_of_rows(__global const float *rows, int y, int height) {
+  lanes result;
+  for (int lane = 0; lane < 16; lane++)
+    ((float *)&result)[lane] = rows[y + lane % 4 < height ? y + lane % 4 : height - 1];
+  return result;
+}
+
+/* Of a part of the splats: on with the sums, or the picture where it is the last. */
+static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, const lanes_sums *of_blocks,
+                         __global lanes *sums, PIXEL_PLANES) {
+  uint covered = 0;
+  for (uint block = 0; block < N_TILE_BLOCKS; block++) {
+    const lanes_sums *s = &of_blocks[block];
+    int x = t->x + 4 * (int)(block % 4), y = t->y + 4 * (int)(block / 4);
+    if (!frame->is_last || frame->keeps_sums) {
+      __global lanes *to = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
+      for (int i = 0; i < CONIC_N_SUMS; i++)
+        to[i] = s->values[i];
+    }
+    if (!frame->is_last || x >= frame->width || y >= frame->height)
+      continue;
+    lanes_pixels pixels;
+    lanes_finish_pixels(frame, s, lanes_of_columns(columns, x, frame->width), lanes_of_rows(rows, y, frame->height),
+                        &pixels);
+    covered += lanes_store_pixels(frame, s, &pixels, x, y, PIXEL_PLANES_PASSED);
+  }
+  n_covered[t->index] = covered;
+}
+
+/* Pass 2 and, with the last part of the splats, pass 3. */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lanes *sums, PIXEL_PLANES) {
+  conic_view view = *frame_view;
+  conic_device_frame frame = *frame_constants;
+  lanes_tile t = lanes_tile_of(&frame);
+  lanes threshold[N_TILE_BLOCKS];
+  lanes_sums of_blocks[N_TILE_BLOCKS];
+  int keeps_indices = (frame.planes & (1 << CONIC_PLANE_COUNT | 1 << CONIC_PLANE_ID)) != 0;
+  for (uint block = 0; block < N_TILE_BLOCKS; block++)
+    threshold[block] = thresholds[lanes_block(&t, &frame, block)];
+  lanes_begin_sums(&frame, &t, sums, of_blocks);
+  LANES_FOR_FRAGMENTS({
+    int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
+    if (any(is_visible)) {
+      conic_surface surface = surfaces[splat.index];
+      lanes_blend(&view, &splat.footprint, &surface, splat.index, &fragment, is_visible, &of_blocks[block]);
+      if (keeps_indices)
+        lanes_count(&surface, &fragment, is_visible, &of_blocks[block]);
+    }
+  })
+  for (uint block = 0; block < N_TILE_BLOCKS; block++)
+    lanes_keep_heaviest(footprints, surfaces, t.x + 4 * (int)(block % 4), t.y + 4 * (int)(block / 4),
+                        &of_blocks[block]);
+  lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
+}
+
+/* The nearest splats' own sums, in place of those of what was nearest in the parts before. */
+static void lanes_take_nearest(const conic_view *view, __global const conic_footprint *footprints,
+                               __global const conic_surface *surfaces, const lanes *q, const lanes *scale, int x, int y,
+                               lanes_sums *s) {
+  for (int lane = 0; lane < 16; lane++) {
+    int i_nearest = ((const int *)&s->taken)[lane], is_heaviest;
+    if (i_nearest < 0)
+      continue;
+    conic_footprint footprint = footprints[i_nearest];
+    conic_fragment nearest = {((const float *)q)[lane], 0.0f, 0.0f, ((const float *)scale)[lane]};
+    gather_sums one = {0};
+    gather_blend(view, &footprint, &surfaces[i_nearest], &nearest, &one, &is_heaviest);
+    ((float *)&s->values[CONIC_SUM_WEIGHT])[lane] = one.weight;
+    for (int axis = 0; axis < 3; axis++) {
+      ((float *)&s->values[CONIC_SUM_COLOR + axis])[lane] = one.color[axis];
+      ((float *)&s->values[CONIC_SUM_NORMAL + axis])[lane] = one.normal[axis];
+    }
+    ((float *)&s->values[CONIC_SUM_HEAVIEST_WEIGHT])[lane] = one.heaviest_weight;
+    ((uint *)&s->values[CONIC_SUM_COUNT])[lane] = 1;
+    ((uint *)&s->values[CONIC_SUM_ID])[lane] = surfaces[i_nearest].index;
+  }
+  lanes_keep_heaviest(footprints, surfaces, x, y, s);
+}
+
+/* In place of both where the nearest splat wins alone. */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+lanes_nearest(GATHER_RECORDS, __global uint *n_fragments, __global lanes *sums, PIXEL_PLANES) {
+  conic_view view = *frame_view;
+  conic_device_frame frame = *frame_constants;
+  lanes_tile t = lanes_tile_of(&frame);
+  lanes q[N_TILE_BLOCKS], scale[N_TILE_BLOCKS];
+  lanes_sums of_blocks[N_TILE_BLOCKS];
+  int16 found = 0;
+  lanes_begin_sums(&frame, &t, sums, of_blocks);
+  LANES_FOR_FRAGMENTS({
+    lanes_sums *s = &of_blocks[block];
+    int16 is_nearest = fragment.is_covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
+    s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment.iz : s->values[CONIC_SUM_NEAREST_IZ];
+    q[block] = is_nearest ? fragment.q : q[block];
+    scale[block] = is_nearest ? fragment.scale : scale[block];
+    s->taken = is_nearest ? (int16)(int)splat.index : s->taken;
+    found -= fragment.is_covered;
+  })
+  n_fragments[t.index] = lanes_sum(found);
+  for (uint block = 0; block < N_TILE_BLOCKS; block++)
+    lanes_take_nearest(&view, footprints, surfaces, &q[block], &scale[block], t.x + 4 * (int)(block % 4),
+                       t.y + 4 * (int)(block / 4), &of_blocks[block]);
+  lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
+}
