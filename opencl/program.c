@@ -8,8 +8,8 @@
 #include "core/message.h"
 #include "opencl/cache.h"
 
-static const char exact_options[] = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
-static const char inexact_options[] = "-cl-std=CL1.2";
+static const char exact_options[] = "-cl-std=CL1.2 -w -cl-fp32-correctly-rounded-divide-sqrt";
+static const char inexact_options[] = "-cl-std=CL1.2 -w";
 
 static const char *options_of(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
