@@ -1,6 +1,9 @@
 /* The raster a tile a work-item, a block's 16 pixels a vector: for CPUs. The same operations in the same order in every lane
  * as coverage.h, raster/resolve.c and raster/shade.c have; what does not concern a lane is masked by selection. */
 
+/* So many references ahead records are called for. */
+#define LANES_AHEAD 12
+
 #define N_TILE_BLOCKS 16 /* of a tile: 4 × 4 */
 
 typedef float16 lanes;
@@ -19,12 +22,12 @@ typedef struct lanes_row {
   lanes dy, q_offset, q_rest, iz_offset, plane_offset;
 } lanes_row;
 
-static lanes lanes_clamp_iz(const conic_footprint *footprint, lanes iz) {
+static lanes lanes_clamp_iz(__global const conic_footprint *footprint, lanes iz) {
   iz = iz > footprint->iz_far ? iz : footprint->iz_far;
   return iz < footprint->iz_near ? iz : footprint->iz_near;
 }
 
-static lanes_row lanes_row_begin(const conic_footprint *footprint, int y) {
+static lanes_row lanes_row_begin(__global const conic_footprint *footprint, int y) {
   lanes_row row;
   row.dy = (((float)y + LANE_ROWS) - footprint->y) + footprint->dy0;
   lanes minor = footprint->s3 * row.dy;
@@ -35,14 +38,14 @@ static lanes_row lanes_row_begin(const conic_footprint *footprint, int y) {
   return row;
 }
 
-static int16 lanes_clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+static int16 lanes_clip_keeps(__global const conic_clip_record *clip, lanes dx, lanes dy) {
   int16 first = (clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx >= 0.0f;
   int16 second = (clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx >= 0.0f;
   return clip->is_or ? first | second : first & second;
 }
 
 /* conic_ray_fragment */
-static void lanes_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray, lanes dx,
+static void lanes_ray_fragment(const conic_view *view, __global const conic_footprint *footprint, __global const conic_ray *ray, lanes dx,
                                lanes dy, lanes_fragment *fragment) {
   lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
   int16 is_covered = (iz > 0.0f) & (iz >= ray->iz_low) & (iz <= ray->iz_high) & (dx >= ray->dx_low) &
@@ -67,8 +70,8 @@ static void lanes_ray_fragment(const conic_view *view, const conic_footprint *fo
 }
 
 /* conic_fragment_at, for the block whose first pixel has column x. `clip` is only read where there are clip lines. */
-static void lanes_fragment_at(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
-                              const conic_clip_record *clip, const lanes_row *row, int x, lanes_fragment *fragment) {
+static void lanes_fragment_at(const conic_view *view, __global const conic_footprint *footprint, __global const conic_ray *ray,
+                              __global const conic_clip_record *clip, const lanes_row *row, int x, lanes_fragment *fragment) {
   lanes dx = (((float)x + LANE_COLUMNS) - footprint->x) + footprint->dx0;
   if (footprint->s3 == 0.0f) {
     lanes_ray_fragment(view, footprint, ray, dx, row->dy, fragment);
@@ -80,7 +83,7 @@ static void lanes_fragment_at(const conic_view *view, const conic_footprint *foo
     fragment->scale = 1.0f;
     fragment->is_covered = fragment->q < view->support;
   }
-  if (conic_is_clipped(footprint))
+  if (signbit(footprint->s3))
     fragment->is_covered &= lanes_clip_keeps(clip, dx, row->dy);
 }
 
@@ -88,7 +91,7 @@ static lanes lanes_seen_iz(const lanes_fragment *fragment) {
   return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
 }
 
-static lanes lanes_offset_iz(const conic_footprint *footprint, const lanes_fragment *fragment) {
+static lanes lanes_offset_iz(__global const conic_footprint *footprint, const lanes_fragment *fragment) {
   return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
 }
 
@@ -138,7 +141,7 @@ static lanes lanes_kernel_value(const conic_kernel *kernel, lanes q) {
 }
 
 /* conic_final_weight */
-static lanes lanes_final_weight(const conic_view *view, const conic_footprint *footprint, lanes q, lanes scale) {
+static lanes lanes_final_weight(const conic_view *view, __global const conic_footprint *footprint, lanes q, lanes scale) {
   lanes weight = (footprint->amplitude * scale) * lanes_kernel_value(&view->kernel, q);
   return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
 }
@@ -181,12 +184,12 @@ static uint lanes_sum(int16 ones) {
   return (uint)(c.x + c.y);
 }
 
-/* A reference's splat, with what of it is not in every one. */
+/* A reference's splat. */
 typedef struct lanes_splat {
   uint index;
-  conic_footprint footprint;
-  conic_ray ray;
-  conic_clip_record clip;
+  __global const conic_footprint *footprint;
+  __global const conic_ray *ray;          /* of a ray */
+  __global const conic_clip_record *clip; /* of one with clip lines */
   uint column_begin, column_last, row_begin, row_last; /* of the tile's blocks */
 } lanes_splat;
 
@@ -194,25 +197,31 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
                         __global const conic_ray *rays, __global const conic_clip_record *clips, lanes_splat *splat) {
   uint blocks = reference->blocks;
   splat->index = reference->footprint;
-  splat->footprint = footprints[splat->index];
+  splat->footprint = &footprints[splat->index];
+  splat->ray = splat->footprint->s3 == 0.0f ? &rays[splat->footprint->i_ray] : 0;
+  splat->clip = &clips[splat->index];
   splat->column_begin = blocks & 15;
   splat->column_last = blocks >> 4 & 15;
   splat->row_begin = blocks >> 8 & 15;
   splat->row_last = blocks >> 12;
-  if (splat->footprint.s3 == 0.0f)
-    splat->ray = rays[splat->footprint.i_ray];
-  if (conic_is_clipped(&splat->footprint))
-    splat->clip = clips[splat->index];
+}
+
+/* Whether any lane is -1. */
+static int lanes_any(int16 mask) {
+  int8 a = mask.lo | mask.hi;
+  int4 b = a.lo | a.hi;
+  long2 c = as_long2(b);
+  return (c.x | c.y) != 0;
 }
 
 /* Its fragments in block (column, row) of the tile; 0 where it covers none of its pixels. */
 static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const lanes_row *row,
                        uint column, uint i_row, lanes_fragment *fragment) {
   int x = t->x + 4 * (int)column;
-  lanes_fragment_at(view, &splat->footprint, &splat->ray, &splat->clip, row, x, fragment);
+  lanes_fragment_at(view, splat->footprint, splat->ray, splat->clip, row, x, fragment);
   if (t->is_at_border)
     fragment->is_covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);
-  return any(fragment->is_covered);
+  return lanes_any(fragment->is_covered);
 }
 
 /* Goes through the tile's splats in order and, of each, through the blocks that it covers. The body sees `splat`,
@@ -220,9 +229,10 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
 #define LANES_FOR_FRAGMENTS(body)                                                                                      \
   for (ulong i = tile_begin[t.index]; i < tile_begin[t.index + 1]; i++) {                                              \
     lanes_splat splat;                                                                                                 \
+    CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);                                             \
     lanes_fetch(&references[i], footprints, rays, clips, &splat);                                                      \
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
-      lanes_row row = lanes_row_begin(&splat.footprint, t.y + 4 * (int)i_row);                                         \
+      lanes_row row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);                                         \
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
         uint block = 4 * i_row + column;                                                                               \
         lanes_fragment fragment;                                                                                       \
@@ -245,7 +255,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_visibility(GA
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
   LANES_FOR_FRAGMENTS({
-    lanes offset_iz = lanes_offset_iz(&splat.footprint, &fragment);
+    lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
     threshold[block] = fragment.is_covered & (offset_iz > threshold[block]) ? offset_iz : threshold[block];
     found -= fragment.is_covered;
   })
@@ -260,7 +270,7 @@ typedef struct lanes_sums {
   int16 taken; /* -1: none */
 } lanes_sums;
 
-static void lanes_blend(const conic_view *view, const conic_footprint *footprint, const conic_surface *surface,
+static void lanes_blend(const conic_view *view, __global const conic_footprint *footprint, __global const conic_surface *surface,
                         uint i_footprint, const lanes_fragment *fragment, int16 is_visible, lanes_sums *s) {
   lanes weight = lanes_final_weight(view, footprint, fragment->q, fragment->scale);
   weight = is_visible ? weight : 0.0f; /* what a finite colour makes of that adds nothing, not even a sign */
@@ -274,7 +284,7 @@ static void lanes_blend(const conic_view *view, const conic_footprint *footprint
   s->taken = is_heaviest ? (int16)(int)i_footprint : s->taken;
 }
 
-static void lanes_count(const conic_surface *surface, const lanes_fragment *fragment, int16 is_visible, lanes_sums *s) {
+static void lanes_count(__global const conic_surface *surface, const lanes_fragment *fragment, int16 is_visible, lanes_sums *s) {
   int16 is_nearest = is_visible & (s->values[CONIC_SUM_NEAREST_IZ] < fragment->iz);
   s->values[CONIC_SUM_COUNT] = as_float16(as_int16(s->values[CONIC_SUM_COUNT]) - is_visible);
   s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment->iz : s->values[CONIC_SUM_NEAREST_IZ];
@@ -466,11 +476,11 @@ lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lane
   lanes_begin_sums(&frame, &t, sums, of_blocks);
   LANES_FOR_FRAGMENTS({
     int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
-    if (any(is_visible)) {
-      conic_surface surface = surfaces[splat.index];
-      lanes_blend(&view, &splat.footprint, &surface, splat.index, &fragment, is_visible, &of_blocks[block]);
+    if (lanes_any(is_visible)) {
+      __global const conic_surface *surface = &surfaces[splat.index];
+      lanes_blend(&view, splat.footprint, surface, splat.index, &fragment, is_visible, &of_blocks[block]);
       if (keeps_indices)
-        lanes_count(&surface, &fragment, is_visible, &of_blocks[block]);
+        lanes_count(surface, &fragment, is_visible, &of_blocks[block]);
     }
   })
   for (uint block = 0; block < N_TILE_BLOCKS; block++)

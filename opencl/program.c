@@ -15,6 +15,14 @@ static const char *options_of(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
 }
 
+/* What stands before the text: how memory is called for ahead of its use. It changes no value. PoCL leaves prefetch()
+ * without effect, but its compiler is clang. */
+static const char *prelude_of(const conic_opencl_device *device) {
+  return strstr(device->platform, "Portable Computing Language")
+             ? "#define CONIC_FETCH_AHEAD(pointer) __builtin_prefetch((const void *)(size_t)(pointer))\n"
+             : "#define CONIC_FETCH_AHEAD(pointer) prefetch((const __global float *)(pointer), 1)\n";
+}
+
 /* What a built program depends on. */
 static uint64_t hash_of(const conic_opencl_device *device, const conic_opencl_text *text) {
   const char *parts[] = {text->text,       options_of(device), device->name,
@@ -97,8 +105,8 @@ conic_status conic_opencl_build(conic_context *context, cl_context cl, cl_device
   *program = path[0] ? from_cache(context, cl, id, device, path) : NULL;
   if (*program)
     return CONIC_OK;
-  const char *source = text->text;
-  *program = clCreateProgramWithSource(cl, 1, &source, &text->n_bytes, &answer);
+  const char *sources[] = {prelude_of(device), text->text};
+  *program = clCreateProgramWithSource(cl, 2, sources, NULL, &answer);
   conic_status status = conic_opencl_check(context, answer, "clCreateProgramWithSource");
   if (status != CONIC_OK)
     return status;
