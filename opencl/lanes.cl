@@ -224,12 +224,21 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
   return lanes_any(fragment->is_covered);
 }
 
+/* What each pass reads of a splat. */
+#define LANES_CALL_FOOTPRINT(splat) CONIC_FETCH_AHEAD(&footprints[splat])
+#define LANES_CALL_BOTH(splat)                                                                                         \
+  {                                                                                                                    \
+    uint called = splat;                                                                                               \
+    CONIC_FETCH_AHEAD(&footprints[called]);                                                                            \
+    CONIC_FETCH_AHEAD(&surfaces[called]);                                                                              \
+  }
+
 /* Goes through the tile's splats in order and, of each, through the blocks that it covers. The body sees `splat`,
  * `fragment`, `block`, `column` and `i_row`. */
-#define LANES_FOR_FRAGMENTS(body)                                                                                      \
+#define LANES_FOR_FRAGMENTS(LANES_CALL, body)                                                                                  \
   for (ulong i = tile_begin[t.index]; i < tile_begin[t.index + 1]; i++) {                                              \
     lanes_splat splat;                                                                                                 \
-    CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);                                             \
+    LANES_CALL(references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint);                                                                 \
     lanes_fetch(&references[i], footprints, rays, clips, &splat);                                                      \
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
       lanes_row row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);                                         \
@@ -254,7 +263,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_visibility(GA
   int16 found = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
-  LANES_FOR_FRAGMENTS({
+  LANES_FOR_FRAGMENTS(LANES_CALL_FOOTPRINT, {
     lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
     threshold[block] = fragment.is_covered & (offset_iz > threshold[block]) ? offset_iz : threshold[block];
     found -= fragment.is_covered;
@@ -474,7 +483,7 @@ lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lane
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] = thresholds[lanes_block(&t, &frame, block)];
   lanes_begin_sums(&frame, &t, sums, of_blocks);
-  LANES_FOR_FRAGMENTS({
+  LANES_FOR_FRAGMENTS(LANES_CALL_BOTH, {
     int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
     if (lanes_any(is_visible)) {
       __global const conic_surface *surface = &surfaces[splat.index];
@@ -523,7 +532,7 @@ lanes_nearest(GATHER_RECORDS, __global uint *n_fragments, __global lanes *sums, 
   lanes_sums of_blocks[N_TILE_BLOCKS];
   int16 found = 0;
   lanes_begin_sums(&frame, &t, sums, of_blocks);
-  LANES_FOR_FRAGMENTS({
+  LANES_FOR_FRAGMENTS(LANES_CALL_FOOTPRINT, {
     lanes_sums *s = &of_blocks[block];
     int16 is_nearest = fragment.is_covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
     s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment.iz : s->values[CONIC_SUM_NEAREST_IZ];
