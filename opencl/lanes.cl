@@ -265,7 +265,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_visibility(GA
     threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
   LANES_FOR_FRAGMENTS(LANES_CALL_FOOTPRINT, {
     lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
-    threshold[block] = fragment.is_covered & (offset_iz > threshold[block]) ? offset_iz : threshold[block];
+    threshold[block] = (fragment.is_covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
     found -= fragment.is_covered;
   })
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
