@@ -22,11 +22,11 @@ static void project_item(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * f->splats_per_item, end = begin + f->splats_per_item;
   (void)i_thread;
   memset(chunk, 0, sizeof *chunk);
-  chunk->first = begin;
-  for (size_t i = begin; i < end && i < f->n; i++)
-    conic_project_one(f->view, f->splats, f->first + i, &h->projected, chunk);
+  chunk->first = chunk->first_ray = begin;
+  end = end < f->n ? end : f->n;
+  conic_project_range(f->view, f->splats, f->first + begin, f->first + end, &h->projected, chunk);
   if (h->projected.clips)
-    conic_clip_chunk(f->view, f->splats, i_item, &h->projected);
+    conic_clip_chunk(f->view, f->splats, f->first + begin, &h->projected, chunk);
   h->n_drawn[i_item] = (uint32_t)chunk->n_drawn;
 }
 

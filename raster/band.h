@@ -19,6 +19,27 @@
 #define CONIC_GREATEST_TILE 64
 #define CONIC_BAND_BLOCKS 16
 
+/* A place beside them, that loops may write to where a splat has no further block. */
+#define CONIC_NO_BLOCK CONIC_BAND_BLOCKS
+
+/* Which blocks of a tile a box meets: from the first to the last column (bits 0 … 7, 8 … 15), and of the rows r those
+ * of bits 16 + r. Never 0. */
+static inline uint32_t conic_word_of(uint32_t first, uint32_t last, uint32_t first_row, uint32_t last_row) {
+  return first | last << 8 | ((UINT32_C(2) << last_row) - (UINT32_C(1) << first_row)) << 16;
+}
+
+static inline uint32_t conic_word_first(uint32_t word) {
+  return word & 0xff;
+}
+
+static inline uint32_t conic_word_last(uint32_t word) {
+  return word >> 8 & 0xff;
+}
+
+static inline int conic_word_has(uint32_t word, uint32_t column) {
+  return column >= conic_word_first(word) && column <= conic_word_last(word);
+}
+
 /* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
 #define CONIC_KEPT_SPLATS 128
 
@@ -27,13 +48,12 @@ typedef struct conic_kept_fragments {
   float seen_iz[CONIC_BLOCK_PIXELS]; /* max of the splat's and its plane's; -1 where not covered */
 } conic_kept_fragments;
 
-/* What visibility found in a block, and blending reads. The last place is for what is not kept. */
+/* What visibility found in a block, and blending reads: whole cache lines. The last places are for what is not kept. */
 typedef struct conic_kept {
+  _Alignas(64) float threshold[CONIC_BLOCK_PIXELS]; /* max of s·min(iz, iz_plane) over what covers it, at least 0 */
+  uint32_t footprint[CONIC_KEPT_SPLATS + 16];
   conic_kept_fragments fragments[CONIC_KEPT_SPLATS + 1];
   float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of special ones: all but ellipses without clip lines */
-  uint32_t footprint[CONIC_KEPT_SPLATS + 1];
-  float amplitude[CONIC_KEPT_SPLATS + 1]; /* the footprint's */
-  float threshold[CONIC_BLOCK_PIXELS];    /* max of s·min(iz, iz_plane) over what covers the pixel, at least 0 */
 } conic_kept;
 
 /* The sums over a block's visible splats, 0 where there is none. Splats are named by their footprint. */
@@ -54,7 +74,7 @@ typedef struct conic_nearest_fragments {
 typedef struct conic_band {
   const conic_view *view;
   const conic_projected *projected;
-  const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order; bit c of the word: block c */
+  const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order */
   size_t n;
   int x, y, n_blocks;              /* its first pixel in the image */
   int keeps_indices;               /* the image wants counts or ids */
@@ -63,7 +83,7 @@ typedef struct conic_band {
   /* For each block: */
   size_t n_kept[CONIC_BAND_BLOCKS];   /* so many splats are in `kept`; */
   size_t not_kept[CONIC_BAND_BLOCKS]; /* the first of the band's that covers a pixel and is not, or n */
-  conic_kept *kept;
+  conic_kept *kept;                   /* CONIC_BAND_BLOCKS + 1 */
   conic_nearest_fragments *nearest;
   conic_block_sums *sums;
 } conic_band;

@@ -2,6 +2,9 @@
 
 #include <string.h>
 
+#include "raster/clip_lines.h"
+#include "raster/tile_kernels.h"
+
 /* The tiles that a box touches. */
 typedef struct tile_range {
   int x_begin, x_end, y_begin, y_end;
@@ -14,88 +17,158 @@ static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
   return range;
 }
 
-/* Most splats are in one tile. */
-static int is_single(const tile_range *range) {
-  return range->x_end - range->x_begin == 1 && range->y_end - range->y_begin == 1;
+/* The first and the last block of a tile, along one axis, that the pixels begin … end - 1 meet. */
+static uint32_t first_block(int begin, int tile_begin) {
+  return begin > tile_begin ? (uint32_t)(begin - tile_begin) / CONIC_BLOCK_EDGE : 0;
 }
 
-void conic_bins_count(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
-  const conic_chunk *chunk = &projected->chunks[i_chunk];
-  uint32_t *counts = bins->counts + i_chunk * bins->n_tiles;
-  memset(counts, 0, bins->n_tiles * sizeof *counts);
-  for (size_t i = 0; i < chunk->n_drawn; i++) {
-    tile_range range = tiles_of(bins, &projected->boxes[chunk->first + i]);
-    if (is_single(&range)) {
-      counts[range.y_begin * bins->n_tiles_x + range.x_begin]++;
+static uint32_t last_block(int end, int tile_begin, int tile) {
+  int last = end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1;
+  return (uint32_t)last / CONIC_BLOCK_EDGE;
+}
+
+/* The word of a box in the tile at (x, y). */
+static uint32_t word_in(const conic_bins *bins, const conic_box *box, int x, int y) {
+  int tile = bins->tile;
+  return conic_word_of(first_block(box->x_begin, x * tile), last_block(box->x_end, x * tile, tile),
+                       first_block(box->y_begin, y * tile), last_block(box->y_end, y * tile, tile));
+}
+
+static size_t rounded(size_t bytes) {
+  return (bytes + 63) / 64 * 64;
+}
+
+size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_clips) {
+  size_t n = chunk_size + CONIC_PROJECT_SLACK;
+  return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_surface)) + rounded(n * sizeof(conic_box)) +
+         3 * rounded(n * sizeof(uint32_t)) + 2 * rounded(bins->n_tiles * sizeof(uint32_t)) +
+         (has_clips ? rounded(chunk_size * sizeof(conic_clip_record)) : 0);
+}
+
+/* Takes so many bytes from what is left of the memory. */
+static void *take(char **memory, size_t bytes) {
+  void *taken = *memory;
+  *memory += rounded(bytes);
+  return taken;
+}
+
+void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips, conic_ray *rays, void *memory,
+                        conic_sorter *sorter) {
+  size_t n = chunk_size + CONIC_PROJECT_SLACK;
+  char *left = memory;
+  conic_projected *projected = &sorter->projected;
+  memset(sorter, 0, sizeof *sorter);
+  projected->n_chunks = 1;
+  projected->chunk_size = chunk_size;
+  projected->chunks = &sorter->chunk;
+  projected->rays = rays;
+  projected->footprints = take(&left, n * sizeof *projected->footprints);
+  projected->surfaces = take(&left, n * sizeof *projected->surfaces);
+  projected->boxes = take(&left, n * sizeof *projected->boxes);
+  sorter->tile = take(&left, n * sizeof(uint32_t));
+  sorter->word = take(&left, n * sizeof(uint32_t));
+  sorter->order = take(&left, n * sizeof(uint32_t));
+  sorter->next_record = take(&left, bins->n_tiles * sizeof(uint32_t));
+  sorter->next_entry = take(&left, bins->n_tiles * sizeof(uint32_t));
+  if (has_clips)
+    projected->clips = take(&left, chunk_size * sizeof *projected->clips);
+}
+
+/* Counts records by their tile, and the entries of other tiles. */
+static void count(const conic_bins *bins, conic_sorter *sorter) {
+  uint32_t *next_record = sorter->next_record, *next_entry = sorter->next_entry;
+  memset(next_record, 0, bins->n_tiles * sizeof *next_record);
+  memset(next_entry, 0, bins->n_tiles * sizeof *next_entry);
+  for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++) {
+    next_record[sorter->tile[i]]++;
+    if (__builtin_expect(sorter->word[i] != 0, 1))
       continue;
-    }
+    tile_range range = tiles_of(bins, &sorter->projected.boxes[i]);
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++)
-        counts[y * bins->n_tiles_x + x]++;
+        next_entry[y * bins->n_tiles_x + x] += x != range.x_begin || y != range.y_begin;
   }
 }
 
-size_t conic_bins_place(conic_bins *bins, const conic_projected *projected) {
-  size_t total = 0;
+/* Turns counts into places; returns how many entries there are. */
+static uint32_t place(const conic_bins *bins, conic_sorter *sorter, uint32_t *tile_begin) {
+  uint32_t n_records = 0, n_entries = 0;
   for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++) {
-    uint32_t in_tile = 0;
-    bins->tile_begin[i_tile] = total;
-    for (size_t i_chunk = 0; i_chunk < projected->n_chunks; i_chunk++) {
-      uint32_t *count = &bins->counts[i_chunk * bins->n_tiles + i_tile];
-      uint32_t of_chunk = *count;
-      *count = in_tile;
-      in_tile += of_chunk;
-    }
-    total += in_tile;
+    uint32_t records = sorter->next_record[i_tile], entries = records + sorter->next_entry[i_tile];
+    sorter->next_record[i_tile] = n_records;
+    sorter->next_entry[i_tile] = tile_begin[i_tile] = n_entries;
+    n_records += records;
+    n_entries += entries;
   }
-  bins->tile_begin[bins->n_tiles] = total;
-  return total;
+  tile_begin[bins->n_tiles] = n_entries;
+  return n_entries;
 }
 
-/* Bits first … last of 16: blocks of a tile. */
-static uint32_t bits(int first, int last) {
-  return (UINT32_C(2) << last) - (UINT32_C(1) << first);
+/* The entries of a record in more than one tile. */
+static void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record, uint32_t *next,
+                      conic_tile_entry *entries) {
+  tile_range range = tiles_of(bins, box);
+  for (int y = range.y_begin; y < range.y_end; y++)
+    for (int x = range.x_begin; x < range.x_end; x++) {
+      entries[next[y * bins->n_tiles_x + x]++] = (conic_tile_entry){i_record, word_in(bins, box, x, y)};
+    }
 }
 
-/* The blocks of a tile, along one axis, that the pixels begin … end - 1 meet. */
-static uint32_t blocks_met(int begin, int end, int tile_begin, int tile) {
-  int first = begin > tile_begin ? begin - tile_begin : 0;
-  int last = end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1;
-  return bits(first / 4, last / 4);
-}
-
-/* Appends a footprint to the list of tile (x, y). */
-static inline void refer(const conic_bins *bins, uint32_t *next, size_t i, int x, int y, uint32_t word) {
-  size_t i_tile = (size_t)y * (size_t)bins->n_tiles_x + (size_t)x;
-  bins->references[bins->tile_begin[i_tile] + next[i_tile]++] = (conic_tile_entry){(uint32_t)i, word};
-}
-
-/* The word of a box within one tile. */
-static inline uint32_t single_word(const conic_bins *bins, const conic_box *box) {
-  int in_tile = bins->tile - 1;
-  return bits((box->x_begin & in_tile) >> 2, ((box->x_end - 1) & in_tile) >> 2) |
-         bits((box->y_begin & in_tile) >> 2, ((box->y_end - 1) & in_tile) >> 2) << 16;
-}
-
-static void refer_to_all(const conic_bins *bins, uint32_t *next, const conic_box *box, size_t i,
-                         const tile_range *range) {
-  for (int y = range->y_begin; y < range->y_end; y++)
-    for (int x = range->x_begin; x < range->x_end; x++)
-      refer(bins, next, i, x, y,
-            blocks_met(box->x_begin, box->x_end, x * bins->tile, bins->tile) |
-                blocks_met(box->y_begin, box->y_end, y * bins->tile, bins->tile) << 16);
-}
-
-void conic_bins_fill(conic_bins *bins, const conic_projected *projected, size_t i_chunk) {
-  const conic_bins own = *bins; /* what is stored could be anything of theirs, as far as a compiler can tell */
-  const conic_chunk *chunk = &projected->chunks[i_chunk];
-  uint32_t *next = own.counts + i_chunk * own.n_tiles;
-  for (size_t i = chunk->first, end = chunk->first + chunk->n_drawn; i < end; i++) {
-    const conic_box *box = &projected->boxes[i];
-    tile_range range = tiles_of(&own, box);
-    if (is_single(&range))
-      refer(&own, next, i, range.x_begin, range.y_begin, single_word(&own, box));
+/* Finds each record's place, and makes the entries that refer to it. */
+static void enter(const conic_bins *bins, conic_sorter *sorter, size_t first, conic_tile_entry *entries) {
+  uint32_t *next_record = sorter->next_record, *next_entry = sorter->next_entry, *order = sorter->order;
+  const uint32_t *tile = sorter->tile, *word = sorter->word;
+  for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++) {
+    uint32_t at = next_record[tile[i]]++, i_record = (uint32_t)first + at;
+    order[at] = (uint32_t)i;
+    if (word[i])
+      entries[next_entry[tile[i]]++] = (conic_tile_entry){i_record, word[i]};
     else
-      refer_to_all(&own, next, box, i, &range);
+      enter_all(bins, &sorter->projected.boxes[i], i_record, next_entry, entries);
+  }
+}
+
+/* The clip lines of the records that are marked. */
+static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected *to) {
+  const conic_projected *from = &sorter->projected;
+  for (size_t at = 0; from->clips && at < sorter->chunk.n_drawn; at++)
+    if (conic_is_clipped(&from->footprints[sorter->order[at]]))
+      to->clips[first + at] = from->clips[sorter->order[at]];
+}
+
+void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
+                     conic_projected *projected) {
+  conic_chunk *chunk = &projected->chunks[i_chunk];
+  size_t first = chunk->first;
+  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, sorter->tile,
+                sorter->word);
+  count(bins, sorter);
+  size_t n_entries = place(bins, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
+  size_t begin = atomic_fetch_add(&bins->n_used, n_entries);
+  *chunk = sorter->chunk;
+  chunk->first = first;
+  bins->chunk_begin[i_chunk] = begin;
+  if (begin + n_entries > bins->n_room)
+    return;
+  enter(bins, sorter, first, bins->entries + begin);
+  kernels->move(&sorter->projected, sorter->order, chunk->n_drawn, &projected->footprints[first],
+                &projected->surfaces[first]);
+  copy_clips(sorter, first, projected);
+}
+
+size_t conic_bins_length(const conic_bins *bins, size_t i_tile) {
+  size_t length = 0;
+  for (size_t i = 0; i < bins->n_chunks; i++) {
+    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
+    length += begin[1] - begin[0];
+  }
+  return length;
+}
+
+void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries) {
+  for (size_t i = 0; i < bins->n_chunks; i++) {
+    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
+    memcpy(entries, bins->entries + bins->chunk_begin[i] + begin[0], (begin[1] - begin[0]) * sizeof *entries);
+    entries += begin[1] - begin[0];
   }
 }

@@ -68,9 +68,9 @@ static conic_clip_record project_clip(const conic_view *view, const conic_splats
   return record;
 }
 
-void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
-  const conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t i_clip = conic_clip_find(splats, chunk->first);
+void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t begin, conic_projected *projected,
+                      const conic_chunk *chunk) {
+  size_t i_clip = conic_clip_find(splats, begin);
   for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn && i_clip < splats->n_clips; i++) {
     while (i_clip < splats->n_clips && splats->clips[i_clip].splat < projected->surfaces[i].index)
       i_clip++;

@@ -28,7 +28,9 @@ static inline int conic_clip_keeps(const conic_clip_record *clip, float dx, floa
   return clip->is_or ? first | second : first & second;
 }
 
-/* Marks the drawn footprints of chunk i_chunk whose splats have clip lines, and fills in their records. */
-void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
+/* Marks the chunk's footprints whose splats have clip lines, and fills in their records. The splats are from `begin`
+ * on. */
+void conic_clip_chunk(const conic_view *view, const conic_splats *splats, size_t begin, conic_projected *projected,
+                      const conic_chunk *chunk);
 
 #endif

@@ -25,7 +25,7 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   (void)i_thread;
   conic_project_chunk(&c->view, c->splats, i_chunk, &c->projected);
   if (c->projected.clips)
-    conic_clip_chunk(&c->view, c->splats, i_chunk, &c->projected);
+    conic_clip_chunk(&c->view, c->splats, i_chunk * CHUNK, &c->projected, &c->projected.chunks[i_chunk]);
 }
 
 static conic_status project(conic_contributions *c) {

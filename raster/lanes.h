@@ -83,6 +83,10 @@ CONIC_INLINE unsigned lanes_bits(lanes_mask mask) {
   return mask;
 }
 
+CONIC_INLINE lanes_mask lanes_mask_of(unsigned bits) {
+  return (lanes_mask)bits;
+}
+
 CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
   return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 }
@@ -172,6 +176,13 @@ CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
 /* value + 1 where the mask holds. */
 CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
   return value - (index_lanes)mask;
+}
+
+CONIC_INLINE lanes_mask lanes_mask_of(unsigned bits) {
+  lanes_mask mask = {0};
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    mask[lane] = -(int32_t)(bits >> lane & 1);
+  return mask;
 }
 
 CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint32_t mask) {

@@ -8,6 +8,23 @@
 
 typedef float quad __attribute__((vector_size(16)));
 
+/* Copies half a cache line or a whole one, both so aligned, past the caches. */
+CONIC_INLINE void lanes_stream(void *to, const void *from, size_t bytes) {
+#if defined(__AVX512F__)
+  if (bytes == 64) {
+    _mm512_stream_si512(to, _mm512_load_si512(from));
+    return;
+  }
+#endif
+#if defined(__AVX2__)
+  for (size_t at = 0; at < bytes; at += 32)
+    _mm256_stream_si256((__m256i *)(void *)((char *)to + at),
+                        _mm256_load_si256((const __m256i *)(const void *)((const char *)from + at)));
+#else
+  conic_stream_copy(to, from, bytes);
+#endif
+}
+
 /* Column `column` of the part: its four rows. */
 CONIC_INLINE quad lanes_column(lanes value, int column) {
   quad rows;
@@ -65,22 +82,66 @@ CONIC_INLINE void lanes_store_plane(float *to, size_t stride, lanes value) {
   _mm_storeu_ps(to + 3 * stride, _mm512_extractf32x4_ps(rows, 3));
 }
 
-/* The records of four fields, or of a multiple of them: record l of lane l, those of `drawn` one after the other.
- * Others may be written where a drawn one follows. */
-CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
-  float records[CONIC_LANES][16];
-  for (size_t first = 0; first < n_fields; first += 4) {
-    __m512 rows[4];
-    lanes_pixels(fields + first, rows);
-    for (size_t row = 0; row < 4; row++) {
-      _mm_storeu_ps(records[row] + first, _mm512_castps512_ps128(rows[row]));
-      _mm_storeu_ps(records[4 + row] + first, _mm512_extractf32x4_ps(rows[row], 1));
-      _mm_storeu_ps(records[8 + row] + first, _mm512_extractf32x4_ps(rows[row], 2));
-      _mm_storeu_ps(records[12 + row] + first, _mm512_extractf32x4_ps(rows[row], 3));
-    }
+/* The first 16 fields of a record a lane: records[l] is that of lane l. */
+CONIC_INLINE void lanes_whole_records(const lanes *fields, __m512 records[16]) {
+  __m512 rows[4][4];
+  for (int quarter = 0; quarter < 4; quarter++)
+    lanes_pixels(fields + 4 * quarter, rows[quarter]);
+  for (int row = 0; row < 4; row++) {
+    __m512 low01 = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0x44);
+    __m512 high01 = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0xee);
+    __m512 low23 = _mm512_shuffle_f32x4(rows[2][row], rows[3][row], 0x44);
+    __m512 high23 = _mm512_shuffle_f32x4(rows[2][row], rows[3][row], 0xee);
+    records[row] = _mm512_shuffle_f32x4(low01, low23, 0x88);
+    records[4 + row] = _mm512_shuffle_f32x4(low01, low23, 0xdd);
+    records[8 + row] = _mm512_shuffle_f32x4(high01, high23, 0x88);
+    records[12 + row] = _mm512_shuffle_f32x4(high01, high23, 0xdd);
   }
-  for (; drawn; drawn &= drawn - 1, to += n_fields)
-    conic_stream_copy(to, records[__builtin_ctz(drawn)], n_fields * sizeof(float));
+}
+
+/* Records of 8 fields: records[l] is that of lane l. */
+CONIC_INLINE void lanes_half_records(const lanes *fields, __m256 records[16]) {
+  __m512 rows[2][4];
+  lanes_pixels(fields, rows[0]);
+  lanes_pixels(fields + 4, rows[1]);
+  for (int row = 0; row < 4; row++) {
+    __m512 low = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0x44);
+    __m512 high = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0xee);
+    low = _mm512_shuffle_f32x4(low, low, 0xd8);
+    high = _mm512_shuffle_f32x4(high, high, 0xd8);
+    records[row] = _mm512_castps512_ps256(low);
+    records[4 + row] = _mm512_extractf32x8_ps(low, 1);
+    records[8 + row] = _mm512_castps512_ps256(high);
+    records[12 + row] = _mm512_extractf32x8_ps(high, 1);
+  }
+}
+
+/* Records of 16 or 8 fields: record l of lane l, those of `drawn` one after the other; something may be written to the
+ * place behind the last of them. */
+CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
+  __m512 whole[16];
+  __m256 half[16];
+  if (n_fields == 16)
+    lanes_whole_records(fields, whole);
+  else
+    lanes_half_records(fields, half);
+  for (int lane = 0; lane < 16; lane++) {
+    if (n_fields == 16)
+      _mm512_storeu_ps(to, whole[lane]);
+    else
+      _mm256_storeu_ps(to, half[lane]);
+    to += (drawn >> lane & 1) * n_fields;
+  }
+}
+
+/* Pairs of the masked values, one after the other, and whatever follows up to CONIC_LANES pairs. */
+CONIC_INLINE void lanes_append_pairs(uint32_t *to, lanes_mask mask, index_lanes first, index_lanes second) {
+  const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i high = _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+  __m512i packed_first = _mm512_maskz_compress_epi32(mask, (__m512i)first);
+  __m512i packed_second = _mm512_maskz_compress_epi32(mask, (__m512i)second);
+  _mm512_storeu_si512(to, _mm512_permutex2var_epi32(packed_first, low, packed_second));
+  _mm512_storeu_si512(to + 16, _mm512_permutex2var_epi32(packed_first, high, packed_second));
 }
 
 #else
@@ -96,8 +157,19 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
       for (int row = 0; row < 4; row++)
         memcpy(records[column * 4 + row] + first, &rows[row], sizeof rows[row]);
     }
-  for (; drawn; drawn &= drawn - 1, to += n_fields)
-    conic_stream_copy(to, records[__builtin_ctz(drawn)], n_fields * sizeof(float));
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    memcpy(to, records[lane], n_fields * sizeof(float));
+    to += (drawn >> lane & 1) * n_fields;
+  }
+}
+
+CONIC_INLINE void lanes_append_pairs(uint32_t *to, lanes_mask mask, index_lanes first, index_lanes second) {
+  unsigned bits = lanes_bits(mask);
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    to[0] = first[lane];
+    to[1] = second[lane];
+    to += (bits >> lane & 1) * 2;
+  }
 }
 
 CONIC_INLINE void lanes_store_quads(float *to, size_t stride, const lanes *channels) {

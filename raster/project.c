@@ -333,7 +333,7 @@ static void set_surface(const splat_setup *s, const float normal[3]) {
     surface->color[axis] = splats->color[axis] ? splats->color[axis][s->i] : 1.0f;
   }
   surface->index = (uint32_t)s->i;
-  surface->unused = 0;
+  surface->amplitude = s->footprint->amplitude;
 }
 
 /* ε-offset along the ray, and the opacity. */
@@ -411,7 +411,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   s.footprint = &projected->footprints[chunk->first + chunk->n_drawn];
   s.box = &projected->boxes[chunk->first + chunk->n_drawn];
   s.surface = &projected->surfaces[chunk->first + chunk->n_drawn];
-  s.ray = &projected->rays[chunk->first + chunk->n_rays];
+  s.ray = &projected->rays[chunk->first_ray + chunk->n_rays];
   conic_outcome outcome = project_splat(&s);
   if (outcome == CONIC_CULLED) {
     chunk->n_culled++;
@@ -419,7 +419,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
     chunk->n_skipped++;
   } else {
     if (outcome == CONIC_DRAWN_RAY)
-      s.footprint->i_ray = (uint32_t)(chunk->first + chunk->n_rays++);
+      s.footprint->i_ray = (uint32_t)(chunk->first_ray + chunk->n_rays++);
     int is_own = outcome == CONIC_DRAWN_RAY ? conic_method_has_rays(view->method)
                                             : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
     chunk->n_fallback += !is_own;
@@ -427,18 +427,17 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   }
 }
 
-size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
-  conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t first = i_chunk * projected->chunk_size, end = first + projected->chunk_size;
-  memset(chunk, 0, sizeof *chunk);
-  chunk->first = first < splats->count ? first : splats->count;
-  return end < splats->count ? end : splats->count;
+void conic_project_range(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
+                         conic_projected *projected, conic_chunk *chunk) {
+  for (size_t i = begin; i < end; i++)
+    conic_project_one(view, splats, i, projected, chunk);
 }
 
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected) {
+  size_t n = splats->count, begin = i_chunk * projected->chunk_size, end = begin + projected->chunk_size;
+  begin = begin < n ? begin : n;
   conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t end = conic_chunk_begin(splats, i_chunk, projected);
-  for (size_t i = chunk->first; i < end; i++)
-    conic_project_one(view, splats, i, projected, chunk);
+  *chunk = (conic_chunk){.first = begin, .first_ray = begin};
+  conic_project_range(view, splats, begin, end < n ? end : n, projected, chunk);
 }

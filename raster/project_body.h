@@ -240,7 +240,7 @@ CONIC_INLINE lanes set_surfaces(const batch *from, size_t at, const lanes normal
     not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_COLOR), lanes_absolute(color)), lanes_of(1.0f));
   }
   r->surface[6] = (lanes)lanes_load_indices(from->index + at);
-  r->surface[7] = lanes_of(0.0f);
+  r->surface[7] = r->footprint[15];
   return not_finite;
 }
 
@@ -394,29 +394,22 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
   return verdict;
 }
 
-CONIC_INLINE void write_boxes(const group_screen *s, unsigned drawn, conic_box *boxes) {
-  uint32_t columns[CONIC_LANES], rows[CONIC_LANES];
-  lanes_store_indices(columns, (index_lanes)(s->begin[0] | s->end[0] << 16));
-  lanes_store_indices(rows, (index_lanes)(s->begin[1] | s->end[1] << 16));
-  for (int lane = 0; drawn >> lane; lane++) {
-    boxes->x_begin = (uint16_t)columns[lane];
-    boxes->x_end = (uint16_t)(columns[lane] >> 16);
-    boxes->y_begin = (uint16_t)rows[lane];
-    boxes->y_end = (uint16_t)(rows[lane] >> 16);
-    boxes += drawn >> lane & 1;
-  }
-}
-
 /* Appends the rays' records and lets their footprints point to them. */
 static __attribute__((noinline)) void write_rays(records *r, unsigned by_ray, conic_projected *projected,
                                                  conic_chunk *chunk) {
-  size_t at = chunk->first + chunk->n_rays;
+  float stored[CONIC_LANES + 1][16];
+  lanes fields[16] = {lanes_of(0.0f)};
+  size_t at = chunk->first_ray + chunk->n_rays;
   index_lanes i_ray = (index_lanes)r->footprint[4];
   for (int lane = 0; by_ray >> lane; lane++)
     if (by_ray >> lane & 1)
-      i_ray[lane] = (uint32_t)(chunk->first + chunk->n_rays++);
+      i_ray[lane] = (uint32_t)(chunk->first_ray + chunk->n_rays++);
   r->footprint[4] = (lanes)i_ray;
-  lanes_store_records(r->ray, 12, by_ray, (float *)(void *)&projected->rays[at]);
+  for (int field = 0; field < 12; field++)
+    fields[field] = r->ray[field];
+  lanes_store_records(fields, 16, (1u << CONIC_LANES) - 1, stored[0]);
+  for (; by_ray; by_ray &= by_ray - 1, at++)
+    memcpy(&projected->rays[at], stored[__builtin_ctz(by_ray)], sizeof *projected->rays);
 }
 
 /* Appends the drawn lanes' records. */
@@ -425,7 +418,8 @@ CONIC_INLINE void write_records(const group_screen *s, records *r, unsigned draw
   size_t at = chunk->first + chunk->n_drawn;
   if (__builtin_expect(lanes_any(s->by_ray), 0))
     write_rays(r, lanes_bits(s->by_ray) & drawn, projected, chunk);
-  write_boxes(s, drawn, &projected->boxes[at]);
+  lanes_append_pairs((uint32_t *)(void *)&projected->boxes[at], lanes_mask_of(drawn),
+                     (index_lanes)(s->begin[0] | s->end[0] << 16), (index_lanes)(s->begin[1] | s->end[1] << 16));
   lanes_store_records(r->footprint, 16, drawn, (float *)(void *)&projected->footprints[at]);
   lanes_store_records(r->surface, 8, drawn, (float *)(void *)&projected->surfaces[at]);
   chunk->n_drawn += (size_t)__builtin_popcount(drawn);
@@ -475,30 +469,53 @@ CONIC_INLINE void find_columns(const conic_splats *splats, size_t first, const f
   columns[OPACITY] = splats->opacity ? splats->opacity + first : NULL;
 }
 
-/* Which of the splats first … first + CONIC_LANES are culled because they face away or lie behind near. */
-CONIC_INLINE lanes_mask faces_away(const conic_view *view, const float *const columns[N_COLUMNS], size_t i) {
-  group_splats g;
-  lanes position[3], tu[3], tv[3];
+/* Which of the splats i … i + CONIC_LANES surely face away, by their plane and the eye in the world: cheaper than the
+ * camera's own decision, area > 0, which is p·(t_u × t_v) over p_z³, and which falls the same way for what is far
+ * enough from edge-on, from the eye, from 90° off the axis and from the ends of float's range. What is not sure stays.
+ */
+CONIC_INLINE lanes_mask surely_faces_away(const conic_view *view, const float *const columns[N_COLUMNS], size_t i) {
+  const float least_sine = 1e-3f, least_cosine = 1e-2f, least_size = 1e-15f, greatest_size = 1e6f;
+  lanes p[3], u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
-    position[axis] = lanes_load(columns[POSITION + axis] + i);
-    tu[axis] = lanes_load(columns[TANGENT_U + axis] + i);
-    tv[axis] = lanes_load(columns[TANGENT_V + axis] + i);
+    p[axis] = lanes_load(columns[POSITION + axis] + i) - view->eye[axis];
+    u[axis] = lanes_load(columns[TANGENT_U + axis] + i);
+    v[axis] = lanes_load(columns[TANGENT_V + axis] + i);
   }
-  look_at(view, position, tu, tv, &g);
-  return g.behind | (g.usual & lanes_less(lanes_of(0.0f), g.area));
+  lanes distance = lanes_absolute(p[0]) + lanes_absolute(p[1]) + lanes_absolute(p[2]);
+  lanes u_size = lanes_absolute(u[0]) + lanes_absolute(u[1]) + lanes_absolute(u[2]);
+  lanes v_size = lanes_absolute(v[0]) + lanes_absolute(v[1]) + lanes_absolute(v[2]);
+  lanes depth =
+      view->rotation_float[2][0] * p[0] + view->rotation_float[2][1] * p[1] + view->rotation_float[2][2] * p[2];
+  lanes along =
+      p[0] * (u[1] * v[2] - u[2] * v[1]) + p[1] * (u[2] * v[0] - u[0] * v[2]) + p[2] * (u[0] * v[1] - u[1] * v[0]);
+  lanes_mask sure = lanes_less(lanes_of(view->nearest_sure), distance) & lanes_less(distance, lanes_of(1e15f)) &
+                    lanes_less(least_cosine * distance, depth);
+  sure &= lanes_less(least_size * distance, lanes_min(u_size, v_size)) &
+          lanes_less(lanes_max(u_size, v_size), greatest_size * distance);
+  return sure & lanes_less(least_sine * (distance * (u_size * v_size)), along);
 }
 
-/* Packs those of the n splats from `first` on that do not face away; the spare lanes repeat the last. */
+/* Appends the kept lanes of each column. So many columns at a time are more than the hardware fetches ahead by itself.
+ */
+CONIC_INLINE void append_columns(const float *const columns[N_COLUMNS], size_t i, lanes_mask kept, batch *to,
+                                 size_t n_packed) {
+  enum { AHEAD = 256 };
+  for (int column = 0; column < N_COLUMNS; column++)
+    if (columns[column]) {
+      __builtin_prefetch(columns[column] + i + AHEAD);
+      lanes_append((uint32_t *)(void *)(to->columns[column] + n_packed), kept,
+                   (index_lanes)lanes_load(columns[column] + i));
+    }
+}
+
+/* Packs those of the n splats from `first` on that do not surely face away; the spare lanes repeat the last. */
 static void pack_batch(const conic_view *view, const conic_splats *splats, size_t first, size_t n, batch *to) {
   const float *columns[N_COLUMNS];
   size_t i = 0, n_packed = 0;
   find_columns(splats, first, columns);
   for (; view->cull_back && i + CONIC_LANES <= n; i += CONIC_LANES) {
-    lanes_mask kept = lanes_not(faces_away(view, columns, i));
-    for (int column = 0; column < N_COLUMNS; column++)
-      if (columns[column])
-        lanes_append((uint32_t *)(void *)(to->columns[column] + n_packed), kept,
-                     (index_lanes)lanes_load(columns[column] + i));
+    lanes_mask kept = lanes_not(surely_faces_away(view, columns, i));
+    append_columns(columns, i, kept, to, n_packed);
     n_packed += lanes_append(to->index + n_packed, kept, lanes_ascending((uint32_t)(first + i)));
   }
   for (int column = 0; column < N_COLUMNS; column++)
@@ -520,18 +537,16 @@ static void fill_with_ones(float *column) {
     column[i] = 1.0f;
 }
 
-static void project(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected) {
-  conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t end = conic_chunk_begin(splats, i_chunk, projected);
+static void project(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
+                    conic_projected *projected, conic_chunk *chunk) {
   batch packed;
   for (int column = COLOR; column < N_COLUMNS; column++)
     fill_with_ones(packed.columns[column]);
-  for (size_t first = chunk->first; first < end; first += BATCH) {
+  for (size_t first = begin; first < end; first += BATCH) {
     size_t n = end - first < BATCH ? end - first : BATCH;
     pack_batch(view, splats, first, n, &packed);
     chunk->n_culled += n - packed.n;
     for (size_t i = 0; i < packed.n; i += CONIC_LANES)
       project_group(view, splats, &packed, i, projected, chunk);
   }
-  conic_stream_fence();
 }

@@ -52,22 +52,25 @@ typedef struct conic_surface {
   float color[3];
   float normal[3]; /* world, unit, towards the viewer */
   uint32_t index;  /* in the splat set */
-  uint32_t unused; /* 0 */
+  float amplitude; /* the footprint's: blending need not read that */
 } conic_surface;
 
 /* A splat with more opacity, or a colour beyond this, is skipped: no sum of 2³² of them overflows. */
 #define CONIC_GREATEST_OPACITY 1e6f
 #define CONIC_GREATEST_COLOR 1e18f
 
+/* Set-up may write so many records past a chunk's last, to all arrays but rays and clips. */
+#define CONIC_PROJECT_SLACK 16
+
 /* A chunk of consecutive splats, projected and compacted. */
 typedef struct conic_chunk {
-  size_t first, n_drawn; /* its splats are at first … first + n_drawn in the arrays below */
-  size_t n_rays;         /* its rays likewise from rays[first] on */
+  size_t first, n_drawn;    /* its splats are at first … first + n_drawn in the arrays below */
+  size_t first_ray, n_rays; /* its rays likewise in rays */
   size_t n_culled, n_skipped, n_fallback;
 } conic_chunk;
 
-/* All splats of a frame in file order. The arrays have room for every splat of the set; only what is drawn is touched.
- */
+/* Projected splats, chunk by chunk, each in file order until raster/bins.h sorts it. The arrays have room for every
+ * splat of the chunks; only what is drawn is touched. */
 typedef struct conic_projected {
   size_t n_chunks, chunk_size;
   conic_chunk *chunks;
@@ -78,14 +81,16 @@ typedef struct conic_projected {
   struct conic_clip_record *clips; /* of the footprints that are marked; null where the set has no clip lines */
 } conic_projected;
 
-/* Empties chunk i_chunk and sets its `first`; returns the splat after its last. */
-size_t conic_chunk_begin(const conic_splats *splats, size_t i_chunk, conic_projected *projected);
-
 /* Projects splat i, the next of its chunk, and appends it to the chunk where it is drawn. */
 void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
                        conic_chunk *chunk);
 
-/* Projects the splats of chunk i_chunk: the plain C reference of the kernel table's `project`. */
+/* Projects the splats begin … end - 1 and appends them to the chunk: the plain C reference of the kernel table's
+ * `project`. */
+void conic_project_range(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
+                         conic_projected *projected, conic_chunk *chunk);
+
+/* Projects the whole of chunk i_chunk by conic_project_range, each splat with a place of its own in the arrays. */
 void conic_project_chunk(const conic_view *view, const conic_splats *splats, size_t i_chunk,
                          conic_projected *projected);
 

@@ -13,6 +13,7 @@
 #include "raster/bins.h"
 #include "raster/clip_lines.h"
 #include "raster/method.h"
+#include "raster/ticks.h"
 #include "raster/tile.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
@@ -21,15 +22,16 @@ typedef struct kept {
   size_t bytes;
 } kept;
 
-/* Ticks of a sample of the blocks: what shares the tiles' time out. */
-typedef struct tile_times {
-  uint64_t lists, visibility, accumulate, resolve;
-} tile_times;
+/* A thread's ticks: what shares the wall-clock out. */
+typedef struct stage_times {
+  uint64_t setup, sort, lists, visibility, accumulate, resolve;
+} stage_times;
 
 struct conic_renderer {
   conic_context *context;
   conic_backend *backend; /* null: the loops here */
-  kept footprints, boxes, surfaces, rays, chunks, counts, tile_begin, tile_counts, references, scratch, times, clips;
+  kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
+      times;
 };
 
 /* One frame on its way through the stages. */
@@ -42,9 +44,9 @@ typedef struct frame {
   conic_finish finish;
   const conic_tile_kernels *kernels;
   conic_image *image;
-  char *scratch; /* of tiles, a thread */
-  size_t scratch_bytes;
-  tile_times *times;                 /* a thread */
+  char *sorters, *scratch; /* of chunks and of tiles, a thread */
+  size_t sorter_bytes, scratch_bytes;
+  stage_times *times;                /* a thread */
   uint64_t *n_fragments, *n_covered; /* a tile */
   atomic_size_t n_tiles_done;
   atomic_int is_cancelled;
@@ -81,9 +83,9 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
-  kept *all[] = {&renderer->footprints, &renderer->boxes,   &renderer->surfaces,   &renderer->rays,
-                 &renderer->chunks,     &renderer->counts,  &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->references, &renderer->scratch, &renderer->times,      &renderer->clips};
+  kept *all[] = {&renderer->footprints, &renderer->surfaces,    &renderer->rays,       &renderer->clips,
+                 &renderer->chunks,     &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts,
+                 &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   if (renderer->backend)
@@ -107,34 +109,48 @@ static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t s
   return memory->pointer;
 }
 
-/* Chunks of splats are what set-up and binning share out: enough of them for balance, few enough for their histograms.
- */
-static conic_status plan_chunks(frame *f) {
+/* Chunks of splats are what set-up and binning share out: enough of them for balance, small enough for their records to
+ * stay in a core's cache until they are sorted, few enough for their tables. */
+static void choose_chunks(frame *f) {
+  enum { LEAST = 2048, GREATEST = 8192 };
+  size_t n = f->splats->count, size = n / (8 * (size_t)conic_context_threads(f->renderer->context)) + 1;
+  size = size < LEAST ? LEAST : size > GREATEST ? GREATEST : size;
+  while ((n / size + 1) * f->bins.n_tiles > ((size_t)1 << 22) && size < n)
+    size *= 2;
+  f->projected.chunk_size = size;
+  f->projected.n_chunks = f->bins.n_chunks = n / size + (n % size > 0);
+}
+
+static conic_status plan_records(frame *f) {
+  choose_chunks(f);
   conic_renderer *renderer = f->renderer;
   conic_projected *projected = &f->projected;
-  conic_bins *bins = &f->bins;
-  size_t n = f->splats->count, n_chunks = 8 * (size_t)conic_context_threads(renderer->context);
-  if (n_chunks > n / 2048 + 1)
-    n_chunks = n / 2048 + 1;
-  while (n_chunks > 1 && n_chunks * bins->n_tiles > ((size_t)1 << 22))
-    n_chunks /= 2;
-  projected->n_chunks = n_chunks;
-  projected->chunk_size = (n + n_chunks - 1) / n_chunks;
-  projected->chunks = room(renderer, &renderer->chunks, n_chunks, sizeof *projected->chunks);
+  size_t n = f->splats->count;
+  projected->chunks = room(renderer, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
   projected->footprints = room(renderer, &renderer->footprints, n, sizeof *projected->footprints);
-  projected->boxes = room(renderer, &renderer->boxes, n, sizeof *projected->boxes);
   projected->surfaces = room(renderer, &renderer->surfaces, n, sizeof *projected->surfaces);
   projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
-  bins->counts = room(renderer, &renderer->counts, n_chunks * bins->n_tiles, sizeof *bins->counts);
-  f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
-  bins->tile_begin = room(renderer, &renderer->tile_begin, bins->n_tiles + 1, sizeof *bins->tile_begin);
-  if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays ||
-      !bins->counts || !bins->tile_begin || !f->n_fragments)
+  if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
   projected->clips = NULL;
   if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
     projected->clips = room(renderer, &renderer->clips, n, sizeof *projected->clips);
-  if (f->splats->n_clips && n && !projected->clips)
+  return f->splats->n_clips && n && !projected->clips ? CONIC_ERROR_MEMORY : CONIC_OK;
+}
+
+static conic_status plan_bins(frame *f) {
+  conic_renderer *renderer = f->renderer;
+  conic_bins *bins = &f->bins;
+  size_t n = f->splats->count, n_threads = (size_t)conic_context_threads(renderer->context);
+  f->sorter_bytes = conic_sorter_bytes(bins, f->projected.chunk_size, f->splats->n_clips > 0);
+  f->sorters = room(renderer, &renderer->sorters, n_threads, f->sorter_bytes);
+  bins->chunk_begin = room(renderer, &renderer->chunk_begin, bins->n_chunks, sizeof *bins->chunk_begin);
+  bins->tile_begin =
+      room(renderer, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
+  bins->entries = room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
+  bins->n_room = renderer->entries.bytes / sizeof *bins->entries;
+  f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
+  if (!f->sorters || !bins->chunk_begin || !bins->tile_begin || !bins->entries || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
   f->n_covered = f->n_fragments + bins->n_tiles;
   return CONIC_OK;
@@ -157,36 +173,33 @@ static conic_status plan_tiles(frame *f, int tile) {
 
 static void project_task(void *data, size_t i_chunk, int i_thread) {
   frame *f = data;
-  (void)i_thread;
-  f->kernels->project(&f->view, f->splats, i_chunk, &f->projected);
-  if (f->projected.clips)
-    conic_clip_chunk(&f->view, f->splats, i_chunk, &f->projected);
-}
-
-static void count_task(void *data, size_t i_chunk, int i_thread) {
-  frame *f = data;
-  (void)i_thread;
-  conic_bins_count(&f->bins, &f->projected, i_chunk);
-}
-
-static void fill_task(void *data, size_t i_chunk, int i_thread) {
-  frame *f = data;
-  (void)i_thread;
-  conic_bins_fill(&f->bins, &f->projected, i_chunk);
+  conic_sorter sorter;
+  size_t n = f->splats->count, begin = i_chunk * f->projected.chunk_size, end = begin + f->projected.chunk_size;
+  uint64_t start = conic_ticks();
+  conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
+                     f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
+  sorter.chunk.first_ray = f->projected.chunks[i_chunk].first = begin;
+  f->kernels->project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
+  if (sorter.projected.clips)
+    conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
+  uint64_t projected = conic_ticks();
+  conic_bins_sort(&f->bins, f->kernels, &sorter, i_chunk, &f->projected);
+  f->times[i_thread].setup += projected - start;
+  f->times[i_thread].sort += conic_ticks() - projected;
 }
 
 static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *tile) {
   const conic_bins *bins = &f->bins;
   tile->view = &f->view;
   tile->projected = &f->projected;
-  tile->references = bins->references + bins->tile_begin[i_tile];
-  tile->n_references = bins->tile_begin[i_tile + 1] - bins->tile_begin[i_tile];
+  tile->n_references = conic_bins_length(bins, i_tile);
   tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
   tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
+  conic_bins_gather(bins, i_tile, tile->scratch.entries);
 }
 
 /* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
@@ -204,7 +217,9 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
     report_progress(f);
   conic_tile tile;
   conic_tile_report report;
+  uint64_t start = conic_ticks();
   begin_tile(f, i_tile, i_thread, &tile);
+  f->times[i_thread].lists += conic_ticks() - start;
   conic_tile_draw(&tile, f->kernels, &f->finish, f->image, &report);
   f->times[i_thread].lists += report.lists;
   f->times[i_thread].visibility += report.visibility;
@@ -218,40 +233,52 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
 static size_t longest_list(const conic_bins *bins) {
   size_t longest = 0;
   for (size_t i = 0; i < bins->n_tiles; i++) {
-    size_t n = bins->tile_begin[i + 1] - bins->tile_begin[i];
+    size_t n = conic_bins_length(bins, i);
     longest = n > longest ? n : longest;
   }
   return longest;
 }
 
-static conic_status bin(frame *f) {
-  conic_context *context = f->renderer->context;
-  conic_parallel_for(context, f->projected.n_chunks, count_task, f);
-  size_t n_references = conic_bins_place(&f->bins, &f->projected);
-  f->bins.references = room(f->renderer, &f->renderer->references, n_references, sizeof *f->bins.references);
-  f->scratch_bytes = conic_tile_bytes(longest_list(&f->bins));
-  f->scratch = room(f->renderer, &f->renderer->scratch, (size_t)conic_context_threads(context), f->scratch_bytes);
-  if (!f->bins.references || !f->scratch)
-    return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, f->projected.n_chunks, fill_task, f);
-  return CONIC_OK;
+/* Sets the splats up and sorts them. How many entries that makes is known afterwards: where they had no room, again. */
+static conic_status project_and_sort(frame *f) {
+  conic_renderer *renderer = f->renderer;
+  conic_bins *bins = &f->bins;
+  for (;;) {
+    atomic_store(&bins->n_used, 0);
+    conic_parallel_for(renderer->context, f->projected.n_chunks, project_task, f);
+    size_t n_used = atomic_load(&bins->n_used);
+    if (n_used <= bins->n_room)
+      break;
+    bins->entries = room(renderer, &renderer->entries, n_used, sizeof *bins->entries);
+    bins->n_room = n_used;
+    if (!bins->entries)
+      return CONIC_ERROR_MEMORY;
+  }
+  f->scratch_bytes = conic_tile_bytes(longest_list(bins));
+  f->scratch = room(renderer, &renderer->scratch, (size_t)conic_context_threads(renderer->context), f->scratch_bytes);
+  return f->scratch ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-/* Wall-clock of the tiles, shared out by what their stages took on all threads. */
-static void share_out(const frame *f, double tiles_ms, conic_render_milliseconds *ms) {
-  tile_times sum = {0, 0, 0, 0};
+/* The wall-clock of set-up and sorting, and that of the tiles, shared out by what their stages took on all threads. */
+static void share_out(const frame *f, double chunks_ms, double tiles_ms, conic_render_milliseconds *ms) {
+  stage_times sum = {0, 0, 0, 0, 0, 0};
   for (int i = 0; i < conic_context_threads(f->renderer->context); i++) {
+    sum.setup += f->times[i].setup;
+    sum.sort += f->times[i].sort;
     sum.lists += f->times[i].lists;
     sum.visibility += f->times[i].visibility;
     sum.accumulate += f->times[i].accumulate;
     sum.resolve += f->times[i].resolve;
   }
-  double all = (double)(sum.lists + sum.visibility + sum.accumulate + sum.resolve);
-  double scale = all > 0.0 ? tiles_ms / all : 0.0;
-  ms->bin += (double)sum.lists * scale;
-  ms->visibility = (double)sum.visibility * scale;
-  ms->accumulate = (double)sum.accumulate * scale;
-  ms->resolve = (double)sum.resolve * scale;
+  double of_chunks = (double)(sum.setup + sum.sort);
+  double of_tiles = (double)(sum.lists + sum.visibility + sum.accumulate + sum.resolve);
+  double chunks_scale = of_chunks > 0.0 ? chunks_ms / of_chunks : 0.0;
+  double tiles_scale = of_tiles > 0.0 ? tiles_ms / of_tiles : 0.0;
+  ms->setup = (double)sum.setup * chunks_scale;
+  ms->bin = (double)sum.sort * chunks_scale + (double)sum.lists * tiles_scale;
+  ms->visibility = (double)sum.visibility * tiles_scale;
+  ms->accumulate = (double)sum.accumulate * tiles_scale;
+  ms->resolve = (double)sum.resolve * tiles_scale;
 }
 
 static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
@@ -325,17 +352,13 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
 static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = seconds_now();
-  conic_parallel_for(context, f->projected.n_chunks, project_task, f);
-  double projected = seconds_now();
-  conic_status status = bin(f);
+  conic_status status = project_and_sort(f);
   if (status != CONIC_OK)
     return status;
-  double binned = seconds_now();
+  double sorted = seconds_now();
   conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
   double done = seconds_now();
-  ms->setup = 1e3 * (projected - start);
-  ms->bin = 1e3 * (binned - projected);
-  share_out(f, 1e3 * (done - binned), ms);
+  share_out(f, 1e3 * (sorted - start), 1e3 * (done - sorted), ms);
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
 }
 
@@ -343,7 +366,9 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
 static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
   conic_status status = plan_tiles(f, options->tile);
   if (status == CONIC_OK)
-    status = plan_chunks(f);
+    status = plan_records(f);
+  if (status == CONIC_OK)
+    status = plan_bins(f);
   if (status == CONIC_OK)
     status = draw(f, &statistics->ms);
   if (status == CONIC_OK)

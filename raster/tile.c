@@ -10,8 +10,9 @@ static size_t padded(size_t n) {
 }
 
 size_t conic_tile_bytes(size_t n_references) {
-  return CONIC_BAND_BLOCKS * (sizeof(conic_kept) + sizeof(conic_nearest_fragments) + sizeof(conic_block_sums)) +
-         2 * padded(n_references) * sizeof(uint32_t);
+  return CONIC_BAND_BLOCKS * (sizeof(conic_nearest_fragments) + sizeof(conic_block_sums)) +
+         (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
+         padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
 }
 
 void conic_tile_place_scratch(conic_tile *tile, void *memory) {
@@ -20,14 +21,15 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   scratch->nearest = memory;
   scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS);
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
-  scratch->indices = (uint32_t *)(scratch->kept + CONIC_BAND_BLOCKS);
+  scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
+  scratch->indices = (uint32_t *)(scratch->entries + n);
   scratch->words = scratch->indices + n;
 }
 
 /* The splats that meet row i_row of the tile's blocks. */
 static void select_band(const conic_tile *tile, const conic_tile_kernels *kernels, int i_row, conic_band *band) {
-  band->n = kernels->select(tile->references, tile->n_references, UINT32_C(0x10000) << i_row, tile->scratch.indices,
-                            tile->scratch.words);
+  band->n = kernels->select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
+                            tile->scratch.indices, tile->scratch.words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 

@@ -6,6 +6,7 @@
 
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
+  conic_tile_entry *entries; /* the tile's, in file order */
   uint32_t *indices, *words; /* of a row of blocks */
   conic_kept *kept;
   conic_nearest_fragments *nearest;
@@ -15,7 +16,6 @@ typedef struct conic_tile_scratch {
 typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
-  const conic_tile_entry *references;
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */
@@ -34,7 +34,7 @@ size_t conic_tile_bytes(size_t n_references);
 /* Points the tile's scratch into `memory`, of conic_tile_bytes(tile->n_references) at least. */
 void conic_tile_place_scratch(conic_tile *tile, void *memory);
 
-/* Draws the tile into the image. */
+/* Draws the tile, whose entries are in its scratch, into the image. */
 void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
                      conic_image *image, conic_tile_report *report);
 

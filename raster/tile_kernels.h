@@ -14,8 +14,14 @@
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
-  /* Set-up: the splats of a chunk, compacted, in order. */
-  void (*project)(const conic_view *view, const conic_splats *splats, size_t i_chunk, conic_projected *projected);
+  /* Set-up: appends the splats begin … end - 1 to the chunk, compacted, in order. */
+  void (*project)(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
+                  conic_projected *projected, conic_chunk *chunk);
+  /* conic_key_of every box. */
+  void (*keys)(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words);
+  /* Copies records: that of place i is order[i]. */
+  void (*move)(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
+               conic_surface *surfaces);
   /* The references whose word has a bit of the mask, in order: footprints and words apart. Returns how many. */
   size_t (*select)(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints, uint32_t *words);
   /* Pass 1: the band's kept fragments and thresholds, n_kept, not_kept, n_fragments. */

@@ -14,21 +14,54 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
-/* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. */
+/* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
+ * outside the image: what is compared with it is not covered. */
 typedef struct sites {
-  lanes x[CONIC_BAND_BLOCKS * CONIC_PARTS], y;
-  lanes_mask inside[CONIC_BAND_BLOCKS * CONIC_PARTS]; /* the image */
+  lanes x[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS], y;
 } sites;
 
+CONIC_INLINE lanes nan_beyond(int_lanes pixels, int size) {
+  lanes_mask inside = lanes_less_int(pixels, lanes_of_int(size));
+  return lanes_select(inside, __builtin_convertvector(pixels, lanes), lanes_of(__builtin_nanf("")));
+}
+
 CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
-  int_lanes rows = lanes_rows() + band->y;
-  s->y = __builtin_convertvector(rows, lanes);
-  for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++) {
-    int_lanes columns = lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE));
-    s->x[part] = __builtin_convertvector(columns, lanes);
-    s->inside[part] = lanes_less_int(columns, lanes_of_int(band->view->width)) &
-                      lanes_less_int(rows, lanes_of_int(band->view->height));
+  s->y = nan_beyond(lanes_rows() + band->y, band->view->height);
+  for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++)
+    s->x[part] = nan_beyond(lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE)), band->view->width);
+  for (int part = 0; part < CONIC_PARTS; part++)
+    s->x[CONIC_NO_BLOCK * CONIC_PARTS + part] = lanes_of(__builtin_nanf(""));
+}
+
+/* conic_key_of. */
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words) {
+  const uint32_t in_tile = (1u << tile_bits) - 1;
+  size_t i = 0;
+  for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
+    index_lanes columns, rows;
+    lanes_load_pairs((const uint32_t *)(const void *)&boxes[i], &columns, &rows);
+    index_lanes x_begin = columns & 0xffff, x_last = (columns >> 16) - 1;
+    index_lanes y_begin = rows & 0xffff, y_last = (rows >> 16) - 1;
+    index_lanes other_tile = ((x_begin ^ x_last) | (y_begin ^ y_last)) >> tile_bits;
+    index_lanes met =
+        (lanes_of_index(2) << ((y_last & in_tile) >> 2)) - (lanes_of_index(1) << ((y_begin & in_tile) >> 2));
+    index_lanes word = (x_begin & in_tile) >> 2 | (x_last & in_tile) >> 2 << 8 | met << 16;
+    lanes_mask is_single = lanes_less_int((int_lanes)other_tile, lanes_of_int(1));
+    lanes_store_indices(tiles + i, (y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits));
+    lanes_store_indices(words + i, lanes_select_indices(is_single, word, lanes_of_index(0)));
   }
+  for (; i < n; i++)
+    conic_key_of(&boxes[i], tile_bits, n_tiles_x, &tiles[i], &words[i]);
+}
+
+/* Past the caches: a frame's records are more than they hold. */
+static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
+                 conic_surface *surfaces) {
+  for (size_t i = 0; i < n; i++) {
+    lanes_stream(&footprints[i], &from->footprints[order[i]], sizeof *footprints);
+    lanes_stream(&surfaces[i], &from->surfaces[order[i]], sizeof *surfaces);
+  }
+  conic_stream_fence();
 }
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
@@ -49,31 +82,38 @@ static size_t select_references(const conic_tile_entry *references, size_t n, ui
   return n_selected;
 }
 
-/* What of a splat's evaluation does not depend on the column. */
-typedef struct rows_of_splat {
+/* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
+ * every block would be most of what the loops read. */
+typedef struct splat_rows {
   lanes dy, q_offset, q_rest, iz_offset, plane_offset;
-} rows_of_splat;
+  lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
+} splat_rows;
 
-CONIC_INLINE rows_of_splat begin_rows(const conic_footprint *footprint, lanes y) {
-  rows_of_splat rows;
+CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
+  splat_rows rows;
   rows.dy = (y - footprint->y) + footprint->dy0;
   lanes minor = footprint->s3 * rows.dy;
   rows.q_offset = footprint->s2 * rows.dy;
   rows.q_rest = minor * minor;
   rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
   rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
+  rows.x = lanes_of(footprint->x);
+  rows.dx0 = lanes_of(footprint->dx0);
+  rows.s1 = lanes_of(footprint->s1);
+  rows.iz_dx = lanes_of(footprint->iz_dx);
+  rows.plane_dx = lanes_of(footprint->plane_dx);
+  rows.iz_far = lanes_of(footprint->iz_far);
+  rows.iz_near = lanes_of(footprint->iz_near);
   return rows;
 }
 
 /* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
-CONIC_INLINE void ellipse_fragments(const conic_footprint *footprint, const rows_of_splat *rows, float support,
-                                    lanes dx, fragments *f) {
-  lanes major = footprint->s1 * dx + rows->q_offset;
+CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes dx, fragments *f) {
+  lanes major = rows->s1 * dx + rows->q_offset;
   f->q = major * major + rows->q_rest;
   f->covered = lanes_less(f->q, lanes_of(support));
-  lanes iz = lanes_max(rows->iz_offset + footprint->iz_dx * dx, lanes_of(footprint->iz_far));
-  f->iz = lanes_min(iz, lanes_of(footprint->iz_near));
-  f->plane_iz = rows->plane_offset + footprint->plane_dx * dx;
+  f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
+  f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
   f->scale = lanes_of(1.0f);
 }
 
@@ -133,21 +173,20 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
 }
 
 /* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. */
-CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const rows_of_splat *rows, lanes x,
-                           lanes_mask inside, int is_special, fragments *f) {
-  lanes dx = (x - footprint->x) + footprint->dx0;
+CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
+                           int is_special, fragments *f) {
+  lanes dx = (x - rows->x) + rows->dx0;
   if (is_special && footprint->s3 == 0.0f)
     ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
   else
-    ellipse_fragments(footprint, rows, from->support, dx, f);
+    ellipse_fragments(rows, from->support, dx, f);
   if (is_special && conic_is_clipped(footprint))
     f->covered &= clip_keeps(&from->clips[footprint - from->footprints], dx, rows->dy);
-  f->covered &= inside;
 }
 
 /* What the splat after the next few is read from, in this pass and the next. */
 CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
-  enum { AHEAD = 16 };
+  enum { AHEAD = 32 };
   uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
   __builtin_prefetch(&from->footprints[later]);
   __builtin_prefetch(&from->surfaces[later]);
@@ -160,10 +199,10 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
   }
 }
 
-/* Raises a part's thresholds and writes its fragments to the place; returns which are covered. */
-CONIC_INLINE unsigned pass_part(const conic_footprint *footprint, const fragments *f, conic_kept *kept, size_t place,
-                                size_t at, int is_special) {
-  lanes offset_iz = lanes_keep(f->covered, footprint->nearness * lanes_min(f->plane_iz, f->iz));
+/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
+CONIC_INLINE unsigned pass_part(lanes nearness, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                                int is_special) {
+  lanes offset_iz = lanes_keep(f->covered, nearness * lanes_min(f->plane_iz, f->iz));
   lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
   lanes_store(kept->fragments[place].q + at, f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
@@ -173,56 +212,76 @@ CONIC_INLINE unsigned pass_part(const conic_footprint *footprint, const fragment
   return lanes_count(f->covered);
 }
 
-/* One splat in the blocks that its word names; returns how many pixels it covers. */
-CONIC_INLINE unsigned pass_splat(conic_band *band, const sources *from, const sites *s, size_t i, size_t room,
-                                 int is_special) {
-  const conic_footprint *footprint = &from->footprints[from->indices[i]];
-  uint32_t columns = from->words[i] & 0xffff;
-  int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
-  rows_of_splat rows = begin_rows(footprint, s->y);
-  unsigned n_fragments = 0;
-  for (int block = first; block <= last; block++) {
-    conic_kept *kept = &band->kept[block];
-    size_t place = band->n_kept[block];
-    unsigned n_covered = 0;
-    fragments f;
-    kept->footprint[place] = from->indices[i];
-    kept->amplitude[place] = footprint->amplitude;
-    for (int part = 0; part < CONIC_PARTS; part++) {
-      int at = block * CONIC_PARTS + part;
-      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
-      n_covered += pass_part(footprint, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
-    }
-    n_fragments += n_covered;
-    if (place < room)
-      band->n_kept[block] = place + (n_covered > 0);
-    else if (n_covered > 0 && band->not_kept[block] > i)
-      band->not_kept[block] = i;
+/* The state of the first pass along a band, a copy of its own like `sources`. */
+typedef struct pass {
+  conic_kept *kept;
+  size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
+  uint64_t n_fragments;
+} pass;
+
+/* One splat, and what of it is the same in all blocks. */
+typedef struct passing {
+  const conic_footprint *footprint;
+  size_t i; /* in the band's list */
+  uint32_t i_footprint;
+  lanes nearness;
+  splat_rows rows;
+} passing;
+
+CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
+                             int is_special) {
+  conic_kept *kept = &p->kept[block];
+  size_t place = p->n_kept[block];
+  unsigned n_covered = 0;
+  fragments f;
+  kept->footprint[place] = splat->i_footprint;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
+    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
+    n_covered += pass_part(splat->nearness, &f, kept, place, part * CONIC_LANES, is_special);
   }
-  return n_fragments;
+  p->n_fragments += n_covered;
+  if (place < p->room)
+    p->n_kept[block] = place + (n_covered > 0);
+  else if (n_covered > 0 && p->not_kept[block] > splat->i)
+    p->not_kept[block] = splat->i;
+}
+
+/* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
+ * splats have one or two, and which, no branch can foresee. */
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, int is_special) {
+  const uint32_t i_footprint = from->indices[i], word = from->words[i];
+  const uint32_t first = conic_word_first(word), last = conic_word_last(word);
+  const conic_footprint *footprint = &from->footprints[i_footprint];
+  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_rows(footprint, s->y)};
+  pass_block(p, from, s, &splat, first, is_special);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, is_special);
+  for (uint32_t block = first + 2; block <= last; block++)
+    pass_block(p, from, s, &splat, block, is_special);
 }
 
 static void visibility(conic_band *band) {
   const sources from = sources_of(band);
-  size_t room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
-  uint64_t n_fragments = 0;
+  pass p = {.kept = band->kept, .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
   int has_special = 0;
   sites s;
   find_sites(band, &s);
-  empty_blocks(band);
-  for (int block = 0; block < band->n_blocks; block++)
-    memset(band->kept[block].threshold, 0, sizeof band->kept[block].threshold);
+  for (int block = 0; block < band->n_blocks; block++) {
+    p.not_kept[block] = from.n;
+    memset(p.kept[block].threshold, 0, sizeof p.kept[block].threshold);
+  }
   for (size_t i = 0; i < from.n; i++) {
     prefetch_splat(&from, i);
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
-      n_fragments += pass_splat(band, &from, &s, i, room, 0);
+      pass_splat(&p, &from, &s, i, 0);
     else {
-      n_fragments += pass_splat(band, &from, &s, i, room, 1);
+      pass_splat(&p, &from, &s, i, 1);
       has_special = 1;
     }
   }
+  memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);
+  memcpy(band->not_kept, p.not_kept, sizeof band->not_kept);
   band->has_special = has_special;
-  band->n_fragments += n_fragments;
+  band->n_fragments += p.n_fragments;
 }
 
 /* Which kernel a loop is made for. */
@@ -306,8 +365,8 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
     if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
       scale = lanes_load(kept->scale[i] + at);
-    blend(&from->surfaces[i_footprint], i_footprint, weigh(from->view, kept->amplitude[i], q, scale, visible, kind),
-          to);
+    const conic_surface *surface = &from->surfaces[i_footprint];
+    blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
   }
 }
 
@@ -319,11 +378,11 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, 
   lanes threshold = lanes_load(band->kept[block].threshold + part * CONIC_LANES);
   fragments f;
   for (size_t i = band->not_kept[block]; i < from.n; i++) {
-    if (!(from.words[i] >> block & 1))
+    if (!conic_word_has(from.words[i], (uint32_t)block))
       continue;
     const conic_footprint *footprint = &from.footprints[from.indices[i]];
-    rows_of_splat rows = begin_rows(footprint, s->y);
-    evaluate(&from, footprint, &rows, s->x[at], s->inside[at], !(footprint->s3 > 0.0f), &f);
+    splat_rows rows = begin_rows(footprint, s->y);
+    evaluate(&from, footprint, &rows, s->x[at], !(footprint->s3 > 0.0f), &f);
     lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
     if (!lanes_any(visible))
       continue;
@@ -392,16 +451,15 @@ CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_n
 
 CONIC_INLINE unsigned pass_nearest(conic_band *band, const sources *from, const sites *s, size_t i, int is_special) {
   const conic_footprint *footprint = &from->footprints[from->indices[i]];
-  uint32_t columns = from->words[i] & 0xffff;
-  int first = __builtin_ctz(columns), last = 31 - __builtin_clz(columns);
-  rows_of_splat rows = begin_rows(footprint, s->y);
+  const int first = (int)conic_word_first(from->words[i]), last = (int)conic_word_last(from->words[i]);
+  splat_rows rows = begin_rows(footprint, s->y);
   unsigned n_fragments = 0;
   for (int block = first; block <= last; block++) {
     unsigned n_covered = 0;
     fragments f;
     for (int part = 0; part < CONIC_PARTS; part++) {
       int at = block * CONIC_PARTS + part;
-      evaluate(from, footprint, &rows, s->x[at], s->inside[at], is_special, &f);
+      evaluate(from, footprint, &rows, s->x[at], is_special, &f);
       keep_nearest(&f, from->indices[i], &band->nearest[block], (size_t)part * CONIC_LANES);
       n_covered += lanes_count(f.covered);
     }
@@ -422,7 +480,7 @@ CONIC_INLINE void take_nearest(const conic_band *band, const sources *from, int 
   for (int lane = 0; lane < CONIC_LANES; lane++) {
     uint32_t i_footprint = kept->footprint[at + (size_t)lane];
     const conic_surface *surface = &from->surfaces[i_footprint];
-    amplitude[lane] = from->footprints[i_footprint].amplitude;
+    amplitude[lane] = surface->amplitude;
     for (int axis = 0; axis < 3; axis++) {
       color[axis][lane] = surface->color[axis];
       normal[axis][lane] = surface->normal[axis];
@@ -461,4 +519,5 @@ static void nearest(conic_band *band) {
 #include "raster/project_body.h"
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME, project, select_references, visibility, accumulate, nearest, resolve};
+const conic_tile_kernels TABLE = {NAME,       project,    keys,    move,   select_references,
+                                  visibility, accumulate, nearest, resolve};

@@ -12,6 +12,19 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words) {
+  for (size_t i = 0; i < n; i++)
+    conic_key_of(&boxes[i], tile_bits, n_tiles_x, &tiles[i], &words[i]);
+}
+
+static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
+                 conic_surface *surfaces) {
+  for (size_t i = 0; i < n; i++) {
+    footprints[i] = from->footprints[order[i]];
+    surfaces[i] = from->surfaces[order[i]];
+  }
+}
+
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
   size_t n_selected = 0;
@@ -38,7 +51,6 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
   size_t place = band->n_kept[block];
   unsigned n_covered = 0;
   kept->footprint[place] = i_footprint;
-  kept->amplitude[place] = band->projected->footprints[i_footprint].amplitude;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
@@ -66,7 +78,8 @@ static void visibility(conic_band *band) {
   }
   for (size_t i = 0; i < band->n; i++)
     for (int block = 0; block < band->n_blocks; block++) {
-      unsigned n_covered = band->words[i] >> block & 1 ? pass_block(band, band->indices[i], block) : 0;
+      unsigned n_covered =
+          conic_word_has(band->words[i], (uint32_t)block) ? pass_block(band, band->indices[i], block) : 0;
       band->n_fragments += n_covered;
       if (n_covered == 0)
         continue;
@@ -106,8 +119,8 @@ static void accumulate_pixel(const conic_band *band, int block, int l) {
       blend(band, kept->footprint[i], block, l, &fragment, &heaviest_weight);
   }
   for (size_t i = band->not_kept[block]; i < band->n; i++) {
-    if (!(band->words[i] >> block & 1) || !fragment_of(band, band->indices[i], block, l, &fragment) ||
-        !(seen_iz_of(&fragment) >= kept->threshold[l]))
+    if (!(conic_word_has(band->words[i], (uint32_t)block)) ||
+        !fragment_of(band, band->indices[i], block, l, &fragment) || !(seen_iz_of(&fragment) >= kept->threshold[l]))
       continue;
     blend(band, band->indices[i], block, l, &fragment, &heaviest_weight);
     if (!band->keeps_indices)
@@ -173,7 +186,7 @@ static void nearest(conic_band *band) {
   }
   for (size_t i = 0; i < band->n; i++)
     for (int block = 0; block < band->n_blocks; block++)
-      if (band->words[i] >> block & 1) {
+      if (conic_word_has(band->words[i], (uint32_t)block)) {
         unsigned n_covered = keep_nearest(band, band->indices[i], block);
         band->n_fragments += n_covered;
         band->n_kept[block] += n_covered > 0;
@@ -184,4 +197,4 @@ static void nearest(conic_band *band) {
 }
 
 const conic_tile_kernels conic_tile_kernels_scalar = {
-    "scalar", conic_project_chunk, select_references, visibility, accumulate, nearest, conic_band_resolve};
+    "scalar", conic_project_range, keys, move, select_references, visibility, accumulate, nearest, conic_band_resolve};

@@ -66,6 +66,28 @@ static float thin_variance(const conic_render_options *options) {
   return alike > 0.0625f ? alike : 0.0625f;
 }
 
+/* The eye, and from where on float tells which side of it a plane is on (raster/project_body.h). */
+static void place_eye(conic_view *view) {
+  const double(*m)[3] = (const double(*)[3])view->rotation;
+  double reach = 0.0, farthest_from_rotation = 0.0;
+  for (int i = 0; i < 3; i++) {
+    double eye = 0.0;
+    for (int j = 0; j < 3; j++) {
+      double dot = (m[i][0] * m[j][0] + m[i][1] * m[j][1]) + m[i][2] * m[j][2];
+      farthest_from_rotation = fmax(farthest_from_rotation, fabs(dot - (i == j)));
+      eye -= m[j][i] * view->translation[j];
+    }
+    view->eye[i] = (float)eye;
+    reach += fabs(eye);
+  }
+  double determinant =
+      (m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])) +
+      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  int is_usual = farthest_from_rotation < 1e-5 && determinant > 0.0 && view->fx > 0.1 && view->fy > 0.1 &&
+                 view->fx < 1e6 && view->fy < 1e6;
+  view->nearest_sure = is_usual ? (float)fmax(1e-3 * reach, 1e-15) : HUGE_VALF;
+}
+
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length,
                              conic_view *view) {
@@ -97,6 +119,7 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
   view->prefilter = options->prefilter;
   view->growth_px = view->cutoff * sqrtf(view->prefilter);
   view->cull_back = options->cull_back;
+  place_eye(view);
   view->thin = thin_variance(options);
   view->auto_limit = (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS) * (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS);
   if (options->epsilon >= 0.0) {

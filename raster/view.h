@@ -26,6 +26,8 @@ typedef struct conic_view {
   float prefilter; /* h, px² */
   float growth_px; /* F_g·√h: how far the prefilter moves an outline at most */
   int cull_back;
+  float eye[3];        /* in the frame of positions; with cull_back, for a first look at what faces away: */
+  float nearest_sure;  /* no look is sure of splats that are nearer to it than this; infinite where none is */
   float thin;          /* px²: a projected variance with a smaller eigenvalue is not drawn by ray */
   float auto_limit;    /* the square of the error at which `auto` takes ray, over that of its bound's factor */
   float epsilon_scale; /* ε = epsilon_scale · F_g·max(|t_u|, |t_v|) … */

@@ -20,7 +20,8 @@ static double seconds_now(void) {
 /* --- the slots --- */
 
 static void run_project(const conic_tile_kernels *kernels, desk *d) {
-  kernels->project(&d->view, &d->f->splats, 0, &d->projected);
+  d->chunk = (conic_chunk){0};
+  kernels->project(&d->view, &d->f->splats, 0, d->f->splats.count, &d->projected, &d->chunk);
 }
 
 /* Lanes may scribble behind the last record: that is room for the next. */

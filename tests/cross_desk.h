@@ -127,9 +127,10 @@ static inline void open_records(desk *d, size_t n) {
   d->projected.n_chunks = 1;
   d->projected.chunk_size = n;
   d->projected.chunks = &d->chunk;
-  d->projected.footprints = room(d, n * sizeof *d->projected.footprints);
-  d->projected.boxes = room(d, n * sizeof *d->projected.boxes);
-  d->projected.surfaces = room(d, n * sizeof *d->projected.surfaces);
+  size_t with_slack = n + CONIC_PROJECT_SLACK;
+  d->projected.footprints = room(d, with_slack * sizeof *d->projected.footprints);
+  d->projected.boxes = room(d, with_slack * sizeof *d->projected.boxes);
+  d->projected.surfaces = room(d, with_slack * sizeof *d->projected.surfaces);
   d->projected.rays = room(d, n * sizeof *d->projected.rays);
 }
 
@@ -140,7 +141,7 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
   d->references = room(d, n * sizeof *d->references);
   d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
   d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
-  d->band.kept = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.kept);
+  d->band.kept = room(d, (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
   d->band.nearest = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.nearest);
   d->band.sums = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
   d->band.view = &d->view;

@@ -35,7 +35,7 @@ static void expect_records(expectation *e) {
   memset(&e->chunk, 0, sizeof e->chunk);
   for (size_t i = 0; i < n; i++)
     conic_project_one(&e->view, &e->f->splats, i, p, &e->chunk);
-  conic_clip_chunk(&e->view, &e->f->splats, 0, p);
+  conic_clip_chunk(&e->view, &e->f->splats, 0, p, &e->chunk);
 }
 
 static float larger(float a, float b) {
