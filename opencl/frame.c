@@ -213,7 +213,9 @@ static conic_status project_on_device(conic_frame *f) {
   arguments[n++] = CONIC_ARGUMENT(n_clips);
   for (int buffer = CONIC_BUFFER_CLIPS; buffer <= CONIC_BUFFER_COUNTS; buffer++)
     arguments[n++] = buffer_argument(f, buffer);
-  return run(f, CONIC_STAGE_SETUP, CONIC_KERNEL_PROJECT, arguments, n, f->n_items);
+  int is_in_lanes = f->opencl->work == CONIC_OPENCL_WORK_TILES && !conic_method_is_dot(f->view->method);
+  return run(f, CONIC_STAGE_SETUP, is_in_lanes ? CONIC_KERNEL_PROJECT_LANES : CONIC_KERNEL_PROJECT, arguments, n,
+             f->n_items);
 }
 
 /* places[i] = the sum of numbers[0 … i - 1]; places[n] is the total, which comes back. */
@@ -252,7 +254,8 @@ conic_status conic_frame_project(conic_frame *f, size_t first, size_t n) {
   f->first = first;
   f->n = (uint32_t)n;
   f->n_drawn = 0;
-  f->splats_per_item = f->opencl->device.is_cpu || f->opencl->projects_on_host ? CONIC_SETUP_SPLATS : 1;
+  f->splats_per_item =
+      f->opencl->work == CONIC_OPENCL_WORK_TILES || f->opencl->projects_on_host ? CONIC_SETUP_SPLATS : 1;
   f->n_items = (f->n + f->splats_per_item - 1) / f->splats_per_item;
   conic_status status = make_room_for_records(f);
   if (status != CONIC_OK || n == 0)

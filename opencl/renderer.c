@@ -8,8 +8,8 @@
 #include "opencl/program.h"
 
 static const char *kernel_name(const conic_opencl *opencl, int kernel) {
-  static const char *const names[] = {"project", "scan_sums",   "scan_tops",    "scan_places",
-                                      "compact", "count_tiles", "place_chunks", "fill_tiles"};
+  static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
+                                      "compact", "count_tiles",   "place_chunks", "fill_tiles"};
   static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate", "lanes_nearest"};
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate", "gather_nearest"};
   if (kernel < CONIC_KERNEL_VISIBILITY)
@@ -20,7 +20,7 @@ static const char *kernel_name(const conic_opencl *opencl, int kernel) {
 static conic_status make_kernels(conic_opencl *opencl) {
   for (int i = 0; i < CONIC_N_KERNEL_NAMES; i++) {
     cl_int answer;
-    cl_program program = i == CONIC_KERNEL_PROJECT ? opencl->setup : opencl->raster;
+    cl_program program = i <= CONIC_KERNEL_PROJECT_LANES ? opencl->setup : opencl->raster;
     if (!program)
       continue;
     opencl->kernels[i] = clCreateKernel(program, kernel_name(opencl, i), &answer);

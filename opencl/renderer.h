@@ -8,6 +8,7 @@
 /* Those of setup.cl and of raster.cl; of the last three, the kind that suits the device. */
 typedef enum conic_kernel_name {
   CONIC_KERNEL_PROJECT,
+  CONIC_KERNEL_PROJECT_LANES,
   CONIC_KERNEL_SCAN_SUMS,
   CONIC_KERNEL_SCAN_TOPS,
   CONIC_KERNEL_SCAN_PLACES,
