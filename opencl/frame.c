@@ -37,22 +37,18 @@ static conic_status run(const conic_frame *f, conic_stage stage, conic_kernel_na
 
 /* --- before the parts --- */
 
-static conic_status write_directions(const conic_frame *f) {
-  const conic_view *view = f->view;
-  size_t n = (size_t)(view->width > view->height ? view->width : view->height);
-  float *directions = conic_memory_allocate(f->opencl->context, n, sizeof *directions);
+/* The directions of the pixels along one axis, of whole tiles; 0 past the image. */
+static conic_status write_directions(const conic_frame *f, int buffer, int n_tiles, int size, double principal,
+                                     double focal) {
+  size_t n = (size_t)n_tiles * CONIC_DEVICE_TILE;
+  float *directions = conic_memory_allocate_zeroed(f->opencl->context, n, sizeof *directions);
   if (!directions)
     return CONIC_ERROR_MEMORY;
-  for (int x = 0; x < view->width; x++)
-    directions[x] = (float)(((double)x + 0.5 - view->cx) / view->fx);
-  conic_queue *queue = &f->opencl->queue;
-  conic_status status = conic_queue_write(queue, &f->opencl->buffers[CONIC_BUFFER_DIRECTIONS_X], directions,
-                                          (size_t)view->width * sizeof *directions);
-  for (int y = 0; y < view->height; y++)
-    directions[y] = (float)(((double)y + 0.5 - view->cy) / view->fy);
+  for (int i = 0; i < size; i++)
+    directions[i] = (float)(((double)i + 0.5 - principal) / focal);
+  conic_status status = room(f, buffer, n, sizeof *directions);
   if (status == CONIC_OK)
-    status = conic_queue_write(queue, &f->opencl->buffers[CONIC_BUFFER_DIRECTIONS_Y], directions,
-                               (size_t)view->height * sizeof *directions);
+    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[buffer], directions, n * sizeof *directions);
   conic_memory_release(f->opencl->context, directions);
   return status;
 }
@@ -102,9 +98,7 @@ conic_status conic_frame_begin(conic_frame *f) {
                 {CONIC_BUFFER_TILE_TOTALS, f->n_tiles * sizeof(uint32_t)},
                 {CONIC_BUFFER_TILE_BEGIN, (f->n_tiles + (size_t)1) * sizeof(uint64_t)},
                 {CONIC_BUFFER_N_FRAGMENTS, f->n_tiles * sizeof(uint32_t)},
-                {CONIC_BUFFER_N_COVERED, f->n_tiles * sizeof(uint32_t)},
-                {CONIC_BUFFER_DIRECTIONS_X, (size_t)c->width * sizeof(float)},
-                {CONIC_BUFFER_DIRECTIONS_Y, (size_t)c->height * sizeof(float)}};
+                {CONIC_BUFFER_N_COVERED, f->n_tiles * sizeof(uint32_t)}};
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < sizeof needed / sizeof needed[0] && status == CONIC_OK; i++)
     status = room(f, needed[i].buffer, 1, needed[i].bytes);
@@ -114,7 +108,11 @@ conic_status conic_frame_begin(conic_frame *f) {
     status = open_planes(f);
   if (status == CONIC_OK)
     status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_VIEW], f->view, sizeof *f->view);
-  return status == CONIC_OK ? write_directions(f) : status;
+  const conic_view *v = f->view;
+  if (status == CONIC_OK)
+    status = write_directions(f, CONIC_BUFFER_DIRECTIONS_X, c->n_tiles_x, v->width, v->cx, v->fx);
+  return status == CONIC_OK ? write_directions(f, CONIC_BUFFER_DIRECTIONS_Y, c->n_tiles_y, v->height, v->cy, v->fy)
+                            : status;
 }
 
 /* --- set-up --- */

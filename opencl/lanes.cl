@@ -301,21 +301,48 @@ static void lanes_count(__global const conic_surface *surface, const lanes_fragm
       as_float16(is_nearest ? (int16)(int)surface->index : as_int16(s->values[CONIC_SUM_ID]));
 }
 
-/* What of each pixel's heaviest splat the picture shows beside the sums. */
-static void lanes_keep_heaviest(__global const conic_footprint *footprints, __global const conic_surface *surfaces, int x,
-                                int y, lanes_sums *s) {
+/* The mean of a block's normals, and its length. */
+static lanes lanes_mean_normal(const lanes_sums *s, lanes mean[3]) {
+  lanes part = 1.0f / s->values[CONIC_SUM_WEIGHT];
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] = s->values[CONIC_SUM_NORMAL + axis] * part;
+  return sqrt((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
+}
+
+/* conic_plane_z of the splats taken, in the lanes that have one. */
+static lanes lanes_plane_z(__global const conic_footprint *footprints, int16 taken, int x, int y) {
+  lanes fields[16];
   for (int lane = 0; lane < 16; lane++) {
-    int i_heaviest = ((const int *)&s->taken)[lane];
-    if (i_heaviest < 0)
-      continue;
-    conic_footprint footprint = footprints[i_heaviest];
-    gather_pixel p;
-    p.x = x + lane / 4;
-    p.y = y + lane % 4;
-    ((float *)&s->values[CONIC_SUM_Z])[lane] = gather_plane_z(&footprint, &p);
-    for (int axis = 0; axis < 3; axis++)
-      ((float *)&s->values[CONIC_SUM_HEAVIEST_NORMAL + axis])[lane] = surfaces[i_heaviest].normal[axis];
+    int i_footprint = ((const int *)&taken)[lane];
+    __global const float *from = (__global const float *)&footprints[i_footprint < 0 ? 0 : i_footprint];
+    for (int field = 0; field < 16; field++)
+      ((float *)&fields[field])[lane] = from[field];
   }
+  lanes dx = (((float)x + LANE_COLUMNS) - fields[0]) + fields[2], dy = (((float)y + LANE_ROWS) - fields[1]) + fields[3];
+  lanes iz = (fields[7] + fields[11] * dy) + fields[10] * dx;
+  iz = iz > fields[12] ? iz : fields[12];
+  iz = iz < fields[13] ? iz : fields[13];
+  return 1.0f / iz;
+}
+
+/* What of each pixel's heaviest splat the picture shows beside the sums. Its normal only where the sum has no direction,
+ * unless another part of the splats follows. */
+static void lanes_keep_heaviest(const conic_device_frame *frame, __global const conic_footprint *footprints,
+                                __global const conic_surface *surfaces, int x, int y, lanes_sums *s) {
+  int keeps_all = !frame->is_last || frame->keeps_sums;
+  int16 is_taken = s->taken >= 0;
+  lanes mean[3];
+  if (!lanes_any(is_taken))
+    return;
+  if (keeps_all || frame->planes & 1 << CONIC_PLANE_Z)
+    s->values[CONIC_SUM_Z] = is_taken ? lanes_plane_z(footprints, s->taken, x, y) : s->values[CONIC_SUM_Z];
+  int16 needs_normal = keeps_all ? is_taken : is_taken & ~(lanes_mean_normal(s, mean) > 0.0f);
+  if (!lanes_any(needs_normal))
+    return;
+  for (int lane = 0; lane < 16; lane++)
+    for (int axis = 0; axis < 3 && ((const int *)&needs_normal)[lane]; axis++)
+      ((float *)&s->values[CONIC_SUM_HEAVIEST_NORMAL + axis])[lane] =
+          surfaces[((const int *)&s->taken)[lane]].normal[axis];
 }
 
 static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *t, __global const lanes *sums,
@@ -378,11 +405,9 @@ static void lanes_finish_pixels(const conic_device_frame *frame, const lanes_sum
                                 lanes_pixels *p) {
   lanes weight = s->values[CONIC_SUM_WEIGHT], part = 1.0f / weight, mean[3], viewer[3], shaded[3];
   int16 is_covered = weight > 0.0f;
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < 3; axis++)
     p->albedo[axis] = s->values[CONIC_SUM_COLOR + axis] * part;
-    mean[axis] = s->values[CONIC_SUM_NORMAL + axis] * part;
-  }
-  lanes norm = sqrt((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]), scale = 1.0f / norm;
+  lanes norm = lanes_mean_normal(s, mean), scale = 1.0f / norm;
   for (int axis = 0; axis < 3; axis++)
     p->normal[axis] = norm > 0.0f ? mean[axis] * scale : s->values[CONIC_SUM_HEAVIEST_NORMAL + axis];
   lanes towards = -1.0f / sqrt((dx * dx + dy * dy) + 1.0f);
@@ -399,54 +424,82 @@ static void lanes_finish_pixels(const conic_device_frame *frame, const lanes_sum
   p->rgba[3] = is_covered ? 1.0f : frame->background[3];
 }
 
-/* A pixel's channels, side by side. */
-static void lanes_store_channels(const lanes *channels, int n_channels, int lane, __global float *plane, ulong at) {
-  for (int channel = 0; channel < n_channels; channel++)
-    plane[at * (ulong)n_channels + (ulong)channel] = ((const float *)&channels[channel])[lane];
-}
-
-/* Writes a block's pixels, as far as they are in the image; returns how many are covered. */
-static uint lanes_store_pixels(const conic_device_frame *frame, const lanes_sums *s, const lanes_pixels *p, int x, int y,
-                               PIXEL_PLANES) {
-  int planes = frame->planes;
-  uint covered = 0;
+/* Writes a block's channels pixel by pixel, as far as they are in the image. */
+static void lanes_store_pixels(const conic_device_frame *frame, const lanes *channels, int n_channels, int x, int y,
+                               __global float *plane) {
   for (int lane = 0; lane < 16; lane++) {
     int px = x + lane / 4, py = y + lane % 4;
     if (px >= frame->width || py >= frame->height)
       continue;
     ulong at = (ulong)py * (ulong)frame->width + (ulong)px;
-    int is_covered = ((const float *)&s->values[CONIC_SUM_WEIGHT])[lane] > 0.0f;
-    covered += (uint)is_covered;
-    if (planes & 1 << CONIC_PLANE_RGBA)
-      lanes_store_channels(p->rgba, 4, lane, rgba, at);
-    if (planes & 1 << CONIC_PLANE_NORMAL)
-      lanes_store_channels(p->normal, 3, lane, normal_plane, at);
-    if (planes & 1 << CONIC_PLANE_ALBEDO)
-      lanes_store_channels(p->albedo, 3, lane, albedo_plane, at);
-    if (planes & 1 << CONIC_PLANE_WEIGHT)
-      lanes_store_channels(&s->values[CONIC_SUM_WEIGHT], 1, lane, weight_plane, at);
-    if (planes & 1 << CONIC_PLANE_Z)
-      z_plane[at] = is_covered ? ((const float *)&s->values[CONIC_SUM_Z])[lane] : 0.0f;
-    if (planes & 1 << CONIC_PLANE_COUNT)
-      count_plane[at] = is_covered ? ((const uint *)&s->values[CONIC_SUM_COUNT])[lane] : 0;
-    if (planes & 1 << CONIC_PLANE_ID)
-      id_plane[at] = is_covered ? ((const uint *)&s->values[CONIC_SUM_ID])[lane] : CONIC_NO_ID;
+    for (int channel = 0; channel < n_channels; channel++)
+      plane[at * (ulong)n_channels + (ulong)channel] = ((const float *)&channels[channel])[lane];
   }
-  return covered;
 }
 
-static lanes lanes_of_columns(__global const float *columns, int x, int width) {
-  lanes result;
-  for (int lane = 0; lane < 16; lane++)
-    ((float *)&result)[lane] = columns[x + lane / 4 < width ? x + lane / 4 : width - 1];
-  return result;
+/* One row of a block's four. */
+static float4 lanes_pick_row(lanes values, int row) {
+  return row == 0 ? values.s048c : row == 1 ? values.s159d : row == 2 ? values.s26ae : values.s37bf;
 }
 
-static lanes lanes_of_rows(__global const float *rows, int y, int height) {
-  lanes result;
-  for (int lane = 0; lane < 16; lane++)
-    ((float *)&result)[lane] = rows[y + lane % 4 < height ? y + lane % 4 : height - 1];
-  return result;
+static void lanes_store_row(const lanes *channels, int n_channels, int row, __global float *to) {
+  float4 a = lanes_pick_row(channels[0], row);
+  if (n_channels == 1) {
+    vstore4(a, 0, to);
+    return;
+  }
+  float4 b = lanes_pick_row(channels[1], row), c = lanes_pick_row(channels[2], row);
+  if (n_channels == 3) {
+    vstore8((float8)(a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z), 0, to);
+    vstore4((float4)(c.z, a.w, b.w, c.w), 0, to + 8);
+    return;
+  }
+  float4 d = lanes_pick_row(channels[3], row);
+  vstore16((float16)(a.x, b.x, c.x, d.x, a.y, b.y, c.y, d.y, a.z, b.z, c.z, d.z, a.w, b.w, c.w, d.w), 0, to);
+}
+
+/* A block's channels to a plane that the image has. */
+static void lanes_store(const conic_device_frame *frame, int plane, const lanes *channels, int n_channels, int x, int y,
+                        __global float *to) {
+  if (!(frame->planes & 1 << plane))
+    return;
+  if (x + 4 > frame->width || y + 4 > frame->height) {
+    lanes_store_pixels(frame, channels, n_channels, x, y, to);
+    return;
+  }
+  __global float *corner = to + ((ulong)y * (ulong)frame->width + (ulong)x) * (ulong)n_channels;
+  ulong stride = (ulong)frame->width * (ulong)n_channels;
+  lanes_store_row(channels, n_channels, 0, corner);
+  lanes_store_row(channels, n_channels, 1, corner + stride);
+  lanes_store_row(channels, n_channels, 2, corner + 2 * stride);
+  lanes_store_row(channels, n_channels, 3, corner + 3 * stride);
+}
+
+/* Pass 3 of a block; returns how many of its pixels are covered. */
+static uint lanes_resolve(const conic_device_frame *frame, const lanes_sums *s, int x, int y, PIXEL_PLANES) {
+  lanes_pixels p;
+  lanes weight = s->values[CONIC_SUM_WEIGHT];
+  int16 is_covered = weight > 0.0f;
+  if (lanes_any(is_covered)) {
+    float4 dx = vload4(0, columns + x), dy = vload4(0, rows + y); /* there are some of all whole tiles */
+    lanes_finish_pixels(frame, s, (lanes)(dx.xxxx, dx.yyyy, dx.zzzz, dx.wwww), (lanes)(dy, dy, dy, dy), &p);
+  } else {
+    for (int axis = 0; axis < 3; axis++)
+      p.normal[axis] = p.albedo[axis] = 0.0f;
+    for (int channel = 0; channel < 4; channel++)
+      p.rgba[channel] = frame->background[channel];
+  }
+  lanes z = is_covered ? s->values[CONIC_SUM_Z] : 0.0f;
+  lanes count = as_float16(is_covered ? as_int16(s->values[CONIC_SUM_COUNT]) : 0);
+  lanes id = as_float16(is_covered ? as_int16(s->values[CONIC_SUM_ID]) : -1); /* CONIC_NO_ID */
+  lanes_store(frame, CONIC_PLANE_RGBA, p.rgba, 4, x, y, rgba);
+  lanes_store(frame, CONIC_PLANE_NORMAL, p.normal, 3, x, y, normal_plane);
+  lanes_store(frame, CONIC_PLANE_ALBEDO, p.albedo, 3, x, y, albedo_plane);
+  lanes_store(frame, CONIC_PLANE_WEIGHT, &weight, 1, x, y, weight_plane);
+  lanes_store(frame, CONIC_PLANE_Z, &z, 1, x, y, z_plane);
+  lanes_store(frame, CONIC_PLANE_COUNT, &count, 1, x, y, (__global float *)count_plane);
+  lanes_store(frame, CONIC_PLANE_ID, &id, 1, x, y, (__global float *)id_plane);
+  return lanes_sum(-is_covered);
 }
 
 /* Of a part of the splats: on with the sums, or the picture where it is the last. */
@@ -463,10 +516,7 @@ static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, c
     }
     if (!frame->is_last || x >= frame->width || y >= frame->height)
       continue;
-    lanes_pixels pixels;
-    lanes_finish_pixels(frame, s, lanes_of_columns(columns, x, frame->width), lanes_of_rows(rows, y, frame->height),
-                        &pixels);
-    covered += lanes_store_pixels(frame, s, &pixels, x, y, PIXEL_PLANES_PASSED);
+    covered += lanes_resolve(frame, s, x, y, PIXEL_PLANES_PASSED);
   }
   n_covered[t->index] = covered;
 }
@@ -493,13 +543,13 @@ lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lane
     }
   })
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
-    lanes_keep_heaviest(footprints, surfaces, t.x + 4 * (int)(block % 4), t.y + 4 * (int)(block / 4),
+    lanes_keep_heaviest(&frame, footprints, surfaces, t.x + 4 * (int)(block % 4), t.y + 4 * (int)(block / 4),
                         &of_blocks[block]);
   lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
 }
 
 /* The nearest splats' own sums, in place of those of what was nearest in the parts before. */
-static void lanes_take_nearest(const conic_view *view, __global const conic_footprint *footprints,
+static void lanes_take_nearest(const conic_view *view, const conic_device_frame *frame, __global const conic_footprint *footprints,
                                __global const conic_surface *surfaces, const lanes *q, const lanes *scale, int x, int y,
                                lanes_sums *s) {
   for (int lane = 0; lane < 16; lane++) {
@@ -519,7 +569,7 @@ static void lanes_take_nearest(const conic_view *view, __global const conic_foot
     ((uint *)&s->values[CONIC_SUM_COUNT])[lane] = 1;
     ((uint *)&s->values[CONIC_SUM_ID])[lane] = surfaces[i_nearest].index;
   }
-  lanes_keep_heaviest(footprints, surfaces, x, y, s);
+  lanes_keep_heaviest(frame, footprints, surfaces, x, y, s);
 }
 
 /* In place of both where the nearest splat wins alone. */
@@ -543,7 +593,7 @@ lanes_nearest(GATHER_RECORDS, __global uint *n_fragments, __global lanes *sums, 
   })
   n_fragments[t.index] = lanes_sum(found);
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
-    lanes_take_nearest(&view, footprints, surfaces, &q[block], &scale[block], t.x + 4 * (int)(block % 4),
+    lanes_take_nearest(&view, &frame, footprints, surfaces, &q[block], &scale[block], t.x + 4 * (int)(block % 4),
                        t.y + 4 * (int)(block / 4), &of_blocks[block]);
   lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
 }
