@@ -117,9 +117,9 @@ __kernel void fill_tiles(uint n_chunks, uint n_tiles, uint n_tiles_x, uint n, ui
     for (int y = range.y_begin; y < range.y_end; y++)
       for (int x = range.x_begin; x < range.x_end; x++) {
         uint tile = (uint)y * n_tiles_x + (uint)x;
-        conic_device_reference reference = {
-            order[i], blocks_met(box.x_begin, box.x_end, x << CONIC_DEVICE_TILE_BITS) |
-                          blocks_met(box.y_begin, box.y_end, y << CONIC_DEVICE_TILE_BITS) << 8};
+        conic_device_reference reference = {order[i],
+                                            blocks_met(box.x_begin, box.x_end, x << CONIC_DEVICE_TILE_BITS) |
+                                                blocks_met(box.y_begin, box.y_end, y << CONIC_DEVICE_TILE_BITS) << 8};
         references[tile_begin[tile] + next[tile]++] = reference;
       }
   }

@@ -32,6 +32,25 @@ conic_status conic_frame_visibility(conic_frame *frame);
 conic_status conic_frame_accumulate(conic_frame *frame);
 /* Brings the picture to the image. */
 conic_status conic_frame_end(conic_frame *frame, uint64_t *n_covered);
+/* Waits for all; after that, also after a failure, the device knows nothing more of the image and the splats. */
+conic_status conic_frame_close(conic_frame *frame);
+
+/* What the stages share: */
+
+static inline conic_argument conic_frame_argument(const conic_frame *frame, int buffer) {
+  return (conic_argument){sizeof(cl_mem), &frame->opencl->buffers[buffer].memory};
+}
+
+/* Room in a buffer for count × size bytes. */
+conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count, size_t size);
+/* Runs a kernel over a row of work-items; one is a group on a CPU, where each has much to do. */
+conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
+                             const conic_argument *arguments, int n_arguments, size_t n_items);
+/* places[i] = the sum of numbers[0 … i - 1], by the buffers' names; places[n] is the total, which comes back. */
+conic_status conic_frame_scan(const conic_frame *frame, conic_stage stage, uint32_t n, int numbers, int places,
+                              uint64_t *total);
+/* Adds what the tiles have counted in a buffer to the sum. */
+conic_status conic_frame_add_tiles(const conic_frame *frame, int buffer, uint64_t *sum);
 
 /* The same as conic_frame_project on the host, for devices without double precision (opencl/host_setup.c). */
 conic_status conic_frame_project_on_host(conic_frame *frame);

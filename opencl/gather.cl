@@ -129,8 +129,9 @@ static void gather_store(const gather_sums *s, __global float *sums, const gathe
 }
 
 /* The surface of a record, without what else of it there is in memory. */
-static void gather_blend(const conic_view *view, const conic_footprint *footprint, __global const conic_surface *surface,
-                         const conic_fragment *fragment, gather_sums *s, int *is_heaviest) {
+static void gather_blend(const conic_view *view, const conic_footprint *footprint,
+                         __global const conic_surface *surface, const conic_fragment *fragment, gather_sums *s,
+                         int *is_heaviest) {
   float weight = conic_final_weight(view, footprint, fragment->q, fragment->scale);
   s->weight += weight;
   for (int axis = 0; axis < 3; axis++) {

@@ -142,7 +142,7 @@ static void project_one(const conic_view *view, splat_columns *columns, uint i, 
       __global conic_ray *rays, __global conic_clip_record *records, __global uint *n_drawn, __global uint *counts
 
 #define SETUP_COLUMNS                                                                                                  \
-  {{px, py, pz, tux, tuy, tuz, tvx, tvy, tvz, red, green, blue, opacity}, first, fields, clips, n_clips, 0}
+  { {px, py, pz, tux, tuy, tuz, tvx, tvy, tvz, red, green, blue, opacity}, first, fields, clips, n_clips, 0 }
 
 static void add_counts(const uint own[CONIC_DEVICE_N_COUNTS], __global uint *counts) {
   for (int i = 0; i < CONIC_DEVICE_N_COUNTS; i++)

@@ -1,5 +1,5 @@
-/* Set-up of 16 splats at a time, for CPUs: the usual splats, in the order of arithmetic of raster/project.c. What is not
- * usual (near the camera, not finite, not to be held by float) goes to project_one. */
+/* Set-up of 16 splats at a time, for CPUs: the usual splats, in the order of arithmetic of raster/project.c. What is
+ * not usual (near the camera, not finite, not to be held by float) goes to project_one. */
 
 typedef float16 lanes;
 typedef double16 doubles;

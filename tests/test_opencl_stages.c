@@ -243,6 +243,7 @@ static void check_stages(fixture *f, conic_opencl *opencl) {
   CHECK_OK(conic_frame_accumulate(&frame));
   check_sums_of(e, &frame);
   CHECK_OK(conic_frame_end(&frame, &n_covered));
+  CHECK_OK(conic_frame_close(&frame));
   conic_image_release(f->context, &image);
   drop(e);
 }
