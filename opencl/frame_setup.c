@@ -76,7 +76,7 @@ static conic_status make_room_for_records(const conic_frame *f) {
 static conic_status project_on_device(conic_frame *f) {
   conic_queue *queue = &f->opencl->queue;
   uint32_t n_clips = 0, fields = 0, first = (uint32_t)f->first;
-  conic_argument arguments[26];
+  conic_argument arguments[27];
   int n = 0;
   fields |= f->splats->color[0] ? CONIC_DEVICE_HAS_COLOR : 0;
   fields |= f->splats->opacity ? CONIC_DEVICE_HAS_OPACITY : 0;

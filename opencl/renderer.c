@@ -14,7 +14,8 @@ static const char *kernel_name(const conic_opencl *opencl, int kernel) {
   static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate", "gather_nearest"};
   if (kernel < CONIC_KERNEL_VISIBILITY)
     return names[kernel];
-  return (opencl->work == CONIC_OPENCL_WORK_TILES ? of_tiles : of_pixels)[kernel - CONIC_KERNEL_VISIBILITY];
+  int i = kernel - CONIC_KERNEL_VISIBILITY;
+  return opencl->work == CONIC_OPENCL_WORK_TILES ? of_tiles[i] : of_pixels[i];
 }
 
 static conic_status make_kernels(conic_opencl *opencl) {
