@@ -3,14 +3,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* P.D: two numbers of up to four digits. */
+static int is_place(const char *text) {
+  static const char digits[] = "0123456789";
+  size_t n_platform = strspn(text, digits);
+  if (n_platform < 1 || n_platform > 4 || text[n_platform] != '.')
+    return 0;
+  text += n_platform + 1;
+  size_t n_device = strspn(text, digits);
+  return n_device >= 1 && n_device <= 4 && !text[n_device];
+}
+
 int cli_device_check(const cli_session *session, const cli_device *device) {
   const char *name = device->name;
-  int n_read = 0;
-  unsigned i_platform, i_device;
   if (strcmp(name, "cpu") == 0 || strcmp(name, "opencl") == 0)
     return CLI_DONE;
-  if (strspn(name, "opencl:.0123456789") == strlen(name) &&
-      sscanf(name, "opencl:%4u.%4u%n", &i_platform, &i_device, &n_read) == 2 && !name[n_read])
+  if (strncmp(name, "opencl:", 7) == 0 && is_place(name + 7))
     return CLI_DONE;
   return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", session->command, name);
 }

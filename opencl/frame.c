@@ -124,8 +124,8 @@ conic_status conic_frame_begin(conic_frame *f) {
   for (size_t i = 0; i < sizeof needed / sizeof needed[0] && status == CONIC_OK; i++)
     status = conic_frame_room(f, needed[i].buffer, 1, needed[i].bytes);
   if (status == CONIC_OK && !c->is_single_pass)
-    status =
-        conic_frame_room(f, CONIC_BUFFER_THRESHOLDS, f->n_tiles, CONIC_DEVICE_TILE * CONIC_DEVICE_TILE * sizeof(float));
+    status = conic_frame_room(f, CONIC_BUFFER_THRESHOLDS, f->n_tiles,
+                              (size_t)CONIC_DEVICE_TILE * CONIC_DEVICE_TILE * sizeof(float));
   if (status == CONIC_OK)
     status = open_planes(f);
   if (status == CONIC_OK)

@@ -15,8 +15,8 @@ static conic_status write_column(const conic_frame *f, int column, const float *
     return values && status == CONIC_OK ? conic_queue_write(queue, buffer, values + f->first, bytes) : status;
   }
   conic_queue_release(buffer);
-  buffer->memory = clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
-                                  (void *)(uintptr_t)(values + f->first), &answer);
+  buffer->memory =
+      clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, (void *)(values + f->first), &answer);
   return conic_opencl_check(queue->context, answer, "clCreateBuffer");
 }
 

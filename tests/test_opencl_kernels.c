@@ -247,7 +247,7 @@ static void check_scan(conic_context *context, uint64_t *state) {
         {CONIC_ARGUMENT(n_sums), CONIC_ARGUMENT(sums.memory)},
         {CONIC_ARGUMENT(n), CONIC_ARGUMENT(of_numbers.memory), CONIC_ARGUMENT(sums.memory),
          CONIC_ARGUMENT(of_places.memory)}};
-    const int n_arguments[] = {3, 2, 4};
+    static const int n_arguments[] = {3, 2, 4};
     for (int step = 0; step < 3; step++)
       CHECK_OK(conic_queue_run(queue, CONIC_STAGE_BIN, opencl->kernels[CONIC_KERNEL_SCAN_SUMS + step], steps[step],
                                n_arguments[step], (const size_t[2]){step == 1 ? 1 : n_sums, 1},
