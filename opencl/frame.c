@@ -61,7 +61,7 @@ conic_status conic_frame_add_tiles(const conic_frame *f, int buffer, uint64_t *s
 /* The directions of the pixels along one axis, of whole tiles; 0 past the image. */
 static conic_status write_directions(const conic_frame *f, int buffer, int n_tiles, int size, double principal,
                                      double focal) {
-  size_t n = (size_t)n_tiles * CONIC_DEVICE_TILE;
+  size_t n = (size_t)n_tiles * (size_t)f->opencl->tile;
   float *directions = conic_memory_allocate_zeroed(f->opencl->context, n, sizeof *directions);
   if (!directions)
     return CONIC_ERROR_MEMORY;
@@ -102,11 +102,12 @@ static conic_status open_planes(const conic_frame *f) {
 
 conic_status conic_frame_begin(conic_frame *f) {
   conic_device_frame *c = &f->constants;
+  int tile = f->opencl->tile;
   c->width = f->view->width;
   c->height = f->view->height;
-  c->n_tiles_x = (c->width + CONIC_DEVICE_TILE - 1) / CONIC_DEVICE_TILE;
-  c->n_tiles_y = (c->height + CONIC_DEVICE_TILE - 1) / CONIC_DEVICE_TILE;
-  c->n_blocks_x = c->n_tiles_x * (CONIC_DEVICE_TILE / 4);
+  c->n_tiles_x = (c->width + tile - 1) / tile;
+  c->n_tiles_y = (c->height + tile - 1) / tile;
+  c->n_blocks_x = c->n_tiles_x * (tile / 4);
   c->planes = (int32_t)conic_image_planes(f->image);
   c->keeps_sums = f->opencl->keeps_sums;
   f->n_tiles = (uint32_t)c->n_tiles_x * (uint32_t)c->n_tiles_y;
@@ -124,8 +125,7 @@ conic_status conic_frame_begin(conic_frame *f) {
   for (size_t i = 0; i < sizeof needed / sizeof needed[0] && status == CONIC_OK; i++)
     status = conic_frame_room(f, needed[i].buffer, 1, needed[i].bytes);
   if (status == CONIC_OK && !c->is_single_pass)
-    status = conic_frame_room(f, CONIC_BUFFER_THRESHOLDS, f->n_tiles,
-                              (size_t)CONIC_DEVICE_TILE * CONIC_DEVICE_TILE * sizeof(float));
+    status = conic_frame_room(f, CONIC_BUFFER_THRESHOLDS, f->n_tiles, (size_t)tile * (size_t)tile * sizeof(float));
   if (status == CONIC_OK)
     status = open_planes(f);
   if (status == CONIC_OK)
@@ -263,7 +263,7 @@ static void report(const conic_frame *f, conic_render_statistics *s) {
   s->fragments = f->n_fragments;
   conic_method_count(f->view->method, f->counts[CONIC_DEVICE_RAYS], s);
   s->threads = f->opencl->device.n_compute_units;
-  s->tile = CONIC_DEVICE_TILE;
+  s->tile = f->opencl->tile;
   s->isa = "opencl";
   s->ms.setup = ms[CONIC_STAGE_SETUP];
   s->ms.bin = ms[CONIC_STAGE_BIN];

@@ -84,10 +84,10 @@ static conic_status run_raster(const conic_frame *f, conic_stage stage, conic_ke
   if (f->opencl->work == CONIC_OPENCL_WORK_TILES)
     return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments,
                            (const size_t[2]){f->n_tiles, 1}, (const size_t[2]){1, 1});
-  const size_t items[2] = {(size_t)f->constants.n_tiles_x * CONIC_DEVICE_TILE,
-                           (size_t)f->constants.n_tiles_y * CONIC_DEVICE_TILE};
+  const size_t items[2] = {(size_t)(f->constants.n_tiles_x * f->opencl->tile),
+                           (size_t)(f->constants.n_tiles_y * f->opencl->tile)};
   return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items,
-                         (const size_t[2]){CONIC_DEVICE_TILE, CONIC_DEVICE_TILE});
+                         (const size_t[2]){CONIC_DEVICE_GROUP, CONIC_DEVICE_GROUP});
 }
 
 static conic_status write_constants(conic_frame *f) {
@@ -123,7 +123,7 @@ conic_status conic_frame_accumulate(conic_frame *f) {
   conic_status status = write_constants(f);
   if (status == CONIC_OK && (!f->constants.is_first || !f->constants.is_last || f->constants.keeps_sums)) {
     status = conic_frame_room(f, CONIC_BUFFER_SUMS, f->n_tiles,
-                              (size_t)CONIC_DEVICE_TILE * CONIC_DEVICE_TILE * CONIC_N_SUMS * sizeof(float));
+                              (size_t)f->opencl->tile * (size_t)f->opencl->tile * CONIC_N_SUMS * sizeof(float));
     arguments[ARGUMENTS_OF_RECORDS + 1] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
   }
   if (status == CONIC_OK && is_single)

@@ -4,7 +4,8 @@
 /* So many references ahead records are called for. */
 #define LANES_AHEAD 12
 
-#define N_TILE_BLOCKS 16 /* of a tile: 4 × 4 */
+#define CONIC_DEVICE_TILE_BLOCKS (CONIC_DEVICE_TILE / 4)
+#define N_TILE_BLOCKS (CONIC_DEVICE_TILE_BLOCKS * CONIC_DEVICE_TILE_BLOCKS)
 
 typedef struct lanes_tile {
   uint index;
@@ -28,7 +29,17 @@ static lanes_tile lanes_tile_of(const conic_device_frame *frame) {
 
 /* Where block (column, row) of the tile lies in memory that is [block] of the whole image. */
 static ulong lanes_block(const lanes_tile *t, const conic_device_frame *frame, uint block) {
-  return t->first_block + (ulong)(block / 4) * (ulong)frame->n_blocks_x + block % 4;
+  return t->first_block + (ulong)(block / CONIC_DEVICE_TILE_BLOCKS) * (ulong)frame->n_blocks_x +
+         block % CONIC_DEVICE_TILE_BLOCKS;
+}
+
+/* Its first pixel. */
+static int lanes_block_x(const lanes_tile *t, uint block) {
+  return t->x + 4 * (int)(block % CONIC_DEVICE_TILE_BLOCKS);
+}
+
+static int lanes_block_y(const lanes_tile *t, uint block) {
+  return t->y + 4 * (int)(block / CONIC_DEVICE_TILE_BLOCKS);
 }
 
 static int16 lanes_inside(const lanes_tile *t, int x, int y) {
@@ -101,7 +112,7 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
       lanes_row row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);                                          \
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
-        uint block = 4 * i_row + column;                                                                               \
+        uint block = CONIC_DEVICE_TILE_BLOCKS * i_row + column;                                                        \
         lanes_fragment fragment;                                                                                       \
         if (lanes_cover(&view, &t, &splat, &row, column, i_row, &fragment)) {                                          \
           body                                                                                                         \
@@ -205,9 +216,13 @@ static void lanes_keep_heaviest(const conic_device_frame *frame, __global const 
 
 static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *t, __global const lanes *sums,
                              lanes_sums *of_blocks) {
+  /* Where all splats are in one part and nobody asks for counts or ids, only the first of the sums are looked at. */
+  int needs_all = !frame->is_first || !frame->is_last || frame->keeps_sums || frame->is_single_pass ||
+                  (frame->planes & (1 << CONIC_PLANE_COUNT | 1 << CONIC_PLANE_ID)) != 0;
+  int n_used = needs_all ? CONIC_N_SUMS : CONIC_SUM_NEAREST_IZ;
   for (uint block = 0; block < N_TILE_BLOCKS; block++) {
     __global const lanes *from = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
-    for (int i = 0; i < CONIC_N_SUMS; i++)
+    for (int i = 0; i < n_used; i++)
       of_blocks[block].values[i] = frame->is_first ? (lanes)0.0f : from[i];
     of_blocks[block].taken = -1;
   }
@@ -237,7 +252,7 @@ lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lane
     }
   })
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
-    lanes_keep_heaviest(&frame, footprints, surfaces, t.x + 4 * (int)(block % 4), t.y + 4 * (int)(block / 4),
+    lanes_keep_heaviest(&frame, footprints, surfaces, lanes_block_x(&t, block), lanes_block_y(&t, block),
                         &of_blocks[block]);
   lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
 }
@@ -287,7 +302,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_nearest(GATHE
   })
   n_fragments[t.index] = lanes_sum(found);
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
-    lanes_take_nearest(&view, &frame, footprints, surfaces, &q[block], &scale[block], t.x + 4 * (int)(block % 4),
-                       t.y + 4 * (int)(block / 4), &of_blocks[block]);
+    lanes_take_nearest(&view, &frame, footprints, surfaces, &q[block], &scale[block], lanes_block_x(&t, block),
+                       lanes_block_y(&t, block), &of_blocks[block]);
   lanes_finish(&frame, &t, of_blocks, sums, PIXEL_PLANES_PASSED);
 }

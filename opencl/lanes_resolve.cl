@@ -151,7 +151,7 @@ static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, c
   uint covered = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++) {
     const lanes_sums *s = &of_blocks[block];
-    int x = t->x + 4 * (int)(block % 4), y = t->y + 4 * (int)(block / 4);
+    int x = lanes_block_x(t, block), y = lanes_block_y(t, block);
     if (!frame->is_last || frame->keeps_sums) {
       __global lanes *to = sums + lanes_block(t, frame, block) * CONIC_N_SUMS;
       for (int i = 0; i < CONIC_N_SUMS; i++)

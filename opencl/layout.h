@@ -5,9 +5,12 @@
 
 #include <stdint.h>
 
-/* The edge of a device's tiles in pixels: 16 blocks of 4 × 4. */
-#define CONIC_DEVICE_TILE 16
-#define CONIC_DEVICE_TILE_BITS 4
+/* Tiles are the smaller the more work-items share one. Their edge in pixels goes to the programs as CONIC_DEVICE_TILE,
+ * and its binary logarithm as CONIC_DEVICE_TILE_BITS, when they are built. */
+enum { CONIC_TILE_BITS_OF_PIXELS = 4, CONIC_TILE_BITS_OF_TILES = 5 };
+
+/* The edge of a group of work-items where each has a pixel. */
+#define CONIC_DEVICE_GROUP 16
 
 /* Splats that one work-item sets up on a CPU, and numbers that one adds up in a prefix sum. */
 #define CONIC_SETUP_SPLATS 256

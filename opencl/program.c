@@ -15,18 +15,21 @@ static const char *options_of(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
 }
 
-/* What stands before the text: how memory is called for ahead of its use. It changes no value. PoCL leaves prefetch()
- * without effect, but its compiler is clang. */
-static const char *prelude_of(const conic_opencl_device *device) {
-  return strstr(device->platform, "Portable Computing Language")
-             ? "#define CONIC_FETCH_AHEAD(pointer) __builtin_prefetch((const void *)(size_t)(pointer))\n"
-             : "#define CONIC_FETCH_AHEAD(pointer) prefetch((const __global float *)(pointer), 1)\n";
+/* What stands before the text: the tiles' size, and how memory is called for ahead of its use, which changes no value.
+ * PoCL leaves prefetch() without effect, but its compiler is clang. */
+static void write_prelude(const conic_opencl_device *device, int tile_bits, char *prelude, size_t room) {
+  const char *fetch = strstr(device->platform, "Portable Computing Language")
+                          ? "__builtin_prefetch((const void *)(size_t)(pointer))"
+                          : "prefetch((const __global float *)(pointer), 1)";
+  snprintf(prelude, room,
+           "#define CONIC_DEVICE_TILE %d\n#define CONIC_DEVICE_TILE_BITS %d\n#define CONIC_FETCH_AHEAD(pointer) %s\n",
+           1 << tile_bits, tile_bits, fetch);
 }
 
 /* What a built program depends on. */
-static uint64_t hash_of(const conic_opencl_device *device, const conic_opencl_text *text) {
-  const char *parts[] = {text->text,       options_of(device), device->name,
-                         device->platform, device->version,    device->driver};
+static uint64_t hash_of(const conic_opencl_device *device, const char *prelude, const conic_opencl_text *text) {
+  const char *parts[] = {prelude,          text->text,      options_of(device), device->name,
+                         device->platform, device->version, device->driver};
   uint64_t hashes[sizeof parts / sizeof parts[0]];
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
     hashes[i] = conic_hash_bytes(parts[i], strlen(parts[i]));
@@ -96,16 +99,17 @@ static void to_cache(conic_context *context, cl_program program, const char *pat
 }
 
 conic_status conic_opencl_build(conic_context *context, cl_context cl, cl_device_id id,
-                                const conic_opencl_device *device, const conic_opencl_text *text,
+                                const conic_opencl_device *device, int tile_bits, const conic_opencl_text *text,
                                 const char *cache_folder, cl_program *program) {
-  char path[4096] = "";
+  char path[4096] = "", prelude[512];
   cl_int answer;
+  write_prelude(device, tile_bits, prelude, sizeof prelude);
   if (cache_folder)
-    conic_cache_path(cache_folder, text->name, hash_of(device, text), path, sizeof path);
+    conic_cache_path(cache_folder, text->name, hash_of(device, prelude, text), path, sizeof path);
   *program = path[0] ? from_cache(context, cl, id, device, path) : NULL;
   if (*program)
     return CONIC_OK;
-  const char *sources[] = {prelude_of(device), text->text};
+  const char *sources[] = {prelude, text->text};
   *program = clCreateProgramWithSource(cl, 2, sources, NULL, &answer);
   conic_status status = conic_opencl_check(context, answer, "clCreateProgramWithSource");
   if (status != CONIC_OK)

@@ -45,13 +45,15 @@ static conic_status open_device(conic_opencl *opencl, const conic_opencl_options
   opencl->work = options->work;
   if (opencl->work == CONIC_OPENCL_WORK_AUTO)
     opencl->work = device->is_cpu ? CONIC_OPENCL_WORK_TILES : CONIC_OPENCL_WORK_PIXELS;
+  int tile_bits = opencl->work == CONIC_OPENCL_WORK_TILES ? CONIC_TILE_BITS_OF_TILES : CONIC_TILE_BITS_OF_PIXELS;
+  opencl->tile = 1 << tile_bits;
   status = conic_queue_open(context, platform, id, &opencl->queue);
   cl_context cl = opencl->queue.cl;
   const char *folder = options->cache_folder;
   if (status == CONIC_OK && !opencl->projects_on_host)
-    status = conic_opencl_build(context, cl, id, device, &conic_opencl_setup_text, folder, &opencl->setup);
+    status = conic_opencl_build(context, cl, id, device, tile_bits, &conic_opencl_setup_text, folder, &opencl->setup);
   if (status == CONIC_OK)
-    status = conic_opencl_build(context, cl, id, device, &conic_opencl_raster_text, folder, &opencl->raster);
+    status = conic_opencl_build(context, cl, id, device, tile_bits, &conic_opencl_raster_text, folder, &opencl->raster);
   return status == CONIC_OK ? make_kernels(opencl) : status;
 }
 

@@ -56,6 +56,7 @@ typedef struct conic_opencl {
   conic_context *context;
   conic_opencl_device device;
   conic_opencl_work work; /* tiles or pixels */
+  int tile;               /* a tile's edge in pixels */
   int projects_on_host;
   size_t part_splats; /* 0: by the device's memory */
   int keeps_sums;     /* for who wants to look at them */

@@ -296,9 +296,9 @@ static void write_lane(const group_screen *s, const group_records *r, int lane, 
   to->at++;
 }
 
-/* Sixteen splats by their places in the columns. */
-static void project_group(const conic_view *view, splat_columns *from, const uint *places, record_places *to,
-                          uint counts[CONIC_DEVICE_N_COUNTS]) {
+/* The first n_valid of sixteen splats by their places in the columns. */
+static void project_group(const conic_view *view, splat_columns *from, const uint *places, uint n_valid,
+                          record_places *to, uint counts[CONIC_DEVICE_N_COUNTS]) {
   lanes columns[13];
   group_screen s;
   group_records r;
@@ -311,7 +311,7 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
       ((float *)&columns[column])[lane] = from->values[column][places[lane]];
   }
   set_up_group(view, columns, as_int16(vload16(0, places) + from->first), &s, &r, &verdict);
-  for (int lane = 0; lane < 16; lane++) {
+  for (int lane = 0; lane < (int)n_valid; lane++) {
     if (((const int *)&verdict.drawn)[lane]) {
       count_outcome(view, ((const int *)&s.by_ray)[lane] ? CONIC_DRAWN_RAY : CONIC_DRAWN_VARIANCE, counts);
       write_lane(&s, &r, lane, to);
@@ -350,16 +350,16 @@ static uint find_facing(const conic_view *view, const splat_columns *from, uint 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_project(SETUP_ARGUMENTS) {
   conic_view view = *frame_view;
   uint item = (uint)get_global_id(0), begin = item * splats_per_item, own[CONIC_DEVICE_N_COUNTS] = {0};
-  uint end = n - begin < splats_per_item ? n : begin + splats_per_item, places[CONIC_SETUP_SPLATS + 1];
+  uint end = n - begin < splats_per_item ? n : begin + splats_per_item, places[CONIC_SETUP_SPLATS + 16];
   splat_columns columns = SETUP_COLUMNS;
   record_places to = {footprints, boxes, surfaces, rays, records, begin};
   seek_clip(&columns, first + begin);
   uint n_facing = find_facing(&view, &columns, begin, end, places), i = 0;
   own[CONIC_DEVICE_CULLED] = end - begin - n_facing;
-  for (; i + 16 <= n_facing; i += 16)
-    project_group(&view, &columns, places + i, &to, own);
-  for (; i < n_facing; i++)
-    project_one(&view, &columns, places[i], &to, own);
+  for (uint spare = 0; spare < 16; spare++) /* the last group's spare lanes repeat the first splat */
+    places[n_facing + spare] = begin;
+  for (; i < n_facing; i += 16)
+    project_group(&view, &columns, places + i, min(n_facing - i, 16u), &to, own);
   n_drawn[item] = to.at - begin;
   add_counts(own, counts);
 }

@@ -100,7 +100,7 @@ static void open_workbench(conic_context *context, workbench *d, const char *fro
   CHECK_OK(conic_opencl_find(context, &options, &platform, &id, &device));
   CHECK_OK(conic_queue_open(context, platform, id, &d->queue));
   const conic_opencl_text whole = {"kernels", text, strlen(text)};
-  CHECK_OK(conic_opencl_build(context, d->queue.cl, id, &device, &whole, NULL, &d->program));
+  CHECK_OK(conic_opencl_build(context, d->queue.cl, id, &device, 5, &whole, NULL, &d->program));
   if (check_failures)
     exit(1);
   d->functions = clCreateKernel(d->program, "try_functions", &answer);

@@ -155,12 +155,12 @@ static void check_setup(const expectation *e, const conic_frame *frame) {
   free(clips);
 }
 
-/* The blocks, along one axis, of the tile's four that the pixels begin … end - 1 meet; -1 where none. */
-static int blocks_met(int begin, int end, int tile) {
-  int first = begin / 4 - 4 * tile, last = (end - 1) / 4 - 4 * tile;
-  if (last < 0 || first > 3)
+/* The blocks, along one axis, of a tile's n that the pixels begin … end - 1 meet; -1 where none. */
+static int blocks_met(int begin, int end, int tile, int n) {
+  int first = begin / 4 - n * tile, last = (end - 1) / 4 - n * tile;
+  if (last < 0 || first >= n)
     return -1;
-  return (first < 0 ? 0 : first) | (last > 3 ? 3 : last) << 4;
+  return (first < 0 ? 0 : first) | (last >= n ? n - 1 : last) << 4;
 }
 
 /* Every tile's list has the splats whose boxes meet it, in file order, and which of its blocks they meet. */
@@ -172,12 +172,13 @@ static void check_lists(const expectation *e, const conic_frame *frame) {
                                       ? download(frame, CONIC_BUFFER_REFERENCES, frame->n_references, sizeof *lists)
                                       : zeroed(0, sizeof *lists);
   uint64_t at = 0;
+  int n = frame->opencl->tile / 4;
   for (int tile = 0; tile < (int)frame->n_tiles; tile++) {
     CHECK(begin[tile] == at);
     for (size_t i = 0; i < frame->n_drawn; i++) {
       const conic_box *box = &e->projected.boxes[i];
-      int columns = blocks_met(box->x_begin, box->x_end, tile % frame->constants.n_tiles_x);
-      int rows = blocks_met(box->y_begin, box->y_end, tile / frame->constants.n_tiles_x);
+      int columns = blocks_met(box->x_begin, box->x_end, tile % frame->constants.n_tiles_x, n);
+      int rows = blocks_met(box->y_begin, box->y_end, tile / frame->constants.n_tiles_x, n);
       if (columns < 0 || rows < 0)
         continue;
       CHECK(at < frame->n_references);
@@ -192,6 +193,11 @@ static void check_lists(const expectation *e, const conic_frame *frame) {
   free(lists);
 }
 
+/* Those of whole tiles. */
+static size_t n_padded_pixels(const conic_frame *frame) {
+  return (size_t)frame->n_tiles * (size_t)frame->opencl->tile * (size_t)frame->opencl->tile;
+}
+
 /* Where a pixel's number lies in memory that is [block][stride][pixel]. */
 static size_t place(const conic_frame *frame, int x, int y, size_t stride) {
   size_t block = (size_t)(y / 4) * (size_t)frame->constants.n_blocks_x + (size_t)(x / 4);
@@ -200,7 +206,7 @@ static size_t place(const conic_frame *frame, int x, int y, size_t stride) {
 
 static void check_thresholds(const expectation *e, const conic_frame *frame) {
   size_t n_wrong = 0;
-  float *thresholds = download(frame, CONIC_BUFFER_THRESHOLDS, (size_t)frame->n_tiles * 256, sizeof *thresholds);
+  float *thresholds = download(frame, CONIC_BUFFER_THRESHOLDS, n_padded_pixels(frame), sizeof *thresholds);
   for (int y = 0; y < e->view.height; y++)
     for (int x = 0; x < e->view.width; x++)
       n_wrong += memcmp(&thresholds[place(frame, x, y, 1)], &e->thresholds[y * e->view.width + x], 4) != 0;
@@ -211,7 +217,7 @@ static void check_thresholds(const expectation *e, const conic_frame *frame) {
 
 static void check_sums_of(const expectation *e, const conic_frame *frame) {
   size_t n_wrong = 0, n_covered = 0;
-  float *sums = download(frame, CONIC_BUFFER_SUMS, (size_t)frame->n_tiles * 256 * CONIC_N_SUMS, sizeof *sums);
+  float *sums = download(frame, CONIC_BUFFER_SUMS, n_padded_pixels(frame) * CONIC_N_SUMS, sizeof *sums);
   for (int y = 0; y < e->view.height; y++)
     for (int x = 0; x < e->view.width; x++) {
       const float *expected = e->sums[y * e->view.width + x];
