@@ -276,14 +276,32 @@ static void set_up_group(const conic_view *view, const lanes *columns, int16 ind
   verdict->drawn = usual & on_screen & ~odd;
 }
 
-/* Appends the record of one lane. */
+static lanes zip_low(lanes a, lanes b) {
+  return (lanes)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7);
+}
+
+static lanes zip_high(lanes a, lanes b) {
+  return (lanes)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, a.sf, b.sf);
+}
+
+/* Numbers that lie by field and then by lane come to lie by lane and then by field; n, a power of two, is how many
+ * fields there are. Each round takes the highest bit of a number's place to the end. */
+static void turn(lanes *fields, int n) {
+  lanes turned[16];
+  for (int round = 1; round < n; round *= 2) {
+    for (int i = 0; i < n / 2; i++) {
+      turned[2 * i] = zip_low(fields[i], fields[i + n / 2]);
+      turned[2 * i + 1] = zip_high(fields[i], fields[i + n / 2]);
+    }
+    for (int i = 0; i < n; i++)
+      fields[i] = turned[i];
+  }
+}
+
+/* Appends the record of one lane of a turned group. */
 static void write_lane(const group_screen *s, const group_records *r, int lane, record_places *to) {
-  __global float *footprint = (__global float *)&to->footprints[to->at];
-  __global float *surface = (__global float *)&to->surfaces[to->at];
-  for (int field = 0; field < 16; field++)
-    footprint[field] = ((const float *)&r->footprint[field])[lane];
-  for (int field = 0; field < 8; field++)
-    surface[field] = ((const float *)&r->surface[field])[lane];
+  vstore16(r->footprint[lane], 0, (__global float *)&to->footprints[to->at]);
+  vstore8(lane % 2 ? r->surface[lane / 2].hi : r->surface[lane / 2].lo, 0, (__global float *)&to->surfaces[to->at]);
   conic_box box = {(ushort)((const int *)&s->begin[0])[lane], (ushort)((const int *)&s->end[0])[lane],
                    (ushort)((const int *)&s->begin[1])[lane], (ushort)((const int *)&s->end[1])[lane]};
   to->boxes[to->at] = box;
@@ -296,6 +314,13 @@ static void write_lane(const group_screen *s, const group_records *r, int lane, 
   to->at++;
 }
 
+/* A column's numbers at the places. */
+static lanes pick(__global const float *column, const uint *p) {
+  return (lanes)(column[p[0]], column[p[1]], column[p[2]], column[p[3]], column[p[4]], column[p[5]], column[p[6]],
+                 column[p[7]], column[p[8]], column[p[9]], column[p[10]], column[p[11]], column[p[12]], column[p[13]],
+                 column[p[14]], column[p[15]]);
+}
+
 /* The first n_valid of sixteen splats by their places in the columns. */
 static void project_group(const conic_view *view, splat_columns *from, const uint *places, uint n_valid,
                           record_places *to, uint counts[CONIC_DEVICE_N_COUNTS]) {
@@ -306,11 +331,11 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
   for (int column = 0; column < 13; column++) {
     int is_there = column < LANES_COLOR || (column < LANES_OPACITY ? from->fields & CONIC_DEVICE_HAS_COLOR
                                                                    : from->fields & CONIC_DEVICE_HAS_OPACITY);
-    columns[column] = 1.0f;
-    for (int lane = 0; lane < 16 && is_there; lane++)
-      ((float *)&columns[column])[lane] = from->values[column][places[lane]];
+    columns[column] = is_there ? pick(from->values[column], places) : 1.0f;
   }
   set_up_group(view, columns, as_int16(vload16(0, places) + from->first), &s, &r, &verdict);
+  turn(r.footprint, 16);
+  turn(r.surface, 8);
   for (int lane = 0; lane < (int)n_valid; lane++) {
     if (((const int *)&verdict.drawn)[lane]) {
       count_outcome(view, ((const int *)&s.by_ray)[lane] ? CONIC_DRAWN_RAY : CONIC_DRAWN_VARIANCE, counts);
