@@ -22,8 +22,14 @@
 /* A place beside them, that loops may write to where a splat has no further block. */
 #define CONIC_NO_BLOCK CONIC_BAND_BLOCKS
 
-/* Which blocks of a tile a box meets: from the first to the last column (bits 0 … 7, 8 … 15), and of the rows r those
- * of bits 16 + r. Never 0. */
+/* A footprint in a tile, and which of its blocks it meets. */
+typedef struct conic_tile_entry {
+  uint32_t footprint;
+  uint32_t word;
+} conic_tile_entry;
+
+/* A word: which blocks of a tile a box meets: from the first to the last column (bits 0 … 7, 8 … 15), and of the rows r
+ * those of bits 16 + r. Never 0. */
 static inline uint32_t conic_word_of(uint32_t first, uint32_t last, uint32_t first_row, uint32_t last_row) {
   return first | last << 8 | ((UINT32_C(2) << last_row) - (UINT32_C(1) << first_row)) << 16;
 }
@@ -41,7 +47,7 @@ static inline int conic_word_has(uint32_t word, uint32_t column) {
 }
 
 /* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
-#define CONIC_KEPT_SPLATS 128
+#define CONIC_KEPT_SPLATS 512
 
 typedef struct conic_kept_fragments {
   float q[CONIC_BLOCK_PIXELS];
@@ -65,7 +71,7 @@ typedef struct conic_block_sums {
   uint32_t count[CONIC_BLOCK_PIXELS];    /* how many; likewise */
 } conic_block_sums;
 
-/* Where the nearest splat wins: its fragments; iz is 0 where there is none. */
+/* Where the nearest splat wins: its fragments; iz is 0 where there is none, and scale is meant of special ones only. */
 typedef struct conic_nearest_fragments {
   float iz[CONIC_BLOCK_PIXELS], q[CONIC_BLOCK_PIXELS], scale[CONIC_BLOCK_PIXELS];
   uint32_t footprint[CONIC_BLOCK_PIXELS];
@@ -84,6 +90,11 @@ typedef struct conic_band {
   size_t n_kept[CONIC_BAND_BLOCKS];   /* so many splats are in `kept`; */
   size_t not_kept[CONIC_BAND_BLOCKS]; /* the first of the band's that covers a pixel and is not, or n */
   conic_kept *kept;                   /* CONIC_BAND_BLOCKS + 1 */
+  /* The tile from this band on, where the nearest splat wins alone: its entries, and for CONIC_BAND_BLOCKS + 1 blocks
+   * of each row (the last for CONIC_NO_BLOCK) the fragments. */
+  const conic_tile_entry *entries;
+  size_t n_entries;
+  int n_rows;
   conic_nearest_fragments *nearest;
   conic_block_sums *sums;
 } conic_band;

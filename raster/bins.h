@@ -9,12 +9,6 @@
 
 struct conic_tile_kernels;
 
-/* A footprint in a tile, and which of its blocks it meets (raster/band.h). */
-typedef struct conic_tile_entry {
-  uint32_t footprint;
-  uint32_t word;
-} conic_tile_entry;
-
 typedef struct conic_bins {
   int tile;      /* edge in pixels */
   int tile_bits; /* its binary logarithm */

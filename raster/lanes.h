@@ -99,6 +99,15 @@ CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, 
   return (index_lanes)_mm512_mask_blend_epi32(mask, (__m512i)no, (__m512i)yes);
 }
 
+/* Writes value where the mask holds. */
+CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
+  _mm512_mask_storeu_ps(to, mask, (__m512)value);
+}
+
+CONIC_INLINE void lanes_replace_indices(uint32_t *to, lanes_mask mask, index_lanes value) {
+  _mm512_mask_storeu_epi32(to, mask, (__m512i)value);
+}
+
 /* value where the mask holds, else +0. */
 CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
   return (lanes)_mm512_maskz_mov_ps(mask, (__m512)value);
@@ -166,6 +175,14 @@ CONIC_INLINE lanes lanes_select(lanes_mask mask, lanes yes, lanes no) {
 
 CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, index_lanes no) {
   return ((index_lanes)mask & yes) | (~(index_lanes)mask & no);
+}
+
+CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
+  lanes_store(to, lanes_select(mask, value, lanes_load(to)));
+}
+
+CONIC_INLINE void lanes_replace_indices(uint32_t *to, lanes_mask mask, index_lanes value) {
+  lanes_store_indices(to, lanes_select_indices(mask, value, lanes_load_indices(to)));
 }
 
 /* value where the mask holds, else +0. */

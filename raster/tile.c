@@ -10,8 +10,8 @@ static size_t padded(size_t n) {
 }
 
 size_t conic_tile_bytes(size_t n_references) {
-  return CONIC_BAND_BLOCKS * (sizeof(conic_nearest_fragments) + sizeof(conic_block_sums)) +
-         (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
+  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) +
+         (CONIC_BAND_BLOCKS + 1) * (CONIC_BAND_BLOCKS * sizeof(conic_nearest_fragments) + sizeof(conic_kept)) +
          padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
 }
 
@@ -19,7 +19,7 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   conic_tile_scratch *scratch = &tile->scratch;
   size_t n = padded(tile->n_references);
   scratch->nearest = memory;
-  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS);
+  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS * (CONIC_BAND_BLOCKS + 1));
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
   scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
   scratch->indices = (uint32_t *)(scratch->entries + n);
@@ -33,21 +33,39 @@ static void select_band(const conic_tile *tile, const conic_tile_kernels *kernel
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
-static void draw_band(const conic_tile_kernels *kernels, const conic_finish *finish, const conic_tile_rays *rays,
-                      conic_band *band, conic_image *image, conic_tile_report *report) {
-  uint64_t start = conic_ticks();
-  if (finish->options->passes == 1)
-    kernels->nearest(band);
-  else
+/* Visibility and accumulation of all rows, each resolved at once. */
+static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    uint64_t start = conic_ticks();
+    select_band(tile, kernels, i_row, band);
+    uint64_t listed = conic_ticks();
     kernels->visibility(band);
-  uint64_t seen = conic_ticks();
-  if (finish->options->passes != 1)
+    uint64_t seen = conic_ticks();
     kernels->accumulate(band);
-  uint64_t summed = conic_ticks();
-  kernels->resolve(band, finish, rays, image);
+    uint64_t summed = conic_ticks();
+    kernels->resolve(band, finish, rays, image);
+    report->lists += listed - start;
+    report->visibility += seen - listed;
+    report->accumulate += summed - seen;
+    report->resolve += conic_ticks() - summed;
+  }
+}
+
+/* The nearest splat alone: all rows in one go, since little is kept of it. */
+static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  kernels->nearest(band);
+  uint64_t seen = conic_ticks();
   report->visibility += seen - start;
-  report->accumulate += summed - seen;
-  report->resolve += conic_ticks() - summed;
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
+    band->nearest = tile->scratch.nearest + i_row * (CONIC_BAND_BLOCKS + 1);
+    kernels->take_nearest(band);
+    kernels->resolve(band, finish, rays, image);
+  }
+  report->resolve += conic_ticks() - seen;
 }
 
 void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
@@ -57,21 +75,22 @@ void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const 
                      .projected = tile->projected,
                      .keeps_indices = tile->keeps_indices,
                      .x = tile->x_begin,
+                     .y = tile->y_begin,
+                     .n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
+                     .entries = tile->scratch.entries,
+                     .n_entries = tile->n_references,
                      .n_blocks = (tile->x_end - tile->x_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
                      .indices = tile->scratch.indices,
                      .words = tile->scratch.words,
                      .kept = tile->scratch.kept,
                      .nearest = tile->scratch.nearest,
                      .sums = tile->scratch.sums};
-  int n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
   memset(report, 0, sizeof *report);
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
-  for (int i_row = 0; i_row < n_rows; i_row++) {
-    uint64_t start = conic_ticks();
-    select_band(tile, kernels, i_row, &band);
-    report->lists += conic_ticks() - start;
-    draw_band(kernels, finish, &rays, &band, image, report);
-  }
+  if (finish->options->passes == 1)
+    draw_nearest(tile, kernels, finish, &rays, &band, image, report);
+  else
+    draw_blended(tile, kernels, finish, &rays, &band, image, report);
   conic_stream_fence();
   report->n_fragments = band.n_fragments;
   report->n_covered = band.n_covered;

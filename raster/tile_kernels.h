@@ -28,8 +28,11 @@ typedef struct conic_tile_kernels {
   void (*visibility)(conic_band *band);
   /* Pass 2: the sums over the visible splats of each block that is not empty. */
   void (*accumulate)(conic_band *band);
-  /* In place of both where the nearest splat wins alone, the first of equals. */
+  /* In place of both where the nearest splat wins alone, the first of equals: its fragments, of the tile from the band
+   * on, and n_fragments; */
   void (*nearest)(conic_band *band);
+  /* and from them the band's sums, n_kept, not_kept. */
+  void (*take_nearest)(conic_band *band);
   /* Pass 3: the image's pixels, and n_covered. */
   void (*resolve)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image);
 } conic_tile_kernels;

@@ -143,13 +143,18 @@ static void accumulate(conic_band *band) {
   }
 }
 
+/* The fragments of row i_row of the tile, where the nearest splat wins. */
+static conic_nearest_fragments *nearest_row(const conic_band *band, int i_row) {
+  return band->nearest + i_row * (CONIC_BAND_BLOCKS + 1);
+}
+
 /* Returns how many of the block's pixels the splat covers. */
-static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int block) {
-  conic_nearest_fragments *nearest = &band->nearest[block];
+static unsigned keep_nearest(const conic_band *row, uint32_t i_footprint, int block) {
+  conic_nearest_fragments *nearest = &row->nearest[block];
   unsigned n_covered = 0;
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     conic_fragment fragment;
-    if (!fragment_of(band, i_footprint, block, l, &fragment))
+    if (!fragment_of(row, i_footprint, block, l, &fragment))
       continue;
     n_covered++;
     if (!(nearest->iz[l] < fragment.iz))
@@ -162,8 +167,25 @@ static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int b
   return n_covered;
 }
 
+static void nearest(conic_band *band) {
+  band->has_special = 0;
+  memset(band->nearest, 0, (size_t)band->n_rows * (CONIC_BAND_BLOCKS + 1) * sizeof *band->nearest);
+  for (size_t i = 0; i < band->n_entries; i++) {
+    uint32_t word = band->entries[i].word;
+    band->has_special |= !(band->projected->footprints[band->entries[i].footprint].s3 > 0.0f);
+    for (int i_row = 0; i_row < band->n_rows; i_row++) {
+      conic_band row = *band;
+      row.y += i_row * CONIC_BLOCK_EDGE;
+      row.nearest = nearest_row(band, i_row);
+      for (int block = 0; block < band->n_blocks && word >> (16 + i_row) & 1; block++)
+        if (conic_word_has(word, (uint32_t)block))
+          band->n_fragments += keep_nearest(&row, band->entries[i].footprint, block);
+    }
+  }
+}
+
 /* The nearest splats' colour, normal and weight. */
-static void take_nearest(const conic_band *band, int block) {
+static void take_block(const conic_band *band, int block) {
   const conic_nearest_fragments *nearest = &band->nearest[block];
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
@@ -178,23 +200,17 @@ static void take_nearest(const conic_band *band, int block) {
   }
 }
 
-static void nearest(conic_band *band) {
+static void take_nearest(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
-    memset(&band->nearest[block], 0, sizeof band->nearest[block]);
     band->n_kept[block] = 0;
     band->not_kept[block] = band->n;
-  }
-  for (size_t i = 0; i < band->n; i++)
-    for (int block = 0; block < band->n_blocks; block++)
-      if (conic_word_has(band->words[i], (uint32_t)block)) {
-        unsigned n_covered = keep_nearest(band, band->indices[i], block);
-        band->n_fragments += n_covered;
-        band->n_kept[block] += n_covered > 0;
-      }
-  for (int block = 0; block < band->n_blocks; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      band->n_kept[block] |= band->nearest[block].iz[l] > 0.0f;
     if (!conic_block_is_empty(band, block))
-      take_nearest(band, block);
+      take_block(band, block);
+  }
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {
-    "scalar", conic_project_range, keys, move, select_references, visibility, accumulate, nearest, conic_band_resolve};
+const conic_tile_kernels conic_tile_kernels_scalar = {"scalar",          conic_project_range, keys,       move,
+                                                      select_references, visibility,          accumulate, nearest,
+                                                      take_nearest,      conic_band_resolve};

@@ -32,8 +32,22 @@ static void check_projected(desk *d) {
   d->arenas[RAYS].compared = d->chunk.n_rays * sizeof(conic_ray);
 }
 
+static void run_keys(const conic_tile_kernels *kernels, desk *d) {
+  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, d->tiles, d->keys);
+}
+
+/* An order that takes every record once. */
+static void run_move(const conic_tile_kernels *kernels, desk *d) {
+  size_t n = d->chunk.n_drawn, step = 7;
+  while (n % step == 0)
+    step++;
+  for (size_t i = 0; i < n; i++)
+    d->order[i] = (uint32_t)(i * step % n);
+  kernels->move(&d->projected, d->order, n, d->moved_footprints, d->moved_surfaces);
+}
+
 static void run_select(const conic_tile_kernels *kernels, desk *d) {
-  uint32_t mask = UINT32_C(0x10000) << (d->band.y / 4 % 16);
+  uint32_t mask = UINT32_C(0x10000) << 1; /* the tile's second row */
   d->n_answered = kernels->select(d->references, d->band.n, mask, d->selected, d->selected_words);
 }
 
@@ -47,6 +61,7 @@ static void run_visibility(const conic_tile_kernels *kernels, desk *d) {
 
 /* What is kept of pixels that the splat does not cover, and past the last kept splat, may be anything. */
 static void check_kept(desk *d) {
+  memset(&d->band.kept[CONIC_NO_BLOCK], 0, sizeof *d->band.kept);
   for (int block = 0; block < d->band.n_blocks; block++) {
     conic_kept *kept = &d->band.kept[block];
     size_t n = d->band.n_kept[block], rest = CONIC_KEPT_SPLATS + 1 - n;
@@ -72,6 +87,10 @@ static void run_nearest(const conic_tile_kernels *kernels, desk *d) {
   kernels->nearest(&d->band);
 }
 
+static void run_take_nearest(const conic_tile_kernels *kernels, desk *d) {
+  kernels->take_nearest(&d->band);
+}
+
 /* Where the image has neither counts nor ids, a table may leave alone what only they need. */
 static void check_sums(desk *d) {
   for (int block = 0; block < d->band.n_blocks && !d->band.keeps_indices; block++) {
@@ -80,18 +99,21 @@ static void check_sums(desk *d) {
   }
 }
 
-/* The fragments of pixels that nothing covers may be anything, and so may how many splats cover a block, but not
- * whether any does. */
+/* The fragments of pixels that nothing covers may be anything, and scales but those of special splats, and all that is
+ * beside the band. */
 static void check_nearest(desk *d) {
-  check_sums(d);
-  for (int block = 0; block < d->band.n_blocks; block++) {
-    d->band.n_kept[block] = d->band.n_kept[block] > 0;
-    conic_nearest_fragments *nearest = &d->band.nearest[block];
-    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+  for (int i = 0; i < d->band.n_rows * (CONIC_BAND_BLOCKS + 1); i++) {
+    conic_nearest_fragments *nearest = &d->band.nearest[i];
+    if (i % (CONIC_BAND_BLOCKS + 1) == CONIC_NO_BLOCK)
+      memset(nearest, 0, sizeof *nearest);
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      if (nearest->iz[l] == 0.0f || d->projected.footprints[nearest->footprint[l]].s3 > 0.0f)
+        nearest->scale[l] = 0.0f;
       if (nearest->iz[l] == 0.0f) {
-        nearest->q[l] = nearest->scale[l] = 0.0f;
+        nearest->q[l] = 0.0f;
         nearest->footprint[l] = 0;
       }
+    }
   }
 }
 
@@ -120,14 +142,14 @@ static void spoil_sums(const conic_tile_kernels *kernels, desk *d) {
 }
 
 /* What a time is divided by. */
-typedef enum unit { A_SPLAT, AN_INDEX, A_FRAGMENT, A_PIXEL } unit;
+typedef enum unit { A_SPLAT, A_RECORD, AN_INDEX, A_FRAGMENT, A_PIXEL } unit;
 
 typedef struct slot {
   const char *name;
   run_slot *run;
   run_slot *before[3];    /* by the plain C table */
   void (*check)(desk *d); /* after the run: empties what need not be the same; may be null */
-  unit unit;              /* A_SPLAT: it makes the records; the others take a band */
+  unit unit;              /* A_SPLAT: it makes the records; A_RECORD: it takes them; the others take a band */
   int has_methods;        /* differs by the method */
   int has_kernels;        /* differs by the splats' kernel */
   int is_not_timed;       /* a line for the comparison alone */
@@ -135,12 +157,15 @@ typedef struct slot {
 
 static const slot slots[] = {
     {"project", run_project, {NULL}, check_projected, A_SPLAT, 1, 0, 0},
+    {"keys", run_keys, {NULL}, NULL, A_RECORD, 0, 0, 0},
+    {"move", run_move, {NULL}, NULL, A_RECORD, 0, 0, 0},
     {"select", run_select, {NULL}, check_selected, AN_INDEX, 0, 0, 0},
     {"visibility", run_visibility, {NULL}, check_kept, A_FRAGMENT, 1, 0, 0},
     {"accumulate", run_accumulate, {run_visibility}, check_sums, A_FRAGMENT, 1, 1, 0},
     {"nearest", run_nearest, {NULL}, check_nearest, A_FRAGMENT, 1, 0, 0},
+    {"take nearest", run_take_nearest, {run_nearest}, check_sums, A_PIXEL, 0, 1, 0},
     {"resolve", run_resolve, {run_visibility, run_accumulate}, NULL, A_PIXEL, 0, 0, 0},
-    {"resolve nearest", run_resolve, {run_nearest}, NULL, A_PIXEL, 0, 0, 1},
+    {"resolve nearest", run_resolve, {run_nearest, run_take_nearest}, NULL, A_PIXEL, 0, 0, 1},
     {"resolve spoiled", run_resolve, {run_visibility, run_accumulate, spoil_sums}, NULL, A_PIXEL, 0, 0, 1},
 };
 
@@ -157,6 +182,7 @@ static void copy_band(desk *to, const desk *from) {
   band.words = to->words;
   band.kept = to->band.kept;
   band.nearest = to->band.nearest;
+  band.entries = to->references;
   band.sums = to->band.sums;
   to->band = band;
   to->rays = from->rays;
@@ -174,15 +200,20 @@ static void compare_bands(const desk *a, const desk *b) {
   compare_arenas(a, b, LIST, IMAGE);
 }
 
-/* Bits first … last of a band's blocks, for columns of pixels of the image. */
-static uint32_t blocks_of(const conic_band *band, const conic_box *box) {
-  int first = (box->x_begin - band->x) / CONIC_BLOCK_EDGE, last = (box->x_end - 1 - band->x) / CONIC_BLOCK_EDGE;
-  first = box->x_begin < band->x ? 0 : first;
-  last = last < band->n_blocks ? last : band->n_blocks - 1;
-  return (UINT32_C(2) << last) - (UINT32_C(1) << first);
+static uint32_t between(int value, int last) {
+  return value < 0 ? 0 : (uint32_t)(value < last ? value : last);
 }
 
-/* The band's list, as its tile would make it; the upper half of the words is for select alone. */
+/* The word of a box in the tile from the band on. */
+static uint32_t word_of(const conic_band *band, const conic_box *box) {
+  int left = box->x_begin - band->x, right = box->x_end - 1 - band->x;
+  int top = box->y_begin - band->y, bottom = box->y_end - 1 - band->y;
+  int last_column = band->n_blocks - 1, last_row = band->n_rows - 1;
+  return conic_word_of(between(left / CONIC_BLOCK_EDGE, last_column), between(right / CONIC_BLOCK_EDGE, last_column),
+                       between(top / CONIC_BLOCK_EDGE, last_row), between(bottom / CONIC_BLOCK_EDGE, last_row));
+}
+
+/* The band's list, as its tile would make it. */
 static void list_splats(desk *d) {
   conic_band *band = &d->band;
   band->n = 0;
@@ -191,10 +222,12 @@ static void list_splats(desk *d) {
     if (box->x_begin >= band->x + band->n_blocks * CONIC_BLOCK_EDGE || box->x_end <= band->x ||
         box->y_begin >= band->y + CONIC_BLOCK_EDGE || box->y_end <= band->y)
       continue;
-    d->words[band->n] = blocks_of(band, box) | (((uint32_t)k * 2654435761u) & UINT32_C(0xffff0000));
+    d->words[band->n] = word_of(band, box);
     d->references[band->n] = (conic_tile_entry){(uint32_t)k, d->words[band->n]};
     d->list[band->n++] = (uint32_t)k;
   }
+  band->entries = d->references;
+  band->n_entries = band->n;
 }
 
 /* Where the slot begins on a band: what comes before it, done by the plain C table. */
@@ -203,6 +236,8 @@ static void prepare(const slot *s, desk *d, int x, int y) {
   d->band.x = x;
   d->band.y = y;
   d->band.n_blocks = (width + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
+  d->band.n_rows = (d->view.height - y + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
+  d->band.n_rows = d->band.n_rows < CONIC_BAND_BLOCKS ? d->band.n_rows : CONIC_BAND_BLOCKS;
   d->band.n_fragments = d->band.n_covered = 0;
   conic_tile_rays_init(&d->view, x, y / CONIC_GREATEST_TILE * CONIC_GREATEST_TILE, &d->rays);
   list_splats(d);
@@ -255,11 +290,22 @@ static void compare_records(const slot *at, const conic_tile_kernels *kernels, d
   compare_arenas(reference, other, FOOTPRINTS, LIST);
 }
 
+/* What records are turned into, of those that the plain C table made. */
+static void compare_turned(const slot *at, const conic_tile_kernels *kernels, desk *reference, desk *other) {
+  run_project(&conic_tile_kernels_scalar, reference);
+  run_project(&conic_tile_kernels_scalar, other);
+  at->run(&conic_tile_kernels_scalar, reference);
+  at->run(kernels, other);
+  compare_arenas(reference, other, FOOTPRINTS, IMAGE);
+}
+
 static void compare_slot(const fixture *f, const setting *s, const slot *at, const conic_tile_kernels *kernels) {
   desk *reference = open_desk(f, s), *other = open_desk(f, s);
   int failures = check_failures;
   if (at->unit == A_SPLAT)
     compare_records(at, kernels, reference, other);
+  else if (at->unit == A_RECORD)
+    compare_turned(at, kernels, reference, other);
   else
     compare_all_bands(at, kernels, reference, other);
   close_desk(reference);

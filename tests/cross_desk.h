@@ -6,7 +6,7 @@
 #include "raster/tile_kernels.h"
 #include "tests/fixture.h"
 
-enum { N_SPLATS = 1501, GUARD = 256, PATTERN = 0xa5, MAX_ARENAS = 20, N_KERNELS = 4, GREATEST_LIST = 1 << 15 };
+enum { N_SPLATS = 2501, GUARD = 256, PATTERN = 0xa5, MAX_ARENAS = 25, N_KERNELS = 4, GREATEST_LIST = 1 << 15 };
 
 /* Memory between two guard bands. */
 typedef struct arena {
@@ -29,6 +29,11 @@ enum {
   KEPT,
   NEAREST,
   SUMS,
+  TILES,
+  KEYS,
+  ORDER,
+  MOVED_FOOTPRINTS,
+  MOVED_SURFACES,
   IMAGE
 };
 
@@ -40,6 +45,9 @@ typedef struct desk {
   conic_chunk chunk;
   conic_projected projected;
   uint32_t *list, *words, *selected, *selected_words;
+  uint32_t *tiles, *keys, *order; /* of records */
+  conic_footprint *moved_footprints;
+  conic_surface *moved_surfaces;
   conic_tile_entry *references;
   conic_band band;
   conic_tile_rays rays;
@@ -64,7 +72,7 @@ static inline float any_value(uint64_t *state, double scale, double share_of_spe
   return (float)(scale * (fixture_random(state) - 0.5));
 }
 
-/* Sizes down to 10^-decades: the fewer, the longer the blocks' lists. */
+/* Sizes down to 10^-decades: with less than one, most splats cover most blocks. */
 static inline void fill(fixture *f, uint64_t *state, double decades, double share_of_specials) {
   unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES;
   conic_splats_release(f->context, &f->splats);
@@ -73,7 +81,7 @@ static inline void fill(fixture *f, uint64_t *state, double decades, double shar
     f->splats.opacity[i] = any_value(state, 2.0, share_of_specials) + 0.5f;
     double size = pow(10.0, -decades * fixture_random(state)), thin = i % 7 ? 1.0 : 1e-5;
     for (int axis = 0; axis < 3; axis++) {
-      float center = any_value(state, 3.0, share_of_specials);
+      float center = any_value(state, decades < 1.0 ? 0.7 : 3.0, share_of_specials);
       f->splats.position[axis][i] = axis == 2 ? center + 1.6f : center;
       f->splats.tangent_u[axis][i] = any_value(state, size, share_of_specials);
       f->splats.tangent_v[axis][i] = any_value(state, size * thin, share_of_specials);
@@ -142,13 +150,22 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
   d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
   d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
   d->band.kept = room(d, (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
-  d->band.nearest = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.nearest);
+  d->band.nearest = room(d, CONIC_BAND_BLOCKS * (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.nearest);
   d->band.sums = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
   d->band.view = &d->view;
   d->band.projected = &d->projected;
   d->band.indices = d->list;
   d->band.words = d->words;
   d->band.keeps_indices = (planes & (1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID)) != 0;
+}
+
+/* What records are turned into. */
+static inline void open_turned(desk *d, size_t n) {
+  d->tiles = room(d, n * sizeof *d->tiles);
+  d->keys = room(d, n * sizeof *d->keys);
+  d->order = room(d, n * sizeof *d->order);
+  d->moved_footprints = room(d, n * sizeof *d->moved_footprints);
+  d->moved_surfaces = room(d, n * sizeof *d->moved_surfaces);
 }
 
 static inline void open_image(desk *d, unsigned planes) {
@@ -169,6 +186,7 @@ static inline desk *open_desk(const fixture *f, const setting *s) {
   d->finish = finish_of(f);
   open_records(d, f->splats.count);
   open_band(d, f->splats.count, s->planes);
+  open_turned(d, f->splats.count);
   open_image(d, s->planes);
   return d;
 }
@@ -185,8 +203,10 @@ static inline void close_desk(desk *d) {
 
 /* Says where the arena differs first, and how. */
 static inline void compare_arena(const desk *a, const desk *b, int i) {
-  static const char *const names[] = {"footprints", "boxes",    "surfaces",       "rays", "list",    "words",
-                                      "references", "selected", "selected words", "kept", "nearest", "sums"};
+  static const char *const names[] = {
+      "footprints",     "boxes", "surfaces", "rays", "list",  "words", "references", "selected",
+      "selected words", "kept",  "nearest",  "sums", "tiles", "keys",  "order",      "moved footprints",
+      "moved surfaces"};
   const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
   size_t n = a->arenas[i].compared, at = 0;
   CHECK(n == b->arenas[i].compared);
