@@ -55,6 +55,8 @@ conic_status conic_frame_bin(conic_frame *f, int *fits) {
   if (!*fits)
     return CONIC_OK;
   status = conic_frame_room(f, CONIC_BUFFER_REFERENCES, f->n_references, sizeof(conic_device_reference));
+  if (status == CONIC_OK && f->opencl->work == CONIC_OPENCL_WORK_TILES)
+    status = conic_frame_room(f, CONIC_BUFFER_MASKS, f->n_references, sizeof(uint64_t));
   return status == CONIC_OK ? conic_frame_run(f, CONIC_STAGE_BIN, CONIC_KERNEL_FILL_TILES, arguments, 10, n_chunks)
                             : status;
 }
@@ -76,6 +78,14 @@ static int planes(const conic_frame *f, conic_argument *to) {
     to[2 + plane] = conic_frame_argument(f, CONIC_BUFFER_PLANES + plane);
   to[2 + CONIC_N_PLANES] = conic_frame_argument(f, CONIC_BUFFER_N_COVERED);
   return ARGUMENTS_OF_PLANES;
+}
+
+/* What pass 1 tells pass 2 where a tile is a work-item. */
+static int masks(const conic_frame *f, conic_argument *to) {
+  if (f->opencl->work != CONIC_OPENCL_WORK_TILES)
+    return 0;
+  *to = conic_frame_argument(f, CONIC_BUFFER_MASKS);
+  return 1;
 }
 
 /* A tile or a pixel a work-item. */
@@ -102,10 +112,11 @@ static conic_status clear_tiles(const conic_frame *f, int buffer) {
 }
 
 conic_status conic_frame_visibility(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2];
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 3];
   int n = records(f, arguments);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_N_FRAGMENTS);
+  n += masks(f, arguments + n);
   conic_status status = write_constants(f);
   if (status == CONIC_OK)
     status = clear_tiles(f, CONIC_BUFFER_N_FRAGMENTS);
@@ -115,11 +126,12 @@ conic_status conic_frame_visibility(conic_frame *f) {
 }
 
 conic_status conic_frame_accumulate(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + ARGUMENTS_OF_PLANES];
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + ARGUMENTS_OF_PLANES + 1];
   int n = records(f, arguments), is_single = f->constants.is_single_pass, counts = CONIC_BUFFER_N_FRAGMENTS;
   arguments[n++] = conic_frame_argument(f, is_single ? counts : CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
   n += planes(f, arguments + n);
+  n += is_single ? 0 : masks(f, arguments + n);
   conic_status status = write_constants(f);
   if (status == CONIC_OK && (!f->constants.is_first || !f->constants.is_last || f->constants.keeps_sums)) {
     status = conic_frame_room(f, CONIC_BUFFER_SUMS, f->n_tiles,

@@ -93,22 +93,13 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
   return lanes_any(fragment->is_covered);
 }
 
-/* What each pass reads of a splat. */
-#define LANES_CALL_FOOTPRINT(splat) CONIC_FETCH_AHEAD(&footprints[splat])
-#define LANES_CALL_BOTH(splat)                                                                                         \
-  {                                                                                                                    \
-    uint called = splat;                                                                                               \
-    CONIC_FETCH_AHEAD(&footprints[called]);                                                                            \
-    CONIC_FETCH_AHEAD(&surfaces[called]);                                                                              \
-  }
-
-/* Goes through the tile's splats in order and, of each, through the blocks that it covers. The body sees `splat`,
- * `fragment`, `block`, `column` and `i_row`. */
-#define LANES_FOR_FRAGMENTS(LANES_CALL, body)                                                                          \
+/* Goes through the tile's splats in order and, of each, through the blocks that it covers: `body` sees `splat`,
+ * `fragment` and `block`. `before` and `after` are done for each reference i. */
+#define LANES_FOR_FRAGMENTS(before, body, after)                                                                       \
   for (ulong i = tile_begin[t.index]; i < tile_begin[t.index + 1]; i++) {                                              \
     lanes_splat splat;                                                                                                 \
-    LANES_CALL(references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint);                               \
-    lanes_fetch(&references[i], footprints, rays, clips, &splat);                                                      \
+    CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);           \
+    before lanes_fetch(&references[i], footprints, rays, clips, &splat);                                               \
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
       lanes_row row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);                                          \
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
@@ -119,11 +110,21 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
         }                                                                                                              \
       }                                                                                                                \
     }                                                                                                                  \
+    after                                                                                                              \
   }
 
-/* Pass 1 */
+/* The blocks of a tile as bits: those that a reference's box meets. */
+static ulong lanes_box_mask(uint blocks) {
+  ulong columns = ((ulong)2 << (blocks >> 4 & 15)) - ((ulong)1 << (blocks & 15)), mask = 0;
+  for (uint row = blocks >> 8 & 15; row <= blocks >> 12; row++)
+    mask |= columns << CONIC_DEVICE_TILE_BLOCKS * row;
+  return mask;
+}
+
+/* Pass 1. Of each reference it also notes in which blocks the splat may be seen, as far as those before it and itself
+ * tell: thresholds only rise, so that pass 2 need not look at others. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragments) {
+lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragments, __global ulong *masks) {
   conic_view view = *frame_view;
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
@@ -131,11 +132,17 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
   int16 found = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
-  LANES_FOR_FRAGMENTS(LANES_CALL_FOOTPRINT, {
-    lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
-    threshold[block] = (fragment.is_covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
-    found -= fragment.is_covered;
-  })
+  LANES_FOR_FRAGMENTS(
+      ulong mask = 0;,
+                     {
+                       lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
+                       threshold[block] =
+                           (fragment.is_covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
+                       found -= fragment.is_covered;
+                       int16 may_be_seen = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
+                       mask |= lanes_any(may_be_seen) ? (ulong)1 << block : 0;
+                     },
+                     masks[i] = mask;)
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     thresholds[lanes_block(&t, &frame, block)] = threshold[block];
   n_fragments[t.index] = lanes_sum(found);
@@ -230,27 +237,57 @@ static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *
 
 #include "opencl/lanes_resolve.cl"
 
-/* Pass 2 and, with the last part of the splats, pass 3. */
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-lanes_accumulate(GATHER_RECORDS, __global const lanes *thresholds, __global lanes *sums, PIXEL_PLANES) {
+/* Calls for what pass 2 reads of a reference's splat, where it reads any of it. */
+static void lanes_call_for(__global const conic_device_reference *references, __global const ulong *masks, ulong i,
+                           __global const conic_footprint *footprints, __global const conic_surface *surfaces) {
+  if (masks[i] == 0)
+    return;
+  CONIC_FETCH_AHEAD(&footprints[references[i].footprint]);
+  CONIC_FETCH_AHEAD(&surfaces[references[i].footprint]);
+}
+
+/* Pass 2 and, with the last part of the splats, pass 3. Masks are those of pass 1 where all splats are in one part. */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GATHER_RECORDS,
+                                                                              __global const lanes *thresholds,
+                                                                              __global lanes *sums, PIXEL_PLANES,
+                                                                              __global const ulong *masks) {
   conic_view view = *frame_view;
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes threshold[N_TILE_BLOCKS];
   lanes_sums of_blocks[N_TILE_BLOCKS];
   int keeps_indices = (frame.planes & (1 << CONIC_PLANE_COUNT | 1 << CONIC_PLANE_ID)) != 0;
+  int has_masks = frame.is_first && frame.is_last;
+  ulong end = tile_begin[t.index + 1];
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] = thresholds[lanes_block(&t, &frame, block)];
   lanes_begin_sums(&frame, &t, sums, of_blocks);
-  LANES_FOR_FRAGMENTS(LANES_CALL_BOTH, {
-    int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
-    if (lanes_any(is_visible)) {
-      __global const conic_surface *surface = &surfaces[splat.index];
+  for (ulong i = tile_begin[t.index]; i < end; i++) {
+    if (has_masks)
+      lanes_call_for(references, masks, min(i + LANES_AHEAD, end - 1), footprints, surfaces);
+    ulong mask = has_masks ? masks[i] : lanes_box_mask(references[i].blocks);
+    if (mask == 0)
+      continue;
+    lanes_splat splat;
+    lanes_row row;
+    uint row_begun = CONIC_DEVICE_TILE_BLOCKS;
+    __global const conic_surface *surface = &surfaces[references[i].footprint];
+    lanes_fetch(&references[i], footprints, rays, clips, &splat);
+    for (; mask; mask &= mask - 1) {
+      uint block = 63 - (uint)clz(mask & -mask), i_row = block / CONIC_DEVICE_TILE_BLOCKS;
+      lanes_fragment fragment;
+      if (i_row != row_begun)
+        row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);
+      row_begun = i_row;
+      lanes_cover(&view, &t, &splat, &row, block % CONIC_DEVICE_TILE_BLOCKS, i_row, &fragment);
+      int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
+      if (!lanes_any(is_visible))
+        continue;
       lanes_blend(&view, splat.footprint, surface, splat.index, &fragment, is_visible, &of_blocks[block]);
       if (keeps_indices)
         lanes_count(surface, &fragment, is_visible, &of_blocks[block]);
     }
-  })
+  }
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     lanes_keep_heaviest(&frame, footprints, surfaces, lanes_block_x(&t, block), lanes_block_y(&t, block),
                         &of_blocks[block]);
@@ -291,15 +328,16 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_nearest(GATHE
   lanes_sums of_blocks[N_TILE_BLOCKS];
   int16 found = 0;
   lanes_begin_sums(&frame, &t, sums, of_blocks);
-  LANES_FOR_FRAGMENTS(LANES_CALL_FOOTPRINT, {
-    lanes_sums *s = &of_blocks[block];
-    int16 is_nearest = fragment.is_covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
-    s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment.iz : s->values[CONIC_SUM_NEAREST_IZ];
-    q[block] = is_nearest ? fragment.q : q[block];
-    scale[block] = is_nearest ? fragment.scale : scale[block];
-    s->taken = is_nearest ? (int16)(int)splat.index : s->taken;
-    found -= fragment.is_covered;
-  })
+  LANES_FOR_FRAGMENTS(
+      , {
+        lanes_sums *s = &of_blocks[block];
+        int16 is_nearest = fragment.is_covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
+        s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment.iz : s->values[CONIC_SUM_NEAREST_IZ];
+        q[block] = is_nearest ? fragment.q : q[block];
+        scale[block] = is_nearest ? fragment.scale : scale[block];
+        s->taken = is_nearest ? (int16)(int)splat.index : s->taken;
+        found -= fragment.is_covered;
+      }, )
   n_fragments[t.index] = lanes_sum(found);
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     lanes_take_nearest(&view, &frame, footprints, surfaces, &q[block], &scale[block], lanes_block_x(&t, block),
