@@ -6,8 +6,7 @@ enum { ARGUMENTS_OF_RECORDS = 8, ARGUMENTS_OF_PLANES = 10 };
 /* Chunks that are counted and filled at the same time: enough of them for all units, few enough for their counts. */
 static uint32_t chunks_of(const conic_frame *f) {
   size_t units = (size_t)f->opencl->device.n_compute_units;
-  size_t most = f->opencl->device.is_cpu ? 8 * units : 128 * units, least_splats = f->opencl->device.is_cpu ? 2048 : 64;
-  size_t n_chunks = f->n_drawn / least_splats + 1;
+  size_t most = (f->opencl->device.is_cpu ? 8 : 128) * units, n_chunks = f->n_drawn / 64 + 1;
   n_chunks = n_chunks < most ? n_chunks : most;
   while (n_chunks > 1 && n_chunks * f->n_tiles > (size_t)1 << 25)
     n_chunks /= 2;
@@ -16,8 +15,8 @@ static uint32_t chunks_of(const conic_frame *f) {
 
 static int fits_device(const conic_frame *f, uint64_t n_references) {
   const conic_opencl_device *device = &f->opencl->device;
-  double bytes = (double)n_references * (double)sizeof(conic_device_reference);
-  return bytes <= (double)device->greatest_buffer_bytes && bytes <= 0.25 * (double)device->memory_bytes;
+  double bytes = (double)n_references * (double)sizeof(conic_device_reference); /* and masks, of the same size */
+  return bytes <= (double)device->greatest_buffer_bytes && 2.0 * bytes <= 0.25 * (double)device->memory_bytes;
 }
 
 conic_status conic_frame_bin(conic_frame *f, int *fits) {

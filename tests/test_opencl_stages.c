@@ -254,6 +254,33 @@ static void check_stages(fixture *f, conic_opencl *opencl) {
   drop(e);
 }
 
+/* A device that holds few splats, and not always those: parts are made, and halved where their lists are too long. */
+static void check_small_device(fixture *f, conic_opencl *opencl, uint64_t *state) {
+  conic_image image;
+  conic_view view;
+  conic_render_statistics statistics;
+  uint64_t real_bytes = opencl->device.greatest_buffer_bytes;
+  fill(f, state, 1.0, 0.0);
+  conic_render_options_init(&f->options);
+  f->options.shading = CONIC_SHADE_NONE;
+  f->options.near_z = 1e-3;
+  f->options.splat_length = 0.01;
+  fixture_render(f);
+  conic_finish finish = {.options = &f->options, .exposure = 1.0f};
+  CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &view));
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &image));
+  memset(&statistics, 0, sizeof statistics);
+  opencl->keeps_sums = 0;
+  opencl->device.greatest_buffer_bytes = 400 * sizeof(conic_footprint);
+  CHECK_OK(opencl->backend.draw(&opencl->backend, &view, &f->splats, &finish, &image, &statistics));
+  CHECK(opencl_same(&f->image, &image, "a small device"));
+  CHECK(statistics.splats_drawn == f->statistics.splats_drawn && statistics.fragments == f->statistics.fragments);
+  opencl->device.greatest_buffer_bytes = sizeof(conic_footprint); /* not even the lists of one */
+  CHECK(opencl->backend.draw(&opencl->backend, &view, &f->splats, &finish, &image, &statistics) == CONIC_ERROR_MEMORY);
+  opencl->device.greatest_buffer_bytes = real_bytes;
+  conic_image_release(f->context, &image);
+}
+
 int main(void) {
   fixture f = fixture_open(1);
   uint64_t state = 3;
@@ -273,6 +300,8 @@ int main(void) {
       check_stages(&f, opencl);
       opencl_drop_clips(&f);
     }
+    if (opencl)
+      check_small_device(&f, opencl, &state);
     conic_opencl_close(opencl);
   }
   fixture_close(&f);
