@@ -1,6 +1,6 @@
 /* What the stages of a frame must at least move and compute: a model, counted from the definitions, not measured. */
 #include "cli/bench.h"
-#include "raster/projected.h"
+#include "raster/band.h"
 
 const char *const cli_bench_stages[CLI_BENCH_N_STAGES] = {"setup", "bin", "visibility", "accumulate", "resolve"};
 
@@ -13,7 +13,7 @@ double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage) {
 enum {
   MOVE_CENTER = 18,    /* p and, below, both axes into camera space */
   MOVE_AXES = 36,      /* with the division by p_z */
-  FACE = 14,           /* p·(t_u × t_v) and the comparisons that cull */
+  FACE = 20,           /* p·(t_u × t_v) in the world and the comparison that culls */
   DUAL_CONIC = 70,     /* variance, centre, dilation, Cholesky */
   DEPTH = 40,          /* iz, its two gradients, its range */
   BOX = 24,            /* the pixels of the outline */
@@ -39,22 +39,24 @@ static double image_bytes_a_pixel(const conic_image *image) {
 
 void cli_bench_work_of(const conic_render_statistics *s, const conic_splats *splats, const conic_image *image,
                        int passes, cli_bench_work work[CLI_BENCH_N_STAGES]) {
-  const double reference = 4.0, floats = 4.0;
+  const double floats = 4.0;
   double n = (double)s->splats_in, drawn = (double)s->splats_drawn, fragments = (double)s->fragments;
   double rays = (double)s->splats_by_method[CONIC_METHOD_RAY], ray_share = drawn > 0.0 ? rays / drawn : 0.0;
   double pixels = (double)image->width * (double)image->height;
   double footprints = sizeof(conic_footprint) * drawn + sizeof(conic_ray) * rays;
   double coverage = (1.0 - ray_share) * COVERAGE + ray_share * RAY_COVERAGE;
 
-  /* Set-up: centres and axes of all, colours of what is drawn; a record of each. */
+  /* Set-up: centres and axes of all, colours of what is drawn. Its records stay in the core's cache until they are
+   * sorted. */
   work[0] = (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats->opacity ? drawn : 0.0)),
-                             footprints + (sizeof(conic_box) + sizeof(conic_surface)) * drawn,
-                             (MOVE_CENTER + MOVE_AXES + FACE) * n + (DEPTH + BOX + SURFACE) * drawn +
+                             sizeof(conic_ray) * rays,
+                             FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
                                  DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
-  /* Bins: every box twice, once to count and once to list; at least one reference a splat. */
-  work[1] = (cli_bench_work){2.0 * sizeof(conic_box) * drawn, reference * drawn, 2.0 * 8.0 * drawn};
+  /* Bins: the records in the order of their tiles; at least one entry a splat. */
+  work[1] = (cli_bench_work){
+      0.0, (sizeof(conic_footprint) + sizeof(conic_surface) + sizeof(conic_tile_entry)) * drawn, 2.0 * 8.0 * drawn};
   /* The passes: each record once, what was evaluated for the first is kept for the second, and sums stay at hand. */
-  work[2] = (cli_bench_work){(reference + sizeof(conic_box)) * drawn + footprints, 0.0,
+  work[2] = (cli_bench_work){sizeof(conic_tile_entry) * drawn + footprints, 0.0,
                              (coverage + (passes == 1 ? KEEP_NEAREST : RAISE_THRESHOLD)) * fragments};
   work[3] = (cli_bench_work){sizeof(conic_surface) * drawn, 0.0, (SEE + WEIGH + SUM) * fragments};
   if (passes == 1) /* the colours of those that are nearest somewhere */

@@ -40,6 +40,8 @@ static int gather_fragment(const conic_view *view, const conic_footprint *footpr
   }
   if (footprint->s3 == 0.0f) {
     conic_ray ray = rays[footprint->i_ray];
+    if (conic_is_laplace(footprint))
+      return conic_laplace_fragment(view, footprint, &ray, dx, dy, fragment);
     return conic_ray_fragment(view, footprint, &ray, dx, dy, fragment);
   }
   conic_row row = conic_row_begin(footprint, dy);

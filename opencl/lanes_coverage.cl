@@ -36,7 +36,8 @@ static lanes_row lanes_row_begin(__global const conic_footprint *footprint, int 
 static int16 lanes_clip_keeps(__global const conic_clip_record *clip, lanes dx, lanes dy) {
   int16 first = (clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx >= 0.0f;
   int16 second = (clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx >= 0.0f;
-  return clip->is_or ? first | second : first & second;
+  int16 within = (dx >= clip->dx_low) & (dx <= clip->dx_high) & (dy >= clip->dy_low) & (dy <= clip->dy_high);
+  return (clip->is_or ? first | second : first & second) & within;
 }
 
 /* conic_ray_fragment */
@@ -64,13 +65,33 @@ static void lanes_ray_fragment(const conic_view *view, __global const conic_foot
   fragment->is_covered = is_covered & (fragment->q < view->support);
 }
 
+/* Lane by lane, by the shared text: such splats are few. */
+static void lanes_laplace_fragment(const conic_view *view, __global const conic_footprint *footprint,
+                                   __global const conic_ray *ray, lanes dx, lanes dy, lanes_fragment *fragment) {
+  conic_footprint own_footprint = *footprint;
+  conic_ray own_ray = *ray;
+  for (int lane = 0; lane < 16; lane++) {
+    conic_fragment at = {0, 0, 0, 0};
+    int is_covered = conic_laplace_fragment(view, &own_footprint, &own_ray, ((const float *)&dx)[lane],
+                                            ((const float *)&dy)[lane], &at);
+    ((float *)&fragment->q)[lane] = at.q;
+    ((float *)&fragment->iz)[lane] = at.iz;
+    ((float *)&fragment->plane_iz)[lane] = at.plane_iz;
+    ((float *)&fragment->scale)[lane] = at.scale;
+    ((int *)&fragment->is_covered)[lane] = is_covered ? -1 : 0;
+  }
+}
+
 /* conic_fragment_at, for the block whose first pixel has column x. `clip` is only read where there are clip lines. */
 static void lanes_fragment_at(const conic_view *view, __global const conic_footprint *footprint,
                               __global const conic_ray *ray, __global const conic_clip_record *clip,
                               const lanes_row *row, int x, lanes_fragment *fragment) {
   lanes dx = (((float)x + LANE_COLUMNS) - footprint->x) + footprint->dx0;
   if (footprint->s3 == 0.0f) {
-    lanes_ray_fragment(view, footprint, ray, dx, row->dy, fragment);
+    if (footprint->s2 != 0.0f) /* conic_is_laplace */
+      lanes_laplace_fragment(view, footprint, ray, dx, row->dy, fragment);
+    else
+      lanes_ray_fragment(view, footprint, ray, dx, row->dy, fragment);
   } else {
     lanes major = footprint->s1 * dx + row->q_offset;
     fragment->q = major * major + row->q_rest;

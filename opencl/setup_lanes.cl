@@ -110,6 +110,13 @@ static int16 want_ray(const conic_view *view, const group_splats *g, const group
   return thick & (view->method == CONIC_METHOD_AUTO ? are_coarse(view, g, s) : g->reach >= 0.25f);
 }
 
+/* is_steep */
+static int16 are_steep(const conic_view *view, const group_splats *g) {
+  float limit = CONIC_AUTO_CHANGE * CONIC_AUTO_CHANGE;
+  lanes nx = g->uz * g->vy - g->uy * g->vz, ny = g->ux * g->vz - g->vx * g->uz;
+  return view->prefilter * (nx * nx + ny * ny) > limit * (g->area * g->area);
+}
+
 /* The variance on the screen, which formula, and how far the box reaches. */
 static void measure(const conic_view *view, const group_splats *g, group_screen *s) {
   float h = view->prefilter;
@@ -272,6 +279,8 @@ static void set_up_group(const conic_view *view, const lanes *columns, int16 ind
   set_surfaces(view, columns, &g, index, r);
   /* A determinant that float cannot hold is not culled by a box of float's. */
   int16 odd = usual & ~(squares & are_fine(columns, s, r)) & (on_screen | ~squares);
+  if (view->method == CONIC_METHOD_AUTO) /* drawn by Laplace's method */
+    odd |= usual & s->by_ray & on_screen & are_steep(view, &g);
   verdict->unusual = odd | ~(g.usual | g.behind);
   verdict->drawn = usual & on_screen & ~odd;
 }

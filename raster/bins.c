@@ -41,7 +41,7 @@ static size_t rounded(size_t bytes) {
 size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_clips) {
   size_t n = chunk_size + CONIC_PROJECT_SLACK;
   return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_surface)) + rounded(n * sizeof(conic_box)) +
-         3 * rounded(n * sizeof(uint32_t)) + 2 * rounded(bins->n_tiles * sizeof(uint32_t)) +
+         4 * rounded(n * sizeof(uint32_t)) + 2 * rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
          (has_clips ? rounded(chunk_size * sizeof(conic_clip_record)) : 0);
 }
 
@@ -67,26 +67,46 @@ void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips
   projected->boxes = take(&left, n * sizeof *projected->boxes);
   sorter->tile = take(&left, n * sizeof(uint32_t));
   sorter->word = take(&left, n * sizeof(uint32_t));
+  sorter->beyond = take(&left, n * sizeof(uint32_t));
   sorter->order = take(&left, n * sizeof(uint32_t));
-  sorter->next_record = take(&left, bins->n_tiles * sizeof(uint32_t));
-  sorter->next_entry = take(&left, bins->n_tiles * sizeof(uint32_t));
+  sorter->next_record = take(&left, (bins->n_tiles + 1) * sizeof(uint32_t));
+  sorter->next_entry = take(&left, (bins->n_tiles + 1) * sizeof(uint32_t));
   if (has_clips)
     projected->clips = take(&left, chunk_size * sizeof *projected->clips);
 }
 
+/* The tiles beyond a record's home, the next in x, in y and in both; n_tiles for those that it does not meet. It is no
+ * matter of branches, which could not foresee them. */
+static inline void tiles_beyond(const conic_bins *bins, uint32_t home, uint32_t beyond, uint32_t tiles[3]) {
+  uint32_t none = (uint32_t)bins->n_tiles, below = home + (uint32_t)bins->n_tiles_x;
+  tiles[0] = beyond & CONIC_BEYOND_X ? home + 1 : none;
+  tiles[1] = beyond & CONIC_BEYOND_Y ? below : none;
+  tiles[2] = (beyond & CONIC_BEYOND_X) && (beyond & CONIC_BEYOND_Y) ? below + 1 : none;
+}
+
+static __attribute__((noinline)) void count_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i) {
+  uint32_t tiles[3];
+  if (__builtin_expect(!(sorter->beyond[i] & CONIC_BEYOND_MORE), 1)) {
+    tiles_beyond(bins, sorter->tile[i], sorter->beyond[i], tiles);
+    for (int k = 0; k < 3; k++)
+      sorter->next_entry[tiles[k]]++;
+    return;
+  }
+  tile_range range = tiles_of(bins, &sorter->projected.boxes[i]);
+  for (int y = range.y_begin; y < range.y_end; y++)
+    for (int x = range.x_begin; x < range.x_end; x++)
+      sorter->next_entry[y * bins->n_tiles_x + x] += x != range.x_begin || y != range.y_begin;
+}
+
 /* Counts records by their tile, and the entries of other tiles. */
-static void count(const conic_bins *bins, conic_sorter *sorter) {
-  uint32_t *next_record = sorter->next_record, *next_entry = sorter->next_entry;
-  memset(next_record, 0, bins->n_tiles * sizeof *next_record);
-  memset(next_entry, 0, bins->n_tiles * sizeof *next_entry);
+static void count(const conic_bins *bins, const conic_sorter *sorter) {
+  uint32_t *next_record = sorter->next_record;
+  memset(next_record, 0, (bins->n_tiles + 1) * sizeof *next_record);
+  memset(sorter->next_entry, 0, (bins->n_tiles + 1) * sizeof *sorter->next_entry);
   for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++) {
     next_record[sorter->tile[i]]++;
-    if (__builtin_expect(sorter->word[i] != 0, 1))
-      continue;
-    tile_range range = tiles_of(bins, &sorter->projected.boxes[i]);
-    for (int y = range.y_begin; y < range.y_end; y++)
-      for (int x = range.x_begin; x < range.x_end; x++)
-        next_entry[y * bins->n_tiles_x + x] += x != range.x_begin || y != range.y_begin;
+    if (__builtin_expect(sorter->beyond[i] != 0, 0))
+      count_beyond(bins, sorter, i);
   }
 }
 
@@ -100,31 +120,46 @@ static uint32_t place(const conic_bins *bins, conic_sorter *sorter, uint32_t *ti
     n_records += records;
     n_entries += entries;
   }
-  tile_begin[bins->n_tiles] = n_entries;
+  tile_begin[bins->n_tiles] = sorter->next_entry[bins->n_tiles] = n_entries;
   return n_entries;
 }
 
-/* The entries of a record in more than one tile. */
-static void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record, uint32_t *next,
-                      conic_tile_entry *entries) {
+/* The entries of a record in all of its tiles, which are many. Kept out of the loop, which needs the registers. */
+static __attribute__((noinline)) void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record,
+                                                uint32_t *next, conic_tile_entry *entries) {
   tile_range range = tiles_of(bins, box);
   for (int y = range.y_begin; y < range.y_end; y++)
-    for (int x = range.x_begin; x < range.x_end; x++) {
+    for (int x = range.x_begin; x < range.x_end; x++)
       entries[next[y * bins->n_tiles_x + x]++] = (conic_tile_entry){i_record, word_in(bins, box, x, y)};
-    }
+}
+
+/* Those beyond its home; what it does not meet is written to the place behind all. */
+static __attribute__((noinline)) void enter_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i,
+                                                   uint32_t i_record, conic_tile_entry *entries) {
+  uint32_t *next = sorter->next_entry, tiles[3], word = sorter->word[i], beyond = sorter->beyond[i];
+  uint32_t columns = (beyond & 0xff) << 8, rows = ((UINT32_C(2) << (beyond >> 8 & 0xff)) - 1) << 16;
+  uint32_t words[3] = {columns | (word & 0xffff0000), (word & 0xffff) | rows, columns | rows};
+  tiles_beyond(bins, sorter->tile[i], beyond, tiles);
+  for (int k = 0; k < 3; k++) {
+    entries[next[tiles[k]]] = (conic_tile_entry){i_record, words[k]};
+    next[tiles[k]] += tiles[k] < bins->n_tiles;
+  }
 }
 
 /* Finds each record's place, and makes the entries that refer to it. */
-static void enter(const conic_bins *bins, conic_sorter *sorter, size_t first, conic_tile_entry *entries) {
+static void enter(const conic_bins *bins, const conic_sorter *sorter, size_t first, conic_tile_entry *entries) {
   uint32_t *next_record = sorter->next_record, *next_entry = sorter->next_entry, *order = sorter->order;
-  const uint32_t *tile = sorter->tile, *word = sorter->word;
+  const uint32_t *tile = sorter->tile, *word = sorter->word, *beyond = sorter->beyond;
   for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++) {
     uint32_t at = next_record[tile[i]]++, i_record = (uint32_t)first + at;
     order[at] = (uint32_t)i;
-    if (word[i])
-      entries[next_entry[tile[i]]++] = (conic_tile_entry){i_record, word[i]};
-    else
+    if (__builtin_expect((beyond[i] & CONIC_BEYOND_MORE) != 0, 0)) {
       enter_all(bins, &sorter->projected.boxes[i], i_record, next_entry, entries);
+      continue;
+    }
+    entries[next_entry[tile[i]]++] = (conic_tile_entry){i_record, word[i]};
+    if (__builtin_expect(beyond[i] != 0, 0))
+      enter_beyond(bins, sorter, i, i_record, entries);
   }
 }
 
@@ -141,9 +176,10 @@ void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = chunk->first;
   kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, sorter->tile,
-                sorter->word);
+                sorter->word, sorter->beyond);
   count(bins, sorter);
   size_t n_entries = place(bins, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
+  n_entries++; /* one place behind all */
   size_t begin = atomic_fetch_add(&bins->n_used, n_entries);
   *chunk = sorter->chunk;
   chunk->first = first;
@@ -156,19 +192,27 @@ void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_
   copy_clips(sorter, first, projected);
 }
 
-size_t conic_bins_length(const conic_bins *bins, size_t i_tile) {
-  size_t length = 0;
+size_t conic_bins_measure(conic_bins *bins) {
+  size_t greatest = 0;
+  memset(bins->length, 0, bins->n_tiles * sizeof *bins->length);
   for (size_t i = 0; i < bins->n_chunks; i++) {
-    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    length += begin[1] - begin[0];
+    const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1);
+    for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+      bins->length[i_tile] += begin[i_tile + 1] - begin[i_tile];
   }
-  return length;
+  for (size_t i_tile = 0; i_tile < bins->n_tiles; i_tile++)
+    greatest = bins->length[i_tile] > greatest ? bins->length[i_tile] : greatest;
+  return greatest;
 }
 
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries) {
   for (size_t i = 0; i < bins->n_chunks; i++) {
     const uint32_t *begin = bins->tile_begin + i * (bins->n_tiles + 1) + i_tile;
-    memcpy(entries, bins->entries + bins->chunk_begin[i] + begin[0], (begin[1] - begin[0]) * sizeof *entries);
-    entries += begin[1] - begin[0];
+    const conic_tile_entry *from = bins->entries + bins->chunk_begin[i] + begin[0];
+    size_t n = begin[1] - begin[0];
+    /* Pairs in place of a call: a chunk has some dozen entries in a tile. There is a place behind all. */
+    for (size_t k = 0; k < n; k += 2)
+      memcpy(entries + k, from + k, 2 * sizeof *entries);
+    entries += n;
   }
 }

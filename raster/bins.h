@@ -16,6 +16,7 @@ typedef struct conic_bins {
   size_t n_tiles, n_chunks;
   uint32_t *tile_begin; /* [chunk][n_tiles + 1]: where a tile's entries begin among the chunk's */
   size_t *chunk_begin;  /* [chunk]: where the chunk's entries begin */
+  size_t *length;       /* [n_tiles]: how many entries a tile has */
   conic_tile_entry *entries;
   size_t n_room;        /* so many entries */
   atomic_size_t n_used; /* or needed, where that is more than there is room for */
@@ -25,20 +26,34 @@ typedef struct conic_bins {
 typedef struct conic_sorter {
   conic_projected projected; /* one chunk */
   conic_chunk chunk;
-  uint32_t *tile, *word;              /* of each record: as conic_key_of */
+  uint32_t *tile, *word, *beyond;     /* of each record: its key */
   uint32_t *order;                    /* of each place in the order of tiles: the record that goes there */
   uint32_t *next_record, *next_entry; /* [n_tiles] */
 } conic_sorter;
 
-/* The tile that holds a box's first pixel; and the word of its entry where that is all the tiles it meets, else 0. */
-static inline void conic_key_of(const conic_box *box, int tile_bits, int n_tiles_x, uint32_t *tile, uint32_t *word) {
+/* Where a box goes: the tile that holds its first pixel, the word there, and what is beyond that tile: 0 for most
+ * boxes. Bits 0 … 7 and 8 … 15 then are the last column and row of blocks that it meets in the next tile along each
+ * axis. */
+typedef struct conic_key {
+  uint32_t tile, word, beyond;
+} conic_key;
+
+#define CONIC_BEYOND_X (UINT32_C(1) << 29)    /* it meets the next tile in x … */
+#define CONIC_BEYOND_Y (UINT32_C(1) << 30)    /* … in y … */
+#define CONIC_BEYOND_MORE (UINT32_C(1) << 31) /* … and tiles after those. */
+
+static inline conic_key conic_key_of(const conic_box *box, int tile_bits, int n_tiles_x) {
   uint32_t x_begin = box->x_begin, x_last = box->x_end - 1u, y_begin = box->y_begin, y_last = box->y_end - 1u;
-  uint32_t in_tile = (1u << tile_bits) - 1;
-  *tile = (y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits);
-  *word = 0;
-  if (((x_begin ^ x_last) | (y_begin ^ y_last)) >> tile_bits == 0)
-    *word = conic_word_of((x_begin & in_tile) / CONIC_BLOCK_EDGE, (x_last & in_tile) / CONIC_BLOCK_EDGE,
-                          (y_begin & in_tile) / CONIC_BLOCK_EDGE, (y_last & in_tile) / CONIC_BLOCK_EDGE);
+  uint32_t in_tile = (1u << tile_bits) - 1, last_block = in_tile / CONIC_BLOCK_EDGE;
+  uint32_t n_x = (x_last >> tile_bits) - (x_begin >> tile_bits), n_y = (y_last >> tile_bits) - (y_begin >> tile_bits);
+  uint32_t column = (x_last & in_tile) / CONIC_BLOCK_EDGE, row = (y_last & in_tile) / CONIC_BLOCK_EDGE;
+  conic_key key = {(y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits), 0, 0};
+  key.word = conic_word_of((x_begin & in_tile) / CONIC_BLOCK_EDGE, n_x ? last_block : column,
+                           (y_begin & in_tile) / CONIC_BLOCK_EDGE, n_y ? last_block : row);
+  if (n_x || n_y)
+    key.beyond = column | row << 8 | (n_x ? CONIC_BEYOND_X : 0) | (n_y ? CONIC_BEYOND_Y : 0) |
+                 (n_x > 1 || n_y > 1 ? CONIC_BEYOND_MORE : 0);
+  return key;
 }
 
 /* The bytes of a sorter for chunks of so many splats; with clip lines if has_clips. */
@@ -53,10 +68,12 @@ void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips
 void conic_bins_sort(conic_bins *bins, const struct conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected);
 
-/* How many entries a tile has. */
-size_t conic_bins_length(const conic_bins *bins, size_t i_tile);
+/* Finds how many entries each tile has; returns the most. */
+size_t conic_bins_measure(conic_bins *bins);
 
-/* Writes them to `entries`, in file order. */
+/* Writes a tile's entries, in file order; up to CONIC_GATHER_SLACK more places may be written to. */
 void conic_bins_gather(const conic_bins *bins, size_t i_tile, conic_tile_entry *entries);
+
+#define CONIC_GATHER_SLACK 1
 
 #endif

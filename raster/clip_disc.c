@@ -20,7 +20,7 @@ static outline outline_of(const conic_view *view, const conic_disc *disc) {
   return made;
 }
 
-static int solve(double a, double b, double c, double solutions[2][2]) {
+int conic_clip_solve(double a, double b, double c, double solutions[2][2]) {
   double length_squared = a * a + b * b, rest = length_squared - c * c;
   if (!(length_squared > 0.0) || !(rest >= 0.0))
     return 0;
@@ -73,11 +73,11 @@ int conic_clip_disc(const conic_view *view, const conic_disc *disc, const double
   along[1] = direction_px[0] * o.cosine[0] + direction_px[1] * o.cosine[1];
   along[2] = direction_px[0] * o.sine[0] + direction_px[1] * o.sine[1];
   const double z[3] = {o.constant[2], o.cosine[2], o.sine[2]};
-  if (solve(along[2] * z[0] - along[0] * z[2], along[0] * z[1] - along[1] * z[0], along[2] * z[1] - along[1] * z[2],
-            solutions))
+  if (conic_clip_solve(along[2] * z[0] - along[0] * z[2], along[0] * z[1] - along[1] * z[0],
+                       along[2] * z[1] - along[1] * z[2], solutions))
     for (int i = 0; i < 2; i++)
       consider_angle(&found, view, &o, solutions[i], 0);
-  if (solve(z[1], z[2], z[0] - view->near_z, solutions))
+  if (conic_clip_solve(z[1], z[2], z[0] - view->near_z, solutions))
     for (int i = 0; i < 2; i++)
       consider_angle(&found, view, &o, solutions[i], 1);
   *least = found.least;

@@ -14,4 +14,7 @@ typedef struct conic_screen_point {
 int conic_clip_disc(const conic_view *view, const conic_disc *disc, const double direction_px[2],
                     conic_screen_point *least, conic_screen_point *most);
 
+/* The two (cos θ, sin θ) of solutions where a cos θ + b sin θ + c = 0; 0 where there are none. */
+int conic_clip_solve(double a, double b, double c, double solutions[2][2]);
+
 #endif

@@ -193,7 +193,7 @@ static int is_out_of_range(const conic_contributions *c, const conic_footprint *
   if (conic_is_clipped(footprint) &&
       !conic_clip_keeps(&c->projected.clips[footprint - c->projected.footprints], dx, dy))
     return 1;
-  if (footprint->s3 != 0.0f)
+  if (footprint->s3 != 0.0f || conic_is_laplace(footprint))
     return 0;
   const conic_ray *ray = &c->projected.rays[footprint->i_ray];
   float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;

@@ -5,6 +5,7 @@
 
 #include "raster/band.h"
 #include "raster/clip_lines.h"
+#include "raster/laplace.h"
 
 /* A splat on one row of pixels. */
 typedef struct conic_row {
@@ -90,12 +91,27 @@ static inline float conic_final_weight(const conic_view *view, const conic_footp
   return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
 }
 
+/* The same at the place that the pixel mostly sees. */
+static inline int conic_laplace_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                         float dx, float dy, conic_fragment *fragment) {
+  conic_laplace at;
+  if (!conic_laplace_at(view, footprint, ray, dx, dy, &at))
+    return 0;
+  fragment->q = at.q;
+  fragment->iz = conic_clamp_iz(footprint, at.iz);
+  fragment->plane_iz = at.plane_iz;
+  fragment->scale = at.scale;
+  return 1;
+}
+
 /* The splat at a pixel: 1 where it covers it. */
 static inline int conic_fragment_at(const conic_view *view, const conic_projected *projected,
                                     const conic_footprint *footprint, int x, int y, conic_fragment *fragment) {
   float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
   if (conic_is_clipped(footprint) && !conic_clip_keeps(&projected->clips[footprint - projected->footprints], dx, dy))
     return 0;
+  if (conic_is_laplace(footprint))
+    return conic_laplace_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   if (footprint->s3 == 0.0f)
     return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   conic_row row = conic_row_begin(footprint, dy);

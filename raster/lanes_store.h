@@ -32,6 +32,19 @@ CONIC_INLINE quad lanes_column(lanes value, int column) {
   return rows;
 }
 
+/* Copies a row of pixels past the caches, whole lines where it can. */
+CONIC_INLINE void lanes_stream_row(float *to, const float *from, size_t n) {
+  size_t i = 0;
+#if defined(__AVX512F__)
+  for (; (uintptr_t)to % 64 == 0 && i + 16 <= n; i += 16)
+    _mm512_stream_ps(to + i, _mm512_loadu_ps(from + i));
+#elif defined(__AVX2__)
+  for (; (uintptr_t)to % 32 == 0 && i + 8 <= n; i += 8)
+    _mm256_stream_ps(to + i, _mm256_loadu_ps(from + i));
+#endif
+  conic_stream_copy(to + i, from + i, (n - i) * sizeof *to);
+}
+
 /* a[0…3] become rows of four. */
 CONIC_INLINE void quad_transpose(quad a[4]) {
   quad low01 = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5),
@@ -56,6 +69,24 @@ CONIC_INLINE void lanes_pixels(const lanes channels[4], __m512 rows[4]) {
   rows[1] = _mm512_shuffle_ps(low01, low23, 0xee);
   rows[2] = _mm512_shuffle_ps(high01, high23, 0x44);
   rows[3] = _mm512_shuffle_ps(high01, high23, 0xee);
+}
+
+/* Eight fields of the records that the lanes name. */
+CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *indices, lanes fields[8]) {
+  for (int half = 0; half < 2; half++) {
+    lanes quads[4];
+    __m512 rows[4];
+    const float *from = records + 4 * half;
+    for (int row = 0; row < 4; row++) {
+      __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(from + (size_t)indices[row] * 8));
+      four = _mm512_insertf32x4(four, _mm_loadu_ps(from + (size_t)indices[4 + row] * 8), 1);
+      four = _mm512_insertf32x4(four, _mm_loadu_ps(from + (size_t)indices[8 + row] * 8), 2);
+      quads[row] = (lanes)_mm512_insertf32x4(four, _mm_loadu_ps(from + (size_t)indices[12 + row] * 8), 3);
+    }
+    lanes_pixels(quads, rows);
+    for (int field = 0; field < 4; field++)
+      fields[4 * half + field] = (lanes)rows[field];
+  }
 }
 
 CONIC_INLINE void lanes_store_quads(float *to, size_t stride, const lanes *channels) {
@@ -145,6 +176,15 @@ CONIC_INLINE void lanes_append_pairs(uint32_t *to, lanes_mask mask, index_lanes 
 }
 
 #else
+
+CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *indices, lanes fields[8]) {
+  float columns[8][CONIC_LANES];
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    for (int field = 0; field < 8; field++)
+      columns[field][lane] = records[(size_t)indices[lane] * 8 + (size_t)field];
+  for (int field = 0; field < 8; field++)
+    fields[field] = lanes_load(columns[field]);
+}
 
 CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
   float records[CONIC_LANES][16];

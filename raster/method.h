@@ -23,6 +23,8 @@ static inline int conic_method_has_ellipses(conic_method method) {
  * 0.68·A·√q for a centre that is √q standard deviations from where it should be (docs/picture.md, Auto). */
 #define CONIC_AUTO_ERROR 4e-3f
 #define CONIC_AUTO_STEEPNESS 0.68f
+/* By how much of itself inverse depth may change over the filter's standard deviation where `ray` is still good. */
+#define CONIC_AUTO_CHANGE 1e-2f
 
 /* Fills splats_by_method, once what was drawn and what of it by a fallback is counted. */
 void conic_method_count(conic_method method, uint64_t n_rays, conic_render_statistics *statistics);

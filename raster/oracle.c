@@ -109,7 +109,7 @@ static double peak_of(const oracle_view *view, const oracle_candidate *candidate
   double values[ORACLE_N_VALUES];
   if (!candidate->is_drawn)
     return 0.0;
-  if (candidate->shape.formula != ORACLE_RAY)
+  if (candidate->shape.formula != ORACLE_RAY && candidate->shape.formula != ORACLE_LAPLACE)
     return candidate->shape.amplitude;
   if (!exact->is_center_in_front)
     return 0.0;

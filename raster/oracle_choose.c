@@ -13,7 +13,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   view.method = (int)options->method;
   view.thin_px = 0.5;
   if (options->method == CONIC_METHOD_AUTO)
-    view.thin_px = oracle_max(0.25, sqrt(1.25 * view.prefilter) / view.cutoff);
+    view.thin_px = 0.125 * sqrt(oracle_max(view.prefilter, 1.0));
   view.cull_back = options->cull_back;
   return view;
 }
@@ -34,6 +34,13 @@ static double conic_error(const oracle_view *view, const oracle_placed *s, const
   return ORACLE_AUTO_STEEPNESS * shape->amplitude * sqrt(oracle_max(oracle_form(shape->inverse, offset), 0.0));
 }
 
+/* By how much of itself, as it is at p, the plane's inverse depth changes over the filter's standard deviation. */
+static double change(const oracle_view *view, const oracle_placed *s, const double normal[3]) {
+  double gx = normal[0] / view->camera.fx, gy = normal[1] / view->camera.fy;
+  double distance = fabs(oracle_dot(normal, s->p));
+  return sqrt((gx * gx + gy * gy) * view->prefilter) * s->p[2] / oracle_max(distance, 1e-300);
+}
+
 void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double answers[ORACLE_N_QUESTIONS]) {
   double normal[3], reach = view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]);
   oracle_cross(s->tu, s->tv, normal);
@@ -42,7 +49,7 @@ void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double an
   answers[ORACLE_IS_BACK] = facing;
   answers[ORACLE_REACHES_NEAR] = reach - (s->p[2] - view->near_z);
   answers[ORACLE_IS_BAND_NARROW] = view->cutoff - band_px(view, s, reach, normal);
-  answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = answers[ORACLE_IS_COARSE] = -1.0;
+  answers[ORACLE_IS_THIN] = answers[ORACLE_IS_CLOSE] = answers[ORACLE_IS_COARSE] = answers[ORACLE_IS_STEEP] = -1.0;
   answers[ORACLE_HAS_NO_PLANE] = -oracle_length(normal);
   int is_dot = view->method == CONIC_METHOD_DISC || view->method == CONIC_METHOD_POINT; /* those have an area always */
   if (view->prefilter == 0.0 && answers[ORACLE_REACHES_NEAR] < 0.0 && !is_dot)
@@ -54,13 +61,15 @@ void conic_oracle_ask(const oracle_view *view, const oracle_placed *s, double an
     r.yy -= view->prefilter;
     answers[ORACLE_IS_COARSE] = conic_error(view, s, &shape) / ORACLE_AUTO_ERROR - 1.0;
     answers[ORACLE_IS_THIN] = view->thin_px - sqrt(oracle_lesser_eigenvalue(r));
+    answers[ORACLE_IS_STEEP] = change(view, s, normal) / ORACLE_AUTO_CHANGE - 1.0;
     answers[ORACLE_IS_CLOSE] = reach / s->p[2] - 0.25;
   }
 }
 
 void conic_oracle_answer(const double answers[ORACLE_N_QUESTIONS], int is_so[ORACLE_N_QUESTIONS]) {
   for (int i = 0; i < ORACLE_N_QUESTIONS; i++) /* on the very border, as the page has it */
-    is_so[i] = i == ORACLE_IS_BACK || i == ORACLE_IS_THIN || i == ORACLE_IS_BAND_NARROW || i == ORACLE_IS_COARSE
+    is_so[i] = i == ORACLE_IS_BACK || i == ORACLE_IS_THIN || i == ORACLE_IS_BAND_NARROW || i == ORACLE_IS_COARSE ||
+                       i == ORACLE_IS_STEEP
                    ? answers[i] > 0.0
                    : answers[i] >= 0.0;
 }
@@ -78,8 +87,10 @@ oracle_formula conic_oracle_choose(const oracle_view *view, const int is_so[ORAC
     return ORACLE_AFFINE;
   if (is_so[ORACLE_IS_THIN])
     return ORACLE_CONIC;
+  if (view->method == CONIC_METHOD_AUTO && is_so[ORACLE_IS_COARSE])
+    return is_so[ORACLE_IS_STEEP] ? ORACLE_LAPLACE : ORACLE_RAY;
   if (view->method == CONIC_METHOD_AUTO)
-    return is_so[ORACLE_IS_COARSE] ? ORACLE_RAY : ORACLE_CONIC;
+    return ORACLE_CONIC;
   if (view->method == CONIC_METHOD_RAY || is_so[ORACLE_IS_CLOSE])
     return ORACLE_RAY;
   return ORACLE_CONIC;

@@ -6,8 +6,10 @@
 
 typedef struct oracle_clip {
   int n_lines, is_or;
-  int is_unsure;         /* which side is kept hangs on roundings */
-  double lines[2][3];    /* signed distance in pixels at (x, y): 0·x + 1·y + 2; the overlap not in it */
+  int is_unsure;      /* which side is kept hangs on roundings */
+  double lines[2][3]; /* signed distance in pixels at (x, y): 0·x + 1·y + 2; the overlap not in it */
+  int has_box;
+  double box[2][2];      /* what is left of the disc, widened: minimum and maximum in x, y */
   double position_error; /* of a distance, in pixels: from the splat's place being formed in double */
 } oracle_clip;
 

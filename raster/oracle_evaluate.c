@@ -68,6 +68,64 @@ static void evaluate_ray(const oracle_view *view, const oracle_shape *shape, dou
   values[ORACLE_IZ_PLANE] = at.iz;
 }
 
+/* Whether the place is the disc's, or not far from it, and before the eye: how far u² is from what counts, -1 where it
+ * is behind. */
+static double within_reach(const oracle_view *view, const ray_parameters *at) {
+  double limit = 2.0 * view->cutoff * view->cutoff;
+  return at->iz > 0.0 ? limit - at->u[0] * at->u[0] - at->u[1] * at->u[1] : -1.0;
+}
+
+/* Half the second derivatives of u² + (y - x)²/h at the place, times h: u = (U, V)/iz has the second derivatives
+ * -(J_i g_j + J_j g_i)/iz. */
+static oracle_symmetric half_hessian(const oracle_view *view, const oracle_shape *shape, const ray_parameters *at) {
+  double steepness[2] = {shape->from_screen[0][2] / at->iz, shape->from_screen[1][2] / at->iz}, n[2][2];
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      n[i][j] = i == j ? 1.0 : 0.0;
+      for (int k = 0; k < 2; k++)
+        n[i][j] +=
+            view->prefilter * (at->jacobian[k][i] * at->jacobian[k][j] -
+                               at->u[k] * (at->jacobian[k][i] * steepness[j] + at->jacobian[k][j] * steepness[i]));
+    }
+  return (oracle_symmetric){n[0][0], n[0][1], n[1][1]};
+}
+
+/* The place that the pixel mostly sees, by the Jacobian at p; the pixel's own where that is none. */
+static ray_parameters find_pulled(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                                  double pull[2]) {
+  double offset[2] = {x - shape->center[0], y - shape->center[1]};
+  oracle_apply(shape->inverse, offset, pull);
+  pull[0] *= view->prefilter;
+  pull[1] *= view->prefilter;
+  ray_parameters at = find_parameters(view, shape, x - pull[0], y - pull[1]);
+  if (within_reach(view, &at) >= 0.0)
+    return at;
+  pull[0] = pull[1] = 0.0;
+  return find_parameters(view, shape, x, y);
+}
+
+static void evaluate_laplace(const oracle_view *view, const oracle_shape *shape, double x, double y,
+                             double values[ORACLE_N_VALUES]) {
+  double pull[2], u[2];
+  ray_parameters here = find_parameters(view, shape, x, y), at = find_pulled(view, shape, x, y, pull);
+  for (int i = 0; i < 2; i++)
+    u[i] = at.u[i] + at.jacobian[i][0] * pull[0] + at.jacobian[i][1] * pull[1];
+  double q = oracle_form(oracle_inverse(at.spread), u), plain = oracle_determinant(at.spread);
+  if (!(q < view->support) && here.iz > 0.0)
+    q = oracle_min(q, here.u[0] * here.u[0] + here.u[1] * here.u[1]);
+  double determinant = oracle_max(oracle_determinant(half_hessian(view, shape, &at)), 0.25 * plain);
+  values[ORACLE_MARGIN_Q] = view->support - q;
+  values[ORACLE_MARGIN_FRONT] = at.iz;
+  values[ORACLE_MARGIN_FAR] = values[ORACLE_MARGIN_NEAR] = within_reach(view, &at);
+  values[ORACLE_MARGIN_LEFT] = x - shape->box[0][0];
+  values[ORACLE_MARGIN_RIGHT] = shape->box[1][0] - x;
+  values[ORACLE_MARGIN_TOP] = y - shape->box[0][1];
+  values[ORACLE_MARGIN_BOTTOM] = shape->box[1][1] - y;
+  values[ORACLE_WEIGHT] = conic_oracle_kernel(&view->kernel, q) / sqrt(determinant);
+  values[ORACLE_IZ] = clamp_to(shape->range, at.iz);
+  values[ORACLE_IZ_PLANE] = here.iz;
+}
+
 /* The pixel that holds the place; of the four borders the upper and the left one are its own. */
 static void evaluate_point(const oracle_view *view, const oracle_shape *shape, double x, double y,
                            double values[ORACLE_N_VALUES]) {
@@ -89,6 +147,10 @@ void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, d
                            double values[ORACLE_N_VALUES]) {
   if (shape->formula == ORACLE_RAY) {
     evaluate_ray(view, shape, x, y, values);
+    return;
+  }
+  if (shape->formula == ORACLE_LAPLACE) {
+    evaluate_laplace(view, shape, x, y, values);
     return;
   }
   if (shape->formula == ORACLE_POINT) {
@@ -125,20 +187,28 @@ static void round_ray(const oracle_view *view, const oracle_shape *shape, double
                       const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
   const double(*rows)[3] = shape->from_screen;
-  ray_parameters at = find_parameters(view, shape, x, y);
+  double moved[2] = {0.0, 0.0};
+  ray_parameters at =
+      shape->formula == ORACLE_LAPLACE ? find_pulled(view, shape, x, y, moved) : find_parameters(view, shape, x, y);
   double reach_x = fabs(x - shape->center[0]), reach_y = fabs(y - shape->center[1]);
-  double sums[3], pull[2], error = 0.0;
+  double sums[3], u[2], pull[2], error = 0.0, within_error = 0.0;
   for (int i = 0; i < 3; i++)
     sums[i] = fabs(rows[0][i]) * reach_x + fabs(rows[1][i]) * reach_y + (i < 2 ? fabs(at.u[i] * at.iz) : fabs(at.iz));
-  oracle_apply(oracle_inverse(at.spread), at.u, pull);
+  for (int i = 0; i < 2; i++)
+    u[i] = at.u[i] + at.jacobian[i][0] * moved[0] + at.jacobian[i][1] * moved[1];
+  oracle_apply(oracle_inverse(at.spread), u, pull);
   for (int i = 0; i < 2; i++) {
     double u_error = (sums[i] + fabs(at.u[i]) * sums[2]) / fabs(at.iz);
+    within_error += 2.0 * unit * fabs(at.u[i]) * u_error;
+    u_error += fabs(at.jacobian[i][0] * moved[0]) + fabs(at.jacobian[i][1] * moved[1]);
     error += 2.0 * fabs(pull[i]) * u_error;
   }
   double spread = fabs(pull[0]) * sqrt(at.spread.xx) + fabs(pull[1]) * sqrt(at.spread.yy);
   errors[ORACLE_MARGIN_Q] = unit * (error + 2.0 * spread * spread * (1.0 + sums[2] / fabs(at.iz)));
   for (int i = ORACLE_MARGIN_FRONT; i <= ORACLE_MARGIN_NEAR; i++)
     errors[i] = unit * (sums[2] + gradient_length(shape) * view->reach_px);
+  if (shape->formula == ORACLE_LAPLACE)
+    errors[ORACLE_MARGIN_FAR] = errors[ORACLE_MARGIN_NEAR] = within_error;
   for (int i = ORACLE_MARGIN_LEFT; i <= ORACLE_MARGIN_BOTTOM; i++)
     errors[i] = unit * (reach_x + reach_y);
   errors[ORACLE_IZ] = errors[ORACLE_IZ_PLANE] = unit * sums[2];
@@ -149,7 +219,7 @@ void conic_oracle_rounding(const oracle_view *view, const oracle_shape *shape, d
                            const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES]) {
   for (int i = 0; i < ORACLE_N_VALUES; i++)
     errors[i] = 0.0;
-  if (shape->formula == ORACLE_RAY)
+  if (shape->formula == ORACLE_RAY || shape->formula == ORACLE_LAPLACE)
     round_ray(view, shape, x, y, values, errors);
   else if (shape->formula == ORACLE_POINT) {
     /* The place is formed in double. */

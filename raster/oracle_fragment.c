@@ -7,6 +7,7 @@ static int is_set_up_in_float(const oracle_view *view, const oracle_splat *splat
   switch (splat->formula) {
   case ORACLE_CONIC:
   case ORACLE_AFFINE:
+  case ORACLE_LAPLACE:
   case ORACLE_DISC:
     return 1;
   case ORACLE_RAY:

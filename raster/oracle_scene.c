@@ -96,6 +96,7 @@ static void answer_errors(const oracle_view *view, const oracle_placed *placed,
   errors[ORACLE_IS_BEHIND] = errors[ORACLE_REACHES_NEAR] = unit * (fabs(placed->p[2]) + reach + view->near_z);
   errors[ORACLE_IS_BAND_NARROW] = unit * view->cutoff;
   errors[ORACLE_IS_CLOSE] = unit;
+  errors[ORACLE_IS_STEEP] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_STEEP]));
   errors[ORACLE_IS_COARSE] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_COARSE]));
   oracle_shape shape;
   if (conic_oracle_shape(view, placed, ORACLE_CONIC, &shape)) {

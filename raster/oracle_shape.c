@@ -171,6 +171,23 @@ static int set_ray(const oracle_view *view, const oracle_placed *s, oracle_shape
   return 1;
 }
 
+/* A ray that counts its pixels from p's place, with the variance that the Jacobian there gives. */
+static int set_laplace(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
+  const double *axes[2] = {s->tu, s->tv};
+  if (!set_ray(view, s, shape))
+    return 0;
+  shape->variance = (oracle_symmetric){view->prefilter, 0.0, view->prefilter};
+  for (int i = 0; i < 2; i++) {
+    double t[2];
+    project_axis(&view->camera, s->p, axes[i], t);
+    shape->variance.xx += t[0] * t[0];
+    shape->variance.xy += t[0] * t[1];
+    shape->variance.yy += t[1] * t[1];
+  }
+  shape->inverse = oracle_inverse(shape->variance);
+  return 1;
+}
+
 /* The trace of the plane on the screen is the line n·d = 0. */
 static int set_segment(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
   double normal[3], f = view->cutoff;
@@ -214,6 +231,8 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
     set_affine(view, s, oracle_dot(normal, s->p), shape);
   else if (formula == ORACLE_RAY)
     is_set = set_ray(view, s, shape);
+  else if (formula == ORACLE_LAPLACE && s->p[2] > reach)
+    is_set = set_laplace(view, s, shape);
   else if (formula == ORACLE_SEGMENT)
     is_set = set_segment(view, s, shape);
   else if ((formula == ORACLE_DISC || formula == ORACLE_POINT) && s->p[2] > 0.0)

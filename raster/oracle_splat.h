@@ -30,6 +30,8 @@ typedef struct oracle_view {
 /* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/picture.md, Auto. */
 #define ORACLE_AUTO_ERROR 4e-3
 #define ORACLE_AUTO_STEEPNESS 0.68
+/* And the relative change of inverse depth over the filter's standard deviation from which on it draws by laplace. */
+#define ORACLE_AUTO_CHANGE 1e-2
 
 /* A view of the options; `near_z` is taken as given. */
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z);
@@ -44,6 +46,7 @@ typedef enum oracle_formula {
   ORACLE_CONIC,
   ORACLE_AFFINE,
   ORACLE_RAY,
+  ORACLE_LAPLACE,
   ORACLE_SEGMENT,
   ORACLE_DISC,
   ORACLE_POINT
@@ -57,6 +60,7 @@ enum {
   ORACLE_IS_BAND_NARROW, /* … and stands edge-on */
   ORACLE_IS_THIN,        /* the smaller standard deviation is below half a pixel, or what `auto` has for that */
   ORACLE_IS_COARSE,      /* conic's weights may be off by more than `auto` allows */
+  ORACLE_IS_STEEP,       /* the plane's inverse depth changes within a pixel's filter by more than `ray` follows */
   ORACLE_IS_CLOSE,       /* the disc is deep compared with its distance */
   ORACLE_HAS_NO_PLANE,   /* axes without a plane, or no area where nothing widens it */
   ORACLE_N_QUESTIONS
@@ -73,14 +77,15 @@ typedef struct oracle_shape {
   double range[2];    /* of inverse depth: far end, near end */
   double box[2][2];   /* the widened box: minimum and maximum in x, y; of what the formula may cover */
   double gradient[2]; /* of the plane's inverse depth per pixel; zero where it is infinite */
-  /* all; a ray's center is what its pixels are counted from, a point's the projected p, others' that of the ellipse */
+  /* all; a ray's or laplace's center is what its pixels are counted from, a point's the projected p, others' that of
+   * the ellipse */
   double center[2];
-  /* all but ray */
+  /* all but ray, laplace */
   double center_iz;
-  oracle_symmetric variance, inverse; /* V and V⁻¹ */
+  oracle_symmetric variance, inverse; /* V and V⁻¹; laplace: of the Jacobian at p */
   double slope[2];                    /* of iz: V⁻¹R′g */
   double amplitude;
-  /* ray: U, V, iz at the place (x, y) are row 0·x + row 1·y + row 2 */
+  /* ray, laplace: U, V, iz at the place (x, y) are row 0·x + row 1·y + row 2 */
   double from_screen[3][3];
 } oracle_shape;
 

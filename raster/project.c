@@ -179,6 +179,24 @@ static void set_limits(const conic_view *view, const conic_footprint *footprint,
   ray->dy_high = ((float)(box->y_end - 1) - footprint->y) + footprint->dy0;
 }
 
+/* Whether the perspective changes within one pixel's filter: |g|·√h·p_z above `auto`'s limit. */
+static int is_steep(const conic_view *view, const tangents *t) {
+  float limit = CONIC_AUTO_CHANGE * CONIC_AUTO_CHANGE, area = t->ux * t->vy - t->uy * t->vx;
+  float nx = t->uz * t->vy - t->uy * t->vz, ny = t->ux * t->vz - t->vx * t->uz;
+  return view->prefilter * (nx * nx + ny * ny) > limit * (area * area);
+}
+
+/* h·V⁻¹ of the Jacobian at p, for raster/laplace.h. */
+static void set_laplace(const conic_view *view, const tangents *t, conic_footprint *footprint, conic_ray *ray) {
+  float h = view->prefilter, area = t->ux * t->vy - t->uy * t->vx;
+  float rxx = t->ux * t->ux + t->vx * t->vx, rxy = t->ux * t->uy + t->vx * t->vy, ryy = t->uy * t->uy + t->vy * t->vy;
+  float scale = h / ((area * area + h * (rxx + ryy)) + h * h);
+  footprint->s2 = 1.0f;
+  ray->pull_xx = scale * (ryy + h);
+  ray->pull_xy = -(scale * rxy);
+  ray->pull_yy = scale * (rxx + h);
+}
+
 /* About the projected p, U, V and iz are made of what shearing to it gave: no cancellation, so that float will do
  * (docs/picture.md). The box is the projected outline's, widened. */
 static conic_outcome project_ray_before_near(const splat_setup *s, const tangents *t, const projected_kernel *k) {
@@ -206,6 +224,8 @@ static conic_outcome project_ray_before_near(const splat_setup *s, const tangent
   ray->v_dx = -(scale * t->uy);
   ray->v_dy = scale * t->ux;
   set_limits(view, footprint, s->box, ray);
+  if (view->method == CONIC_METHOD_AUTO && is_steep(view, t))
+    set_laplace(view, t, footprint, ray);
   return CONIC_DRAWN_RAY;
 }
 

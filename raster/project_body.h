@@ -269,6 +269,20 @@ CONIC_INLINE void set_rays(const group_splats *g, const group_screen *s, records
   }
 }
 
+/* is_steep and set_laplace of project.c. */
+CONIC_INLINE void set_laplaces(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
+  float h = view->prefilter;
+  lanes rxx = g->ux * g->ux + g->vx * g->vx, rxy = g->ux * g->uy + g->vx * g->vy, ryy = g->uy * g->uy + g->vy * g->vy;
+  lanes scale = h / ((g->area * g->area + h * (rxx + ryy)) + h * h);
+  lanes nx = g->uz * g->vy - g->uy * g->vz, ny = g->ux * g->vz - g->vx * g->uz;
+  float limit = CONIC_AUTO_CHANGE * CONIC_AUTO_CHANGE;
+  lanes_mask steep = s->by_ray & lanes_less(limit * (g->area * g->area), h * (nx * nx + ny * ny));
+  r->footprint[5] = lanes_select(steep, lanes_of(1.0f), r->footprint[5]);
+  r->ray[0] = lanes_select(steep, scale * (ryy + h), r->ray[0]);
+  r->ray[3] = lanes_select(steep, scale * (rxx + h), r->ray[3]);
+  r->ray[6] = lanes_select(steep, -(scale * rxy), r->ray[6]);
+}
+
 /* Returns 0, but NaN where the ray's record is not finite. */
 CONIC_INLINE lanes check_rays(const group_screen *s, const records *r) {
   lanes not_finite = lanes_of(0.0f);
@@ -379,6 +393,8 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
     not_finite += set_dots(view, &g, s, r);
   else
     not_finite += set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
+  if (view->method == CONIC_METHOD_AUTO && lanes_any(s->by_ray))
+    set_laplaces(view, &g, s, r);
   set_nearness(view, &g, longer, r);
   lanes opacity = lanes_load(from->columns[OPACITY] + at);
   r->footprint[15] *= opacity;

@@ -39,11 +39,27 @@ static inline int conic_box_is_empty(const conic_box *box) {
   return box->x_begin >= box->x_end || box->y_begin >= box->y_end;
 }
 
-/* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel. */
+/* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel.
+ *
+ * Where the footprint's s2 is not 0 (raster/laplace.h) the reference is the projected p, so that u0 = v0 = 0 and no
+ * range of iz is needed. Their places hold h·V⁻¹ of the Jacobian at p: what it makes of (dx, dy) is how far from the
+ * pixel the place is that it mostly sees. */
 typedef struct conic_ray {
-  float u0, u_dx, u_dy;
-  float v0, v_dx, v_dy;
-  float iz_low, iz_high; /* covered only where iz lies between: what the disc reaches, widened by the prefilter; */
+  union {
+    float u0;
+    float pull_xx;
+  };
+  float u_dx, u_dy;
+  union {
+    float v0;
+    float pull_yy;
+  };
+  float v_dx, v_dy;
+  union {
+    float iz_low; /* covered only where iz lies between: what the disc reaches, widened by the prefilter; */
+    float pull_xy;
+  };
+  float iz_high;
   float dx_low, dx_high, dy_low, dy_high; /* and only in the splat's box: low ≤ dx ≤ high */
 } conic_ray;
 

@@ -31,7 +31,7 @@ struct conic_renderer {
   conic_context *context;
   conic_backend *backend; /* null: the loops here */
   kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
-      times;
+      times, lengths;
 };
 
 /* One frame on its way through the stages. */
@@ -85,7 +85,8 @@ void conic_renderer_destroy(conic_renderer *renderer) {
     return;
   kept *all[] = {&renderer->footprints, &renderer->surfaces,    &renderer->rays,       &renderer->clips,
                  &renderer->chunks,     &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times};
+                 &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times,
+                 &renderer->lengths};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   if (renderer->backend)
@@ -113,8 +114,9 @@ static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t s
  * stay in a core's cache until they are sorted, few enough for their tables. */
 static void choose_chunks(frame *f) {
   enum { LEAST = 2048, GREATEST = 8192 };
+  size_t greatest = f->view.cull_back ? 2 * GREATEST : GREATEST; /* half of them or more are not drawn */
   size_t n = f->splats->count, size = n / (8 * (size_t)conic_context_threads(f->renderer->context)) + 1;
-  size = size < LEAST ? LEAST : size > GREATEST ? GREATEST : size;
+  size = size < LEAST ? LEAST : size > greatest ? greatest : size;
   while ((n / size + 1) * f->bins.n_tiles > ((size_t)1 << 22) && size < n)
     size *= 2;
   f->projected.chunk_size = size;
@@ -149,8 +151,9 @@ static conic_status plan_bins(frame *f) {
       room(renderer, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
   bins->entries = room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
   bins->n_room = renderer->entries.bytes / sizeof *bins->entries;
+  bins->length = room(renderer, &renderer->lengths, bins->n_tiles, sizeof *bins->length);
   f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
-  if (!f->sorters || !bins->chunk_begin || !bins->tile_begin || !bins->entries || !f->n_fragments)
+  if (!f->sorters || !bins->chunk_begin || !bins->tile_begin || !bins->length || !bins->entries || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
   f->n_covered = f->n_fragments + bins->n_tiles;
   return CONIC_OK;
@@ -192,7 +195,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   const conic_bins *bins = &f->bins;
   tile->view = &f->view;
   tile->projected = &f->projected;
-  tile->n_references = conic_bins_length(bins, i_tile);
+  tile->n_references = bins->length[i_tile];
   tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
@@ -230,15 +233,6 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   atomic_fetch_add(&f->n_tiles_done, 1);
 }
 
-static size_t longest_list(const conic_bins *bins) {
-  size_t longest = 0;
-  for (size_t i = 0; i < bins->n_tiles; i++) {
-    size_t n = conic_bins_length(bins, i);
-    longest = n > longest ? n : longest;
-  }
-  return longest;
-}
-
 /* Sets the splats up and sorts them. How many entries that makes is known afterwards: where they had no room, again. */
 static conic_status project_and_sort(frame *f) {
   conic_renderer *renderer = f->renderer;
@@ -254,7 +248,7 @@ static conic_status project_and_sort(frame *f) {
     if (!bins->entries)
       return CONIC_ERROR_MEMORY;
   }
-  f->scratch_bytes = conic_tile_bytes(longest_list(bins));
+  f->scratch_bytes = conic_tile_bytes(conic_bins_measure(bins));
   f->scratch = room(renderer, &renderer->scratch, (size_t)conic_context_threads(renderer->context), f->scratch_bytes);
   return f->scratch ? CONIC_OK : CONIC_ERROR_MEMORY;
 }

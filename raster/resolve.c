@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "raster/coverage.h"
-#include "raster/stream.h"
 
 /* A finished pixel, before it is written to the planes that the image has. */
 typedef struct pixel {
@@ -17,6 +16,11 @@ void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, coni
     rays->x[i] = (float)(((double)(x_begin + i) + 0.5 - view->cx) / view->fx);
     rays->y[i] = (float)(((double)(y_begin + i) + 0.5 - view->cy) / view->fy);
   }
+  for (int block = 0; block < CONIC_BAND_BLOCKS; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      rays->block_x[block][l] = rays->x[block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE];
+      rays->block_y[block][l] = rays->y[block * CONIC_BLOCK_EDGE + l % CONIC_BLOCK_EDGE];
+    }
 }
 
 /* The unit direction from what is seen at the pixel to the viewer, in world coordinates. */
@@ -90,28 +94,6 @@ static void resolve_pixel(const conic_band *band, const conic_finish *finish, co
   store(image, CONIC_PLANE_ALBEDO, at, p.albedo, 3);
   store(image, CONIC_PLANE_WEIGHT, at, &p.weight, 1);
   store(image, CONIC_PLANE_Z, at, &z, 1);
-}
-
-static void store_rows(const conic_band *band, const float *rows, size_t stride, conic_plane plane, size_t n_channels,
-                       conic_image *image) {
-  float *to = image->planes[plane];
-  if (!to)
-    return;
-  int x_end = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
-  size_t n_columns = (size_t)((x_end < image->width ? x_end : image->width) - band->x);
-  for (int row = 0; row < CONIC_BLOCK_EDGE && band->y + row < image->height; row++) {
-    size_t at = (size_t)(band->y + row) * (size_t)image->width + (size_t)band->x;
-    conic_stream_copy(to + at * n_channels, rows + (size_t)row * stride, n_columns * n_channels * sizeof(float));
-  }
-}
-
-void conic_band_store_rows(const conic_band *band, const conic_band_rows *rows, conic_image *image) {
-  const size_t stride = CONIC_GREATEST_TILE;
-  store_rows(band, rows->rgba[0], 4 * stride, CONIC_PLANE_RGBA, 4, image);
-  store_rows(band, rows->normal[0], 3 * stride, CONIC_PLANE_NORMAL, 3, image);
-  store_rows(band, rows->albedo[0], 3 * stride, CONIC_PLANE_ALBEDO, 3, image);
-  store_rows(band, rows->weight[0], stride, CONIC_PLANE_WEIGHT, 1, image);
-  store_rows(band, rows->z[0], stride, CONIC_PLANE_Z, 1, image);
 }
 
 static void resolve_block_indices(const conic_band *band, int block, int l, size_t at, conic_image *image) {

@@ -23,6 +23,8 @@ typedef struct conic_finish {
 typedef struct conic_tile_rays {
   int x_begin, y_begin; /* the tile's first pixel */
   float x[CONIC_GREATEST_TILE], y[CONIC_GREATEST_TILE];
+  float block_x[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* the same for each column of blocks … */
+  float block_y[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* … and each row of them, in the order of a block's pixels */
 } conic_tile_rays;
 
 void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays);
@@ -36,9 +38,6 @@ typedef struct conic_band_rows {
   float normal[CONIC_BLOCK_EDGE][3 * CONIC_GREATEST_TILE], albedo[CONIC_BLOCK_EDGE][3 * CONIC_GREATEST_TILE];
   float weight[CONIC_BLOCK_EDGE][CONIC_GREATEST_TILE], z[CONIC_BLOCK_EDGE][CONIC_GREATEST_TILE];
 } conic_band_rows;
-
-/* Writes the rows, as far as they are in the image, to the planes that it has. */
-void conic_band_store_rows(const conic_band *band, const conic_band_rows *rows, conic_image *image);
 
 /* The planes that name splats: count and id. */
 void conic_band_resolve_indices(const conic_band *band, conic_image *image);

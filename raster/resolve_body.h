@@ -34,12 +34,10 @@ CONIC_INLINE void shade_lanes(const conic_finish *finish, const lanes albedo[3],
     shaded[i] = albedo[i] * lit + glossy;
 }
 
-CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays *rays, int x, int y, lanes viewer[3]) {
-  lanes dx, dy;
-  for (int lane = 0; lane < CONIC_LANES; lane++) {
-    dx[lane] = rays->x[x - rays->x_begin + lane / CONIC_BLOCK_ROWS];
-    dy[lane] = rays->y[y - rays->y_begin + lane % CONIC_BLOCK_ROWS];
-  }
+/* Of one part of the block in the given column and row of the tile's. */
+CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays *rays, int block, int i_row, size_t at,
+                               lanes viewer[3]) {
+  lanes dx = lanes_load(rays->block_x[block] + at), dy = lanes_load(rays->block_y[i_row] + at);
   lanes scale = -1.0f / lanes_sqrt((dx * dx + dy * dy) + 1.0f);
   for (int i = 0; i < 3; i++) {
     const float *m = finish->world_from_cam[i];
@@ -79,7 +77,7 @@ CONIC_INLINE lanes plane_z(const conic_band *band, const conic_block_sums *sums,
 }
 
 CONIC_INLINE void finish_part(const conic_band *band, const conic_block_sums *sums, const conic_finish *finish,
-                              const conic_tile_rays *rays, int x, size_t at, finished *done) {
+                              const conic_tile_rays *rays, int block, size_t at, finished *done) {
   const conic_render_options *options = finish->options;
   lanes mean_normal[3], viewer[3], shaded[3], zero = lanes_of(0.0f);
   lanes weight = lanes_load(sums->weight + at), share = 1.0f / weight;
@@ -97,7 +95,7 @@ CONIC_INLINE void finish_part(const conic_band *band, const conic_block_sums *su
   if (options->shading == CONIC_SHADE_NONE)
     memcpy(shaded, done->albedo, sizeof shaded);
   else {
-    viewer_lanes(finish, rays, x, band->y, viewer);
+    viewer_lanes(finish, rays, block, (band->y - rays->y_begin) / CONIC_BLOCK_EDGE, at, viewer);
     shade_lanes(finish, done->albedo, done->normal, mean_normal, viewer, shaded);
   }
   for (int axis = 0; axis < 3; axis++)
@@ -139,7 +137,7 @@ CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const coni
   if (conic_block_is_empty(band, block))
     finish_uncovered(finish, &done);
   else {
-    finish_part(band, sums, finish, rays, x, at, &done);
+    finish_part(band, sums, finish, rays, block, at, &done);
     done.z = lanes_of(0.0f);
     if (image->planes[CONIC_PLANE_Z])
       done.z = plane_z(band, sums, at, x, band->y, done.covered);
@@ -148,11 +146,31 @@ CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const coni
   store_part(&done, (size_t)column, image, rows);
 }
 
+CONIC_INLINE void store_rows(const conic_band *band, const float *rows, size_t stride, conic_plane plane,
+                             size_t n_channels, conic_image *image) {
+  float *to = image->planes[plane];
+  int x_end = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
+  size_t n_columns = (size_t)((x_end < image->width ? x_end : image->width) - band->x);
+  for (int row = 0; to && row < CONIC_BLOCK_EDGE && band->y + row < image->height; row++) {
+    size_t at = (size_t)(band->y + row) * (size_t)image->width + (size_t)band->x;
+    lanes_stream_row(to + at * n_channels, rows + (size_t)row * stride, n_columns * n_channels);
+  }
+}
+
+static void store_all_rows(const conic_band *band, const conic_band_rows *rows, conic_image *image) {
+  const size_t stride = CONIC_GREATEST_TILE;
+  store_rows(band, rows->rgba[0], 4 * stride, CONIC_PLANE_RGBA, 4, image);
+  store_rows(band, rows->normal[0], 3 * stride, CONIC_PLANE_NORMAL, 3, image);
+  store_rows(band, rows->albedo[0], 3 * stride, CONIC_PLANE_ALBEDO, 3, image);
+  store_rows(band, rows->weight[0], stride, CONIC_PLANE_WEIGHT, 1, image);
+  store_rows(band, rows->z[0], stride, CONIC_PLANE_Z, 1, image);
+}
+
 static void resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {
   _Alignas(64) conic_band_rows rows;
   for (int block = 0; block < band->n_blocks; block++)
     for (int part = 0; part < CONIC_PARTS; part++)
       resolve_part(band, block, part, finish, rays, image, &rows);
-  conic_band_store_rows(band, &rows, image);
+  store_all_rows(band, &rows, image);
   conic_band_resolve_indices(band, image);
 }

@@ -1,6 +1,7 @@
 /* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
 #include "raster/coverage.h"
 #include "raster/lanes_store.h"
+#include "raster/laplace_body.h"
 #include "raster/tile_kernels.h"
 
 /* A block is so many vectors. */
@@ -34,24 +35,37 @@ CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
 }
 
 /* conic_key_of. */
-static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words) {
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words,
+                 uint32_t *beyond) {
   const uint32_t in_tile = (1u << tile_bits) - 1;
+  const index_lanes zero = lanes_of_index(0), last_block = lanes_of_index(in_tile / CONIC_BLOCK_EDGE);
   size_t i = 0;
   for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
     index_lanes columns, rows;
     lanes_load_pairs((const uint32_t *)(const void *)&boxes[i], &columns, &rows);
     index_lanes x_begin = columns & 0xffff, x_last = (columns >> 16) - 1;
     index_lanes y_begin = rows & 0xffff, y_last = (rows >> 16) - 1;
-    index_lanes other_tile = ((x_begin ^ x_last) | (y_begin ^ y_last)) >> tile_bits;
-    index_lanes met =
-        (lanes_of_index(2) << ((y_last & in_tile) >> 2)) - (lanes_of_index(1) << ((y_begin & in_tile) >> 2));
-    index_lanes word = (x_begin & in_tile) >> 2 | (x_last & in_tile) >> 2 << 8 | met << 16;
-    lanes_mask is_single = lanes_less_int((int_lanes)other_tile, lanes_of_int(1));
+    index_lanes n_x = (x_last >> tile_bits) - (x_begin >> tile_bits);
+    index_lanes n_y = (y_last >> tile_bits) - (y_begin >> tile_bits);
+    index_lanes column = (x_last & in_tile) >> 2, row = (y_last & in_tile) >> 2;
+    lanes_mask is_wide = lanes_has_bits(n_x, ~0u), is_high = lanes_has_bits(n_y, ~0u);
+    lanes_mask has_more = lanes_has_bits(n_x >> 1 | n_y >> 1, ~0u);
+    index_lanes last_row = lanes_select_indices(is_high, last_block, row);
+    index_lanes met = (lanes_of_index(2) << last_row) - (lanes_of_index(1) << ((y_begin & in_tile) >> 2));
+    index_lanes far = lanes_select_indices(is_wide, lanes_of_index(CONIC_BEYOND_X), zero) |
+                      lanes_select_indices(is_high, lanes_of_index(CONIC_BEYOND_Y), zero) |
+                      lanes_select_indices(has_more, lanes_of_index(CONIC_BEYOND_MORE), zero);
     lanes_store_indices(tiles + i, (y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits));
-    lanes_store_indices(words + i, lanes_select_indices(is_single, word, lanes_of_index(0)));
+    lanes_store_indices(words + i,
+                        (x_begin & in_tile) >> 2 | lanes_select_indices(is_wide, last_block, column) << 8 | met << 16);
+    lanes_store_indices(beyond + i, lanes_select_indices(lanes_has_bits(far, ~0u), far | column | row << 8, zero));
   }
-  for (; i < n; i++)
-    conic_key_of(&boxes[i], tile_bits, n_tiles_x, &tiles[i], &words[i]);
+  for (; i < n; i++) {
+    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x);
+    tiles[i] = key.tile;
+    words[i] = key.word;
+    beyond[i] = key.beyond;
+  }
 }
 
 /* Past the caches: a frame's records are more than they hold. */
@@ -144,12 +158,25 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   f->scale = 1.0f / lanes_sqrt(determinant);
 }
 
+/* conic_laplace_fragment of coverage.h, lane by lane. */
+CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                    lanes dx, lanes dy, fragments *f) {
+  laplaces at = laplaces_at(view, footprint, ray, dx, dy);
+  f->covered = at.covered;
+  f->q = at.q;
+  f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = at.plane_iz;
+  f->scale = at.scale;
+}
+
 /* conic_clip_keeps, lane by lane. */
 CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
   lanes zero = lanes_of(0.0f);
   lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
   lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
-  return clip->is_or ? first | second : first & second;
+  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
+                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
+  return (clip->is_or ? first | second : first & second) & within;
 }
 
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
@@ -176,7 +203,9 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
                            int is_special, fragments *f) {
   lanes dx = (x - rows->x) + rows->dx0;
-  if (is_special && footprint->s3 == 0.0f)
+  if (is_special && conic_is_laplace(footprint))
+    laplace_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  else if (is_special && footprint->s3 == 0.0f)
     ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
   else
     ellipse_fragments(rows, from->support, dx, f);
@@ -522,27 +551,20 @@ static void nearest(conic_band *band) {
 /* The nearest splats' colour, normal and weight. */
 CONIC_INLINE void take_part(const conic_band *band, const sources *from, int block, size_t at) {
   const conic_nearest_fragments *kept = &band->nearest[block];
-  float amplitude[CONIC_LANES], color[3][CONIC_LANES], normal[3][CONIC_LANES];
+  lanes surface[8], scale = lanes_of(1.0f); /* the fields of conic_surface */
+  lanes_mask covered = lanes_less(lanes_of(0.0f), lanes_load(kept->iz + at));
   part_sums to;
   clear_sums(&to);
   to.heaviest = to.nearest = lanes_load_indices(kept->footprint + at);
-  lanes_mask covered = lanes_less(lanes_of(0.0f), lanes_load(kept->iz + at));
-  for (int lane = 0; lane < CONIC_LANES; lane++) {
-    uint32_t i_footprint = kept->footprint[at + (size_t)lane];
-    const conic_surface *surface = &from->surfaces[i_footprint];
-    amplitude[lane] = surface->amplitude;
-    if (band->has_special && !(from->footprints[i_footprint].s3 > 0.0f))
-      amplitude[lane] *= kept->scale[at + (size_t)lane];
-    for (int axis = 0; axis < 3; axis++) {
-      color[axis][lane] = surface->color[axis];
-      normal[axis][lane] = surface->normal[axis];
-    }
-  }
+  lanes_gather_records(from->surfaces->color, kept->footprint + at, surface);
+  for (int lane = 0; lane < CONIC_LANES && band->has_special; lane++)
+    if (!(from->footprints[kept->footprint[at + (size_t)lane]].s3 > 0.0f))
+      scale[lane] = kept->scale[at + (size_t)lane];
   to.weight =
-      weigh(from->view, 1.0f, lanes_load(kept->q + at), lanes_load(amplitude), covered, kind_of(&from->view->kernel));
-  for (int axis = 0; axis < 3; axis++) {
-    to.color[axis] += to.weight * lanes_load(color[axis]); /* to 0, which a product may be below: -0 */
-    to.normal[axis] += to.weight * lanes_load(normal[axis]);
+      weigh(from->view, 1.0f, lanes_load(kept->q + at), surface[7] * scale, covered, kind_of(&from->view->kernel));
+  for (int axis = 0; axis < 3; axis++) { /* to 0, which a product may be below: -0 */
+    to.color[axis] += to.weight * surface[axis];
+    to.normal[axis] += to.weight * surface[3 + axis];
   }
   to.count = lanes_increment(covered, lanes_of_index(0));
   store_sums(&to, at, &band->sums[block]);

@@ -12,9 +12,14 @@ static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, 
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words) {
-  for (size_t i = 0; i < n; i++)
-    conic_key_of(&boxes[i], tile_bits, n_tiles_x, &tiles[i], &words[i]);
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words,
+                 uint32_t *beyond) {
+  for (size_t i = 0; i < n; i++) {
+    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x);
+    tiles[i] = key.tile;
+    words[i] = key.word;
+    beyond[i] = key.beyond;
+  }
 }
 
 static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,

@@ -57,13 +57,13 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
   return NULL;
 }
 
-/* Half a pixel a standard deviation; for `auto` where the errors of conic and ray are alike, but no thinner than a
- * quarter (docs/picture.md, Auto). */
+/* Half a pixel a standard deviation; for `auto`, whose other formula follows thin splats further, an eighth
+ * (docs/picture.md, Auto). */
 static float thin_variance(const conic_render_options *options) {
-  float cutoff = options->kernel.cutoff, alike = 1.25f * options->prefilter / (cutoff * cutoff);
+  float h = options->prefilter;
   if (options->method != CONIC_METHOD_AUTO)
     return 0.25f;
-  return alike > 0.0625f ? alike : 0.0625f;
+  return (h > 1.0f ? h : 1.0f) / 64.0f;
 }
 
 /* The eye, and from where on float tells which side of it a plane is on (raster/project_body.h). */

@@ -33,7 +33,7 @@ static void check_projected(desk *d) {
 }
 
 static void run_keys(const conic_tile_kernels *kernels, desk *d) {
-  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, d->tiles, d->keys);
+  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, d->tiles, d->keys, d->beyond);
 }
 
 /* An order that takes every record once. */
@@ -394,6 +394,8 @@ static double time_slot(const slot *at, const conic_tile_kernels *kernels, desk 
   if (at->unit == A_SPLAT)
     return 1e9 * time_records(at, kernels, d) / (double)d->f->splats.count;
   run_project(&conic_tile_kernels_scalar, d);
+  if (at->unit == A_RECORD)
+    return 1e9 * time_records(at, kernels, d) / (double)d->chunk.n_drawn;
   for (int y = begin; y < end; y += CONIC_BLOCK_EDGE) {
     prepare(at, d, begin, y);
     seconds += time_band(at, kernels, d);
@@ -403,7 +405,7 @@ static double time_slot(const slot *at, const conic_tile_kernels *kernels, desk 
 }
 
 static void bench_slot(const fixture *f, const setting *s, const slot *at) {
-  static const char *const unit_names[] = {"splat", "index", "fragment", "pixel"};
+  static const char *const unit_names[] = {"splat", "record", "index", "fragment", "pixel"};
   static const char *const kernel_names[] = {"gauss", "confetti", "hat", "box"};
   desk *d = open_desk(f, s);
   double plain = 0.0;

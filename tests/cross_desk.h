@@ -6,7 +6,7 @@
 #include "raster/tile_kernels.h"
 #include "tests/fixture.h"
 
-enum { N_SPLATS = 2501, GUARD = 256, PATTERN = 0xa5, MAX_ARENAS = 25, N_KERNELS = 4, GREATEST_LIST = 1 << 15 };
+enum { N_SPLATS = 2501, GUARD = 256, PATTERN = 0xa5, MAX_ARENAS = 26, N_KERNELS = 4, GREATEST_LIST = 1 << 15 };
 
 /* Memory between two guard bands. */
 typedef struct arena {
@@ -31,6 +31,7 @@ enum {
   SUMS,
   TILES,
   KEYS,
+  BEYOND,
   ORDER,
   MOVED_FOOTPRINTS,
   MOVED_SURFACES,
@@ -45,7 +46,7 @@ typedef struct desk {
   conic_chunk chunk;
   conic_projected projected;
   uint32_t *list, *words, *selected, *selected_words;
-  uint32_t *tiles, *keys, *order; /* of records */
+  uint32_t *tiles, *keys, *beyond, *order; /* of records */
   conic_footprint *moved_footprints;
   conic_surface *moved_surfaces;
   conic_tile_entry *references;
@@ -163,6 +164,7 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
 static inline void open_turned(desk *d, size_t n) {
   d->tiles = room(d, n * sizeof *d->tiles);
   d->keys = room(d, n * sizeof *d->keys);
+  d->beyond = room(d, n * sizeof *d->beyond);
   d->order = room(d, n * sizeof *d->order);
   d->moved_footprints = room(d, n * sizeof *d->moved_footprints);
   d->moved_surfaces = room(d, n * sizeof *d->moved_surfaces);
@@ -204,9 +206,9 @@ static inline void close_desk(desk *d) {
 /* Says where the arena differs first, and how. */
 static inline void compare_arena(const desk *a, const desk *b, int i) {
   static const char *const names[] = {
-      "footprints",     "boxes", "surfaces", "rays", "list",  "words", "references", "selected",
-      "selected words", "kept",  "nearest",  "sums", "tiles", "keys",  "order",      "moved footprints",
-      "moved surfaces"};
+      "footprints",       "boxes",         "surfaces", "rays", "list",  "words", "references", "selected",
+      "selected words",   "kept",          "nearest",  "sums", "tiles", "keys",  "beyond",     "order",
+      "moved footprints", "moved surfaces"};
   const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
   size_t n = a->arenas[i].compared, at = 0;
   CHECK(n == b->arenas[i].compared);

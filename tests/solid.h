@@ -75,7 +75,7 @@ static inline void solid_look(fixture *f, double azimuth_deg, double elevation_d
 }
 
 /* Judges the splats from all sides. Where a face is nearly edge-on, its lines fall on its trace and clip little along
- * it: there splats may stick out by `edge_on_px`. */
+ * it: there splats may stick out by `edge_on_px`, as far as the prefilter widens them. */
 static inline void solid_check(fixture *f, int lacks_octant, double hole_px, double outside_px, double edge_on_px) {
   static const double views[][3] = {{45, 35.26, 1}, {60, -40, 1}, {200, 70, 1}, {44, 34, 3.1},
                                     {30, 15, 1},    {0, 0, 1},    {10, 1, 1},   {90, 0, 1.7}};

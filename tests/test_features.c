@@ -71,7 +71,7 @@ static void test_cube_mesh(fixture *f, int n) {
   f->splats = mesh.points;
   memset(&mesh.points, 0, sizeof mesh.points);
   conic_model_release(f->context, &mesh);
-  solid_check(f, 0, 1e-3, 1.0 / 256.0 + 1e-2, 25.0);
+  solid_check(f, 0, 1e-3, 1.0 / 256.0 + 1e-2, 1.52);
 }
 
 /* Without creases nothing changes, and with an angle that no edge has neither. */
@@ -242,9 +242,10 @@ int main(int argc, char **argv) {
   test_cube_mesh(&f, 4);
   test_cube_mesh(&f, 15);
   test_smooth_mesh(f.context);
-  /* A crease beyond the neighbours is not seen by a splat whose outline does not reach it, but the prefilter may. */
-  test_points(&f, 0, 1.5, 3.0);
-  test_points(&f, 1, 1.5, 25.0);
+  /* A crease beyond the neighbours is not seen by a splat whose outline does not reach it, but the prefilter may; the
+   * inner ones are missed by a splat or two. */
+  test_points(&f, 0, 1.5, 1.52);
+  test_points(&f, 1, 1.5, 4.0);
   test_smooth_points(f.context);
   test_hostile(f.context);
   test_threads(CONIC_SCENE_CORNER);

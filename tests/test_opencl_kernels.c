@@ -176,11 +176,14 @@ static void random_records(conic_footprint *footprint, conic_ray *ray, conic_cli
     of_ray[k] = any_value(state, 2.0, 0.02);
   for (int k = 0; k < 6; k++)
     of_clip[k] = any_value(state, 4.0, 0.02);
+  clip->dx_low = clip->dy_low = -5.0f;
+  clip->dx_high = clip->dy_high = 5.0f;
   footprint->x = (float)(11 + i % 7);
   footprint->y = (float)(6 + i % 5);
   footprint->iz_far = fabsf(footprint->iz_far);
   footprint->iz_near = footprint->iz_far + fabsf(footprint->iz_near);
   footprint->s3 = i % 3 == 0 ? 0.0f : footprint->s3;
+  footprint->s2 = i % 6 == 0 ? 0.0f : footprint->s2; /* of rays: not by Laplace's method */
   if (footprint->s3 == 0.0f)
     footprint->i_ray = i;
   if (i % 4 == 1)

@@ -24,7 +24,7 @@ typedef enum conic_method {
   CONIC_METHOD_AFFINE = 2, /* EWA with the Jacobian at the splat's centre (HQP §3.4) */
   CONIC_METHOD_POINT = 3,  /* the pixel that holds the projected centre */
   CONIC_METHOD_DISC = 4,   /* a circle on the screen about the projected centre (QSplat) */
-  CONIC_METHOD_AUTO = 5    /* conic where the bound of its error is small, else ray */
+  CONIC_METHOD_AUTO = 5    /* conic where the bound of its error is small, else more than ray (picture.md, Laplace) */
 } conic_method;
 
 #define CONIC_N_METHODS 6
