@@ -126,7 +126,7 @@ static int is_within(const cli_option *option, double value) {
 }
 
 static const char *dashes(const cli_option *option) {
-  return option->name[1] ? "--" : "-";
+  return option->dashes ? option->dashes : option->name[1] ? "--" : "-";
 }
 
 static int refuse_range(const cli_session *session, const cli_option *option, const char *text) {
@@ -198,11 +198,12 @@ typedef struct option_set {
   int counts[2];
 } option_set;
 
-static const cli_option *find_option(const option_set *set, const char *name, size_t length) {
+static const cli_option *find_option(const option_set *set, const char *name, size_t length, int is_long) {
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++) {
       const cli_option *option = &set->tables[table][i];
-      if (strlen(option->name) == length && strncmp(option->name, name, length) == 0)
+      if (strlen(option->name) == length && strncmp(option->name, name, length) == 0 &&
+          is_long == (dashes(option)[1] == '-'))
         return option;
     }
   return NULL;
@@ -228,7 +229,7 @@ static int parse_option(const cli_session *session, const option_set *set, int a
   int is_long = argument[1] == '-';
   const char *name = argument + 1 + is_long;
   size_t length = is_long ? strcspn(name, "=") : 1;
-  const cli_option *option = is_long && length == 1 ? NULL : find_option(set, name, length);
+  const cli_option *option = find_option(set, name, length, is_long);
   if (!option)
     return refuse_option(session, set, argument);
   if (name[length])

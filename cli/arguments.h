@@ -17,7 +17,7 @@ typedef enum cli_option_type {
 } cli_option_type;
 
 typedef struct cli_option {
-  const char *name; /* without the dashes; one letter means a short option */
+  const char *name; /* without the dashes; one letter means a short option, unless `dashes` says more */
   cli_option_type type;
   void *value;
   const char *argument;                        /* what the help calls the value: "FILE", "N"; null for flags */
@@ -26,6 +26,7 @@ typedef struct cli_option {
   const char *const *choices;                  /* null-terminated */
   int (*parse)(const char *text, void *value); /* 0: not understood */
   int *is_given;                               /* set to 1 when the option is given; may be null */
+  const char *dashes;                          /* null: one before a name of one letter, else two */
 } cli_option;
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,

@@ -57,11 +57,11 @@ static void lanes_ray_fragment(const conic_view *view, __global const conic_foot
   lanes s_uv = h * (u_x * v_x + u_y * v_y);
   lanes area = u_x * v_y - u_y * v_x;
   lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
-  lanes along = u * s_uv - v * s_uu;
-  fragment->q = u * u / s_uu + along * along / (s_uu * determinant);
+  lanes along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
+  fragment->q = ((u * u) * determinant + along * along) * inverse;
   fragment->iz = lanes_clamp_iz(footprint, iz);
   fragment->plane_iz = iz;
-  fragment->scale = 1.0f / sqrt(determinant);
+  fragment->scale = sqrt(s_uu * inverse);
   fragment->is_covered = is_covered & (fragment->q < view->support);
 }
 

@@ -74,15 +74,15 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
   /* |I + h·JJᵀ| = 1 + h·tr(JJᵀ) + h²·|J|²: sums of what is not negative. */
   float area = u_x * v_y - u_y * v_x;
   float determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
-  /* uS⁻¹uᵀ as a sum of two squares, by Cholesky. */
-  float along = u * s_uv - v * s_uu;
-  float q = u * u / s_uu + along * along / (s_uu * determinant);
+  /* uS⁻¹uᵀ as a sum of two squares, by Cholesky; one division serves it and 1/√|S|. */
+  float along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
+  float q = ((u * u) * determinant + along * along) * inverse;
   if (!(q < view->support))
     return 0;
   fragment->q = q;
   fragment->iz = conic_clamp_iz(footprint, iz);
   fragment->plane_iz = iz;
-  fragment->scale = 1.0f / sqrtf(determinant);
+  fragment->scale = sqrtf(s_uu * inverse);
   return 1;
 }
 

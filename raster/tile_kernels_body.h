@@ -150,12 +150,12 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   lanes s_uv = h * (u_x * v_x + u_y * v_y);
   lanes area = u_x * v_y - u_y * v_x;
   lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
-  lanes along = u * s_uv - v * s_uu;
-  f->q = u * u / s_uu + along * along / (s_uu * determinant);
+  lanes along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
+  f->q = ((u * u) * determinant + along * along) * inverse;
   f->covered &= lanes_less(f->q, lanes_of(view->support));
   f->iz = lanes_min(lanes_max(iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
   f->plane_iz = iz;
-  f->scale = 1.0f / lanes_sqrt(determinant);
+  f->scale = lanes_sqrt(s_uu * inverse);
 }
 
 /* conic_laplace_fragment of coverage.h, lane by lane. */

@@ -53,6 +53,9 @@ declare -A wanted=(
 )
 wanted[prepare]=${wanted[make]}
 wanted[octree]="${wanted[make]} bytes_per_point inner_nodes levels"
+wanted["mls project"]="${wanted[make]} type plane weight h degree outcomes.done outcomes.too_few moved.rms moved.max"
+wanted["mls thin"]="${wanted[make]} error hausdorff to_thinned.max from_thinned.max"
+wanted["mls densify"]=${wanted[make]}
 wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
 

@@ -15,6 +15,7 @@
 #include "conic/scene.h"
 #include "conic/splats.h"
 #include "conic/status.h"
+#include "conic/surface.h"
 #include "conic/version.h"
 
 #endif

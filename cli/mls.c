@@ -1,0 +1,335 @@
+/* conic mls: point-set surfaces. Points in; cleaner, fewer or more of them out. */
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/json.h"
+
+typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
+
+static const char *const action_names[N_MLS_ACTIONS + 1] = {"project", "thin", "densify", NULL};
+static const char *const type_names[] = {"mls", "apss", NULL};
+static const char *const plane_names[] = {"full", "fast", NULL};
+static const char *const weight_names[] = {"gauss", "compact", NULL};
+static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
+
+typedef struct mls_job {
+  cli_session *session;
+  mls_action action;
+  const char *input, *output;
+  int type, plane, weight, isa; /* indices of the words above, which are in the order of the enumerations */
+  conic_surface_options options;
+  cli_length h, max_error, spacing, hole;
+  unsigned long long count;
+  int has_count;
+
+  conic_model model;
+  conic_surface *surface;
+  conic_splats result;
+  conic_surface_report report;
+  conic_repairs repairs;
+  size_t n_in;
+  double unit; /* the median spacing, where a length is in it */
+  double read_seconds, estimate_seconds, work_seconds, write_seconds;
+} mls_job;
+
+/* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
+static conic_status read_points(mls_job *job) {
+  conic_context *context = job->session->context;
+  double start = cli_seconds();
+  conic_status status = conic_model_read(context, job->input, NULL, &job->model);
+  double read = cli_seconds();
+  job->read_seconds = read - start;
+  if (status != CONIC_OK)
+    return status;
+  conic_splats *points = &job->model.points;
+  job->n_in = points->count;
+  if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
+    conic_estimate_options estimate;
+    conic_estimate_options_init(&estimate);
+    status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
+  }
+  if (status == CONIC_OK && (job->h.is_in_spacings || job->max_error.is_in_spacings || job->spacing.is_in_spacings ||
+                             job->hole.is_in_spacings))
+    status = conic_splats_spacing(context, points, &job->unit);
+  job->estimate_seconds = cli_seconds() - read;
+  return status;
+}
+
+static double in_world(const mls_job *job, const cli_length *length) {
+  return length->value * (length->is_in_spacings ? job->unit : 1.0);
+}
+
+static conic_status thin(mls_job *job) {
+  conic_thin_options options;
+  conic_thin_options_init(&options);
+  options.count = job->has_count ? (size_t)job->count : 0;
+  options.max_error = in_world(job, &job->max_error);
+  options.is_measured = 1;
+  return conic_surface_thin(job->surface, &options, &job->result, &job->report);
+}
+
+static conic_status densify(mls_job *job) {
+  conic_densify_options options;
+  conic_densify_options_init(&options);
+  options.spacing = in_world(job, &job->spacing);
+  options.hole = in_world(job, &job->hole);
+  options.max_count = job->has_count ? (size_t)job->count : 0;
+  return conic_surface_densify(job->surface, &options, &job->result, &job->report);
+}
+
+static conic_status work(mls_job *job) {
+  static conic_status (*const actions[N_MLS_ACTIONS])(mls_job *) = {[MLS_THIN] = thin, [MLS_DENSIFY] = densify};
+  double start = cli_seconds();
+  job->options.type = (conic_surface_type)job->type;
+  job->options.plane = (conic_surface_plane)job->plane;
+  job->options.weight = (conic_surface_weight)job->weight;
+  job->options.isa = (conic_isa)job->isa;
+  job->options.h = in_world(job, &job->h);
+  conic_status status = conic_surface_create(job->session->context, &job->model.points, &job->options, &job->surface);
+  if (status == CONIC_OK)
+    status = job->action == MLS_PROJECT ? conic_surface_clean(job->surface, &job->result, &job->report)
+                                        : actions[job->action](job);
+  job->work_seconds = cli_seconds() - start;
+  return status;
+}
+
+static int write_points(mls_job *job) {
+  double start = cli_seconds();
+  if (job->result.count == 0)
+    return cli_error(CLI_INPUT, "%s: no point has a surface about it (%zu too few neighbours, %zu no minimum)",
+                     job->input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
+                     job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
+  int exit_code = cli_exit_of(conic_splats_write(job->session->context, job->output, &job->result, NULL));
+  job->write_seconds = cli_seconds() - start;
+  return exit_code;
+}
+
+/* --- statistics --- */
+
+static void write_surface(cli_json *json, const mls_job *job) {
+  cli_json_text(json, "action", action_names[job->action]);
+  cli_json_text(json, "type", type_names[job->type]);
+  cli_json_text(json, "plane", job->type == CONIC_SURFACE_MLS ? plane_names[job->plane] : NULL);
+  cli_json_text(json, "weight", weight_names[job->weight]);
+  cli_json_number(json, "h", job->report.h);
+  cli_json_number(json, "neglect", job->options.neglect);
+  if (job->type == CONIC_SURFACE_MLS)
+    cli_json_count(json, "degree", (uint64_t)job->options.degree);
+}
+
+static void write_projected(cli_json *json, const conic_surface_report *report) {
+  static const char *const keys[CONIC_N_SURFACE_OUTCOMES] = {"done", "not_finite", "too_few", "no_minimum",
+                                                             "ill_conditioned"};
+  cli_json_object(json, "outcomes");
+  for (int i = 0; i < CONIC_N_SURFACE_OUTCOMES; i++)
+    cli_json_count(json, keys[i], report->outcomes[i]);
+  cli_json_close(json);
+  cli_json_object(json, "moved");
+  cli_json_number(json, "rms", report->moved_rms);
+  cli_json_number(json, "max", report->moved_max);
+  cli_json_close(json);
+  cli_json_number(json, "mean_neighbours", report->mean_neighbours);
+}
+
+static void write_distance(cli_json *json, const char *key, const conic_surface_distance *distance) {
+  cli_json_object(json, key);
+  cli_json_number(json, "max", distance->max);
+  cli_json_number(json, "rms", distance->rms);
+  cli_json_count(json, "measured", distance->n_measured);
+  cli_json_count(json, "failed", distance->n_failed);
+  cli_json_close(json);
+}
+
+static void write_seconds(cli_json *json, const mls_job *job, double total_seconds) {
+  cli_json_object(json, "seconds");
+  cli_json_number(json, "read", job->read_seconds);
+  cli_json_number(json, "estimate", job->estimate_seconds);
+  cli_json_number(json, "work", job->work_seconds);
+  cli_json_number(json, "write", job->write_seconds);
+  cli_json_number(json, "total", total_seconds);
+  cli_json_close(json);
+}
+
+static int write_statistics(mls_job *job, double total_seconds) {
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  const conic_surface_report *report = &job->report;
+  cli_json_count(json, "points_in", job->n_in);
+  cli_json_count(json, "points_out", job->result.count);
+  write_surface(json, job);
+  if (job->action == MLS_PROJECT)
+    write_projected(json, report);
+  if (job->action == MLS_THIN) {
+    cli_json_number(json, "error", report->error);
+    write_distance(json, "to_thinned", &report->there);
+    write_distance(json, "from_thinned", &report->back);
+    cli_json_number(json, "hausdorff", report->there.max > report->back.max ? report->there.max : report->back.max);
+  }
+  cli_json_count(json, "evaluations", report->n_evaluations);
+  write_seconds(json, job, total_seconds);
+  cli_json_number(json, "points_per_s", (double)job->n_in / job->work_seconds);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  job->repairs.nan = report->outcomes[CONIC_SURFACE_NOT_FINITE];
+  job->repairs.failed = report->outcomes[CONIC_SURFACE_TOO_FEW] + report->outcomes[CONIC_SURFACE_NO_MINIMUM] +
+                        report->outcomes[CONIC_SURFACE_ILL_CONDITIONED];
+  cli_json_skipped(json, &job->repairs);
+  return cli_json_finish(file);
+}
+
+static int run_job(mls_job *job) {
+  double start = cli_seconds();
+  int exit_code = cli_session_open(job->session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = read_points(job);
+  if (status == CONIC_OK)
+    status = work(job);
+  exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
+  if (exit_code == CLI_DONE)
+    exit_code = write_statistics(job, cli_seconds() - start);
+  conic_splats_release(job->session->context, &job->result);
+  conic_surface_destroy(job->surface);
+  conic_model_release(job->session->context, &job->model);
+  return exit_code;
+}
+
+/* --- arguments --- */
+
+static int check_job(mls_job *job, const char *const *positional, int n_positional) {
+  if (n_positional == 0)
+    return cli_usage("mls: what to do? project, thin or densify; see conic help mls");
+  for (int i = 0; i < N_MLS_ACTIONS; i++)
+    if (strcmp(positional[0], action_names[i]) == 0)
+      job->action = (mls_action)i;
+  if (job->action == N_MLS_ACTIONS)
+    return cli_usage("mls: %s is neither project, thin nor densify", positional[0]);
+  const char *name = action_names[job->action];
+  if (n_positional != 2)
+    return cli_usage("mls %s: %s; see conic help mls", name,
+                     n_positional > 2 ? "one input at a time" : "no input given");
+  if (!job->output)
+    return cli_usage("mls %s: no output given (-o OUT.ply)", name);
+  if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
+    return cli_usage("mls thin: needs --count N or --max-error E");
+  if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
+    return cli_usage("mls densify: needs --spacing S");
+  if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
+      (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
+    return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
+                     name);
+  job->input = positional[1];
+  return cli_check_outputs(job->session, &job->output, 1);
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  mls_job job = {.session = session, .action = N_MLS_ACTIONS};
+  const char *positional[argc];
+  int n_positional;
+  conic_surface_options_init(&job.options);
+  const cli_option options[] = {
+      {.name = "o", .type = CLI_TEXT, .value = &job.output, .argument = "OUT.ply", .help = "the file to write"},
+      {.name = "type",
+       .type = CLI_CHOICE,
+       .value = &job.type,
+       .argument = "T",
+       .help = "mls: polynomials over planes; apss: algebraic spheres [mls]",
+       .choices = type_names},
+      {.name = "plane",
+       .type = CLI_CHOICE,
+       .value = &job.plane,
+       .argument = "P",
+       .help = "full: the plane that makes a projection; fast: through the point itself [full]",
+       .choices = plane_names},
+      {.name = "degree",
+       .type = CLI_INT,
+       .value = &job.options.degree,
+       .argument = "D",
+       .help = "of the polynomials, 1 to 4 [3]",
+       .minimum = 1,
+       .maximum = CONIC_SURFACE_MAX_DEGREE},
+      {.name = "weight",
+       .type = CLI_CHOICE,
+       .value = &job.weight,
+       .argument = "W",
+       .help = "of a sample by its distance: gauss or compact [gauss]",
+       .choices = weight_names},
+      {.name = "h",
+       .type = CLI_PARSED,
+       .value = &job.h,
+       .argument = "H",
+       .help = "what is smaller is smoothed away; world units, or 2x: two spacings [local, by -k]",
+       .parse = cli_parse_length,
+       .dashes = "--"},
+      {.name = "k",
+       .type = CLI_INT,
+       .value = &job.options.n_local,
+       .argument = "K",
+       .help = "of a local h: the neglect distance is that of the K-th neighbour, 6 to 64 [32]",
+       .minimum = 6,
+       .maximum = 64},
+      {.name = "neglect",
+       .type = CLI_NUMBER,
+       .value = &job.options.neglect,
+       .argument = "C",
+       .help = "samples farther than C h weigh nothing, 1 to 6 [2]",
+       .minimum = 1,
+       .maximum = 6},
+      {.name = "cluster",
+       .type = CLI_NUMBER,
+       .value = &job.options.cluster,
+       .argument = "T",
+       .help = "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]",
+       .minimum = 0,
+       .maximum = 1},
+      {.name = "count",
+       .type = CLI_COUNT,
+       .value = &job.count,
+       .argument = "N",
+       .help = "thin: points to keep; densify: points to stop at",
+       .minimum = 1,
+       .maximum = 4294967294.0,
+       .is_given = &job.has_count},
+      {.name = "max-error",
+       .type = CLI_PARSED,
+       .value = &job.max_error,
+       .argument = "E",
+       .help = "thin: keep the surface within E of what it was",
+       .parse = cli_parse_length},
+      {.name = "spacing",
+       .type = CLI_PARSED,
+       .value = &job.spacing,
+       .argument = "S",
+       .help = "densify: no circle of a greater radius stays empty",
+       .parse = cli_parse_length},
+      {.name = "hole",
+       .type = CLI_PARSED,
+       .value = &job.hole,
+       .argument = "R",
+       .help = "densify: circles of a greater radius are holes and stay [h]",
+       .parse = cli_parse_length},
+      {.name = "isa",
+       .type = CLI_CHOICE,
+       .value = &job.isa,
+       .argument = "ISA",
+       .help = "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = isa_names},
+  };
+  int exit_code =
+      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
+  if (exit_code != CLI_DONE)
+    return exit_code < 0 ? CLI_DONE : exit_code;
+  exit_code = check_job(&job, positional, n_positional);
+  return exit_code == CLI_DONE ? run_job(&job) : exit_code;
+}
+
+const cli_command cli_mls = {
+    .name = "mls",
+    .summary = "point-set surfaces: smooths, thins or densifies points",
+    .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
+             "                 [--count N] [--max-error E] [--spacing S] [--hole R]",
+    .run = run,
+};

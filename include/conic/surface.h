@@ -1,0 +1,159 @@
+/* Point-set surfaces: the smooth surface that a set of points means, and sets that are cleaner, smaller or denser.
+ *
+ * A surface is what a projection leaves where it is: moving least squares (Alexa et al. 2003: a local plane, and a
+ * polynomial over it) or algebraic spheres (Guennebaud and Gross 2007). docs/surfaces.md has the formulas. The results
+ * never depend on the number of threads, the instruction set or the compiler. */
+#ifndef CONIC_SURFACE_H
+#define CONIC_SURFACE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum conic_surface_type {
+  CONIC_SURFACE_MLS = 0, /* a polynomial over the local plane */
+  CONIC_SURFACE_APSS = 1 /* a sphere fitted to points and normals */
+} conic_surface_type;
+
+/* Which plane a polynomial stands over. */
+typedef enum conic_surface_plane {
+  CONIC_PLANE_FULL = 0, /* the minimum of Eq. 2: its weights are about the foot of the point in the plane */
+  CONIC_PLANE_FAST = 1  /* through the point itself, its weights about the point: no true projection */
+} conic_surface_plane;
+
+/* How a sample's weight falls with its distance d, in terms of x = d / h. */
+typedef enum conic_surface_weight {
+  CONIC_WEIGHT_GAUSS = 0,  /* exp(-x²), less the tangent (in x²) at the neglect distance, so that it ends smoothly */
+  CONIC_WEIGHT_COMPACT = 1 /* 2y³ - 3y² + 1, y = x / neglect */
+} conic_surface_weight;
+
+#define CONIC_SURFACE_MAX_DEGREE 4
+
+typedef struct conic_surface_options {
+  size_t size; /* sizeof(conic_surface_options), set by the init function */
+  conic_surface_type type;
+  conic_surface_plane plane;   /* of MLS */
+  conic_surface_weight weight; /* of either type */
+  int degree;                  /* of MLS: 1 to 4 */
+  double h;                    /* in world units; 0: local, from the distance to each sample's n_local-th neighbour */
+  double neglect;              /* samples farther than this many h weigh nothing: 1 to 6 */
+  int n_local;                 /* of h 0: that neighbour lies at the neglect distance; 6 to 64 */
+  double cluster;              /* cells smaller than this times their distance are summed as one; 0 (none) to 1 */
+  conic_isa isa;
+} conic_surface_options;
+
+/* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
+CONIC_API void conic_surface_options_init(conic_surface_options *options);
+
+typedef struct conic_surface conic_surface;
+
+/* Prepares the surface of the points of `points`; normals (of either kind: normals, or those of the axes) and colours
+ * are used where it has them. The set is copied. On success the caller owns *surface, which must not outlive the
+ * context. Errors: ARGUMENT (options out of range; APSS without normals), INPUT (no finite point), UNSUPPORTED (the
+ * instruction set), MEMORY. */
+CONIC_API conic_status conic_surface_create(conic_context *context, const conic_splats *points,
+                                            const conic_surface_options *options, conic_surface **surface);
+CONIC_API void conic_surface_destroy(conic_surface *surface);
+
+/* What became of a point. Where it is not DONE, no point of the surface was found, and none is made up. */
+typedef enum conic_surface_outcome {
+  CONIC_SURFACE_DONE = 0,
+  CONIC_SURFACE_NOT_FINITE = 1,
+  CONIC_SURFACE_TOO_FEW = 2,        /* fewer samples within reach than coefficients */
+  CONIC_SURFACE_NO_MINIMUM = 3,     /* no plane (or sphere) within h / 2 of the point on which the search settles */
+  CONIC_SURFACE_ILL_CONDITIONED = 4 /* the samples do not determine the polynomial at the point */
+} conic_surface_outcome;
+
+#define CONIC_N_SURFACE_OUTCOMES 5
+
+/* "done", "not finite" …; null for a number that is none. */
+CONIC_API const char *conic_surface_outcome_name(conic_surface_outcome outcome);
+
+/* A point projected; where the outcome is not DONE, position is the point's own and the rest is zero. */
+typedef struct conic_surface_point {
+  double position[3];     /* on the surface, in world units */
+  double normal[3];       /* of the surface there, unit; on the side of the samples' normals where they have some */
+  double color[3];        /* the samples', by the same weights; white where they have none */
+  double foot[3];         /* q, where the local plane (or sphere) was found */
+  double plane_normal[3]; /* of the local plane; APSS: the normal */
+  double h;               /* the scale there */
+  int n_neighbours;       /* samples (and clusters) that weighed something */
+  conic_surface_outcome outcome;
+} conic_surface_point;
+
+/* Projects `count` points in world coordinates onto the surface. Errors: MEMORY, CANCELLED. */
+CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
+                                             conic_surface_point *points);
+
+/* The distances from points of one surface to another. */
+typedef struct conic_surface_distance {
+  double max, rms;
+  size_t n_measured, n_failed; /* points of the first surface; those of them with nothing of the second about them */
+} conic_surface_distance;
+
+/* How points were moved, and how many could not be. */
+typedef struct conic_surface_report {
+  size_t n_in, n_out;
+  size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points projected */
+  double moved_rms, moved_max;               /* in world units, over the DONE */
+  double mean_neighbours;
+  double h;     /* the median of the samples' */
+  double error; /* thin: the greatest contribution of a point that was removed; densify: the widest gap left */
+  conic_surface_distance there,
+      back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
+  size_t n_evaluations; /* projections that were computed */
+} conic_surface_report;
+
+/* Projects the surface's own points. `projected` gets those that are DONE, in their old order, with normals where the
+ * samples have some, and colours likewise; duplicates stay as many as they are. The caller releases it. Errors: MEMORY,
+ * CANCELLED; *projected is then empty. */
+CONIC_API conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected,
+                                           conic_surface_report *report);
+
+typedef struct conic_thin_options {
+  size_t size;      /* sizeof(conic_thin_options), set by the init function */
+  size_t count;     /* points to keep; 0: no fewer than the error allows */
+  double max_error; /* the two surfaces stay within this of each other, as far as can be measured; 0: no limit */
+  int is_measured;  /* measure how far they are from each other where there is no limit, too */
+} conic_thin_options;
+
+CONIC_API void conic_thin_options_init(conic_thin_options *options);
+
+/* Removes the points that mean least, the least first: by the distance of a point from the surface of the others that
+ * are left (PSS §5.1). Removing a point makes its neighbours be measured anew before they are. What is left is a subset
+ * in the old order, with the set's normals and colours. Points without a measure (too few others about them) stay.
+ * The caller releases *thinned. Errors: ARGUMENT (neither a count nor an error), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *options,
+                                          conic_splats *thinned, conic_surface_report *report);
+
+typedef struct conic_densify_options {
+  size_t size;      /* sizeof(conic_densify_options), set by the init function */
+  double spacing;   /* no circle of a greater radius stays empty */
+  double hole;      /* circles wider than this are holes and stay; 0: h, as the surface's error bound has it */
+  size_t max_count; /* points in all; 0: 2³² - 2 */
+} conic_densify_options;
+
+CONIC_API void conic_densify_options_init(conic_densify_options *options);
+
+/* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a
+ * point's neighbours in their plane (PSS §5.2). Nothing is added outside of its neighbours: borders stay where they
+ * are. The old points come first, as they were. The caller releases *dense. Errors: ARGUMENT, MEMORY, CANCELLED. */
+CONIC_API conic_status conic_surface_densify(conic_surface *surface, const conic_densify_options *options,
+                                             conic_splats *dense, conic_surface_report *report);
+
+/* Projects the points of `from` onto `from`, and those onto `to`; the distances of the second step. Both ways together
+ * are the Hausdorff distance, as far as the points tell. Errors: MEMORY, CANCELLED. */
+CONIC_API conic_status conic_surface_deviation(conic_surface *from, conic_surface *to,
+                                               conic_surface_distance *distance);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

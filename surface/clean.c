@@ -1,0 +1,186 @@
+/* A surface's own points, projected: leaf by leaf of the tree, whose points share their candidates. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "surface/own_points.h"
+
+enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
+
+typedef struct cleaning {
+  const conic_surface *surface;
+  conic_own_points *own;
+  size_t first;
+  conic_workspace *workspaces;
+} cleaning;
+
+static void keep(cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
+                 const conic_workspace *workspace) {
+  const conic_surface *surface = work->surface;
+  conic_own_points *own = work->own;
+  double side[3], color[3], turn = 0.0, moved2 = 0.0;
+  own->outcomes[slot] = (uint8_t)projection->outcome;
+  own->n_neighbours[slot] = (uint32_t)projection->n_neighbours;
+  conic_surface_attributes(surface, workspace, side, color);
+  for (int axis = 0; axis < 3; axis++)
+    turn += side[axis] * projection->normal[axis];
+  for (int axis = 0; axis < 3; axis++) {
+    own->position[axis][slot] = (float)(r[axis] + projection->offset[axis]);
+    moved2 += projection->offset[axis] * projection->offset[axis];
+    if (own->normal[0])
+      own->normal[axis][slot] = (float)(turn < 0.0 ? -projection->normal[axis] : projection->normal[axis]);
+    if (own->color[0])
+      own->color[axis][slot] = (float)color[axis];
+  }
+  own->moved2[slot] = moved2;
+}
+
+static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace) {
+  const conic_surface *surface = work->surface;
+  const conic_neighbours *tree = &surface->tree;
+  size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
+  const float *bounds = tree->boxes[tree->n_leaves - 1 + i_leaf];
+  double box[6], margin = 0.0;
+  for (int i = 0; i < 6; i++)
+    box[i] = (double)bounds[i];
+  for (size_t slot = begin; slot < end; slot++) {
+    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
+    margin = own > margin ? own : margin;
+  }
+  conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
+  for (size_t slot = begin; slot < end; slot++) {
+    conic_landing projection;
+    const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                         (double)tree->position[2][slot]};
+    conic_surface_project_one(surface, r, (double)surface->h[slot], CONIC_NO_SLOT, 1, workspace, &projection);
+    keep(work, slot, r, &projection, workspace);
+  }
+}
+
+static void clean_chunk(void *data, size_t i_item, int i_thread) {
+  cleaning *work = data;
+  size_t begin = work->first + i_item * CHUNK;
+  for (size_t i = begin; i < begin + CHUNK && i < work->surface->tree.n_leaves; i++)
+    clean_leaf(work, i, &work->workspaces[i_thread]);
+}
+
+static int allocate_own(const conic_surface *surface, conic_own_points *own) {
+  conic_context *context = surface->context;
+  size_t n = surface->tree.n_slots;
+  int is_whole = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    is_whole &= (own->position[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
+    if (surface->normal[0])
+      is_whole &= (own->normal[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
+    if (surface->color[0])
+      is_whole &= (own->color[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
+  }
+  own->moved2 = conic_memory_allocate(context, n, sizeof *own->moved2);
+  own->n_neighbours = conic_memory_allocate(context, n, sizeof *own->n_neighbours);
+  own->outcomes = conic_memory_allocate(context, n, sizeof *own->outcomes);
+  return is_whole && own->moved2 && own->n_neighbours && own->outcomes;
+}
+
+conic_status conic_own_points_project(const conic_surface *surface, conic_own_points *own) {
+  conic_context *context = surface->context;
+  cleaning work = {surface, own, 0, NULL};
+  memset(own, 0, sizeof *own);
+  conic_status status = conic_workspaces_create(context, &work.workspaces);
+  if (status == CONIC_OK && !allocate_own(surface, own))
+    status = CONIC_ERROR_MEMORY;
+  size_t n_chunks = (surface->tree.n_leaves + CHUNK - 1) / CHUNK;
+  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
+    work.first = i * CHUNK;
+    status = conic_progress(context, "project", (double)i / (double)n_chunks);
+    if (status == CONIC_OK)
+      conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, clean_chunk, &work);
+    if (status == CONIC_OK)
+      status = conic_workspaces_check(context, work.workspaces);
+  }
+  for (int i = 0; work.workspaces && i < conic_context_threads(context); i++)
+    own->n_evaluations += work.workspaces[i].n_evaluations;
+  conic_workspaces_release(context, work.workspaces);
+  if (status != CONIC_OK)
+    conic_own_points_release(context, own);
+  return status;
+}
+
+void conic_own_points_release(conic_context *context, conic_own_points *own) {
+  for (int axis = 0; axis < 3; axis++) {
+    conic_memory_release(context, own->position[axis]);
+    conic_memory_release(context, own->normal[axis]);
+    conic_memory_release(context, own->color[axis]);
+  }
+  conic_memory_release(context, own->moved2);
+  conic_memory_release(context, own->n_neighbours);
+  conic_memory_release(context, own->outcomes);
+  memset(own, 0, sizeof *own);
+}
+
+/* Counts every point, so that duplicates count as often as they are there. */
+static void report_points(const conic_surface *surface, const conic_own_points *own, conic_surface_report *report) {
+  const conic_neighbours *tree = &surface->tree;
+  double sum2 = 0.0, greatest2 = 0.0, neighbours = 0.0;
+  memset(report, 0, sizeof *report);
+  report->n_in = tree->n_points;
+  report->h = surface->median_h;
+  report->n_evaluations = own->n_evaluations;
+  for (size_t i = 0; i < tree->n_points; i++) {
+    uint32_t slot = tree->slot_of_point[i];
+    unsigned outcome = slot == CONIC_NO_SLOT ? CONIC_SURFACE_NOT_FINITE : own->outcomes[slot];
+    report->outcomes[outcome]++;
+    if (outcome != CONIC_SURFACE_DONE)
+      continue;
+    sum2 += own->moved2[slot];
+    greatest2 = own->moved2[slot] > greatest2 ? own->moved2[slot] : greatest2;
+    neighbours += (double)own->n_neighbours[slot];
+  }
+  report->n_out = report->outcomes[CONIC_SURFACE_DONE];
+  if (report->n_out) {
+    report->moved_rms = sqrt(sum2 / (double)report->n_out);
+    report->moved_max = sqrt(greatest2);
+    report->mean_neighbours = neighbours / (double)report->n_out;
+  }
+}
+
+static conic_status write_points(const conic_surface *surface, const conic_own_points *own, size_t n_out,
+                                 conic_splats *projected) {
+  const conic_neighbours *tree = &surface->tree;
+  conic_status status =
+      conic_splats_allocate(surface->context, n_out, conic_splats_fields(&surface->points), projected);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(projected->origin, surface->points.origin, sizeof projected->origin);
+  size_t n = 0;
+  for (size_t i = 0; i < tree->n_points; i++) {
+    uint32_t slot = tree->slot_of_point[i];
+    if (slot == CONIC_NO_SLOT || own->outcomes[slot] != CONIC_SURFACE_DONE)
+      continue;
+    for (int axis = 0; axis < 3; axis++) {
+      projected->position[axis][n] = own->position[axis][slot];
+      if (projected->normal[0])
+        projected->normal[axis][n] = own->normal[axis][slot];
+      if (projected->color[0])
+        projected->color[axis][n] = own->color[axis][slot];
+    }
+    n++;
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected, conic_surface_report *report) {
+  conic_own_points own;
+  conic_surface_report counted;
+  memset(projected, 0, sizeof *projected);
+  conic_status status = conic_own_points_project(surface, &own);
+  if (status != CONIC_OK)
+    return status;
+  report_points(surface, &own, &counted);
+  status = write_points(surface, &own, counted.n_out, projected);
+  conic_own_points_release(surface->context, &own);
+  if (status == CONIC_OK && report)
+    *report = counted;
+  return status;
+}

@@ -1,0 +1,11 @@
+/* Cells of the tree as single samples (PSS §3.4.2). */
+#ifndef SURFACE_CLUSTERS_H
+#define SURFACE_CLUSTERS_H
+
+#include "surface/surface.h"
+
+/* Errors: MEMORY. */
+conic_status conic_clusters_create(conic_surface *surface);
+void conic_clusters_release(conic_surface *surface);
+
+#endif

@@ -1,0 +1,237 @@
+/* Who is near a point: from the tree to the arrays that the kernels sum over. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "surface/surface.h"
+
+enum { MAX_DEPTH = 34 };
+
+conic_status conic_workspaces_create(conic_context *context, conic_workspace **workspaces) {
+  size_t n = (size_t)conic_context_threads(context);
+  *workspaces = conic_memory_allocate_zeroed(context, n, sizeof **workspaces);
+  for (size_t i = 0; *workspaces && i < n; i++)
+    (*workspaces)[i].context = context;
+  return *workspaces ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static void release_near(conic_context *context, conic_near *near) {
+  for (int axis = 0; axis < 3; axis++) {
+    conic_memory_release(context, near->offset[axis]);
+    conic_memory_release(context, near->normal[axis]);
+  }
+  conic_memory_release(context, near->mass);
+  conic_memory_release(context, near->inverse_h2);
+  conic_memory_release(context, near->weights);
+  conic_memory_release(context, near->columns);
+  conic_memory_release(context, near->sources);
+  memset(near, 0, sizeof *near);
+}
+
+void conic_workspaces_release(conic_context *context, conic_workspace *workspaces) {
+  for (int i = 0; workspaces && i < conic_context_threads(context); i++) {
+    conic_memory_release(context, workspaces[i].shared.sources);
+    conic_memory_release(context, workspaces[i].single.sources);
+    release_near(context, &workspaces[i].near);
+    release_near(context, &workspaces[i].other_near);
+  }
+  conic_memory_release(context, workspaces);
+}
+
+conic_status conic_workspaces_check(const conic_context *context, const conic_workspace *workspaces) {
+  for (int i = 0; i < conic_context_threads(context); i++)
+    if (workspaces[i].is_out_of_memory)
+      return CONIC_ERROR_MEMORY;
+  return CONIC_OK;
+}
+
+/* Room for `n` neighbours and what pads them. */
+static int reserve_near(conic_workspace *workspace, size_t n) {
+  conic_near *near = &workspace->near;
+  conic_context *context = workspace->context;
+  if (n + CONIC_NEAR_LANES <= near->capacity)
+    return 1;
+  size_t capacity = (n + n / 2 + 128) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
+  int is_whole = 1;
+  release_near(context, near);
+  for (int axis = 0; axis < 3; axis++) {
+    is_whole &= (near->offset[axis] = conic_memory_allocate(context, capacity, sizeof(double))) != NULL;
+    is_whole &= (near->normal[axis] = conic_memory_allocate(context, capacity, sizeof(double))) != NULL;
+  }
+  near->mass = conic_memory_allocate(context, capacity, sizeof(double));
+  near->inverse_h2 = conic_memory_allocate(context, capacity, sizeof(double));
+  near->weights = conic_memory_allocate(context, capacity, sizeof(double));
+  near->columns = conic_memory_allocate(context, capacity, CONIC_MAX_COLUMNS * sizeof(double));
+  near->sources = conic_memory_allocate(context, capacity, sizeof(uint32_t));
+  if (!is_whole || !near->mass || !near->inverse_h2 || !near->weights || !near->columns || !near->sources) {
+    release_near(context, near);
+    workspace->is_out_of_memory = 1;
+    return 0;
+  }
+  near->capacity = capacity;
+  return 1;
+}
+
+static int reserve_candidates(conic_workspace *workspace, conic_candidates *candidates, size_t n) {
+  if (n <= candidates->capacity)
+    return 1;
+  size_t capacity = n + n / 2 + 256;
+  if (conic_memory_grow(workspace->context, (void **)&candidates->sources, candidates->n, capacity,
+                        sizeof *candidates->sources) != CONIC_OK) {
+    workspace->is_out_of_memory = 1;
+    return 0;
+  }
+  candidates->capacity = capacity;
+  return 1;
+}
+
+/* The squared distance between two boxes. */
+static double distance2_between(const float node[6], const double box[6]) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double below = (double)node[axis] - box[3 + axis], above = box[axis] - (double)node[3 + axis];
+    double outside = below > above ? below : above;
+    outside = outside > 0.0 ? outside : 0.0;
+    sum += outside * outside;
+  }
+  return sum;
+}
+
+static int append_leaf(const conic_surface *surface, size_t i_leaf, conic_workspace *workspace,
+                       conic_candidates *candidates) {
+  size_t begin = conic_neighbours_leaf_begin(&surface->tree, i_leaf);
+  size_t end = conic_neighbours_leaf_begin(&surface->tree, i_leaf + 1);
+  if (!reserve_candidates(workspace, candidates, candidates->n + (end - begin)))
+    return 0;
+  for (size_t slot = begin; slot < end; slot++)
+    candidates->sources[candidates->n++] = (uint32_t)slot;
+  return 1;
+}
+
+static int append_cluster(size_t i_node, conic_workspace *workspace, conic_candidates *candidates) {
+  if (!reserve_candidates(workspace, candidates, candidates->n + 1))
+    return 0;
+  candidates->sources[candidates->n++] = CONIC_CLUSTER_BIT | (uint32_t)i_node;
+  return 1;
+}
+
+void conic_surface_gather(const conic_surface *surface, const double box[6], double margin, conic_workspace *workspace,
+                          conic_candidates *candidates) {
+  const conic_neighbours *tree = &surface->tree;
+  size_t stack[MAX_DEPTH + 2];
+  int n_stack = 0, is_well = 1;
+  candidates->n = 0;
+  stack[n_stack++] = 0;
+  while (n_stack > 0 && is_well) {
+    size_t i_node = stack[--n_stack];
+    double reach = (double)surface->node_reach[i_node] + margin,
+           distance2 = distance2_between(tree->boxes[i_node], box);
+    if (!(distance2 < reach * reach))
+      continue;
+    if (surface->clusters.mass) {
+      double size = (double)surface->clusters.size[i_node];
+      if (size * size < surface->options.cluster * surface->options.cluster * distance2) {
+        is_well = append_cluster(i_node, workspace, candidates);
+        continue;
+      }
+    }
+    if (i_node >= tree->n_leaves - 1)
+      is_well = append_leaf(surface, i_node - (tree->n_leaves - 1), workspace, candidates);
+    else {
+      stack[n_stack++] = 2 * i_node + 2;
+      stack[n_stack++] = 2 * i_node + 1;
+    }
+  }
+}
+
+/* Where a candidate is, its scale and mass. */
+static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
+  if (source & CONIC_CLUSTER_BIT) {
+    size_t i = source & ~CONIC_CLUSTER_BIT;
+    memcpy(place, surface->clusters.centroid[i], 3 * sizeof place[0]);
+    *h = (double)surface->clusters.h[i];
+    *mass = surface->clusters.mass[i];
+    return;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    place[axis] = (double)surface->tree.position[axis][source];
+  *h = (double)surface->h[source];
+  *mass = (double)surface->mass[source];
+}
+
+static void pad(conic_near *near) {
+  near->n_padded = (near->n + CONIC_NEAR_LANES - 1) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
+  for (size_t i = near->n; i < near->n_padded; i++) {
+    for (int axis = 0; axis < 3; axis++)
+      near->offset[axis][i] = near->normal[axis][i] = 0.0;
+    near->mass[i] = near->inverse_h2[i] = 0.0;
+  }
+}
+
+static void fetch_normals(const conic_surface *surface, conic_near *near) {
+  for (size_t i = 0; i < near->n; i++) {
+    uint32_t source = near->sources[i];
+    for (int axis = 0; axis < 3; axis++)
+      near->normal[axis][i] = source & CONIC_CLUSTER_BIT
+                                  ? (double)surface->clusters.normal[source & ~CONIC_CLUSTER_BIT][axis]
+                                  : (double)surface->normal[axis][source];
+  }
+}
+
+void conic_surface_select(const conic_surface *surface, const conic_candidates *candidates, const double r[3],
+                          double margin, uint32_t except, conic_workspace *workspace) {
+  conic_near *near = &workspace->near;
+  near->n = near->n_padded = 0;
+  if (!reserve_near(workspace, candidates->n))
+    return;
+  size_t n = 0;
+  for (size_t i = 0; i < candidates->n; i++) {
+    uint32_t source = candidates->sources[i];
+    double place[3], h, mass;
+    look_up(surface, source, place, &h, &mass);
+    double x = place[0] - r[0], y = place[1] - r[1], z = place[2] - r[2];
+    double reach = surface->options.neglect * h + margin;
+    near->offset[0][n] = x;
+    near->offset[1][n] = y;
+    near->offset[2][n] = z;
+    near->mass[n] = mass;
+    near->inverse_h2[n] = h;
+    near->sources[n] = source;
+    n += (x * x + y * y) + z * z < reach * reach && source != except; /* never for a scale that is NaN */
+  }
+  near->n = n;
+  for (size_t i = 0; i < n; i++)
+    near->inverse_h2[i] = near->inverse_h2[i] > 0.0 ? 1.0 / (near->inverse_h2[i] * near->inverse_h2[i]) : 0.0;
+  pad(near);
+  if (surface->options.type == CONIC_SURFACE_APSS)
+    fetch_normals(surface, near);
+}
+
+static void add_source(const conic_surface *surface, uint32_t source, double w, double normal[3], double color[3]) {
+  const conic_surface_clusters *clusters = &surface->clusters;
+  int is_cluster = (source & CONIC_CLUSTER_BIT) != 0;
+  size_t i = source & ~CONIC_CLUSTER_BIT;
+  for (int axis = 0; axis < 3; axis++) {
+    if (surface->normal[0])
+      normal[axis] += w * (double)(is_cluster ? clusters->normal[i][axis] : surface->normal[axis][i]);
+    if (surface->color[0])
+      color[axis] += w * (double)(is_cluster ? clusters->color[i][axis] : surface->color[axis][i]);
+  }
+}
+
+void conic_surface_attributes(const conic_surface *surface, const conic_workspace *workspace, double normal[3],
+                              double color[3]) {
+  const conic_near *near = &workspace->near;
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = color[axis] = 0.0;
+  for (size_t i = 0; i < near->n; i++) {
+    sum += near->weights[i];
+    add_source(surface, near->sources[i], near->weights[i], normal, color);
+  }
+  double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  for (int axis = 0; axis < 3; axis++) {
+    normal[axis] = length > 0.0 ? normal[axis] / length : 0.0;
+    color[axis] = surface->color[0] && sum > 0.0 ? color[axis] / sum : 1.0;
+  }
+}

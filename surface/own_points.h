@@ -1,0 +1,22 @@
+/* A surface's own points, projected. */
+#ifndef SURFACE_OWN_POINTS_H
+#define SURFACE_OWN_POINTS_H
+
+#include "surface/surface.h"
+
+/* By slot; positions relative to the set's origin. What is not DONE has its old position. */
+typedef struct conic_own_points {
+  float *position[3];
+  float *normal[3]; /* null where the samples have none */
+  float *color[3];  /* likewise */
+  double *moved2;   /* the squared distance that each was moved */
+  uint32_t *n_neighbours;
+  uint8_t *outcomes;
+  size_t n_evaluations;
+} conic_own_points;
+
+/* Errors: MEMORY, CANCELLED; *own is then empty. */
+conic_status conic_own_points_project(const conic_surface *surface, conic_own_points *own);
+void conic_own_points_release(conic_context *context, conic_own_points *own);
+
+#endif

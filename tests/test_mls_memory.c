@@ -1,0 +1,96 @@
+/* Memory that runs out at the n-th allocation, for every n, on the way through a surface: a clean error each time, and
+ * nothing lost. */
+#include <stdatomic.h>
+
+#include "tests/surface_shapes.h"
+
+static atomic_long n_calls, n_alive;
+static long failing_call; /* from 1; 0: none */
+
+static void *allocate(void *cookie, size_t bytes) {
+  (void)cookie;
+  if (atomic_fetch_add(&n_calls, 1) + 1 == failing_call)
+    return NULL;
+  void *pointer = malloc(bytes);
+  atomic_fetch_add(&n_alive, pointer != NULL);
+  return pointer;
+}
+
+static void release(void *cookie, void *pointer) {
+  (void)cookie;
+  atomic_fetch_sub(&n_alive, pointer != NULL);
+  free(pointer);
+}
+
+static conic_context *open_context(void) {
+  conic_context_options options;
+  conic_context *context;
+  conic_context_options_init(&options);
+  options.allocate = allocate;
+  options.release = release;
+  options.threads = 2;
+  if (conic_context_create(&options, &context) != CONIC_OK)
+    exit(1);
+  return context;
+}
+
+static conic_status run(conic_context *context, const conic_splats *samples, double cluster) {
+  conic_surface_options options;
+  conic_thin_options thin;
+  conic_densify_options densify;
+  conic_surface *surface;
+  conic_splats clean, thinned, dense;
+  conic_surface_options_init(&options);
+  conic_thin_options_init(&thin);
+  conic_densify_options_init(&densify);
+  options.cluster = cluster;
+  thin.count = 110;
+  thin.is_measured = 1;
+  densify.spacing = 0.3;
+  conic_status status = conic_surface_create(context, samples, &options, &surface);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_surface_clean(surface, &clean, NULL);
+  conic_splats_release(context, &clean);
+  if (status == CONIC_OK) {
+    status = conic_surface_thin(surface, &thin, &thinned, NULL);
+    conic_splats_release(context, &thinned);
+  }
+  if (status == CONIC_OK) {
+    status = conic_surface_densify(surface, &densify, &dense, NULL);
+    conic_splats_release(context, &dense);
+  }
+  conic_surface_destroy(surface);
+  return status;
+}
+
+int main(void) {
+  conic_context *plain = check_context(1);
+  conic_splats samples = shape_sample(plain, SHAPE_TORUS, 150, 0.1, 3);
+  long n_failures = 0;
+  for (double cluster = 0.0; cluster < 0.4; cluster += 0.3) {
+    for (long i = 1;; i++) {
+      failing_call = 0;
+      conic_context *context = open_context();
+      long n_before = atomic_load(&n_alive);
+      atomic_store(&n_calls, 0);
+      failing_call = i;
+      conic_status status = run(context, &samples, cluster);
+      CHECK(atomic_load(&n_alive) == n_before);
+      long n_asked = atomic_load(&n_calls);
+      conic_context_destroy(context);
+      CHECK(atomic_load(&n_alive) == 0);
+      CHECK(status == CONIC_OK || status == CONIC_ERROR_MEMORY);
+      n_failures += status == CONIC_ERROR_MEMORY;
+      if (n_asked < i) {
+        CHECK(status == CONIC_OK);
+        break;
+      }
+    }
+  }
+  printf("%ld clean failures\n", n_failures);
+  CHECK(n_failures > 100);
+  conic_splats_release(plain, &samples);
+  conic_context_destroy(plain);
+  return check_result();
+}
