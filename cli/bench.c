@@ -9,6 +9,7 @@
 static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job) {
   static const char *const cull_words[] = {"none", "back", NULL};
   job->size[0] = job->size[1] = 1024;
+  job->device.name = "cpu";
   const cli_option options[] = {
       {"scenes", CLI_TEXT, &job->scenes_text, "LIST", "scenes, or all; files are IN [all, or the files alone]"},
       {"methods", CLI_TEXT, &job->methods_text, "LIST",
@@ -18,6 +19,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
       {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, in JSON [framed as by conic render]"},
       {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
+      {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl or opencl:P.D too [cpu]"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
       {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES},
       {"quick", CLI_FLAG, &job->is_quick, NULL, "fewer scenes, fewer frames"},
       {"compare", CLI_TEXT, &job->old_path, "OLD.json", "ratios to an earlier run's --json"},
@@ -32,6 +35,8 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       cli_parse(session, options, (int)(sizeof options / sizeof *options), argc, argv, job->files, &job->n_files);
   if (exit_code < 0)
     cli_bench_scene_list();
+  if (exit_code == CLI_DONE)
+    exit_code = cli_device_check(session, &job->device);
   if (exit_code == CLI_DONE && job->look.camera_path && !job->n_files)
     exit_code = cli_usage("bench: --camera is for files; what is made has a camera of its own");
   if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))

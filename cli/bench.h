@@ -3,6 +3,7 @@
 #ifndef CLI_BENCH_H
 #define CLI_BENCH_H
 
+#include "cli/device.h"
 #include "cli/json.h"
 #include "cli/session.h"
 
@@ -73,6 +74,7 @@ typedef struct cli_bench_line {
   char scene_name[32];
   int i_scene, i_method;
   conic_isa isa;
+  cli_device *device; /* null: this machine's processor */
   int threads, width, height;
 
   /* What came of it. */

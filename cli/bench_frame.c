@@ -174,7 +174,8 @@ conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene
     b.ms[i] = b.cycles + (i + 1) * most;
   conic_status status = cli_bench_scene_camera(worker, scene, line->width, line->height, &b.camera);
   if (status == CONIC_OK)
-    status = conic_renderer_create(worker->context, &b.renderer);
+    status = line->device ? cli_device_open(worker, line->device, &b.renderer)
+                          : conic_renderer_create(worker->context, &b.renderer);
   if (status == CONIC_OK)
     status = draw_all(&b, patience, pictures, line);
   if (status == CONIC_OK) {

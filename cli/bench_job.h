@@ -12,6 +12,7 @@ typedef struct cli_bench_job {
   const char **files;
   int n_files;
   cli_bench_look look; /* at the files */
+  cli_device device;
   int size[2], repeat;
   int is_quick, is_curve, is_machine, is_floor;
 

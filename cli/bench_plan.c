@@ -145,13 +145,24 @@ static int append_line(cli_bench_job *job, int i_scene, int i_method, conic_isa 
   return CLI_DONE;
 }
 
+/* The same by --device, beside what this machine's processor does. */
+static int append_device_line(cli_bench_job *job, int i_scene, int i_method, const int size[2]) {
+  int exit_code = append_line(job, i_scene, i_method, CONIC_ISA_AUTO, job->threads[job->n_threads - 1], size);
+  if (exit_code == CLI_DONE)
+    job->lines[job->n_lines - 1].device = &job->device;
+  return exit_code;
+}
+
 /* A scene with every combination of the lists. */
 static int append_scene(cli_bench_job *job, int i_scene, const int size[2]) {
   int exit_code = CLI_DONE;
-  for (int m = 0; m < job->n_methods; m++)
+  for (int m = 0; m < job->n_methods; m++) {
     for (int i = 0; i < job->n_isas; i++)
       for (int t = 0; t < job->n_threads && exit_code == CLI_DONE; t++)
         exit_code = append_line(job, i_scene, job->methods[m], job->isas[i], job->threads[t], size);
+    if (exit_code == CLI_DONE && strcmp(job->device.name, "cpu") != 0)
+      exit_code = append_device_line(job, i_scene, job->methods[m], size);
+  }
   return exit_code;
 }
 

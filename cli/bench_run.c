@@ -85,7 +85,8 @@ static void name_line(const bench_run *r, cli_bench_line *line) {
     snprintf(size, sizeof size, "@%dx%d", line->width, line->height);
   snprintf(line->scene_name, sizeof line->scene_name, "%s", r->scene.name);
   snprintf(line->name, sizeof line->name, "%.31s%.15s/%.15s/%.15s/%d", r->scene.name, size,
-           cli_bench_methods[line->i_method].name, conic_isa_name(line->isa), line->threads);
+           cli_bench_methods[line->i_method].name, line->device ? line->device->name : conic_isa_name(line->isa),
+           line->threads);
 }
 
 static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker) {
@@ -126,7 +127,7 @@ static int measure_lines(bench_run *r, int prints) {
     cli_bench_line *line = &job->lines[n_measured];
     *line = job->lines[i];
     int i_worker = worker_of(r, line);
-    if (is_repeated(r, i_worker))
+    if (!line->device && is_repeated(r, i_worker))
       continue;
     exit_code = measure_line(r, line, &r->workers[i_worker]);
     if (prints && exit_code == CLI_DONE)

@@ -163,7 +163,7 @@ static int render_scene(cli_session *session, cli_render_job *job, const conic_s
   int exit_code = CLI_DONE;
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
-  conic_status status = repeats ? conic_renderer_create(session->context, &renderer) : CONIC_ERROR_MEMORY;
+  conic_status status = repeats ? cli_device_open(session, &job->device, &renderer) : CONIC_ERROR_MEMORY;
   for (int i = 0; i < job->n_frames && status == CONIC_OK; i++)
     status = render_frame(session, job, splats, renderer, i, &image, repeats);
   job->total_ms = 1e3 * (cli_seconds() - start);

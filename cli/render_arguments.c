@@ -13,7 +13,6 @@ static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx51
 /* Options whose words are checked after all have been read. */
 typedef struct raw_options {
   int size[2], is_size_given, is_framing_given;
-  const char *device;
   int isa;
   double cutoff, prefilter;
   int is_passes_given, passes;
@@ -155,11 +154,7 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
-  if (strncmp(raw->device, "opencl", 6) == 0)
-    return cli_error(CLI_RESOURCE, "--device %s: this build draws on the CPU only", raw->device);
-  if (strcmp(raw->device, "cpu") != 0)
-    return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", command, raw->device);
-  return CLI_DONE;
+  return cli_device_check(session, &job->device);
 }
 
 /* Refused now, and not after the work. */
@@ -214,6 +209,7 @@ void cli_scene_defaults(cli_render_job *job) {
   job->n_neighbours = estimate.n_neighbours;
   job->epsilon.value = job->near_z.value = -1.0;
   job->n_frames = job->repeat = job->samples = 1;
+  job->device.name = "cpu";
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
 
@@ -235,10 +231,8 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
 
 int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
                     cli_render_job *job) {
-  raw_options raw = {.device = "cpu",
-                     .passes = 3,
-                     .cutoff = (double)job->options.kernel.cutoff,
-                     .prefilter = (double)job->options.prefilter};
+  raw_options raw = {
+      .passes = 3, .cutoff = (double)job->options.kernel.cutoff, .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading;
@@ -280,7 +274,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = parse_planes},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
-      {"device", CLI_TEXT, &raw.device, "NAME", "cpu [cpu]"},
+      {"device", CLI_TEXT, &job->device.name, "NAME",
+       "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
+       "also an OpenCL device whose rounding makes the picture another one"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_words},
   };

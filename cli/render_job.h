@@ -3,6 +3,7 @@
 #define CLI_RENDER_JOB_H
 
 #include "cli/arguments.h"
+#include "cli/device.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -24,6 +25,7 @@ typedef struct cli_render_job {
   int n_neighbours;
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
+  cli_device device;            /* what draws */
   double error_px;              /* 0: every splat */
   unsigned long long budget;    /* 0: no limit */
 

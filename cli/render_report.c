@@ -36,7 +36,7 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
 
 static void report_settings(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
-  cli_json_text(json, "device", "cpu");
+  cli_json_text(json, "device", job->device.used);
   cli_json_text(json, "isa", s->isa);
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);

@@ -28,7 +28,7 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
       conic_image_allocate(session->context, camera->width, camera->height, job->scene.planes, &job->image);
   if (status != CONIC_OK)
     return status;
-  status = conic_renderer_create(session->context, &renderer);
+  status = cli_device_open(session, &job->scene.device, &renderer);
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();

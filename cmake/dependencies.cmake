@@ -25,8 +25,13 @@ if(CONIC_WITH_OPENIMAGEIO)
   endif()
 endif()
 
+if(CONIC_WITH_OPENCL)
+  find_package(OpenCL QUIET)
+else()
+  set(OpenCL_FOUND FALSE)
+endif()
+
 # Looked for, so that the report below is whole, but nothing is built on them yet.
-find_package(OpenCL QUIET)
 find_package(CURL QUIET)
 find_library(ZSTD_LIBRARY zstd)
 find_path(ZSTD_INCLUDE_FOLDER zstd.h)
@@ -40,7 +45,7 @@ if(ZSTD_LIBRARY AND ZSTD_INCLUDE_FOLDER)
   set(found_zstd TRUE)
 endif()
 foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
-        "opencl:OpenCL (not used yet)" "zstd:zstd (not used yet)" "curl:CURL (not used yet)")
+        "opencl:OpenCL (other devices)" "zstd:zstd (not used yet)" "curl:CURL (not used yet)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

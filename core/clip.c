@@ -2,18 +2,6 @@
 
 #include <string.h>
 
-size_t conic_clip_find(const conic_splats *splats, size_t splat) {
-  size_t begin = 0, end = splats->n_clips;
-  while (begin < end) {
-    size_t middle = begin + (end - begin) / 2;
-    if (splats->clips[middle].splat < splat)
-      begin = middle + 1;
-    else
-      end = middle;
-  }
-  return begin;
-}
-
 void conic_clip_filter(conic_splats *splats, int (*is_dropped)(const void *cookie, uint32_t splat),
                        const void *cookie) {
   size_t n_kept = 0;

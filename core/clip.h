@@ -10,7 +10,17 @@ static inline int conic_clip_is_line(const float line[3]) {
 }
 
 /* The first record whose splat is not below `splat`. */
-size_t conic_clip_find(const conic_splats *splats, size_t splat);
+static inline size_t conic_clip_find(const conic_splats *splats, size_t splat) {
+  size_t begin = 0, end = splats->n_clips;
+  while (begin < end) {
+    size_t middle = begin + (end - begin) / 2;
+    if (splats->clips[middle].splat < splat)
+      begin = middle + 1;
+    else
+      end = middle;
+  }
+  return begin;
+}
 
 /* Drops the records of the splats for which `is_dropped` answers other than 0. */
 void conic_clip_filter(conic_splats *splats, int (*is_dropped)(const void *cookie, uint32_t splat), const void *cookie);

@@ -72,7 +72,7 @@ int conic_clip_disc(const conic_view *view, const conic_disc *disc, const double
   along[0] = direction_px[0] * o.constant[0] + direction_px[1] * o.constant[1];
   along[1] = direction_px[0] * o.cosine[0] + direction_px[1] * o.cosine[1];
   along[2] = direction_px[0] * o.sine[0] + direction_px[1] * o.sine[1];
-  const double *z = (const double[3]){o.constant[2], o.cosine[2], o.sine[2]};
+  const double z[3] = {o.constant[2], o.cosine[2], o.sine[2]};
   if (conic_clip_solve(along[2] * z[0] - along[0] * z[2], along[0] * z[1] - along[1] * z[0],
                        along[2] * z[1] - along[1] * z[2], solutions))
     for (int i = 0; i < 2; i++)

@@ -9,9 +9,6 @@
 /* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */
 #define OVERLAP_PX (1.0 / 256.0)
 
-static const conic_clip_record keeps_all = {{1.0f, 1.0f}, {0.0f, 0.0f}, {0.0f, 0.0f}, 0,    0,
-                                            -1e30f,       1e30f,        -1e30f,       1e30f};
-
 static double row_times(const double m[3], const float *const v[3], size_t i) {
   return (m[0] * (double)v[0][i] + m[1] * (double)v[1][i]) + m[2] * (double)v[2][i];
 }
@@ -111,7 +108,8 @@ static conic_clip_record project_clip(const conic_view *view, const conic_splats
                                       const conic_footprint *footprint) {
   conic_disc disc = disc_of(view, splats, clip->splat);
   double columns[3][3], sign = adjugate(&disc, columns);
-  conic_clip_record record = keeps_all;
+  conic_clip_record record = {
+      .d0 = {1.0f, 1.0f}, .dx_low = -1e30f, .dx_high = 1e30f, .dy_low = -1e30f, .dy_high = 1e30f};
   int n_lines = 0;
   for (int i = 0; i < clip->n_lines && i < 2; i++)
     if (conic_clip_is_line(clip->lines[i]))

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "raster/backend.h"
 #include "raster/bins.h"
 #include "raster/clip_lines.h"
 #include "raster/method.h"
@@ -28,6 +29,7 @@ typedef struct stage_times {
 
 struct conic_renderer {
   conic_context *context;
+  conic_backend *backend; /* null: the loops here */
   kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
       times, lengths;
 };
@@ -87,7 +89,13 @@ void conic_renderer_destroy(conic_renderer *renderer) {
                  &renderer->lengths};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
+  if (renderer->backend)
+    renderer->backend->destroy(renderer->backend);
   conic_memory_release(renderer->context, renderer);
+}
+
+void conic_renderer_take(conic_renderer *renderer, conic_backend *backend) {
+  renderer->backend = backend;
 }
 
 /* Room for count × size bytes in `memory`; null where there is none. What was in it is gone if it had to grow. */
@@ -278,18 +286,21 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
     statistics->splats_fallback += chunk->n_fallback;
     n_rays += chunk->n_rays;
   }
-  statistics->splats_in = f->splats->count;
   conic_method_count(options->method, n_rays, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
   }
-  statistics->near_z = f->view.near_z;
-  statistics->epsilon_is_fixed = options->epsilon >= 0.0;
-  statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
   statistics->threads = conic_context_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
   statistics->isa = f->kernels->name;
+}
+
+static void note_settings(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  statistics->splats_in = f->splats->count;
+  statistics->near_z = f->view.near_z;
+  statistics->epsilon_is_fixed = options->epsilon >= 0.0;
+  statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
 }
 
 double conic_default_near(const conic_splats *splats) {
@@ -345,6 +356,20 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
 }
 
+/* By the loops of this machine's processor. */
+static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  conic_status status = plan_tiles(f, options->tile);
+  if (status == CONIC_OK)
+    status = plan_records(f);
+  if (status == CONIC_OK)
+    status = plan_bins(f);
+  if (status == CONIC_OK)
+    status = draw(f, &statistics->ms);
+  if (status == CONIC_OK)
+    count_up(f, options, statistics);
+  return status;
+}
+
 conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                           const conic_render_options *options, conic_image *image,
                           conic_render_statistics *statistics) {
@@ -366,17 +391,13 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
     status = conic_view_init(context, splats, camera, options, near_z, splat_length, &f.view);
   if (status == CONIC_OK)
     status = prepare_finish(&f, camera, options);
-  if (status == CONIC_OK)
-    status = plan_tiles(&f, options->tile);
-  if (status == CONIC_OK)
-    status = plan_records(&f);
-  if (status == CONIC_OK)
-    status = plan_bins(&f);
-  if (status == CONIC_OK)
-    status = draw(&f, &counted.ms);
+  if (status == CONIC_OK && renderer->backend)
+    status = renderer->backend->draw(renderer->backend, &f.view, splats, &f.finish, image, &counted);
+  else if (status == CONIC_OK)
+    status = draw_here(&f, options, &counted);
   if (status != CONIC_OK)
     return status;
-  count_up(&f, options, &counted);
+  note_settings(&f, options, &counted);
   counted.ms.frame = 1e3 * (seconds_now() - start);
   if (statistics)
     *statistics = counted;

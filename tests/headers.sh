@@ -22,8 +22,10 @@ library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
 c_compiler=$(setting CMAKE_C_COMPILER)
 cpp_compiler=$(setting CMAKE_CXX_COMPILER)
 
-for header in include/conic/*.h core/*.h raster/*.h lod/*.h cli/*.h; do
+for header in include/conic/*.h core/*.h raster/*.h lod/*.h opencl/*.h cli/*.h; do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
+  [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
+  [[ $header != opencl/*.h || -e $build_folder/opencl ]] || continue # a build without OpenCL
   printf '#include "%s"\ntypedef int not_empty;\n' "${header#include/}" > "$work/alone.c"
   "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. \
     "$work/alone.c" || fail "$header does not compile alone as C11"

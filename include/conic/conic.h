@@ -9,6 +9,7 @@
 #include "conic/image.h"
 #include "conic/model.h"
 #include "conic/octree.h"
+#include "conic/opencl.h"
 #include "conic/oracle.h"
 #include "conic/render.h"
 #include "conic/scene.h"

@@ -1,0 +1,19 @@
+/* --device: what draws. */
+#ifndef CLI_DEVICE_H
+#define CLI_DEVICE_H
+
+#include "cli/session.h"
+
+typedef struct cli_device {
+  const char *name; /* cpu, opencl or opencl:P.D */
+  int allow_inexact;
+  char used[32]; /* "cpu", "opencl:0.0": what it turned out to be */
+} cli_device;
+
+/* CLI_DONE where the name is one, or CLI_USAGE after a message. */
+int cli_device_check(const cli_session *session, const cli_device *device);
+
+/* A renderer that draws there, which the caller destroys. Errors: UNSUPPORTED, MEMORY. */
+conic_status cli_device_open(cli_session *session, cli_device *device, conic_renderer **renderer);
+
+#endif

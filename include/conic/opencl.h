@@ -1,0 +1,58 @@
+/* Drawing on another device through OpenCL: the same pictures, bit for bit (docs/opencl.md).
+ *
+ * A renderer that is made here is used like any other: conic_render and conic_render_samples draw on its device. */
+#ifndef CONIC_OPENCL_H
+#define CONIC_OPENCL_H
+
+#include <stdint.h>
+
+#include "conic/render.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_opencl_device {
+  int i_platform, i_device; /* its name is opencl:P.D */
+  char name[128], platform[128], version[128], driver[128];
+  int is_cpu;
+  int has_double;       /* else the host projects the splats for it */
+  int rounds_correctly; /* division and square root; else its pictures may be others */
+  int n_compute_units;
+  uint64_t memory_bytes, greatest_buffer_bytes;
+} conic_opencl_device;
+
+/* The devices of this machine, platform by platform; none is no error. On success the caller releases *devices. Errors:
+ * UNSUPPORTED (this build has no OpenCL), MEMORY. */
+CONIC_API conic_status conic_opencl_devices(conic_context *context, conic_opencl_device **devices, size_t *n_devices);
+CONIC_API void conic_opencl_devices_release(conic_context *context, conic_opencl_device *devices);
+
+/* How the raster is shared out; neither changes a bit. */
+typedef enum conic_opencl_work {
+  CONIC_OPENCL_WORK_AUTO = 0,  /* tiles on a CPU, else pixels */
+  CONIC_OPENCL_WORK_TILES = 1, /* a tile a work-item, in vectors of 16 */
+  CONIC_OPENCL_WORK_PIXELS = 2 /* a pixel a work-item */
+} conic_opencl_work;
+
+typedef struct conic_opencl_options {
+  size_t size;              /* sizeof(conic_opencl_options), set by the init function */
+  const char *device;       /* "opencl": the first that will do, GPUs before others; or "opencl:P.D" */
+  int allow_inexact;        /* also a device that does not round correctly */
+  const char *cache_folder; /* where built programs are kept; null: nowhere */
+  conic_opencl_work work;
+  int projects_on_host; /* as where a device has no double precision */
+  size_t part_splats;   /* no more splats are on the device at a time; 0: as many as its memory holds */
+} conic_opencl_options;
+
+CONIC_API void conic_opencl_options_init(conic_opencl_options *options);
+
+/* A renderer that draws on the device. On success the caller owns *renderer, and *device (which may be null) says what
+ * draws. Errors: ARGUMENT (a name that is none), UNSUPPORTED (no such device, it does not round correctly, it cannot
+ * build the programs, this build has no OpenCL), MEMORY. */
+CONIC_API conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
+                                                    conic_opencl_device *device, conic_renderer **renderer);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,34 @@
+/* What stands in where conic is built without OpenCL. */
+#include <string.h>
+
+#include "conic/opencl.h"
+#include "core/message.h"
+
+static conic_status refuse(conic_context *context) {
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "opencl: this build has no OpenCL; it draws on the CPU only");
+}
+
+conic_status conic_opencl_devices(conic_context *context, conic_opencl_device **devices, size_t *n_devices) {
+  *devices = NULL;
+  *n_devices = 0;
+  return refuse(context);
+}
+
+void conic_opencl_devices_release(conic_context *context, conic_opencl_device *devices) {
+  (void)context;
+  (void)devices;
+}
+
+void conic_opencl_options_init(conic_opencl_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->device = "opencl";
+}
+
+conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
+                                          conic_opencl_device *device, conic_renderer **renderer) {
+  (void)options;
+  (void)device;
+  *renderer = NULL;
+  return refuse(context);
+}

@@ -1,0 +1,15 @@
+/* The types of C's <stdint.h> for OpenCL C, whose own have fixed sizes. */
+#ifndef OPENCL_C_LIBRARY_STDINT_H
+#define OPENCL_C_LIBRARY_STDINT_H
+
+typedef uchar uint8_t;
+typedef ushort uint16_t;
+typedef uint uint32_t;
+typedef ulong uint64_t;
+typedef int int32_t;
+typedef long int64_t;
+
+#define UINT32_C(n) n##u
+#define UINT32_MAX 0xffffffffu
+
+#endif

@@ -1,0 +1,296 @@
+#include "opencl/frame.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "raster/clip_lines.h"
+#include "raster/method.h"
+#include "raster/projected.h"
+
+/* A tile's fragments are counted in 32 bits: no more splats than this are on a device at a time. */
+#define MOST_PART_SPLATS (((size_t)1 << 24) - 1)
+
+/* Of a device's memory, what a frame may take. */
+#define SHARE_OF_MEMORY 0.75
+
+conic_status conic_frame_room(const conic_frame *f, int buffer, size_t count, size_t size) {
+  return conic_queue_room(&f->opencl->queue, &f->opencl->buffers[buffer], count * size);
+}
+
+conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
+                             const conic_argument *arguments, int n_arguments, size_t n_items) {
+  const size_t items[2] = {n_items, 1}, group[2] = {f->opencl->device.is_cpu ? 1 : 64, 1};
+  return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items, group);
+}
+
+conic_status conic_frame_scan(const conic_frame *f, conic_stage stage, uint32_t n, int numbers, int places,
+                              uint64_t *total) {
+  uint32_t n_sums = (n + CONIC_SCAN_NUMBERS - 1) / CONIC_SCAN_NUMBERS;
+  conic_status status = conic_frame_room(f, CONIC_BUFFER_SCAN_SUMS, n_sums, sizeof(uint64_t));
+  const conic_argument sums = conic_frame_argument(f, CONIC_BUFFER_SCAN_SUMS), of = conic_frame_argument(f, numbers);
+  const conic_argument first[] = {CONIC_ARGUMENT(n), of, sums}, second[] = {CONIC_ARGUMENT(n_sums), sums};
+  const conic_argument third[] = {CONIC_ARGUMENT(n), of, sums, conic_frame_argument(f, places)};
+  if (status == CONIC_OK)
+    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_SUMS, first, 3, n_sums);
+  if (status == CONIC_OK)
+    status = conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[CONIC_KERNEL_SCAN_TOPS], second, 2,
+                             (const size_t[2]){1, 1}, (const size_t[2]){1, 1});
+  if (status == CONIC_OK)
+    status = conic_frame_run(f, stage, CONIC_KERNEL_SCAN_PLACES, third, 4, n_sums);
+  if (status == CONIC_OK)
+    status = conic_queue_read(&f->opencl->queue, &f->opencl->buffers[places], n * sizeof *total, total, sizeof *total);
+  return status;
+}
+
+conic_status conic_frame_add_tiles(const conic_frame *f, int buffer, uint64_t *sum) {
+  conic_context *context = f->opencl->context;
+  uint32_t *of_tiles = conic_memory_allocate(context, f->n_tiles, sizeof *of_tiles);
+  if (!of_tiles)
+    return CONIC_ERROR_MEMORY;
+  conic_status status =
+      conic_queue_read(&f->opencl->queue, &f->opencl->buffers[buffer], 0, of_tiles, f->n_tiles * sizeof *of_tiles);
+  for (uint32_t i = 0; i < f->n_tiles && status == CONIC_OK; i++)
+    *sum += of_tiles[i];
+  conic_memory_release(context, of_tiles);
+  return status;
+}
+
+/* --- before the parts --- */
+
+/* The directions of the pixels along one axis, of whole tiles; 0 past the image. */
+static conic_status write_directions(const conic_frame *f, int buffer, int n_tiles, int size, double principal,
+                                     double focal) {
+  size_t n = (size_t)n_tiles * (size_t)f->opencl->tile;
+  float *directions = conic_memory_allocate_zeroed(f->opencl->context, n, sizeof *directions);
+  if (!directions)
+    return CONIC_ERROR_MEMORY;
+  for (int i = 0; i < size; i++)
+    directions[i] = (float)(((double)i + 0.5 - principal) / focal);
+  conic_status status = conic_frame_room(f, buffer, n, sizeof *directions);
+  if (status == CONIC_OK)
+    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[buffer], directions, n * sizeof *directions);
+  conic_memory_release(f->opencl->context, directions);
+  return status;
+}
+
+static size_t plane_bytes(const conic_image *image, int plane) {
+  return (size_t)image->width * (size_t)image->height * 4 *
+         (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
+}
+
+/* A CPU's device draws into the image itself, another into memory of its own. */
+static conic_status open_planes(const conic_frame *f) {
+  conic_opencl *opencl = f->opencl;
+  conic_status status = CONIC_OK;
+  for (int plane = 0; plane < CONIC_N_PLANES && status == CONIC_OK; plane++) {
+    conic_buffer *buffer = &opencl->buffers[CONIC_BUFFER_PLANES + plane];
+    size_t bytes = plane_bytes(f->image, plane);
+    if (!f->image->planes[plane]) {
+      conic_queue_release(buffer);
+    } else if (opencl->device.is_cpu) {
+      cl_int answer;
+      conic_queue_release(buffer);
+      buffer->memory = clCreateBuffer(opencl->queue.cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes,
+                                      f->image->planes[plane], &answer);
+      status = conic_opencl_check(opencl->context, answer, "clCreateBuffer");
+    } else
+      status = conic_queue_room(&opencl->queue, buffer, bytes);
+  }
+  return status;
+}
+
+conic_status conic_frame_begin(conic_frame *f) {
+  conic_device_frame *c = &f->constants;
+  int tile = f->opencl->tile;
+  c->width = f->view->width;
+  c->height = f->view->height;
+  c->n_tiles_x = (c->width + tile - 1) / tile;
+  c->n_tiles_y = (c->height + tile - 1) / tile;
+  c->n_blocks_x = c->n_tiles_x * (tile / 4);
+  c->planes = (int32_t)conic_image_planes(f->image);
+  c->keeps_sums = f->opencl->keeps_sums;
+  f->n_tiles = (uint32_t)c->n_tiles_x * (uint32_t)c->n_tiles_y;
+  const struct {
+    int buffer;
+    size_t bytes;
+  } needed[] = {{CONIC_BUFFER_VIEW, sizeof *f->view},
+                {CONIC_BUFFER_FRAME, sizeof *c},
+                {CONIC_BUFFER_COUNTS, CONIC_DEVICE_N_COUNTS * sizeof(uint32_t)},
+                {CONIC_BUFFER_TILE_TOTALS, f->n_tiles * sizeof(uint32_t)},
+                {CONIC_BUFFER_TILE_BEGIN, (f->n_tiles + (size_t)1) * sizeof(uint64_t)},
+                {CONIC_BUFFER_N_FRAGMENTS, f->n_tiles * sizeof(uint32_t)},
+                {CONIC_BUFFER_N_COVERED, f->n_tiles * sizeof(uint32_t)}};
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < sizeof needed / sizeof needed[0] && status == CONIC_OK; i++)
+    status = conic_frame_room(f, needed[i].buffer, 1, needed[i].bytes);
+  if (status == CONIC_OK && !c->is_single_pass)
+    status = conic_frame_room(f, CONIC_BUFFER_THRESHOLDS, f->n_tiles, (size_t)tile * (size_t)tile * sizeof(float));
+  if (status == CONIC_OK)
+    status = open_planes(f);
+  if (status == CONIC_OK)
+    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_VIEW], f->view, sizeof *f->view);
+  const conic_view *v = f->view;
+  if (status == CONIC_OK)
+    status = write_directions(f, CONIC_BUFFER_DIRECTIONS_X, c->n_tiles_x, v->width, v->cx, v->fx);
+  return status == CONIC_OK ? write_directions(f, CONIC_BUFFER_DIRECTIONS_Y, c->n_tiles_y, v->height, v->cy, v->fy)
+                            : status;
+}
+
+/* --- after the parts --- */
+
+conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
+  conic_opencl *opencl = f->opencl;
+  conic_status status = CONIC_OK;
+  for (int plane = 0; plane < CONIC_N_PLANES && status == CONIC_OK; plane++) {
+    cl_mem memory = opencl->buffers[CONIC_BUFFER_PLANES + plane].memory;
+    size_t bytes = plane_bytes(f->image, plane);
+    if (!f->image->planes[plane])
+      continue;
+    if (!opencl->device.is_cpu) {
+      status = conic_queue_read(&opencl->queue, &opencl->buffers[CONIC_BUFFER_PLANES + plane], 0,
+                                f->image->planes[plane], bytes);
+      continue;
+    }
+    cl_int answer;
+    void *mapped =
+        clEnqueueMapBuffer(opencl->queue.queue, memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &answer);
+    status = conic_opencl_check(opencl->context, answer, "clEnqueueMapBuffer");
+    if (mapped)
+      clEnqueueUnmapMemObject(opencl->queue.queue, memory, mapped, 0, NULL, NULL);
+  }
+  if (status == CONIC_OK)
+    status = conic_frame_add_tiles(f, CONIC_BUFFER_N_COVERED, n_covered);
+  return status;
+}
+
+conic_status conic_frame_close(conic_frame *f) {
+  conic_opencl *opencl = f->opencl;
+  conic_status status = conic_queue_finish(&opencl->queue);
+  if (opencl->device.is_cpu) /* the image and the splats are the caller's */
+    for (int buffer = CONIC_BUFFER_COLUMNS; buffer < CONIC_N_BUFFER_NAMES; buffer++)
+      if (buffer < CONIC_BUFFER_CLIPS || buffer >= CONIC_BUFFER_PLANES)
+        conic_queue_release(&opencl->buffers[buffer]);
+  return status;
+}
+
+/* --- the frame --- */
+
+/* How many splats the device holds at a time, with all that becomes of them. */
+static size_t part_of(const conic_frame *f) {
+  const conic_opencl *opencl = f->opencl;
+  double pixel_bytes = 4.0 * (1 + CONIC_N_SUMS) + 56.0, image = (double)f->view->width * (double)f->view->height;
+  size_t splat_bytes = sizeof(conic_footprint) + sizeof(conic_box) + sizeof(conic_surface) + sizeof(conic_ray) +
+                       (f->splats->n_clips ? sizeof(conic_clip_record) : 0) + 4 +
+                       4 * (sizeof(conic_device_reference) + sizeof(uint64_t)) +
+                       (opencl->device.is_cpu ? 0 : 13 * sizeof(float));
+  double n = (SHARE_OF_MEMORY * (double)opencl->device.memory_bytes - image * pixel_bytes) / (double)splat_bytes;
+  double most = (double)opencl->device.greatest_buffer_bytes / (double)sizeof(conic_footprint);
+  n = n < most ? n : most;
+  size_t part = n > 1.0 ? n < (double)MOST_PART_SPLATS ? (size_t)n : MOST_PART_SPLATS : 1;
+  return opencl->part_splats && opencl->part_splats < part ? opencl->part_splats : part;
+}
+
+static conic_status add_counts(conic_frame *f) {
+  uint32_t counts[CONIC_DEVICE_N_COUNTS] = {0};
+  conic_status status =
+      f->n ? conic_queue_read(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_COUNTS], 0, counts, sizeof counts)
+           : CONIC_OK;
+  for (int i = 0; i < CONIC_DEVICE_N_COUNTS; i++)
+    f->counts[i] += counts[i];
+  f->n_drawn_in_all += f->n_drawn;
+  return status;
+}
+
+/* What is done with a part: in a walk of its own where there are several. */
+typedef enum walk {
+  WALK_VISIBILITY, /* and accumulation too, where the part is all there is */
+  WALK_ACCUMULATE
+} walk;
+
+static conic_status take_part(conic_frame *f, walk purpose) {
+  conic_status status = CONIC_OK;
+  int counts = purpose == WALK_VISIBILITY || f->constants.is_single_pass;
+  if (counts)
+    status = add_counts(f);
+  if (status == CONIC_OK && purpose == WALK_VISIBILITY)
+    status = conic_frame_visibility(f);
+  if (status == CONIC_OK && (purpose == WALK_ACCUMULATE || f->n == f->splats->count))
+    status = conic_frame_accumulate(f);
+  return status;
+}
+
+/* Walks over the splats part by part; parts become smaller where their lists are too long for the device. */
+static conic_status walk_parts(conic_frame *f, walk purpose, size_t *part) {
+  size_t first = 0, count = f->splats->count;
+  conic_status status = CONIC_OK;
+  do {
+    size_t n = count - first < *part ? count - first : *part;
+    int fits = 1;
+    status = conic_progress(f->opencl->context, "render", count ? (double)first / (double)count : 0.0);
+    if (status == CONIC_OK)
+      status = conic_frame_project(f, first, n);
+    if (status == CONIC_OK)
+      status = conic_frame_bin(f, &fits);
+    if (status == CONIC_OK && !fits && n == 1)
+      return conic_fail(f->opencl->context, CONIC_ERROR_MEMORY, "opencl: the device cannot hold the tiles' lists");
+    if (status == CONIC_OK && !fits) {
+      *part = n / 2;
+      continue;
+    }
+    if (status == CONIC_OK)
+      status = take_part(f, purpose);
+    first += n;
+  } while (status == CONIC_OK && first < count);
+  return status;
+}
+
+static void set_finish(const conic_finish *finish, conic_device_frame *c) {
+  c->is_single_pass = finish->options->passes == 1;
+  c->shading = (int32_t)finish->options->shading;
+  c->has_light = finish->options->has_light;
+  memcpy(c->world_from_cam, finish->world_from_cam, sizeof c->world_from_cam);
+  memcpy(c->light, finish->light, sizeof c->light);
+  memcpy(c->background, finish->background, sizeof c->background);
+  c->exposure = finish->exposure;
+}
+
+static void report(const conic_frame *f, conic_render_statistics *s) {
+  const double *ms = f->opencl->queue.ms;
+  s->splats_culled = f->counts[CONIC_DEVICE_CULLED];
+  s->splats_skipped = f->counts[CONIC_DEVICE_SKIPPED];
+  s->splats_fallback = f->counts[CONIC_DEVICE_FALLBACK];
+  s->splats_drawn = f->n_drawn_in_all;
+  s->fragments = f->n_fragments;
+  conic_method_count(f->view->method, f->counts[CONIC_DEVICE_RAYS], s);
+  s->threads = f->opencl->device.n_compute_units;
+  s->tile = f->opencl->tile;
+  s->isa = "opencl";
+  s->ms.setup = ms[CONIC_STAGE_SETUP];
+  s->ms.bin = ms[CONIC_STAGE_BIN];
+  s->ms.visibility = ms[CONIC_STAGE_VISIBILITY];
+  s->ms.accumulate = ms[CONIC_STAGE_ACCUMULATE];
+  s->ms.resolve = ms[CONIC_STAGE_RESOLVE];
+}
+
+conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
+                              const conic_finish *finish, conic_image *image, conic_render_statistics *statistics) {
+  conic_opencl *opencl = (conic_opencl *)backend;
+  conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .image = image};
+  memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
+  set_finish(finish, &f.constants);
+  size_t part = part_of(&f);
+  conic_status status = conic_frame_begin(&f);
+  if (status == CONIC_OK && !f.constants.is_single_pass)
+    status = walk_parts(&f, WALK_VISIBILITY, &part);
+  if (status == CONIC_OK && (f.constants.is_single_pass || f.n < splats->count))
+    status = walk_parts(&f, WALK_ACCUMULATE, &part);
+  if (status == CONIC_OK)
+    status = conic_frame_end(&f, &statistics->pixels_covered);
+  conic_status closed = conic_frame_close(&f);
+  status = status == CONIC_OK ? closed : status;
+  if (status != CONIC_OK)
+    return status;
+  report(&f, statistics);
+  return conic_progress(opencl->context, "render", 1.0);
+}

@@ -1,0 +1,62 @@
+/* One frame on its way through a device's stages. Who wants to look at what a stage has made calls the stages one by
+ * one and reads their buffers with conic_queue_read. */
+#ifndef OPENCL_FRAME_H
+#define OPENCL_FRAME_H
+
+#include "opencl/layout.h"
+#include "opencl/renderer.h"
+
+typedef struct conic_frame {
+  conic_opencl *opencl;
+  const conic_view *view;
+  const conic_splats *splats;
+  conic_image *image;
+  conic_device_frame constants;
+  uint32_t n_tiles;
+  /* Of the part of the splats that is on the device: */
+  size_t first;
+  uint32_t n, n_items, splats_per_item, n_drawn;
+  uint64_t n_references;
+  uint64_t counts[CONIC_DEVICE_N_COUNTS]; /* of all parts of the first walk over them */
+  uint64_t n_fragments, n_drawn_in_all;
+} conic_frame;
+
+/* Makes ready what all parts share. */
+conic_status conic_frame_begin(conic_frame *frame);
+/* Projects the splats first … first + n - 1 and packs them; n may be 0. */
+conic_status conic_frame_project(conic_frame *frame, size_t first, size_t n);
+/* Makes the tiles' lists of them. *fits is 0, and there are no lists, where the device cannot hold them. */
+conic_status conic_frame_bin(conic_frame *frame, int *fits);
+conic_status conic_frame_visibility(conic_frame *frame);
+/* Accumulation or, in a single pass, the nearest splats; with the last part, the picture. */
+conic_status conic_frame_accumulate(conic_frame *frame);
+/* Brings the picture to the image. */
+conic_status conic_frame_end(conic_frame *frame, uint64_t *n_covered);
+/* Waits for all; after that, also after a failure, the device knows nothing more of the image and the splats. */
+conic_status conic_frame_close(conic_frame *frame);
+
+/* What the stages share: */
+
+static inline conic_argument conic_frame_argument(const conic_frame *frame, int buffer) {
+  return (conic_argument){sizeof(cl_mem), &frame->opencl->buffers[buffer].memory};
+}
+
+/* Room in a buffer for count × size bytes. */
+conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count, size_t size);
+/* Runs a kernel over a row of work-items; one is a group on a CPU, where each has much to do. */
+conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
+                             const conic_argument *arguments, int n_arguments, size_t n_items);
+/* places[i] = the sum of numbers[0 … i - 1], by the buffers' names; places[n] is the total, which comes back. */
+conic_status conic_frame_scan(const conic_frame *frame, conic_stage stage, uint32_t n, int numbers, int places,
+                              uint64_t *total);
+/* Adds what the tiles have counted in a buffer to the sum. */
+conic_status conic_frame_add_tiles(const conic_frame *frame, int buffer, uint64_t *sum);
+
+/* The same as conic_frame_project on the host, for devices without double precision (opencl/host_setup.c). */
+conic_status conic_frame_project_on_host(conic_frame *frame);
+
+/* The slot of the backend. */
+conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
+                              const conic_finish *finish, conic_image *image, conic_render_statistics *statistics);
+
+#endif

@@ -1,0 +1,131 @@
+/* Set-up: the splats of a part to the device, their records, and these in order. */
+#include "opencl/frame.h"
+#include "raster/clip_lines.h"
+#include "raster/method.h"
+#include "raster/projected.h"
+
+/* One column of the part's splats: a CPU's device reads it where it is. */
+static conic_status write_column(const conic_frame *f, int column, const float *values) {
+  conic_queue *queue = &f->opencl->queue;
+  conic_buffer *buffer = &f->opencl->buffers[CONIC_BUFFER_COLUMNS + column];
+  size_t bytes = f->n * sizeof *values;
+  cl_int answer;
+  if (!values || !f->opencl->device.is_cpu) {
+    conic_status status = values ? conic_queue_room(queue, buffer, bytes) : CONIC_OK;
+    return values && status == CONIC_OK ? conic_queue_write(queue, buffer, values + f->first, bytes) : status;
+  }
+  conic_queue_release(buffer);
+  buffer->memory =
+      clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, (void *)(values + f->first), &answer);
+  return conic_opencl_check(queue->context, answer, "clCreateBuffer");
+}
+
+static conic_status write_columns(const conic_frame *f) {
+  const conic_splats *s = f->splats;
+  const float *columns[13];
+  conic_status status = CONIC_OK;
+  for (int axis = 0; axis < 3; axis++) {
+    columns[axis] = s->position[axis];
+    columns[3 + axis] = s->tangent_u[axis];
+    columns[6 + axis] = s->tangent_v[axis];
+    columns[9 + axis] = s->color[axis];
+  }
+  columns[12] = s->opacity;
+  for (int column = 0; column < 13 && status == CONIC_OK; column++)
+    status = write_column(f, column, columns[column]);
+  return status;
+}
+
+/* The clip lines of the part's splats. */
+static conic_status write_clips(const conic_frame *f, uint32_t *n_clips) {
+  const conic_splats *s = f->splats;
+  size_t begin = 0, end;
+  while (begin < s->n_clips && s->clips[begin].splat < f->first)
+    begin++;
+  for (end = begin; end < s->n_clips && s->clips[end].splat < f->first + f->n;)
+    end++;
+  *n_clips = (uint32_t)(end - begin);
+  if (end == begin)
+    return CONIC_OK;
+  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIPS, end - begin, sizeof *s->clips);
+  if (status == CONIC_OK)
+    status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
+  if (status != CONIC_OK)
+    return status;
+  return conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_CLIPS], s->clips + begin,
+                           (end - begin) * sizeof *s->clips);
+}
+
+static conic_status make_room_for_records(const conic_frame *f) {
+  const struct {
+    int buffer;
+    size_t count, size;
+  } needed[] = {{CONIC_BUFFER_FOOTPRINTS, f->n, sizeof(conic_footprint)},
+                {CONIC_BUFFER_BOXES, f->n, sizeof(conic_box)},
+                {CONIC_BUFFER_SURFACES, f->n, sizeof(conic_surface)},
+                {CONIC_BUFFER_RAYS, f->n, sizeof(conic_ray)},
+                {CONIC_BUFFER_ORDER, f->n, sizeof(uint32_t)},
+                {CONIC_BUFFER_N_DRAWN, f->n_items, sizeof(uint32_t)},
+                {CONIC_BUFFER_PLACES, f->n_items + (size_t)1, sizeof(uint64_t)}};
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < sizeof needed / sizeof needed[0] && status == CONIC_OK; i++)
+    status = conic_frame_room(f, needed[i].buffer, needed[i].count, needed[i].size);
+  return status;
+}
+
+static conic_status project_on_device(conic_frame *f) {
+  conic_queue *queue = &f->opencl->queue;
+  uint32_t n_clips = 0, fields = 0, first = (uint32_t)f->first;
+  conic_argument arguments[27];
+  int n = 0;
+  fields |= f->splats->color[0] ? CONIC_DEVICE_HAS_COLOR : 0;
+  fields |= f->splats->opacity ? CONIC_DEVICE_HAS_OPACITY : 0;
+  conic_status status = write_columns(f);
+  if (status == CONIC_OK)
+    status = write_clips(f, &n_clips);
+  if (status == CONIC_OK)
+    status = conic_queue_fill_zero(queue, &f->opencl->buffers[CONIC_BUFFER_COUNTS],
+                                   CONIC_DEVICE_N_COUNTS * sizeof(uint32_t));
+  if (status != CONIC_OK)
+    return status;
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_VIEW);
+  arguments[n++] = CONIC_ARGUMENT(f->n);
+  arguments[n++] = CONIC_ARGUMENT(first);
+  arguments[n++] = CONIC_ARGUMENT(f->splats_per_item);
+  arguments[n++] = CONIC_ARGUMENT(fields);
+  for (int column = 0; column < 13; column++)
+    arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_COLUMNS + column);
+  arguments[n++] = CONIC_ARGUMENT(n_clips);
+  for (int buffer = CONIC_BUFFER_CLIPS; buffer <= CONIC_BUFFER_COUNTS; buffer++)
+    arguments[n++] = conic_frame_argument(f, buffer);
+  int is_in_lanes = f->opencl->work == CONIC_OPENCL_WORK_TILES && !conic_method_is_dot(f->view->method);
+  return conic_frame_run(f, CONIC_STAGE_SETUP, is_in_lanes ? CONIC_KERNEL_PROJECT_LANES : CONIC_KERNEL_PROJECT,
+                         arguments, n, f->n_items);
+}
+
+static conic_status compact(conic_frame *f) {
+  uint64_t n_drawn;
+  conic_status status =
+      conic_frame_scan(f, CONIC_STAGE_SETUP, f->n_items, CONIC_BUFFER_N_DRAWN, CONIC_BUFFER_PLACES, &n_drawn);
+  if (status != CONIC_OK)
+    return status;
+  f->n_drawn = (uint32_t)n_drawn;
+  const conic_argument arguments[] = {
+      CONIC_ARGUMENT(f->n_items), CONIC_ARGUMENT(f->splats_per_item), conic_frame_argument(f, CONIC_BUFFER_N_DRAWN),
+      conic_frame_argument(f, CONIC_BUFFER_PLACES), conic_frame_argument(f, CONIC_BUFFER_ORDER)};
+  return conic_frame_run(f, CONIC_STAGE_SETUP, CONIC_KERNEL_COMPACT, arguments, 5, f->n_items);
+}
+
+conic_status conic_frame_project(conic_frame *f, size_t first, size_t n) {
+  f->first = first;
+  f->n = (uint32_t)n;
+  f->n_drawn = 0;
+  f->splats_per_item =
+      f->opencl->work == CONIC_OPENCL_WORK_TILES || f->opencl->projects_on_host ? CONIC_SETUP_SPLATS : 1;
+  f->n_items = (f->n + f->splats_per_item - 1) / f->splats_per_item;
+  conic_status status = make_room_for_records(f);
+  if (status != CONIC_OK || n == 0)
+    return status;
+  status = f->opencl->projects_on_host ? conic_frame_project_on_host(f) : project_on_device(f);
+  return status == CONIC_OK ? compact(f) : status;
+}

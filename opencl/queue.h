@@ -1,0 +1,65 @@
+/* A device's queue: its kernels, memory that grows, and how long each stage took. */
+#ifndef OPENCL_QUEUE_H
+#define OPENCL_QUEUE_H
+
+#include "opencl/device.h"
+
+typedef enum conic_stage {
+  CONIC_STAGE_SETUP,
+  CONIC_STAGE_BIN,
+  CONIC_STAGE_VISIBILITY,
+  CONIC_STAGE_ACCUMULATE,
+  CONIC_STAGE_RESOLVE,
+  CONIC_N_STAGES
+} conic_stage;
+
+enum { CONIC_QUEUE_EVENTS = 256 };
+
+typedef struct conic_queue {
+  conic_context *context;
+  cl_context cl;
+  cl_command_queue queue;
+  int n_events; /* of commands whose times are not yet counted */
+  cl_event events[CONIC_QUEUE_EVENTS];
+  conic_stage stages[CONIC_QUEUE_EVENTS];
+  double ms[CONIC_N_STAGES];
+} conic_queue;
+
+/* Memory on the device; only ever grows. */
+typedef struct conic_buffer {
+  cl_mem memory;
+  size_t bytes;
+} conic_buffer;
+
+/* A kernel's argument. */
+typedef struct conic_argument {
+  size_t bytes;
+  const void *value;
+} conic_argument;
+
+#define CONIC_ARGUMENT(variable)                                                                                       \
+  (conic_argument) {                                                                                                   \
+    sizeof(variable), &(variable)                                                                                      \
+  }
+
+conic_status conic_queue_open(conic_context *context, cl_platform_id platform, cl_device_id id, conic_queue *queue);
+void conic_queue_close(conic_queue *queue);
+
+/* Room for so many bytes; what was in it is gone if it had to grow. Errors: MEMORY. */
+conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t bytes);
+void conic_queue_release(conic_buffer *buffer);
+
+/* Both return when it is done. */
+conic_status conic_queue_write(conic_queue *queue, const conic_buffer *buffer, const void *from, size_t bytes);
+conic_status conic_queue_read(conic_queue *queue, const conic_buffer *buffer, size_t at, void *to, size_t bytes);
+conic_status conic_queue_fill_zero(conic_queue *queue, const conic_buffer *buffer, size_t bytes);
+
+/* Enqueues a kernel over items[0] × items[1] work-items, in groups of group[0] × group[1]; the items are rounded up to
+ * whole groups. */
+conic_status conic_queue_run(conic_queue *queue, conic_stage stage, cl_kernel kernel, const conic_argument *arguments,
+                             int n_arguments, const size_t items[2], const size_t group[2]);
+
+/* Waits for all, and adds the commands' times to ms. */
+conic_status conic_queue_finish(conic_queue *queue);
+
+#endif

@@ -1,0 +1,26 @@
+/* What stands before the text that plain C and OpenCL C share: names that OpenCL C keeps for itself are changed, and
+ * what has no place on a device is left out. Only for the preprocessor (cmake/opencl_program.cmake). */
+#ifndef OPENCL_SHARED_H
+#define OPENCL_SHARED_H
+
+#pragma OPENCL FP_CONTRACT OFF
+
+/* Words of OpenCL C: */
+#define kernel reconstruction
+#define constant constant_part
+/* and functions that it has already: */
+#define rotate conic_rotate
+#define dot conic_dot
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* conic/context.h and core/clip.h have pointers to functions, which OpenCL C has not. */
+#define CONIC_CONTEXT_H
+#include "conic/status.h"
+typedef struct conic_context conic_context;
+#define conic_clip_filter(...) conic_clip_filter_is_not_here(void)
+
+#endif
