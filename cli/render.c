@@ -95,6 +95,23 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   return status;
 }
 
+/* --overdraw: the count plane in false colours. */
+static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  conic_image map;
+  double start = cli_seconds();
+  if (!job->overdraw_path)
+    return CONIC_OK;
+  conic_status status = conic_image_overdraw(session->context, image, &map);
+  char *path = frame_path(job, job->overdraw_path, i_frame);
+  if (status == CONIC_OK) {
+    status = path ? conic_image_write(session->context, path, &map) : CONIC_ERROR_MEMORY;
+    conic_image_release(session->context, &map);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 /* --deep: the splats behind the picture's pixels. */
 static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                const conic_camera *camera, const conic_image *image, int i_frame) {
@@ -145,6 +162,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   take_medians(job, repeats, (size_t)job->repeat);
   describe(job, &camera, image);
   status = write_frame(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_overdraw(session, job, image, i_frame);
   return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 

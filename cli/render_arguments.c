@@ -178,15 +178,18 @@ static int check_deep(const cli_render_job *job) {
 
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
-  const char *paths[CLI_MAX_OUTPUTS + 1];
+  const char *paths[CLI_MAX_OUTPUTS + 2];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path)
+  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(paths[i] = job->outputs[i]);
   paths[job->n_outputs] = job->deep_path;
+  paths[job->n_outputs + 1] = job->overdraw_path;
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
+  if (answer == CLI_DONE && job->overdraw_path)
+    answer = check_output(job->overdraw_path);
   if (answer != CLI_DONE)
     return answer;
   if (cli_lod_is_wanted(job) && job->deep_path)
@@ -197,7 +200,7 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return cli_usage("render: --error and --budget need a single .cot as input (conic octree makes one)");
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  return cli_check_outputs(session, paths, job->n_outputs + 1);
+  return cli_check_outputs(session, paths, job->n_outputs + 2);
 }
 
 void cli_scene_defaults(cli_render_job *job) {
@@ -303,6 +306,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
+      {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
+       "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"error", CLI_NUMBER, &job->error_px, "PX",
        "of a .cot, no more splats than keep the error on the screen below this; 0: all [0]", 0, 65536},
@@ -311,5 +316,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  if (job->overdraw_path)
+    job->planes |= 1u << CONIC_PLANE_COUNT;
   return answer == CLI_DONE ? check_outputs(session, job) : answer;
 }

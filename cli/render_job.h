@@ -13,8 +13,9 @@ typedef struct cli_render_job {
   int n_inputs;
   const char *outputs[CLI_MAX_OUTPUTS];
   int n_outputs;
-  const char *deep_path;   /* --deep; null: none */
-  const char *camera_path; /* null: framed */
+  const char *deep_path;     /* --deep; null: none */
+  const char *overdraw_path; /* --overdraw; null: none */
+  const char *camera_path;   /* null: framed */
   conic_framing framing;
   int is_up_given;
   int n_frames; /* of a turntable; 1 without */

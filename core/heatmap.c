@@ -11,15 +11,15 @@
 /* The smallest difference that is told from the next: 2^-20, a millionth. */
 enum { DARKEST_EXPONENT = -20 };
 
-/* How far `difference` is from the smallest (0) to 1 and beyond (1) by its logarithm, taken as straight between powers
- * of two: that needs no logarithm and no one sees the difference. Infinity and NaN are 1. */
-static float scale_position(double difference) {
+/* How far `difference` is from that power of two (0) to 1 and beyond (1) by its logarithm, taken as straight between
+ * powers of two: that needs no logarithm and no one sees the difference. Infinity and NaN are 1. */
+static float scale_position(double difference, int darkest_exponent) {
   int exponent;
   if (!(difference < 1.0))
     return 1.0f;
   double mantissa = frexp(difference, &exponent); /* in [½, 1) */
   double logarithm = (double)(exponent - 1) + (2.0 * mantissa - 1.0);
-  double position = 1.0 - logarithm / DARKEST_EXPONENT;
+  double position = 1.0 - logarithm / darkest_exponent;
   return position > 0.0 ? (float)position : 0.0f;
 }
 
@@ -66,7 +66,7 @@ conic_status conic_image_heatmap(conic_context *context, const conic_image *a, c
   for (size_t i = 0; i < conic_image_pixels(a); i++, pixel += 4) {
     double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i);
     if (difference > 0.0)
-      paint(scale_position(difference), pixel);
+      paint(scale_position(difference, DARKEST_EXPONENT), pixel);
     pixel[3] = 1.0f;
   }
   return CONIC_OK;
@@ -92,4 +92,20 @@ conic_status conic_image_flip_heatmap(conic_context *context, const conic_image 
   if (status != CONIC_OK)
     conic_image_release(context, heatmap);
   return status;
+}
+
+conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map) {
+  const uint32_t *count = image ? image->planes[CONIC_PLANE_COUNT] : NULL;
+  if (!count || !map)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "overdraw: the image has no count");
+  conic_status status = conic_image_allocate(context, image->width, image->height, 1u << CONIC_PLANE_RGBA, map);
+  if (status != CONIC_OK)
+    return status;
+  float *pixel = map->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(image); i++, pixel += 4) {
+    if (count[i] > 0)
+      paint(scale_position((double)count[i] * 0x1p-6, -6), pixel);
+    pixel[3] = 1.0f;
+  }
+  return CONIC_OK;
 }

@@ -27,6 +27,7 @@ void conic_octree_destroy(conic_octree *octree) {
   conic_memory_release(context, octree->owned_codes);
   conic_memory_release(context, octree->owned_leaf_codes);
   conic_memory_release(context, octree->drawn);
+  conic_memory_release(context, octree->drawn_leaves);
   float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,   octree->error,
                      octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2]};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -113,6 +114,7 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
     memcpy(drawn->tangent_v, node.tangent_v, sizeof drawn->tangent_v);
     memcpy(drawn->color, node.color, sizeof drawn->color);
     drawn->opacity = node.opacity;
+    drawn->id = (uint32_t)(octree->n_points + i);
     for (int axis = 0; axis < 3; axis++) {
       octree->center[axis][i] = node.position[axis];
       octree->normal[axis][i] = node.normal[axis];
@@ -129,7 +131,7 @@ static conic_status allocate_decoded(conic_octree *octree) {
                       &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
     conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
-    *arrays[i] = conic_memory_allocate(context, octree->n_nodes, sizeof(float));
+    *arrays[i] = conic_memory_allocate_zeroed(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
     if (!*arrays[i])
       return CONIC_ERROR_MEMORY;
   }
@@ -144,6 +146,34 @@ conic_status conic_octree_decode(conic_octree *octree) {
   if (status == CONIC_OK)
     conic_parallel_for(octree->context, (octree->n_nodes + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
   return status;
+}
+
+static void copy_chunk(void *data, size_t i_chunk, int i_thread) {
+  conic_octree *octree = data;
+  const conic_splats *leaves = &octree->leaves;
+  size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < octree->n_leaves; i++) {
+    conic_drawn_node drawn = {.opacity = leaves->opacity ? leaves->opacity[i] : 1.0f, .id = octree->index[i]};
+    for (int axis = 0; axis < 3; axis++) {
+      drawn.position[axis] = leaves->position[axis][i];
+      drawn.tangent_u[axis] = leaves->tangent_u[axis][i];
+      drawn.tangent_v[axis] = leaves->tangent_v[axis][i];
+      drawn.color[axis] = leaves->color[axis] ? leaves->color[axis][i] : 1.0f;
+    }
+    octree->drawn_leaves[i] = drawn;
+  }
+}
+
+conic_status conic_octree_decode_all(conic_octree *octree) {
+  conic_status status = conic_octree_decode(octree);
+  if (status != CONIC_OK || octree->drawn_leaves)
+    return status;
+  octree->drawn_leaves = conic_memory_allocate(octree->context, octree->n_leaves, sizeof *octree->drawn_leaves);
+  if (!octree->drawn_leaves)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(octree->context, (octree->n_leaves + chunk_nodes - 1) / chunk_nodes, copy_chunk, octree);
+  return CONIC_OK;
 }
 
 static int compare_floats(const void *a, const void *b) {

@@ -15,15 +15,18 @@ enum { CONIC_OCTREE_DEPTH = 128 };
  * for much memory. */
 enum { CONIC_OCTREE_MOST_LEFT_OUT = 15 };
 
-/* Subtrees with no more inner nodes than the first are walked by one thread, and their own subtrees with no more than
- * the second are measured whole, side by side. */
-enum { CONIC_OCTREE_BLOCK = 1024, CONIC_OCTREE_TWIG = 16 };
+/* Subtrees with no more inner nodes are walked by one thread. */
+enum { CONIC_OCTREE_BLOCK = 1024 };
 
-/* What of an inner node is drawn: a line of the cache. */
+/* What of an inner node or a leaf is drawn: a line of the cache. */
 typedef struct conic_drawn_node {
   float position[3], tangent_u[3], tangent_v[3], color[3], opacity;
-  float unused[3];
+  uint32_t id; /* of a leaf, its index in the input; of a node, n_points + its number */
+  float unused[2];
 } conic_drawn_node;
+
+/* Measuring goes by groups of so many nodes; their arrays have room for a last one. */
+enum { CONIC_OCTREE_GROUP = 8 };
 
 /* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
  * hang on it directly first, then those of each inner child in turn. */
@@ -40,6 +43,7 @@ struct conic_octree {
 
   /* What the codes give, once it is asked for. */
   conic_drawn_node *drawn;
+  conic_drawn_node *drawn_leaves; /* the n_leaves again, for they are chosen one here, one there; only for choosing */
   float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
   uint32_t *end;                                        /* the node after the subtree */
   uint32_t *first_leaf;                                 /* n_nodes + 1 */
@@ -64,6 +68,9 @@ struct conic_octree {
  * which would else be two fifths of its memory. Errors: MEMORY. */
 conic_status conic_octree_decode(conic_octree *octree);
 
+/* The same, and the leaves once more. Errors: MEMORY. */
+conic_status conic_octree_decode_all(conic_octree *octree);
+
 /* What conic_default_near gives for the splats that it was built from. */
 double conic_octree_near(const conic_octree *octree);
 
@@ -72,6 +79,9 @@ int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_spl
 
 /* Finds the clip lines of each point. Errors: MEMORY. */
 conic_status conic_octree_index_clips(conic_octree *octree);
+
+/* Lets the clip lines of leaves that were rounded lie where they lay. */
+void conic_octree_move_clips(conic_octree *octree, const conic_splats *before, const conic_splats *after);
 
 /* The clip lines of leaf i, or null. */
 static inline const conic_clip *conic_octree_clip(const conic_octree *octree, size_t i_leaf) {

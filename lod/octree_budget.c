@@ -25,25 +25,20 @@ static uint32_t bits_of(float value) {
 }
 
 /* Every node in sight, in preorder. Returns how many there are. */
-static size_t list_openings(const conic_octree *octree, const conic_octree_view *view, float *pixels,
-                            opening *openings) {
+static size_t list_openings(const conic_octree *octree, const conic_octree_view *view, opening *openings) {
   open_node path[CONIC_OCTREE_DEPTH + 1];
-  size_t n = 0, measured = 0;
+  conic_measured measured = {0};
+  size_t n = 0;
   int depth = 0;
   for (size_t i = 0; i < octree->n_nodes;) {
-    if (i >= measured) {
-      size_t whole = octree->end[i] - i <= CONIC_OCTREE_TWIG ? octree->end[i] : i + 1;
-      conic_octree_measure(octree, view, i, whole, pixels);
-      measured = whole;
-    }
+    float pixels = conic_octree_look_up(octree, view, i, &measured);
     while (depth > 0 && i >= path[depth - 1].end)
       depth--;
-    if (pixels[i] < 0.0f) {
+    if (pixels < 0.0f) {
       i = octree->end[i];
-      measured = measured > i ? measured : i;
       continue;
     }
-    float above = depth > 0 ? path[depth - 1].pixels : pixels[i], least = pixels[i] < above ? pixels[i] : above;
+    float above = depth > 0 ? path[depth - 1].pixels : pixels, least = pixels < above ? pixels : above;
     if (depth > 0)
       openings[path[depth - 1].i_opening].change++;
     openings[n] = (opening){bits_of(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
@@ -72,13 +67,13 @@ static void sort_openings(opening *openings, opening *other, size_t n) {
 }
 
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
-                                     float *pixels, float *error_px) {
+                                     float *error_px) {
   conic_context *context = octree->context;
   opening *openings = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *openings);
   opening *other = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *other);
   conic_status status = openings && other ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    size_t n = list_openings(octree, view, pixels, openings);
+    size_t n = list_openings(octree, view, openings);
     int64_t count = 1;
     uint32_t best = n ? openings[0].pixels : 0;
     sort_openings(openings, other, n);

@@ -187,17 +187,19 @@ static conic_status quantize(conic_octree *octree) {
   if (!octree->owned_leaf_codes)
     return CONIC_ERROR_MEMORY;
   octree->leaf_codes = octree->owned_leaf_codes;
-  status = conic_splats_allocate(context, leaves->count, 0, &before);
+  status = conic_splats_allocate(context, leaves->count, octree->n_clips ? CONIC_SPLATS_TANGENTS : 0u, &before);
   if (status != CONIC_OK)
     return status;
-  for (int axis = 0; axis < 3; axis++)
+  for (int axis = 0; axis < 3; axis++) {
     memcpy(before.position[axis], leaves->position[axis], leaves->count * sizeof(float));
-  if (octree->n_clips) {
-    conic_splats_release(context, &before);
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "octree: splats with clip lines are not quantised");
+    if (octree->n_clips) {
+      memcpy(before.tangent_u[axis], leaves->tangent_u[axis], leaves->count * sizeof(float));
+      memcpy(before.tangent_v[axis], leaves->tangent_v[axis], leaves->count * sizeof(float));
+    }
   }
   conic_leaf_encode(context, &octree->scale, leaves, octree->owned_leaf_codes);
   conic_leaf_decode(context, &octree->scale, octree->leaf_codes, leaves);
+  conic_octree_move_clips(octree, &before, leaves);
   double greatest2 = 0.0;
   for (size_t i = 0; i < leaves->count; i++) {
     double moved2 = 0.0;

@@ -37,11 +37,25 @@ static vector cross(vector a, vector b) {
   return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* The greater singular value of the matrix with the columns (a, b) and (c, d). */
-static double greater_singular_value(double a, double b, double c, double d) {
-  double sum = a * a + b * b + c * c + d * d, determinant = a * d - b * c;
-  double discriminant = sum * sum - 4.0 * determinant * determinant;
-  return sqrt(0.5 * (sum + sqrt(discriminant > 0.0 ? discriminant : 0.0)));
+/* How far the ellipse c + x·a + y·b, x² + y² = 1, reaches from the origin: the least bound that Lagrange's function
+ * gives, |c|² + m + Σ pᵢ²/(m - qᵢ) over the eigenvalues qᵢ of the axes' products, m above both; it is convex in m. */
+static double farthest(const double c[2], const double a[2], const double b[2]) {
+  double aa = a[0] * a[0] + a[1] * a[1], bb = b[0] * b[0] + b[1] * b[1], ab = a[0] * b[0] + a[1] * b[1];
+  double cc = c[0] * c[0] + c[1] * c[1], ca = c[0] * a[0] + c[1] * a[1], cb = c[0] * b[0] + c[1] * b[1];
+  double half = 0.5 * (aa - bb), root = sqrt(half * half + ab * ab), q = 0.5 * (aa + bb) + root;
+  double low = q, high = q + sqrt(ca * ca + cb * cb) + 1e-30; /* the derivative is not below 0 there */
+  for (int step = 0; step < 60; step++) {
+    double m = 0.5 * (low + high), determinant = (m - aa) * (m - bb) - ab * ab;
+    double x = ((m - bb) * ca + ab * cb) / determinant, y = (ab * ca + (m - aa) * cb) / determinant;
+    if (x * x + y * y > 1.0 || !(determinant > 0.0))
+      low = m;
+    else
+      high = m;
+  }
+  double determinant = (high - aa) * (high - bb) - ab * ab;
+  double x = ((high - bb) * ca + ab * cb) / determinant, y = (ab * ca + (high - aa) * cb) / determinant;
+  double bound2 = determinant > 0.0 ? cc + high + (ca * x + cb * y) : cc + high;
+  return sqrt(bound2 > 0.0 ? bound2 : 0.0);
 }
 
 enum { OUT_OF_ELLIPSE = 1, OUT_OF_SPHERE = 2, OUT_OF_CONE = 4, OUT_OF_ERROR = 8 };
@@ -58,10 +72,10 @@ static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
   int broken = 0;
   /* In units of the node's axes, in which its outline is a circle of the cutoff. */
   double scale_u = 1.0 / dot(node_u, node_u), scale_v = 1.0 / dot(node_v, node_v);
-  double x = dot(p, node_u) * scale_u, y = dot(p, node_v) * scale_v;
-  double out =
-      sqrt(x * x + y * y) + cutoff * greater_singular_value(dot(u, node_u) * scale_u, dot(u, node_v) * scale_v,
-                                                            dot(v, node_u) * scale_u, dot(v, node_v) * scale_v);
+  const double c[2] = {dot(p, node_u) * scale_u, dot(p, node_v) * scale_v};
+  const double a[2] = {cutoff * dot(u, node_u) * scale_u, cutoff * dot(u, node_v) * scale_v};
+  const double b[2] = {cutoff * dot(v, node_u) * scale_u, cutoff * dot(v, node_v) * scale_v};
+  double out = farthest(c, a, b);
   if (!(out <= cutoff * (1.0 + hair)))
     broken |= OUT_OF_ELLIPSE;
   uu = dot(u, u);

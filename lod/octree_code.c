@@ -252,7 +252,9 @@ static double cone_of(uint8_t code) {
 }
 
 void conic_code_cone(double cosine, uint8_t *code) {
-  int steps = 0;
+  double half2 = 0.5 * (1.0 - cosine);
+  int steps = half2 > 0.0 ? (int)(255.0 * sqrt(half2 < 1.0 ? half2 : 1.0)) - 1 : 0; /* or one more, or two */
+  steps = steps > 0 ? steps : 0;
   while (steps < 255 && cone_of((uint8_t)steps) > cosine)
     steps++;
   code[AT_CONE] = (uint8_t)steps;
@@ -276,12 +278,25 @@ int conic_code_n_inner(const uint8_t *code) {
   return code[AT_CHILDREN] >> 4;
 }
 
+static double reach_of(const conic_code_scale *scale, const uint8_t *code) {
+  return conic_code_length_of(scale, scale->length * scale->cutoff,
+                              (uint16_t)(code[AT_REACH] | code[AT_REACH + 1] << 8));
+}
+
+void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],
+                       float *radius) {
+  double position[3];
+  decode_place(scale, first, code, position);
+  for (int axis = 0; axis < 3; axis++)
+    center[axis] = (float)position[axis];
+  *radius = (float)(reach_of(scale, code) * scale->widening[code[AT_RADIUS]]);
+}
+
 void conic_code_decode(const conic_code_scale *scale, const double first[3], const uint8_t *code, conic_node *node) {
   conic_node_frame frame;
   conic_code_frame(scale, first, code, &frame);
-  double reach =
-      conic_code_length_of(scale, scale->length * scale->cutoff, (uint16_t)(code[AT_REACH] | code[AT_REACH + 1] << 8));
-  double radius = reach * scale->widening[code[AT_RADIUS]], major = reach / scale->cutoff;
+  double reach = reach_of(scale, code), radius = reach * scale->widening[code[AT_RADIUS]];
+  double major = reach / scale->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     node->position[axis] = (float)frame.position[axis];
     node->tangent_u[axis] = (float)(major * frame.u[axis]);

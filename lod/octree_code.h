@@ -51,6 +51,9 @@ void conic_code_axes(double x, double y, double ratio, uint8_t *code);
 /* The frame that those three give. */
 void conic_code_frame(const conic_code_scale *scale, const double first[3], const uint8_t *code,
                       conic_node_frame *frame);
+/* The sphere alone, faster. */
+void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],
+                       float *radius);
 /* The basis in which conic_code_axes takes its direction; n is the facing itself. */
 void conic_code_basis(const uint8_t *code, double u[3], double v[3], double n[3]);
 

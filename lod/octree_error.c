@@ -1,82 +1,380 @@
-/* How far a node's disc reaches past what it stands for. */
+/* The errors of inner nodes: how far their discs reach past the surface that is there. What a disc lacks cover by is
+ * sought among the leaves, its own and those around, or, of large nodes, among small ones and their errors. So nodes
+ * are taken in classes by their size; what a class looks at belongs to the classes below. */
 #include <math.h>
+#include <string.h>
 
-#include "core/trigonometry.h"
-#include "lod/octree_fit.h"
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "lod/octree_kernels.h"
 
-void conic_disc_samples_init(conic_disc_samples *samples) {
-  /* Rings, turned against each other; found by search, the gap is held by a test. */
-  static const struct {
-    int n;
-    double radius, turn;
-  } rings[] = {{3, 0.1131, 0.904}, {9, 0.3853, 0.171}, {14, 0.6305, 0.463}, {22, 0.8878, 0.533}};
-  int n = 0;
-  for (int ring = 0; ring < 4; ring++)
-    for (int i = 0; i < rings[ring].n; i++) {
-      double angle = 2.0 * CONIC_PI * ((double)i + rings[ring].turn) / (double)rings[ring].n;
-      samples->x[n] = (float)(rings[ring].radius * conic_cos(angle));
-      samples->y[n++] = (float)(rings[ring].radius * conic_sin(angle));
+/* Subtrees with as many leaves are worked off at a time: their discs stay in the cache. */
+static const size_t task_leaves = 8192;
+
+/* A class: nodes with more leaves than `above` and no more than `most` look at subtrees with no more than `part`; what
+ * is around is found for subtrees with no more than `group`. */
+typedef struct size_class {
+  size_t above, most, part, group;
+} size_class;
+
+typedef struct error_pass {
+  conic_octree *octree;
+  conic_disc_samples samples;
+  conic_cover_function *find;
+  size_class sizes;
+  uint32_t *tasks; /* roots */
+  conic_status *statuses;
+  size_t n_tasks;
+} error_pass;
+
+typedef struct box {
+  float low[3], high[3];
+} box;
+
+/* A node of the class. */
+typedef struct member {
+  conic_node_disc disc;
+  float radius;
+  uint32_t i_node;
+} member;
+
+/* What one task works with: the largest subtrees of the class, one by one, with what is around each. */
+typedef struct neighbourhood {
+  const error_pass *pass;
+  conic_discs discs; /* of the surface: first those of the subtree, in the order of the hierarchy, then some around */
+  float *numbers;    /* where they lie */
+  uint32_t *first_leaf; /* of each of the subtree's */
+  member *members;
+  size_t n_members;
+  size_t n_own, room; /* discs */
+} neighbourhood;
+
+static size_t count_leaves(const conic_octree *octree, size_t i) {
+  return octree->first_leaf[octree->end[i]] - octree->first_leaf[i];
+}
+
+/* Whether disc k reaches into the box; a larger one that is quicker to tell. */
+static int is_in_box(const box *b, const conic_discs *discs, size_t k) {
+  int is_in = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    float half = fabsf(discs->u[axis][k]) + fabsf(discs->v[axis][k]), center = discs->center[axis][k];
+    is_in &= center - half <= b->high[axis] && center + half >= b->low[axis];
+  }
+  return is_in;
+}
+
+static void add_to_box(float center, float half, int axis, box *b) {
+  float low = center - half, high = center + half;
+  b->low[axis] = low < b->low[axis] ? low : b->low[axis];
+  b->high[axis] = high > b->high[axis] ? high : b->high[axis];
+}
+
+/* Around the subtree's own discs and those of its nodes. */
+static box box_of_group(const neighbourhood *around) {
+  box b;
+  for (int axis = 0; axis < 3; axis++) {
+    b.low[axis] = HUGE_VALF;
+    b.high[axis] = -HUGE_VALF;
+    for (size_t k = 0; k < around->n_own; k++)
+      add_to_box(around->discs.center[axis][k], around->discs.half[axis][k], axis, &b);
+    for (size_t k = 0; k < around->n_members; k++) {
+      const conic_node_disc *disc = &around->members[k].disc;
+      add_to_box(disc->center[axis], sqrtf(disc->u[axis] * disc->u[axis] + disc->v[axis] * disc->v[axis]), axis, &b);
     }
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* A disc seen along the frame's normal: an ellipse, and what takes it to the unit circle. */
-typedef struct flat_disc {
-  float x, y;
-  float inverse[4]; /* zero where it is seen from its edge: then it counts by its centre */
-  float height2;    /* the square of how far it is off the plane at most */
-  float error;
-} flat_disc;
-
-static flat_disc flatten(const conic_node_frame *frame, const conic_octree_disc *disc) {
-  double apart[3], ux = dot(disc->u, frame->u), uy = dot(disc->u, frame->v);
-  double vx = dot(disc->v, frame->u), vy = dot(disc->v, frame->v), determinant = ux * vy - uy * vx;
-  double uz = dot(disc->u, frame->n), vz = dot(disc->v, frame->n);
-  for (int axis = 0; axis < 3; axis++)
-    apart[axis] = disc->center[axis] - frame->position[axis];
-  double height = fabs(dot(apart, frame->n)) + sqrt(uz * uz + vz * vz);
-  flat_disc flat = {.x = (float)dot(apart, frame->u), .y = (float)dot(apart, frame->v), .error = (float)disc->error};
-  flat.height2 = (float)(height * height);
-  if (fabs(determinant) > 1e-6 * (ux * ux + uy * uy + vx * vx + vy * vy)) {
-    flat.inverse[0] = (float)(vy / determinant);
-    flat.inverse[1] = (float)(-vx / determinant);
-    flat.inverse[2] = (float)(-uy / determinant);
-    flat.inverse[3] = (float)(ux / determinant);
   }
-  return flat;
+  return b;
 }
 
-/* Lowers each sample's distance to that of this disc: along the line to its centre, to its outline; and from the plane.
- */
-static void approach(const flat_disc *disc, const float *x, const float *y, float *nearest) {
-  int is_edge_on = disc->inverse[0] == 0.0f && disc->inverse[1] == 0.0f;
-  for (int i = 0; i < CONIC_DISC_SAMPLES; i++) {
-    float dx = x[i] - disc->x, dy = y[i] - disc->y;
-    float a = disc->inverse[0] * dx + disc->inverse[1] * dy, b = disc->inverse[2] * dx + disc->inverse[3] * dy;
-    float outside = is_edge_on ? 1.0f : 1.0f - 1.0f / sqrtf(a * a + b * b); /* of the way to the centre */
-    outside = outside > 0.0f ? outside : 0.0f;
-    float distance = sqrtf((dx * dx + dy * dy) * (outside * outside) + disc->height2) + disc->error;
-    nearest[i] = distance < nearest[i] ? distance : nearest[i];
+static void node_at(const conic_octree *octree, size_t i, conic_node *node) {
+  double first[3];
+  conic_octree_place(octree, octree->first_leaf[i], first);
+  conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, node);
+}
+
+static void set_disc_of_node(const conic_octree *octree, size_t i, const conic_discs *discs, size_t k) {
+  float cutoff = (float)octree->scale.cutoff;
+  conic_node node;
+  node_at(octree, i, &node);
+  for (int axis = 0; axis < 3; axis++) {
+    discs->center[axis][k] = node.position[axis];
+    discs->u[axis][k] = cutoff * node.tangent_u[axis];
+    discs->v[axis][k] = cutoff * node.tangent_v[axis];
+  }
+  discs->error[k] = node.error;
+}
+
+static void set_disc_of_leaf(const conic_octree *octree, size_t i, const conic_discs *discs, size_t k) {
+  float cutoff = (float)octree->scale.cutoff;
+  for (int axis = 0; axis < 3; axis++) {
+    discs->center[axis][k] = octree->leaves.position[axis][i];
+    discs->u[axis][k] = cutoff * octree->leaves.tangent_u[axis][i];
+    discs->v[axis][k] = cutoff * octree->leaves.tangent_v[axis][i];
+  }
+  discs->error[k] = 0.0f;
+  if (conic_octree_clip(octree, i)) { /* what is left of it may be at its other end */
+    float sum = 0.0f;
+    for (int axis = 0; axis < 3; axis++)
+      sum += discs->u[axis][k] * discs->u[axis][k] + discs->v[axis][k] * discs->v[axis][k];
+    discs->error[k] = 2.0f * sqrtf(sum);
   }
 }
 
-double conic_octree_overshoot(const conic_disc_samples *samples, const conic_node_frame *frame, double reach,
-                              const conic_octree_disc *discs, int n_discs) {
-  float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES], nearest[CONIC_DISC_SAMPLES], greatest = 0.0f;
-  for (int i = 0; i < CONIC_DISC_SAMPLES; i++) {
-    x[i] = (float)reach * samples->x[i];
-    y[i] = (float)(reach * frame->ratio) * samples->y[i];
-    nearest[i] = HUGE_VALF;
+/* Whether subtree i reaches into the box. Reads of its code what no other thread writes. */
+static int is_near(const conic_octree *octree, size_t i, const box *b) {
+  float center[3], radius, apart2 = 0.0f;
+  double first[3];
+  conic_octree_place(octree, octree->first_leaf[i], first);
+  conic_code_sphere(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, center, &radius);
+  for (int axis = 0; axis < 3; axis++) {
+    float below = b->low[axis] - center[axis], above = center[axis] - b->high[axis];
+    float apart = below > above ? below : above;
+    apart2 += apart > 0.0f ? apart * apart : 0.0f;
   }
-  for (int i = 0; i < n_discs; i++) {
-    flat_disc flat = flatten(frame, &discs[i]);
-    approach(&flat, x, y, nearest);
+  return apart2 <= radius * radius;
+}
+
+/* The subtree's own discs. */
+static void gather_own(neighbourhood *around, size_t root) {
+  const conic_octree *octree = around->pass->octree;
+  size_t n = 0;
+  for (size_t i = root; i < octree->end[root];) {
+    if (count_leaves(octree, i) <= around->pass->sizes.part) {
+      around->first_leaf[n] = octree->first_leaf[i];
+      set_disc_of_node(octree, i, &around->discs, n++);
+      i = octree->end[i];
+      continue;
+    }
+    for (uint32_t k = octree->first_leaf[i]; k < octree->first_leaf[i + 1]; k++) {
+      around->first_leaf[n] = k;
+      set_disc_of_leaf(octree, k, &around->discs, n++);
+    }
+    i++;
   }
-  for (int i = 0; i < CONIC_DISC_SAMPLES; i++)
-    greatest = nearest[i] > greatest ? nearest[i] : greatest;
-  /* The distance from a point changes no faster than the point moves; a hair more for the floats. */
-  return ((double)greatest + CONIC_DISC_GAP * reach) * (1.0 + 1e-5);
+  around->n_own = around->discs.count = n;
+  conic_discs_set_half(&around->discs, 0);
+}
+
+/* Takes the discs of the nodes begin … end that are in the box; while there is room and patience, for everything may be
+ * near everything. What is left out makes errors larger than they are, which breaks no promise. */
+static void gather(neighbourhood *around, size_t begin, size_t end, const box *b, size_t room) {
+  const conic_octree *octree = around->pass->octree;
+  conic_discs *discs = &around->discs;
+  size_t patience = 32 * around->room;
+  for (size_t i = begin; i < end && discs->count < room && patience > 0; patience--) {
+    if (!is_near(octree, i, b)) {
+      i = octree->end[i];
+      continue;
+    }
+    if (count_leaves(octree, i) <= around->pass->sizes.part) {
+      set_disc_of_node(octree, i, discs, discs->count);
+      discs->count += (size_t)is_in_box(b, discs, discs->count);
+      i = octree->end[i];
+      continue;
+    }
+    for (uint32_t k = octree->first_leaf[i]; k < octree->first_leaf[i + 1] && discs->count < room; k++) {
+      set_disc_of_leaf(octree, k, discs, discs->count);
+      discs->count += (size_t)is_in_box(b, discs, discs->count);
+    }
+    i++;
+  }
+}
+
+/* The nodes of the class in a subtree. */
+static void list_members(neighbourhood *around, size_t root) {
+  const conic_octree *octree = around->pass->octree;
+  float cutoff = (float)octree->scale.cutoff;
+  around->n_members = 0;
+  for (size_t i = root; i < octree->end[root];) {
+    member *m = &around->members[around->n_members];
+    conic_node node;
+    if (count_leaves(octree, i) <= around->pass->sizes.above) {
+      i = octree->end[i];
+      continue;
+    }
+    if (count_leaves(octree, i) > around->pass->sizes.most) {
+      i++;
+      continue;
+    }
+    node_at(octree, i, &node);
+    for (int axis = 0; axis < 3; axis++) {
+      m->disc.center[axis] = node.position[axis];
+      m->disc.u[axis] = cutoff * node.tangent_u[axis];
+      m->disc.v[axis] = cutoff * node.tangent_v[axis];
+      m->disc.n[axis] = node.normal[axis];
+    }
+    m->disc.enough = node.error;
+    m->radius = node.radius;
+    m->i_node = (uint32_t)i++;
+    around->n_members++;
+  }
+}
+
+/* The first of the subtree's discs whose leaves begin at `leaf` or later. */
+static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
+  size_t begin = 0, end = around->n_own, guess = leaf - around->first_leaf[0]; /* right where all discs are leaves */
+  if (guess < end && around->first_leaf[guess] == leaf)
+    return guess;
+  while (begin < end) {
+    size_t middle = begin + (end - begin) / 2;
+    if (around->first_leaf[middle] < leaf)
+      begin = middle + 1;
+    else
+      end = middle;
+  }
+  return begin;
+}
+
+static void find_error(const neighbourhood *around, const member *m) {
+  const error_pass *pass = around->pass;
+  const conic_octree *octree = pass->octree;
+  size_t begin = find_disc(around, octree->first_leaf[m->i_node]);
+  size_t end = find_disc(around, octree->first_leaf[octree->end[m->i_node]]);
+  float error = pass->find(&pass->samples, &around->discs, begin, end, &m->disc);
+  if (error > m->disc.enough) /* a hair more for the floats */
+    conic_code_error(&octree->scale, (double)error * (1.0 + 1e-5), (double)m->radius,
+                     octree->codes + m->i_node * CONIC_NODE_BYTES);
+}
+
+/* How many discs a subtree has itself; and nodes of the class, no more than those and the others. */
+static size_t count_parts(const conic_octree *octree, size_t root, size_t part) {
+  size_t n = 0;
+  for (size_t i = root; i < octree->end[root];)
+    if (count_leaves(octree, i) <= part) {
+      n++;
+      i = octree->end[i];
+    } else {
+      n += octree->first_leaf[i + 1] - octree->first_leaf[i];
+      i++;
+    }
+  return n;
+}
+
+static void release(const neighbourhood *around) {
+  conic_context *context = around->pass->octree->context;
+  conic_memory_release(context, around->numbers);
+  conic_memory_release(context, around->first_leaf);
+  conic_memory_release(context, around->members);
+  conic_memory_release(context, around->discs.taken);
+}
+
+/* Lays out the arrays of discs: `stride` of each number. */
+static void lay_out(float *next, size_t stride, conic_discs *discs) {
+  float **arrays[] = {discs->center, discs->u, discs->v, discs->half};
+  for (int k = 0; k < 4; k++)
+    for (int axis = 0; axis < 3; axis++, next += stride)
+      arrays[k][axis] = next;
+  discs->error = next;
+  next += stride;
+  for (int axis = 0; axis < 3; axis++, next += 2 * stride / CONIC_DISC_BLOCK) {
+    discs->block_center[axis] = next;
+    discs->block_half[axis] = next + stride / CONIC_DISC_BLOCK;
+  }
+}
+
+/* Makes room for a subtree with so many discs. A node of the class has two parts at least. */
+static conic_status make_room(neighbourhood *around, size_t n_own) {
+  enum { NUMBERS = 14, WHOLE = CONIC_DISC_BLOCK * CONIC_DISC_BLOCK }; /* 13, and a block's 6 make less than one */
+  conic_context *context = around->pass->octree->context;
+  conic_discs *discs = &around->discs;
+  size_t room = 8 * n_own + 512;
+  if (room <= around->room)
+    return CONIC_OK;
+  release(around);
+  size_t stride = room + WHOLE - room % WHOLE;
+  around->room = room;
+  around->numbers = conic_memory_allocate(context, stride, NUMBERS * sizeof *around->numbers);
+  around->first_leaf = conic_memory_allocate(context, n_own, sizeof *around->first_leaf);
+  around->members = conic_memory_allocate(context, n_own, sizeof *around->members);
+  discs->taken = conic_memory_allocate(context, stride / CONIC_DISC_BLOCK, 1);
+  if (!around->numbers || !around->first_leaf || !around->members || !discs->taken)
+    return CONIC_ERROR_MEMORY;
+  lay_out(around->numbers, stride, discs);
+  return CONIC_OK;
+}
+
+static conic_status run_group(neighbourhood *around, size_t root) {
+  const conic_octree *octree = around->pass->octree;
+  conic_status status = make_room(around, count_parts(octree, root, around->pass->sizes.part));
+  if (status != CONIC_OK)
+    return status;
+  gather_own(around, root);
+  list_members(around, root);
+  box b = box_of_group(around);
+  gather(around, 0, root, &b, around->n_own + (around->room - around->n_own) / 2);
+  gather(around, octree->end[root], octree->n_nodes, &b, around->room);
+  conic_discs_set_half(&around->discs, around->n_own);
+  conic_discs_close(&around->discs);
+  for (size_t k = 0; k < around->n_members; k++)
+    find_error(around, &around->members[k]);
+  return CONIC_OK;
+}
+
+static conic_status run_subtree(const error_pass *pass, size_t root) {
+  const conic_octree *octree = pass->octree;
+  neighbourhood around = {.pass = pass};
+  conic_status status = CONIC_OK;
+  for (size_t i = root; i < octree->end[root] && status == CONIC_OK;) {
+    size_t n_leaves = count_leaves(octree, i);
+    if (n_leaves <= pass->sizes.group && n_leaves > pass->sizes.above)
+      status = run_group(&around, i);
+    i = n_leaves <= pass->sizes.group ? octree->end[i] : i + 1;
+  }
+  release(&around);
+  return status;
+}
+
+static void run_task(void *data, size_t i_task, int i_thread) {
+  error_pass *pass = data;
+  (void)i_thread;
+  pass->statuses[i_task] = run_subtree(pass, pass->tasks[i_task]);
+}
+
+/* Counts the roots of the tasks, or lists them: whatever is of the class is below one. */
+static size_t list_tasks(const error_pass *pass, uint32_t *tasks) {
+  const conic_octree *octree = pass->octree;
+  size_t most = pass->sizes.group > task_leaves ? pass->sizes.group : task_leaves, n = 0;
+  for (size_t i = 0; i < octree->n_nodes;) {
+    size_t n_leaves = count_leaves(octree, i);
+    if (n_leaves <= most && n_leaves > pass->sizes.above) {
+      if (tasks)
+        tasks[n] = (uint32_t)i;
+      n++;
+    }
+    i = n_leaves <= most ? octree->end[i] : i + 1;
+  }
+  return n;
+}
+
+static conic_status run_pass(error_pass *pass) {
+  conic_context *context = pass->octree->context;
+  conic_status status = CONIC_OK;
+  pass->n_tasks = list_tasks(pass, NULL);
+  pass->tasks = conic_memory_allocate(context, pass->n_tasks, sizeof *pass->tasks);
+  pass->statuses = conic_memory_allocate(context, pass->n_tasks, sizeof *pass->statuses);
+  if (!pass->tasks || !pass->statuses)
+    status = CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    list_tasks(pass, pass->tasks);
+    conic_parallel_for(context, pass->n_tasks, run_task, pass);
+  }
+  for (size_t i = 0; i < pass->n_tasks && status == CONIC_OK; i++)
+    status = pass->statuses[i];
+  conic_memory_release(context, pass->tasks);
+  conic_memory_release(context, pass->statuses);
+  return status;
+}
+
+conic_status conic_octree_find_errors(conic_octree *octree) {
+  error_pass pass = {.octree = octree, .find = conic_octree_kernels_choose().cover, .sizes = {1, 64, 1, 2048}};
+  conic_status status = CONIC_OK;
+  conic_disc_samples_init(&pass.samples);
+  while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {
+    status = conic_progress(octree->context, "octree", pass.sizes.above == 1 ? 0.7 : 0.95);
+    if (status == CONIC_OK)
+      status = run_pass(&pass);
+    size_t most = 8 * pass.sizes.most;
+    pass.sizes = (size_class){pass.sizes.most, most, pass.sizes.most / 8, 8 * most};
+  }
+  return status;
 }

@@ -112,14 +112,14 @@ static layout lay_out_file(const header *h) {
         &l,
         conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0, (h->flags & FLAG_OPACITIES) != 0),
         1);
-    return l;
+  } else {
+    for (int i = 0; i < 9; i++)
+      add_array(&l, h->n_points, sizeof(float));
+    for (int i = 0; i < 3 && (h->flags & FLAG_COLORS); i++)
+      add_array(&l, h->n_points, h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float));
+    if (h->flags & FLAG_OPACITIES)
+      add_array(&l, h->n_points, sizeof(float));
   }
-  for (int i = 0; i < 9; i++)
-    add_array(&l, h->n_points, sizeof(float));
-  for (int i = 0; i < 3 && (h->flags & FLAG_COLORS); i++)
-    add_array(&l, h->n_points, h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float));
-  if (h->flags & FLAG_OPACITIES)
-    add_array(&l, h->n_points, sizeof(float));
   if (h->n_clips)
     add_array(&l, h->n_clips, sizeof(conic_clip));
   return l;
@@ -168,7 +168,8 @@ static void list_sources(const conic_octree *octree, unsigned char *const color_
   sources[n++] = octree->codes;
   sources[n++] = octree->index;
   if (octree->is_quantized) {
-    sources[n] = octree->leaf_codes;
+    sources[n++] = octree->leaf_codes;
+    sources[n] = octree->clips;
     return;
   }
   for (int axis = 0; axis < 3; axis++) {
@@ -286,8 +287,8 @@ static const char *check_header(const header *h) {
     return "unknown flags";
   if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
     return "counts that do not go together";
-  if (h->n_clips > h->n_points || (h->n_clips && (h->flags & FLAG_QUANTIZED)))
-    return "clip lines where there can be none";
+  if (h->n_clips > h->n_points)
+    return "more clip lines than points";
   if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
@@ -393,6 +394,9 @@ static conic_status read_quantized(conic_octree *octree, const header *h, const 
 static conic_status read_leaves(conic_octree *octree, const header *h, const layout *l) {
   conic_splats *leaves = &octree->leaves;
   int next = ARRAY_LEAVES + 9;
+  octree->n_clips = (size_t)h->n_clips;
+  if (h->n_clips) /* the last of all */
+    octree->clips = array_at(octree, l, l->n - 1);
   memcpy(leaves->origin, h->origin, sizeof leaves->origin);
   if (octree->is_quantized)
     return read_quantized(octree, h, l);
@@ -412,9 +416,6 @@ static conic_status read_leaves(conic_octree *octree, const header *h, const lay
   }
   if (h->flags & FLAG_OPACITIES)
     leaves->opacity = array_at(octree, l, next++);
-  octree->n_clips = (size_t)h->n_clips;
-  if (h->n_clips)
-    octree->clips = array_at(octree, l, next);
   return CONIC_OK;
 }
 

@@ -15,8 +15,6 @@ typedef struct piece {
 
 /* What is kept from call to call. */
 typedef struct scratch {
-  float *pixels; /* of each node */
-  size_t pixels_room;
   piece *pieces;
   size_t n_pieces, pieces_room;
   uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or node_bit and a node */
@@ -49,7 +47,6 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
   if (kept) {
     conic_memory_release(context, kept->arrays);
     conic_memory_release(context, kept->clips);
-    conic_memory_release(context, kept->pixels);
     conic_memory_release(context, kept->pieces);
     conic_memory_release(context, kept->sources);
   }
@@ -75,6 +72,7 @@ static conic_status add_piece(selecting *s, piece added) {
 static conic_status list_pieces(selecting *s) {
   const conic_octree *octree = s->octree;
   conic_status status = CONIC_OK;
+  conic_measured measured = {0};
   s->scratch->n_pieces = 0;
   s->selection->n_culled = 0;
   if (octree->n_nodes == 0)
@@ -86,8 +84,7 @@ static conic_status list_pieces(selecting *s) {
       i = end;
       continue;
     }
-    conic_octree_measure(octree, &s->view, i, i + 1, s->scratch->pixels);
-    float pixels = s->scratch->pixels[i];
+    float pixels = conic_octree_look_up(octree, &s->view, i, &measured);
     uint32_t first = octree->first_leaf[i], last = octree->first_leaf[i + 1];
     if (pixels < 0.0f)
       s->selection->n_culled++;
@@ -103,17 +100,13 @@ static conic_status list_pieces(selecting *s) {
 /* Lists what a block gives, where its first leaf has its place: it gives no more than it has leaves. */
 static void walk_block(const selecting *s, piece *block) {
   const conic_octree *octree = s->octree;
-  float *const pixels = s->scratch->pixels;
   uint32_t *const sources = s->scratch->sources + octree->first_leaf[block->begin], *next = sources;
-  uint32_t measured = block->begin;
+  conic_measured measured = {0};
   for (uint32_t i = block->begin; i < block->end;) {
     uint32_t end = octree->end[i];
-    if (i >= measured) {
-      measured = end - i <= CONIC_OCTREE_TWIG ? end : i + 1;
-      conic_octree_measure(octree, &s->view, i, measured, pixels);
-    }
-    if (pixels[i] <= s->error_px) {
-      int is_culled = pixels[i] < 0.0f;
+    float pixels = conic_octree_look_up(octree, &s->view, i, &measured);
+    if (pixels <= s->error_px) {
+      int is_culled = pixels < 0.0f;
       *next = node_bit | i;
       next += !is_culled;
       block->n_inner += (size_t)!is_culled;
@@ -139,66 +132,44 @@ static void count_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
-static inline void put_leaf(const conic_splats *from, size_t i, conic_splats *to, size_t k) {
-  for (int axis = 0; axis < 3; axis++) {
-    to->position[axis][k] = from->position[axis][i];
-    to->tangent_u[axis][k] = from->tangent_u[axis][i];
-    to->tangent_v[axis][k] = from->tangent_v[axis][i];
-  }
-  for (int channel = 0; channel < 3 && from->color[0]; channel++)
-    to->color[channel][k] = from->color[channel][i];
-  to->opacity[k] = from->opacity ? from->opacity[i] : 1.0f;
-}
-
-/* A node that faces away stands for leaves that may not, else it were not chosen: it is turned, so as not to be culled
- * as one. */
-static inline void put_node(const conic_drawn_node *from, int is_turned, conic_splats *to, size_t k) {
+static inline void put(const conic_drawn_node *from, conic_splats *to, size_t k) {
   for (int axis = 0; axis < 3; axis++) {
     to->position[axis][k] = from->position[axis];
     to->tangent_u[axis][k] = from->tangent_u[axis];
-    to->tangent_v[axis][k] = is_turned ? -from->tangent_v[axis] : from->tangent_v[axis];
+    to->tangent_v[axis][k] = from->tangent_v[axis];
   }
   for (int channel = 0; channel < 3 && to->color[0]; channel++)
     to->color[channel][k] = from->color[channel];
   to->opacity[k] = from->opacity;
 }
 
-/* Asks for what will be copied soon: single leaves lie far apart, in a dozen arrays each. */
-static inline void fetch(const conic_octree *octree, uint32_t source) {
-  const conic_splats *leaves = &octree->leaves;
-  uint32_t i = source & ~node_bit;
-  if (source >> 31) {
-    __builtin_prefetch(&octree->drawn[i]);
-    return;
-  }
+/* A node that faces away stands for leaves that may not, else it were not chosen: it is turned, so as not to be culled
+ * as one. */
+static inline void turn(const float eye[3], conic_splats *to, size_t k) {
+  float along = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
-    __builtin_prefetch(&leaves->position[axis][i]);
-    __builtin_prefetch(&leaves->tangent_u[axis][i]);
-    __builtin_prefetch(&leaves->tangent_v[axis][i]);
-    if (leaves->color[0])
-      __builtin_prefetch(&leaves->color[axis][i]);
+    int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    float normal = to->tangent_u[next][k] * to->tangent_v[last][k] - to->tangent_u[last][k] * to->tangent_v[next][k];
+    along += (to->position[axis][k] - eye[axis]) * normal;
   }
-  __builtin_prefetch(&octree->index[i]);
+  for (int axis = 0; axis < 3 && along > 0.0f; axis++)
+    to->tangent_v[axis][k] = -to->tangent_v[axis][k];
 }
 
 /* Puts n splats at `begin` of the selection. */
 static void put_splats(const selecting *s, const uint32_t *sources, size_t begin, size_t n) {
-  enum { AHEAD = 8 };
-  const conic_octree *octree = s->octree;
-  const conic_splats leaves = octree->leaves;
+  enum { AHEAD = 16 }; /* single leaves lie far apart */
+  const conic_drawn_node *const kinds[2] = {s->octree->drawn_leaves, s->octree->drawn};
   conic_splats to = s->selection->splats;
   uint32_t *ids = s->selection->ids + begin;
   for (size_t k = 0; k < n; k++) {
-    uint32_t i = sources[k] & ~node_bit;
-    if (k + AHEAD < n && sources[k + AHEAD] != sources[k + AHEAD - 1] + 1) /* the first of a run */
-      fetch(octree, sources[k + AHEAD]);
-    if (sources[k] >> 31) {
-      put_node(&octree->drawn[i], s->view.cull_back && conic_octree_faces_away(octree, &s->view, i), &to, begin + k);
-      ids[k] = (uint32_t)octree->n_points + i;
-    } else {
-      put_leaf(&leaves, i, &to, begin + k);
-      ids[k] = octree->index[i];
-    }
+    uint32_t ahead = sources[k + AHEAD < n ? k + AHEAD : k];
+    __builtin_prefetch(kinds[ahead >> 31] + (ahead & ~node_bit));
+    const conic_drawn_node *from = kinds[sources[k] >> 31] + (sources[k] & ~node_bit);
+    put(from, &to, begin + k);
+    ids[k] = from->id;
+    if (s->view.cull_back && sources[k] >> 31)
+      turn(s->view.eye, &to, begin + k);
   }
 }
 
@@ -322,11 +293,8 @@ static conic_status keep_scratch(const conic_octree *octree, conic_selection *se
   scratch *kept = selection->scratch;
   if (!kept)
     return CONIC_ERROR_MEMORY;
-  conic_status status =
-      keep_room(octree->context, (void **)&kept->pixels, &kept->pixels_room, octree->n_nodes, sizeof *kept->pixels);
-  return status == CONIC_OK ? keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
-                                        sizeof *kept->sources)
-                            : status;
+  return keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
+                   sizeof *kept->sources);
 }
 
 static const char *what_is_wrong(const conic_octree *octree, const conic_camera *camera,
@@ -346,7 +314,7 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
-  conic_status status = conic_octree_decode(octree);
+  conic_status status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)
     status = keep_scratch(octree, selection);
   if (status != CONIC_OK)
@@ -355,7 +323,7 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   conic_octree_view_init(octree, camera, render, render->near_z > 0.0 ? render->near_z : conic_octree_near(octree),
                          &s.view);
   if (options->budget && octree->n_nodes)
-    status = conic_octree_fit_budget(octree, &s.view, options->budget, s.scratch->pixels, &s.error_px);
+    status = conic_octree_fit_budget(octree, &s.view, options->budget, &s.error_px);
   selection->error_px = options->budget ? (double)s.error_px : options->error_px;
   return status == CONIC_OK ? select_splats(&s) : status;
 }

@@ -42,12 +42,11 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
 /* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
  * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,
  * and so does the way from the one to the other. */
-static void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
-                           float *pixels) {
-  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
-  const float *radius = octree->radius, *error = octree->error;
+static void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin, float *pixels) {
+  const float *x = octree->center[0] + begin, *y = octree->center[1] + begin, *z = octree->center[2] + begin;
+  const float *radius = octree->radius + begin, *error = octree->error + begin;
   const conic_octree_view v = *view;
-  for (size_t i = begin; i < end; i++) {
+  for (int i = 0; i < CONIC_OCTREE_GROUP; i++) {
     float cx = ((v.rotation[0][0] * x[i] + v.rotation[0][1] * y[i]) + v.rotation[0][2] * z[i]) + v.translation[0];
     float cy = ((v.rotation[1][0] * x[i] + v.rotation[1][1] * y[i]) + v.rotation[1][2] * z[i]) + v.translation[1];
     float cz = ((v.rotation[2][0] * x[i] + v.rotation[2][1] * y[i]) + v.rotation[2][2] * z[i]) + v.translation[2];
@@ -66,21 +65,14 @@ static void measure_errors(const conic_octree *octree, const conic_octree_view *
   }
 }
 
-int conic_octree_faces_away(const conic_octree *octree, const conic_octree_view *view, size_t i) {
-  float along = 0.0f;
-  for (int axis = 0; axis < 3; axis++)
-    along += (octree->center[axis][i] - view->eye[axis]) * octree->normal[axis][i];
-  return along > 0.0f;
-}
-
-/* Nodes all of whose leaves face away are out of sight. */
-static void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
-                       float *pixels) {
-  const float *x = octree->center[0], *y = octree->center[1], *z = octree->center[2];
-  const float *nx = octree->normal[0], *ny = octree->normal[1], *nz = octree->normal[2];
-  const float *radius = octree->radius, *cone = octree->cone;
+/* Nodes all of whose leaves face away are out of sight. Where some may and others do not, a part of what the node shows
+ * is culled, and what is left of it may be at its other end: its error is its diameter. */
+static void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, float *pixels) {
+  const float *x = octree->center[0] + begin, *y = octree->center[1] + begin, *z = octree->center[2] + begin;
+  const float *nx = octree->normal[0] + begin, *ny = octree->normal[1] + begin, *nz = octree->normal[2] + begin;
+  const float *radius = octree->radius + begin, *cone = octree->cone + begin, *error = octree->error + begin;
   const conic_octree_view v = *view;
-  for (size_t i = begin; i < end; i++) {
+  for (int i = 0; i < CONIC_OCTREE_GROUP; i++) {
     float dx = x[i] - v.eye[0], dy = y[i] - v.eye[1], dz = z[i] - v.eye[2];
     float along = (dx * nx[i] + dy * ny[i]) + dz * nz[i], distance = sqrtf((dx * dx + dy * dy) + dz * dz);
     float r = radius[i] + (v.slack * ((fabsf(x[i]) + fabsf(y[i])) + fabsf(z[i])) + v.slack_offset);
@@ -93,13 +85,17 @@ static void cull_backs(const conic_octree *octree, const conic_octree_view *view
     least = cos_a2 < least ? cos_a2 : least;
     float beyond = along - distance * (sin_both + 1e-5f);
     least = beyond < least ? beyond : least;
-    pixels[i] = least > 0.0f ? -1.0f : pixels[i];
+    float whole = pixels[i] > 0.0f ? pixels[i] * (2.0f * radius[i] / error[i]) : pixels[i];
+    float opened = along > -distance * sin_c ? whole : pixels[i];
+    pixels[i] = least > 0.0f ? -1.0f : opened;
   }
 }
 
-void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
+void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n,
                           float *pixels) {
-  measure_errors(octree, view, begin, end, pixels);
-  if (view->cull_back)
-    cull_backs(octree, view, begin, end, pixels);
+  for (size_t k = 0; k < n; k += CONIC_OCTREE_GROUP) {
+    measure_errors(octree, view, begin + k, pixels + k);
+    if (view->cull_back)
+      cull_backs(octree, view, begin + k, pixels + k);
+  }
 }

@@ -19,16 +19,34 @@ typedef struct conic_octree_view {
 void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
                             double near_z, conic_octree_view *view);
 
-/* For the nodes begin … end: pixels[i] is below 0 where nothing of the node is in sight, else the most that its error
- * can be on the screen, which is infinite where it reaches the near plane. */
-void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t end,
+/* For n nodes from `begin` on: pixels[k] is below 0 where nothing of node begin + k is in sight, else the most that its
+ * error can be on the screen, which is infinite where it reaches the near plane; with --cull back, that of its diameter
+ * where some of its leaves may face away. `pixels` has room for n rounded up to whole groups. */
+void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n,
                           float *pixels);
 
-/* Whether the node's own disc does. */
-int conic_octree_faces_away(const conic_octree *octree, const conic_octree_view *view, size_t i);
+/* Some nodes that were measured together: the walk down the tree will look at most of them. */
+typedef struct conic_measured {
+  size_t begin, end;
+  float pixels[2 * CONIC_OCTREE_GROUP];
+} conic_measured;
+
+/* What conic_octree_measure gives for node i. Where that is not known yet, measures it and those after it: its whole
+ * subtree, if that is small. `measured` is zero before the first use. */
+static inline float conic_octree_look_up(const conic_octree *octree, const conic_octree_view *view, size_t i,
+                                         conic_measured *measured) {
+  if (i < measured->begin || i >= measured->end) {
+    size_t n = octree->end[i] - i > CONIC_OCTREE_GROUP ? 2 * CONIC_OCTREE_GROUP : CONIC_OCTREE_GROUP;
+    n = n < octree->n_nodes - i ? n : octree->n_nodes - i;
+    conic_octree_measure(octree, view, i, n, measured->pixels);
+    measured->begin = i;
+    measured->end = i + n;
+  }
+  return measured->pixels[i - measured->begin];
+}
 
 /* The least error that `budget` splats can give: the least for which no more are chosen. Errors: MEMORY. */
 conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
-                                     float *pixels, float *error_px);
+                                     float *error_px);
 
 #endif

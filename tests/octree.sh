@@ -71,6 +71,19 @@ run 0 render knot.cot knot.ply -o both.pfm --size 64x64 --json both.json
 [[ $(value splats_in both.json) == 60000 ]] || fail "a .cot beside other inputs"
 run 0 render small.cot -o small.pfm $picture --error 1
 
+# What each pixel blends, as a picture.
+run 0 render knot.cot --overdraw overdraw.pfm --size 64x64 --error 1
+run 0 render knot.cot --overdraw turn.pfm --size 64x64 --turntable 2
+[[ -s overdraw.pfm && -s turn.0002.pfm ]] || fail "no picture of the overdraw"
+run 2 render knot.cot -o overdraw.pfm --overdraw overdraw.pfm
+run 2 render knot.cot --overdraw overdraw
+
+# Clip lines are carried in small files too.
+run 0 make cube -n 3k -o cube.ply
+run 0 octree cube.ply -o cube.cot --quantize
+run 0 info cube.cot --check
+run 0 render cube.cot -o cube.pfm --size 64x64 --error 1
+
 # Wrong usage, wrong inputs.
 run 2 render knot.cot -o x.pfm --error 1 --budget 5
 run 2 render knot.ply -o x.pfm --error 1

@@ -60,21 +60,34 @@ static int check_node(const conic_octree *octree, size_t i) {
   return wrong;
 }
 
-/* The other way round: no point of the node's disc is farther from every leaf's. */
+/* The other way round: no point of the node's disc is farther from all leaves, of other nodes too. */
 static int check_overshoot(const conic_octree *octree, size_t i) {
   const conic_drawn_node *node = &octree->drawn[i];
   vector center = of(node->position), u = of(node->tangent_u), v = of(node->tangent_v);
+  /* the trial points leave gaps of a sixth of a leaf's outline */
+  double allowed = (double)octree->error[i] * (1.0 + 1e-5) + 0.2 * octree->splat_length;
+  double reach = (double)octree->radius[i] + allowed;
+  size_t *near = malloc(octree->n_leaves * sizeof *near), n_near = 0;
   int wrong = 0;
+  if (!near)
+    exit(1);
+  for (size_t k = 0; k < octree->n_leaves; k++) {
+    vector apart = plus(at(octree->leaves.position, k), -1.0, center), tu = at(octree->leaves.tangent_u, k);
+    vector tv = at(octree->leaves.tangent_v, k);
+    near[n_near] = k;
+    n_near += sqrt(dot(apart, apart)) <= reach + 1.5 * sqrt(dot(tu, tu) + dot(tv, tv));
+  }
   for (int ring = 1; ring <= 3; ring++)
     for (int step = 0; step < 16; step++) {
       double angle = step * 3.14159265358979 / 8.0, nearest = HUGE_VAL, r = 1.5 * ring / 3.0;
       vector p = plus(plus(center, r * cos(angle), u), r * sin(angle), v);
-      for (size_t k = octree->first_leaf[i]; k < octree->first_leaf[octree->end[i]]; k++)
-        nearest = fmin(nearest, distance_to_disc(p, at(octree->leaves.position, k), at(octree->leaves.tangent_u, k),
-                                                 at(octree->leaves.tangent_v, k)));
-      /* the trial points leave gaps of a sixth of a leaf's outline */
-      wrong += !(nearest <= (double)octree->error[i] * (1.0 + 1e-5) + 0.2 * octree->splat_length);
+      for (size_t k = 0; k < n_near && !(nearest <= allowed); k++)
+        nearest = fmin(nearest,
+                       distance_to_disc(p, at(octree->leaves.position, near[k]), at(octree->leaves.tangent_u, near[k]),
+                                        at(octree->leaves.tangent_v, near[k])));
+      wrong += !(nearest <= allowed);
     }
+  free(near);
   return wrong;
 }
 

@@ -1,7 +1,7 @@
 /* What the bytes of nodes and leaves give back: near what was put in, and never on the wrong side of a bound. */
 #include "core/color.h"
 #include "lod/leaf_code.h"
-#include "lod/octree_fit.h"
+#include "lod/octree_cover.h"
 #include "tests/fixture.h"
 
 static double dot(const double a[3], const double b[3]) {

@@ -4,6 +4,7 @@
  * A hole is a pixel that shows nothing, or what lies far behind, in the middle of a surface: all pixels around it up to
  * the error and the pixel's own size show one surface in the picture of everything, also without the prefilter, which
  * closes gaps of up to three pixels in a scan, and more of them the smaller the splats are. */
+#include "core/memory.h"
 #include "tests/octree_fixture.h"
 
 enum { SIZE = 256, N_SIDES = 26, N_ERRORS = 5, REACH = 10 };
@@ -183,6 +184,42 @@ static void test_zoom(fixture *f, const char *what) {
   conic_octree_destroy(octree);
 }
 
+/* At 1 px on 512², two fifths of the leaves give the picture to 40 dB, from six sides; with --cull back of those drawn
+ * a little more, as nodes at the edges are opened. */
+static void test_share(fixture *f) {
+  enum { WIDE = 512, N_VIEWS = 6 };
+  conic_selection selection = {0};
+  conic_octree *octree = octree_build(f->context, &f->splats, 0);
+  f->options.near_z = conic_octree_near(octree);
+  for (int cull_back = 0; cull_back < 2; cull_back++) {
+    double squares = 0.0, n_whole = 0.0, n_chosen = 0.0;
+    f->options.cull_back = cull_back;
+    for (int view = 0; view < N_VIEWS; view++) {
+      octree_frame(f, WIDE, 30.0 + view * 360.0 / N_VIEWS, 15.0, 1.0);
+      fixture_render(f);
+      n_whole += (double)f->statistics.splats_drawn;
+      float *whole = f->image.planes[CONIC_PLANE_RGBA];
+      f->image.planes[CONIC_PLANE_RGBA] = NULL;
+      octree_select(octree, f, 1.0, 0, &selection);
+      octree_draw(f, octree, &selection);
+      n_chosen += (double)f->statistics.splats_drawn;
+      const float *chosen = f->image.planes[CONIC_PLANE_RGBA];
+      for (int i = 0; i < 4 * WIDE * WIDE; i++) {
+        double apart = (double)whole[i] - (double)chosen[i];
+        squares += apart * apart / (4.0 * WIDE * WIDE * N_VIEWS);
+      }
+      conic_memory_release(f->context, whole);
+    }
+    fprintf(stderr, "lion, 512², 1 px, cull %d: %.1f %% of the splats drawn, %.2f dB\n", cull_back,
+            100.0 * n_chosen / n_whole, -10.0 * log10(squares));
+    CHECK(n_chosen <= (cull_back ? 0.42 : 0.4) * n_whole);
+    CHECK(squares <= 1e-4);
+  }
+  f->options.cull_back = 0;
+  conic_selection_release(f->context, &selection);
+  conic_octree_destroy(octree);
+}
+
 int main(int argc, char **argv) {
   const char *source_folder = argc > 1 ? argv[1] : ".";
   fixture f = fixture_open(0);
@@ -194,7 +231,9 @@ int main(int argc, char **argv) {
   if (octree_read_scan(&f, source_folder, "bunny.obj"))
     test_sides(&f, "bunny", 0);
   if (octree_read_scan(&f, source_folder, "lion.ply")) {
-    test_sides(&f, "lion", 4); /* these, beside each other, in a fold of the foliage; 130 pictures */
+    test_sides(&f, "lion",
+               1); /* in a fold of its foliage, all of whose splats are seen from their edges; 130 pictures */
+    test_share(&f);
     test_zoom(&f, "lion");
   }
   fixture_close(&f);

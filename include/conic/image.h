@@ -117,6 +117,11 @@ CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_i
 CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                                 conic_image *heatmap);
 
+/* A false-colour picture of how many splats were blended in each pixel (count plane needed): black for none, blue for
+ * one, red for 4, yellow for 16, white for 64 and more, by the logarithm between. On success the caller owns *map.
+ * Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map);
+
 #ifdef __cplusplus
 }
 #endif
