@@ -221,6 +221,15 @@ CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
   __builtin_prefetch(&from->surfaces[later]);
 }
 
+/* Where there is one ray there are more: that of the splat after the next few, whose footprint is there already. */
+CONIC_INLINE void prefetch_ray(const sources *from, uint32_t later) {
+  const conic_footprint *footprint = &from->footprints[later];
+  if (footprint->s3 == 0.0f) {
+    __builtin_prefetch(&from->rays[footprint->i_ray].u0);
+    __builtin_prefetch(&from->rays[footprint->i_ray].dy_high);
+  }
+}
+
 CONIC_INLINE void empty_blocks(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
     band->n_kept[block] = 0;
@@ -303,6 +312,7 @@ static void visibility(conic_band *band) {
     if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
       pass_splat(&p, &from, &s, i, 0);
     else {
+      prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
       pass_splat(&p, &from, &s, i, 1);
       has_special = 1;
     }
@@ -540,6 +550,7 @@ static void nearest(conic_band *band) {
     if (__builtin_expect(from.footprints[entries[i].footprint].s3 > 0.0f, 1))
       n_fragments += nearest_splat(&from, &s, &entries[i], kept, 0);
     else {
+      prefetch_ray(&from, entries[i + 12 < n ? i + 12 : i].footprint);
       n_fragments += nearest_splat(&from, &s, &entries[i], kept, 1);
       has_special = 1;
     }
