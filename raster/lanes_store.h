@@ -187,7 +187,10 @@ CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *ind
 }
 
 CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsigned drawn, float *to) {
-  float records[CONIC_LANES][16];
+  float packed[CONIC_LANES][16];
+  int are_all = drawn == (1u << CONIC_LANES) - 1; /* then they go where they belong at once */
+  float *records = are_all ? to : packed[0];
+  size_t stride = are_all ? n_fields : 16;
   for (size_t first = 0; first < n_fields; first += 4)
     for (int column = 0; column < CONIC_LANES / 4; column++) {
       quad rows[4];
@@ -195,10 +198,10 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
         rows[field] = lanes_column(fields[first + field], column);
       quad_transpose(rows);
       for (int row = 0; row < 4; row++)
-        memcpy(records[column * 4 + row] + first, &rows[row], sizeof rows[row]);
+        memcpy(records + (size_t)(column * 4 + row) * stride + first, &rows[row], sizeof rows[row]);
     }
-  for (int lane = 0; lane < CONIC_LANES; lane++) {
-    memcpy(to, records[lane], n_fields * sizeof(float));
+  for (int lane = 0; lane < CONIC_LANES && !are_all; lane++) {
+    memcpy(to, packed[lane], n_fields * sizeof(float));
     to += (drawn >> lane & 1) * n_fields;
   }
 }
