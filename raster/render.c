@@ -119,6 +119,8 @@ static void choose_chunks(frame *f) {
   size = size < LEAST ? LEAST : size > greatest ? greatest : size;
   while ((n / size + 1) * f->bins.n_tiles > ((size_t)1 << 22) && size < n)
     size *= 2;
+  size_t countable = (UINT32_MAX - 1) / f->bins.n_tiles; /* a chunk's entries are, even if all splats meet all tiles */
+  size = size < countable ? size : countable;
   f->projected.chunk_size = size;
   f->projected.n_chunks = f->bins.n_chunks = n / size + (n % size > 0);
 }

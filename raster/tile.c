@@ -5,6 +5,8 @@
 #include "raster/stream.h"
 #include "raster/ticks.h"
 
+_Static_assert(CONIC_GATHER_SLACK <= CONIC_SELECT_SLACK, "room behind the entries");
+
 static size_t padded(size_t n) {
   return (n + CONIC_SELECT_SLACK + 15) / 16 * 16;
 }
