@@ -31,8 +31,13 @@ else()
   set(OpenCL_FOUND FALSE)
 endif()
 
-# Looked for, so that the report below is whole, but nothing is built on them yet.
-find_package(CURL QUIET)
+if(CONIC_WITH_CURL)
+  find_package(CURL 7.66 QUIET)
+else()
+  set(CURL_FOUND FALSE)
+endif()
+
+# Looked for, so that the report below is whole, but nothing is built on it yet.
 find_library(ZSTD_LIBRARY zstd)
 find_path(ZSTD_INCLUDE_FOLDER zstd.h)
 mark_as_advanced(ZSTD_LIBRARY ZSTD_INCLUDE_FOLDER)
@@ -45,7 +50,7 @@ if(ZSTD_LIBRARY AND ZSTD_INCLUDE_FOLDER)
   set(found_zstd TRUE)
 endif()
 foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
-        "opencl:OpenCL (other devices)" "zstd:zstd (not used yet)" "curl:CURL (not used yet)")
+        "opencl:OpenCL (other devices)" "zstd:zstd (not used yet)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})
