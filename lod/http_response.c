@@ -45,8 +45,7 @@ static void take_range(conic_http_response *response, const char *text) {
     rest = read_number(rest + 1, &response->size);
   else
     rest = NULL;
-  response->has_range =
-      rest && *rest == '\0' && response->first <= response->last && response->last < response->size;
+  response->has_range = rest && *rest == '\0' && response->first <= response->last && response->last < response->size;
 }
 
 static void take_length(conic_http_response *response, const char *text) {

@@ -8,9 +8,9 @@
 #define CONIC_HTTP_TAG 96
 
 typedef struct conic_http_response {
-  int status;      /* 206 …; of the last of several responses, after redirections */
-  size_t n_bytes;  /* of all headers so far */
-  int has_range;   /* Content-Range: bytes first-last/size */
+  int status;     /* 206 …; of the last of several responses, after redirections */
+  size_t n_bytes; /* of all headers so far */
+  int has_range;  /* Content-Range: bytes first-last/size */
   uint64_t first, last, size;
   int has_length; /* Content-Length */
   uint64_t length;

@@ -49,8 +49,7 @@ static void take(conic_range_queue *queue, size_t i, conic_queued_range *item) {
 conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item) {
   if (queue->n == queue->room) {
     size_t room = 2 * queue->room + 64;
-    conic_status status =
-        conic_memory_grow(context, (void **)&queue->items, queue->n, room, sizeof *queue->items);
+    conic_status status = conic_memory_grow(context, (void **)&queue->items, queue->n, room, sizeof *queue->items);
     if (status != CONIC_OK)
       return status;
     queue->room = room;
@@ -71,7 +70,8 @@ int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_r
     best = queue->n;
     for (size_t i = 0; i < queue->n; i++) {
       earliest = queue->items[i].not_before_s < earliest ? queue->items[i].not_before_s : earliest;
-      if (queue->items[i].not_before_s <= now_s && (best == queue->n || is_sooner(&queue->items[i], &queue->items[best])))
+      if (queue->items[i].not_before_s <= now_s &&
+          (best == queue->n || is_sooner(&queue->items[i], &queue->items[best])))
         best = i;
     }
     *wait_s = earliest - now_s;

@@ -45,8 +45,9 @@ uint64_t conic_ranges_received(const conic_ranges *ranges);
 typedef struct conic_range {
   uint64_t offset;
   size_t n_bytes;
-  uint64_t priority; /* the lowest is asked for first; neighbours in this order that lie together are asked for as one */
-  uint32_t id;       /* the caller's */
+  uint64_t
+      priority; /* the lowest is asked for first; neighbours in this order that lie together are asked for as one */
+  uint32_t id;  /* the caller's */
 } conic_range;
 
 /* Asks for a range, which must lie within the file. Errors: ARGUMENT, MEMORY. */

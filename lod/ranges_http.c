@@ -67,7 +67,7 @@ typedef struct http_ranges {
   CURLM *multi;
   int is_global; /* curl_global_init was called */
   transfer transfers[MOST_CONNECTIONS];
-  body *head;    /* the file's beginning, or all of it */
+  body *head; /* the file's beginning, or all of it */
   char tag[CONIC_HTTP_TAG];
   ready_answer *ready;
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */
@@ -171,9 +171,10 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
   if (t->body->n == 0 && !accept_response(t))
     return 0;
   if (n > t->n_expected - t->body->n) {
-    refuse(t, t->is_whole, t->is_whole && !t->response.has_length
-                               ? "the server sends no ranges, and the whole file is over the memory bound"
-                               : "the server sends more than was asked for");
+    refuse(t, t->is_whole,
+           t->is_whole && !t->response.has_length
+               ? "the server sends no ranges, and the whole file is over the memory bound"
+               : "the server sends more than was asked for");
     return 0;
   }
   if (!keep(t->owner, t->body, data, n, t->n_expected)) {
