@@ -1,0 +1,227 @@
+#include "lod/layers_bands.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "raster/method.h"
+#include "raster/part.h"
+#include "raster/projected.h"
+
+typedef struct bands {
+  const conic_layers_band_drawing *d;
+  uint32_t *chosen; /* places that may meet the band */
+  size_t n_chosen;
+  uint64_t *starting; /* a row of tiles: splats of the places whose first it is */
+  uint64_t most;      /* splats at a time */
+  int tile, n_rows;   /* of tiles */
+} bands;
+
+/* How many splats a place gives, about: of a grazing one few. */
+static uint64_t weight_of(const bands *b, const conic_layers_place *place) {
+  uint64_t n = b->d->layers->entries[place->node].n_drawn;
+  return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16 + 1 : 0;
+}
+
+static int meets(const conic_layers_place *place, int y_begin, int y_end) {
+  return place->state != CONIC_PLACE_HIDDEN && place->sight.y_begin < y_end && place->sight.y_end > y_begin;
+}
+
+/* The last row of tiles, exclusive, of a band that begins with `first`: as many as there is memory for, at least one.
+ */
+static int end_of_band(bands *b, int first) {
+  const conic_layers_cut *cut = b->d->cut;
+  int y_begin = first * b->tile, end = first;
+  uint64_t n = 0;
+  memset(b->starting, 0, (size_t)b->n_rows * sizeof *b->starting);
+  for (size_t i = 0; i < cut->n; i++) {
+    const conic_layers_place *place = &cut->places[i];
+    if (meets(place, y_begin, b->d->camera->height)) {
+      int y = place->sight.y_begin > y_begin ? place->sight.y_begin : y_begin;
+      b->starting[y / b->tile] += weight_of(b, place);
+    }
+  }
+  do
+    n += b->starting[end++];
+  while (end < b->n_rows && n + b->starting[end] <= b->most);
+  return end;
+}
+
+static conic_status gather(bands *b, int y_begin, int y_end) {
+  const conic_layers_band_drawing *d = b->d;
+  b->n_chosen = 0;
+  for (size_t i = 0; i < d->cut->n; i++)
+    if (meets(&d->cut->places[i], y_begin, y_end))
+      b->chosen[b->n_chosen++] = (uint32_t)i;
+  conic_layers_gathering gathering = {.cut = d->cut,
+                                      .chosen = b->chosen,
+                                      .n_chosen = b->n_chosen,
+                                      .cutoff = d->render->kernel.cutoff,
+                                      .until_s = HUGE_VAL};
+  memcpy(gathering.eye, d->eye, sizeof gathering.eye);
+  return conic_layers_gather(d->layers, &gathering, d->set);
+}
+
+/* Numbers in the set become numbers in the file. */
+static void rename_rows(const conic_layers_band_drawing *d, int y_begin, int y_end) {
+  uint32_t *ids = d->image->planes[CONIC_PLANE_ID];
+  size_t width = (size_t)d->image->width;
+  for (size_t i = width * (size_t)y_begin; ids && i < width * (size_t)y_end; i++)
+    if (ids[i] < d->set->splats.count)
+      ids[i] = d->set->ids[ids[i]];
+}
+
+/* Splats that an earlier band has counted already. */
+typedef struct recount {
+  const bands *b;
+  conic_view view;
+  int y_begin;
+  conic_chunk *chunks; /* a thread */
+} recount;
+
+static void recount_piece(void *data, size_t i_piece, int i_thread) {
+  recount *r = data;
+  const conic_layers_band_drawing *d = r->b->d;
+  const conic_layers_piece *piece = &d->set->pieces[i_piece];
+  conic_chunk *sum = &r->chunks[i_thread];
+  conic_footprint footprint;
+  conic_box box;
+  conic_surface surface;
+  conic_ray ray;
+  conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
+  if (d->cut->places[piece->i_place].sight.y_begin >= r->y_begin)
+    return;
+  for (size_t i = 0; i < piece->n_kept; i++) {
+    conic_chunk one = {.n_drawn = 0};
+    conic_project_one(&r->view, &d->set->splats, piece->at + i, &place, &one);
+    sum->n_drawn += one.n_drawn;
+    sum->n_rays += one.n_rays;
+    sum->n_culled += one.n_culled;
+    sum->n_skipped += one.n_skipped;
+    sum->n_fallback += one.n_fallback;
+  }
+}
+
+static void take_from(const recount *r, int n_threads, conic_method method, conic_render_statistics *band) {
+  conic_render_statistics twice;
+  uint64_t n_rays = 0;
+  memset(&twice, 0, sizeof twice);
+  for (int i = 0; i < n_threads; i++) {
+    twice.splats_drawn += r->chunks[i].n_drawn;
+    twice.splats_culled += r->chunks[i].n_culled;
+    twice.splats_skipped += r->chunks[i].n_skipped;
+    twice.splats_fallback += r->chunks[i].n_fallback;
+    n_rays += r->chunks[i].n_rays;
+  }
+  conic_method_count(method, n_rays, &twice);
+  band->splats_in -= twice.splats_drawn + twice.splats_culled + twice.splats_skipped;
+  band->splats_drawn -= twice.splats_drawn;
+  band->splats_culled -= twice.splats_culled;
+  band->splats_skipped -= twice.splats_skipped;
+  band->splats_fallback -= twice.splats_fallback;
+  for (int i = 0; i < CONIC_N_METHODS; i++)
+    band->splats_by_method[i] -= twice.splats_by_method[i];
+}
+
+/* Takes out of a band's counts what belongs to an earlier one. */
+static conic_status count_once(const bands *b, int y_begin, conic_render_statistics *band) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_context *context = d->layers->context;
+  recount r = {.b = b, .y_begin = y_begin};
+  conic_status status = conic_view_init(context, &d->set->splats, d->camera, d->render, d->render->near_z,
+                                        d->render->splat_length, &r.view);
+  if (status != CONIC_OK)
+    return status;
+  r.chunks = conic_memory_allocate_zeroed(context, (size_t)conic_context_threads(context), sizeof *r.chunks);
+  if (!r.chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, d->set->n_pieces, recount_piece, &r);
+  take_from(&r, conic_context_threads(context), d->render->method, band);
+  conic_memory_release(context, r.chunks);
+  return CONIC_OK;
+}
+
+static void add_up(const conic_render_statistics *band, conic_render_statistics *sum) {
+  conic_render_statistics before = *sum;
+  *sum = *band;
+  sum->splats_in += before.splats_in;
+  sum->splats_culled += before.splats_culled;
+  sum->splats_skipped += before.splats_skipped;
+  sum->splats_drawn += before.splats_drawn;
+  sum->splats_fallback += before.splats_fallback;
+  for (int i = 0; i < CONIC_N_METHODS; i++)
+    sum->splats_by_method[i] += before.splats_by_method[i];
+  sum->fragments += before.fragments;
+  sum->pixels_covered += before.pixels_covered;
+  sum->ms.setup += before.ms.setup;
+  sum->ms.bin += before.ms.bin;
+  sum->ms.visibility += before.ms.visibility;
+  sum->ms.accumulate += before.ms.accumulate;
+  sum->ms.resolve += before.ms.resolve;
+  sum->ms.frame += before.ms.frame;
+}
+
+static conic_status draw_rows(bands *b, int y_begin, int y_end, conic_render_statistics *sum) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_render_statistics band;
+  conic_status status = gather(b, y_begin, y_end);
+  if (status == CONIC_OK)
+    status = conic_render_rows(d->renderer, &d->set->splats, d->camera, d->render, y_begin, y_end, d->image, &band);
+  if (status == CONIC_OK && y_begin > 0)
+    status = count_once(b, y_begin, &band);
+  if (status != CONIC_OK)
+    return status;
+  rename_rows(d, y_begin, y_end);
+  add_up(&band, sum);
+  return CONIC_OK;
+}
+
+static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_status status = gather(b, 0, d->camera->height);
+  if (status == CONIC_OK)
+    status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
+                                  d->image, statistics);
+  if (status == CONIC_OK)
+    rename_rows(d, 0, d->camera->height);
+  return status;
+}
+
+static conic_status draw(bands *b, conic_render_statistics *statistics, int *n_bands) {
+  const conic_layers_band_drawing *d = b->d;
+  conic_status status = CONIC_OK;
+  int end = end_of_band(b, 0);
+  *n_bands = 1;
+  if (end == b->n_rows)
+    return draw_whole(b, statistics);
+  if (d->samples > 1)
+    return conic_fail(
+        d->layers->context, CONIC_ERROR_MEMORY,
+        "%s: the picture needs more splats than memory is given; with samples it cannot be drawn in bands",
+        d->layers->name);
+  memset(statistics, 0, sizeof *statistics);
+  *n_bands = 0;
+  for (int first = 0; first < b->n_rows && status == CONIC_OK; first = end) {
+    end = end_of_band(b, first);
+    int y_end = end * b->tile < d->camera->height ? end * b->tile : d->camera->height;
+    status = draw_rows(b, first * b->tile, y_end, statistics);
+    ++*n_bands;
+  }
+  return status;
+}
+
+conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
+                                     int *n_bands) {
+  conic_context *context = drawing->layers->context;
+  bands b = {.d = drawing, .tile = drawing->render->tile};
+  b.n_rows = (drawing->camera->height + b.tile - 1) / b.tile;
+  b.most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
+  b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
+  b.starting = conic_memory_allocate(context, (size_t)b.n_rows, sizeof *b.starting);
+  conic_status status = b.chosen && b.starting ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
+  conic_memory_release(context, b.chosen);
+  conic_memory_release(context, b.starting);
+  return status;
+}
