@@ -137,6 +137,8 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
+  if (job->layers.file)
+    return cli_layers_draw(session, job, camera, renderer, image, statistics);
   conic_status status = job->octree ? cli_lod_select(job, camera, &lod_ms) : CONIC_OK;
   if (status == CONIC_OK)
     status = conic_render_samples(session->context, renderer, job->octree ? &job->selection.splats : splats, camera,
@@ -202,6 +204,7 @@ static int run(cli_session *session, int argc, char **argv) {
   conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
+  job.layers.start_seconds = start;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
@@ -211,6 +214,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     conic_splats_release(session->context, &splats);
     cli_lod_close(session, &job);
+    cli_layers_close(&job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;
