@@ -50,7 +50,9 @@ typedef struct transfer {
   conic_queued_range *parts;
   size_t n_parts, parts_room;
   conic_http_response response;
-  int is_final; /* its failure: trying again is of no use */
+  double window_s; /* when it was last looked at whether it stalls, */
+  size_t window_n; /* and what it had then */
+  int is_final;    /* its failure: trying again is of no use */
   char reason[160];
 } transfer;
 
@@ -203,8 +205,6 @@ static int set_up(http_ranges *http, transfer *t) {
   failed |= curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 1L) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_MAXREDIRS, (long)MOST_REDIRECTS) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)(1e3 * o->connect_seconds)) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)LEAST_BYTES_PER_SECOND) != CURLE_OK;
-  failed |= curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, (long)o->stall_seconds) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, on_header) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_HEADERDATA, t) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, on_body) != CURLE_OK;
@@ -233,6 +233,8 @@ static conic_status begin(transfer *t) {
     return CONIC_ERROR_MEMORY;
   }
   t->is_busy = 1;
+  t->window_s = seconds_now();
+  t->window_n = 0;
   return CONIC_OK;
 }
 
@@ -243,6 +245,20 @@ static void end(transfer *t) {
   let_go(t->owner, t->body);
   t->body = NULL;
   t->is_busy = 0;
+}
+
+/* Whether hardly anything came for long. libcurl's own look at it takes some seconds more. */
+static int is_stalled(transfer *t) {
+  double now = seconds_now(), elapsed = now - t->window_s;
+  if (elapsed < t->owner->options.stall_seconds)
+    return 0;
+  if ((double)(t->body->n - t->window_n) < LEAST_BYTES_PER_SECOND * elapsed) {
+    refuse(t, 0, "the server sends nothing more");
+    return 1;
+  }
+  t->window_s = now;
+  t->window_n = t->body->n;
+  return 0;
 }
 
 static ready_answer *add_ready(http_ranges *http) {
@@ -353,7 +369,7 @@ static int gather_parts(http_ranges *http, transfer *t, double *wait_s) {
     t->parts[t->n_parts++] = item;
     last = range_end > last ? range_end : last;
     const conic_queued_range *next = conic_range_queue_first(&http->base.queue);
-    if (!next || next->not_before_s > 0.0 || next->range.offset < last || next->range.offset - last > GAP_BYTES ||
+    if (!next || next->not_before_s > 0.0 || next->range.offset < t->offset || next->range.offset > last + GAP_BYTES ||
         next->range.offset + next->range.n_bytes - t->offset > JOINED_BYTES)
       break;
   }
@@ -388,6 +404,9 @@ static void take_finished(http_ranges *http) {
     if (message->msg == CURLMSG_DONE && curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, &cookie) == CURLE_OK)
       finish((transfer *)(void *)cookie, code);
   }
+  for (int i = 0; i < http->options.n_connections; i++)
+    if (http->transfers[i].is_busy && is_stalled(&http->transfers[i]))
+      finish(&http->transfers[i], CURLE_OPERATION_TIMEDOUT);
 }
 
 /* The server is given up: so is all that waits. */
@@ -492,7 +511,7 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
       break;
     }
     status = conic_progress(http->base.context, "connect", 0.0);
-    if (status != CONIC_OK)
+    if (status != CONIC_OK || is_stalled(t))
       break;
     curl_multi_poll(http->multi, NULL, 0, 100, NULL);
   }

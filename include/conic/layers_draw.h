@@ -26,7 +26,7 @@ typedef struct conic_layers_access {
   uint64_t memory_bytes;  /* what clouds, read and gathered, may take along with what is drawn of them; index, image and
                              the least that one row of tiles needs come on top */
   double connect_seconds; /* a server that is not reached within these is asked again */
-  double stall_seconds;   /* so is one that sends under 1 KiB/s for so long; 1 or more */
+  double stall_seconds;   /* so is one that sends under 1 KiB/s for so long */
   int n_retries;          /* so often, with growing pauses, before a cloud is given up */
   double pause_seconds;   /* the first pause */
   int n_connections;      /* at a time, 1 to 16 */
