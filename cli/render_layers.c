@@ -101,6 +101,7 @@ void cli_layers_report(cli_json *json, const cli_render_job *job) {
   cli_json_object(json, "layers");
   cli_json_count(json, "clouds", job->layers.scale.n_clouds);
   cli_json_count(json, "clouds_drawn", d->n_clouds);
+  cli_json_count(json, "clouds_grazing", d->n_clouds_grazing);
   cli_json_count(json, "clouds_read", d->n_clouds_read);
   cli_json_count(json, "clouds_missing", d->n_clouds_missing);
   cli_json_count(json, "places", d->n_places);

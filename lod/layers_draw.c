@@ -18,7 +18,7 @@ typedef struct drawing {
   const conic_layers_draw_options *options;
   conic_layers_view view;
   conic_layers_cut cut;
-  conic_layers_set set;
+  conic_layers_set *set; /* the layers', so that its memory is kept from picture to picture */
   unsigned char *needed; /* a cloud */
   size_t n_needed;
   uint32_t *held; /* clouds that are kept until the picture is drawn */
@@ -94,7 +94,7 @@ static int wants_hiding(const drawing *d) {
          conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
 }
 
-static void count_up(drawing *d) {
+static void count_up(drawing *d, const conic_render_statistics *statistics) {
   conic_layers_drawn *drawn = &d->drawn;
   uint64_t n_splats = 0;
   drawn->n_places = d->cut.n;
@@ -106,8 +106,10 @@ static void count_up(drawing *d) {
     drawn->n_places_grazing += place->state == CONIC_PLACE_GRAZING;
     n_splats += d->layers->entries[place->node].n_drawn;
   }
+  drawn->n_clouds_grazing = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
   drawn->n_clouds = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_GRAZING, d->needed);
-  drawn->n_splats_left = n_splats > d->set.splats.count ? n_splats : 0;
+  drawn->n_clouds_grazing = drawn->n_clouds - drawn->n_clouds_grazing;
+  drawn->n_splats_left = n_splats > statistics->splats_in ? n_splats - statistics->splats_in : 0;
   for (uint32_t i = 0; i < d->layers->header.n_clouds; i++)
     if (d->needed[i] && d->layers->entries[i].level >= drawn->n_levels)
       drawn->n_levels = d->layers->entries[i].level + 1;
@@ -120,7 +122,7 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
   if (status == CONIC_OK && d->options->may_be_coarser)
     status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
   if (status == CONIC_OK && wants_hiding(d))
-    status = conic_layers_hide(d->layers, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, &d->set);
+    status = conic_layers_hide(d->layers, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
   if (status != CONIC_OK)
     return status;
   conic_layers_band_drawing bands = {.layers = d->layers,
@@ -130,12 +132,12 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
                                      .cut = &d->cut,
                                      .samples = d->options->samples,
                                      .image = image,
-                                     .set = &d->set};
+                                     .set = d->set};
   memcpy(bands.eye, d->view.eye, sizeof bands.eye);
   status = conic_layers_draw_bands(&bands, statistics, &d->drawn.n_bands);
   if (status != CONIC_OK)
     return status;
-  count_up(d);
+  count_up(d, statistics);
   statistics->ms.lod = 1e3 * (conic_layers_now() - start) - statistics->ms.frame;
   statistics->ms.frame += statistics->ms.lod;
   return CONIC_OK;
@@ -156,7 +158,7 @@ static void end(drawing *d) {
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
-  conic_layers_set_release(context, &d->set);
+  conic_layers_set_release(context, d->set);
   conic_memory_release(context, d->needed);
   conic_memory_release(context, d->held);
 }
@@ -168,7 +170,11 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
   conic_render_statistics counted;
   if (wrong)
     return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
-  drawing d = {.layers = layers, .camera = camera, .options = options};
+  if (!layers->set)
+    layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
+  if (!layers->set)
+    return CONIC_ERROR_MEMORY;
+  drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
   uint64_t n_read = layers->store.n_read, n_received = conic_ranges_received(layers->ranges);
   begin(&d, render);
   d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);

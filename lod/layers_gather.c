@@ -141,34 +141,78 @@ static void count_task(void *data, size_t i_task, int i_thread) {
     count_piece(g, &g->set->pieces[i]);
 }
 
-static inline void put(const gather *g, const conic_layers_cloud *cloud, size_t i, float radius, size_t at) {
-  conic_splats *to = &g->set->splats;
-  float normal[3], u[3], v[3];
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = cloud->normal[axis][i];
-  conic_layers_axes(normal, radius, g->asked->cutoff, u, v);
+/* A piece's samples and their places in the set. */
+typedef struct copying {
+  const float *restrict position[3], *restrict normal[3], *restrict color[3];
+  float *restrict to_position[3], *restrict to_u[3], *restrict to_v[3], *restrict to_color[3];
+  uint32_t *restrict to_id;
+} copying;
+
+static copying begin_copy(const gather *g, const conic_layers_cloud *cloud, size_t from, size_t at) {
+  const conic_splats *to = &g->set->splats;
+  copying c = {.to_id = g->set->ids + at};
   for (int axis = 0; axis < 3; axis++) {
-    to->position[axis][at] = cloud->position[axis][i];
-    to->tangent_u[axis][at] = u[axis];
-    to->tangent_v[axis][at] = v[axis];
+    c.position[axis] = cloud->position[axis] + from;
+    c.normal[axis] = cloud->normal[axis] + from;
+    c.to_position[axis] = to->position[axis] + at;
+    c.to_u[axis] = to->tangent_u[axis] + at;
+    c.to_v[axis] = to->tangent_v[axis] + at;
+    c.color[axis] = cloud->color[axis] ? cloud->color[axis] + from : NULL;
+    c.to_color[axis] = to->color[axis] ? to->color[axis] + at : NULL;
   }
-  for (int channel = 0; channel < 3 && to->color[0]; channel++)
-    to->color[channel][at] = cloud->color[channel][i];
+  return c;
+}
+
+/* A circle's axes, for a unit normal anywhere: one rule for each half of the sphere, and nothing cancels in its own. */
+static inline void set_axes(const copying *c, size_t i, size_t k, float sigma) {
+  float nx = c->normal[0][i], ny = c->normal[1][i], nz = c->normal[2][i];
+  float sign = nz >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + nz), b = nx * ny * a;
+  c->to_u[0][k] = (1.0f + sign * (nx * nx) * a) * sigma;
+  c->to_u[1][k] = sign * b * sigma;
+  c->to_u[2][k] = -sign * nx * sigma;
+  c->to_v[0][k] = b * sigma;
+  c->to_v[1][k] = (sign + ny * ny * a) * sigma;
+  c->to_v[2][k] = -ny * sigma;
+}
+
+static void copy_all(const copying *c, size_t n, float sigma, uint32_t first_id) {
+  for (int axis = 0; axis < 3; axis++) {
+    memcpy(c->to_position[axis], c->position[axis], n * sizeof(float));
+    if (c->to_color[axis])
+      memcpy(c->to_color[axis], c->color[axis], n * sizeof(float));
+  }
+  const copying local = *c;
+  for (size_t i = 0; i < n; i++)
+    set_axes(&local, i, i, sigma);
+  for (size_t i = 0; i < n; i++)
+    local.to_id[i] = first_id + (uint32_t)i;
+}
+
+static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t id) {
+  for (int axis = 0; axis < 3; axis++) {
+    c->to_position[axis][k] = c->position[axis][i];
+    if (c->to_color[axis])
+      c->to_color[axis][k] = c->color[axis][i];
+  }
+  set_axes(c, i, k, sigma);
+  c->to_id[k] = id;
 }
 
 static void fill_piece(const gather *g, const conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_cloud *cloud = conic_layers_store_find(&layers->store, piece->cloud);
-  uint64_t first_sample = layers->first_sample[piece->cloud];
-  float radius = layers->entries[place->node].radius;
-  size_t at = piece->at;
-  for (size_t i = piece->first; i < piece->end && piece->n_kept; i++) {
-    if (place->state == CONIC_PLACE_GRAZING && !is_grazing(cloud, i, g->asked->eye, place->offset))
-      continue;
-    put(g, cloud, i, radius, at);
-    g->set->ids[at++] = (uint32_t)(first_sample + i);
+  uint32_t first_id = (uint32_t)(layers->first_sample[piece->cloud] + piece->first);
+  float sigma = layers->entries[place->node].radius / g->asked->cutoff;
+  size_t n = piece->end - piece->first, k = 0;
+  copying c = begin_copy(g, cloud, piece->first, piece->at);
+  if (piece->n_kept == n) {
+    copy_all(&c, n, sigma, first_id);
+    return;
   }
+  for (size_t i = 0; i < n && k < piece->n_kept; i++)
+    if (is_grazing(cloud, piece->first + i, g->asked->eye, place->offset))
+      copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);
 }
 
 static void fill_task(void *data, size_t i_task, int i_thread) {

@@ -13,14 +13,15 @@ typedef struct conic_layers_piece {
 } conic_layers_piece;
 
 /* Splats to draw. Zero before the first use; the memory is kept from set to set. */
-typedef struct conic_layers_set {
+struct conic_layers_set {
   conic_splats splats;
   uint32_t *ids; /* number of each in the file */
   size_t room;   /* of both */
   void *arrays;
   conic_layers_piece *pieces; /* in the order of the file */
   size_t n_pieces, pieces_room;
-} conic_layers_set;
+};
+typedef struct conic_layers_set conic_layers_set;
 
 /* Bytes that drawing takes for a splat of a set, the set's own included. */
 enum { CONIC_LAYERS_SPLAT_BYTES = 176 };

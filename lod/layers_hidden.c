@@ -9,7 +9,10 @@
 
 /* A share of the places is drawn before the rest is looked at again: the first so small a part of all splats, each
  * further one so much larger. */
-enum { FIRST_SHARE = 32, NEXT_SHARE = 12 };
+enum { FIRST_SHARE = 32, NEXT_SHARE = 16 };
+
+/* What finding out how deep a splat hides takes, as a share of drawing it. */
+#define WORTHWHILE 0.7
 
 typedef struct hiding {
   conic_layers *layers;
@@ -100,34 +103,48 @@ static conic_status draw_chosen(hiding *h, size_t n_chosen, uint32_t *spare) {
   return status;
 }
 
-/* Chooses the next places that are shown, up to so many splats. Returns where those that were not looked at begin. */
-static size_t choose_next(hiding *h, size_t begin, uint64_t most, size_t *n_chosen, size_t *n_looked_at) {
+static uint64_t splats_of(const hiding *h, size_t i) {
+  const conic_layers_place *place = &h->cut->places[h->by_depth[i]];
+  return place->state == CONIC_PLACE_SHOWN ? h->layers->entries[place->node].n_drawn : 0;
+}
+
+/* Looks at the places from `begin` on again. Returns how many splats of them are shown. */
+static uint64_t judge_rest(hiding *h, size_t begin) {
   uint64_t n_splats = 0;
+  for (size_t i = begin; i < h->cut->n; i++) {
+    judge(h, &h->cut->places[h->by_depth[i]]);
+    n_splats += splats_of(h, i);
+  }
+  return n_splats;
+}
+
+/* Chooses the next places that are shown, up to so many splats. Returns where those that were not looked at begin. */
+static size_t choose_next(hiding *h, size_t begin, uint64_t most, size_t *n_chosen, uint64_t *n_splats) {
+  *n_splats = 0;
   *n_chosen = 0;
-  for (; begin < h->cut->n && n_splats < most; begin++) {
-    conic_layers_place *place = &h->cut->places[h->by_depth[begin]];
-    judge(h, place);
-    ++*n_looked_at;
-    if (place->state != CONIC_PLACE_SHOWN)
-      continue;
-    h->chosen[(*n_chosen)++] = h->by_depth[begin];
-    n_splats += h->layers->entries[place->node].n_drawn;
+  for (; begin < h->cut->n && *n_splats < most; begin++) {
+    uint64_t n = splats_of(h, begin);
+    if (n > 0)
+      h->chosen[(*n_chosen)++] = h->by_depth[begin];
+    *n_splats += n;
   }
   return begin;
 }
 
-/* Draws shares until all was looked at or, where hardly anything turns out to be hidden, gives up. */
+/* Draws shares as long as they hide more than they cost: of the last two, one has to. */
 static conic_status draw_shares(hiding *h, uint32_t *spare) {
   conic_status status = CONIC_OK;
   uint64_t room = conic_layers_drawing_bytes(h->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
-  size_t begin = 0, n_chosen, n_looked_at = 0, n_shown = 0;
-  for (int i = 0; begin < h->cut->n && status == CONIC_OK; i++) {
+  uint64_t rest = judge_rest(h, 0), n_splats;
+  size_t begin = 0, n_chosen;
+  int n_useless = 0;
+  for (int i = 0; rest > 0 && n_useless < 2 && status == CONIC_OK; i++) {
     uint64_t most = h->cut->n_splats / (i ? NEXT_SHARE : FIRST_SHARE) + 1;
-    begin = choose_next(h, begin, most < room ? most : room, &n_chosen, &n_looked_at);
-    n_shown += n_chosen;
-    if (n_chosen == 0 || (i >= 4 && n_shown > n_looked_at / 10 * 9))
-      break;
+    begin = choose_next(h, begin, most < room ? most : room, &n_chosen, &n_splats);
     status = draw_chosen(h, n_chosen, spare);
+    uint64_t left = status == CONIC_OK ? judge_rest(h, begin) : 0, hidden = rest - n_splats - left;
+    n_useless = (double)hidden < WORTHWHILE * (double)n_splats ? n_useless + 1 : 0;
+    rest = left;
   }
   return status;
 }

@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/message.h"
-#include "lod/layers_scene.h"
+#include "lod/layers_gather.h"
 
 /* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
 enum { PIECE_BYTES = 1 << 22 };
@@ -163,6 +163,9 @@ void conic_layers_close(conic_layers *layers) {
   conic_layers_store_close(layers);
   conic_ranges_close(layers->ranges);
   conic_renderer_destroy(layers->hider);
+  if (layers->set)
+    conic_layers_set_release(context, layers->set);
+  conic_memory_release(context, layers->set);
   conic_memory_release(context, layers->entries);
   conic_memory_release(context, layers->first_sample);
   conic_memory_release(context, layers->name);

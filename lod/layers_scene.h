@@ -17,7 +17,8 @@ struct conic_layers {
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
   conic_layers_store store;
-  conic_renderer *hider; /* draws how deep things hide; made when it is first needed */
+  conic_renderer *hider;        /* draws how deep things hide; made when it is first needed */
+  struct conic_layers_set *set; /* what is gathered to be drawn; likewise */
 };
 
 /* Shares of the memory that a picture may take: for the cache, and for what is gathered and drawn of it at a time. */

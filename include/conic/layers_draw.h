@@ -90,6 +90,7 @@ typedef struct conic_layers_drawn {
   uint64_t n_places_grazing; /* hidden but for splats seen nearly from their edge, which alone were drawn */
   uint64_t n_places_coarser; /* for want of clouds */
   uint64_t n_clouds;         /* drawn of, in whole or in part */
+  uint64_t n_clouds_grazing; /* of these, none but such splats of any of its places */
   uint64_t n_clouds_culled;  /* out of sight, or hidden */
   uint64_t n_clouds_missing; /* could not be read, or not in time */
   uint64_t n_clouds_read;    /* and decoded; the others were in the cache */
