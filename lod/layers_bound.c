@@ -255,22 +255,22 @@ void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_lay
                                   conic_layers_entry *entry) {
   uint64_t differing = branch->first_key ^ branch->last_key;
   unsigned n_below = differing ? 64u - (unsigned)__builtin_clzll(differing) : 0u;
-  double q = plan->quantum, half_cell = 0.8660254037844387 + (double)(UINT64_C(1) << plan->bits) * 0x1p-22;
+  double q = plan->quantum, rounding = (double)(UINT64_C(1) << plan->bits) * 0x1p-22; /* of positions as floats */
   memset(entry, 0, sizeof *entry);
   entry->depth = (uint16_t)(3 * plan->bits - n_below);
   entry->key = branch->first_key >> n_below << n_below;
   entry->n_place = branch->n_place;
   entry->n_drawn = (uint32_t)branch->n_drawn;
   entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
-  entry->covering = rounded_up(branch->covering * q);
+  entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
   entry->radius = rounded_up(branch->radius * q);
-  entry->error = rounded_up((error_of(branch) + half_cell) * q);
+  entry->error = rounded_up((error_of(branch) + 0.8660254037844387 + rounding) * q);
   entry->sphere = rounded_up((branch->sphere + branch->radius) * q);
-  double slack = 0.0; /* of the centre's own rounding */
+  double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {
     double center = (branch->center[axis] + 0.5) * q;
     entry->center[axis] = (float)center;
-    slack += fabs((double)entry->center[axis] - center) + (double)(UINT64_C(1) << plan->bits) * q * 0x1p-24;
+    slack += fabs((double)entry->center[axis] - center);
     entry->axis[axis] = (float)branch->axis[axis];
   }
   entry->sphere = rounded_up((double)entry->sphere + slack);
