@@ -92,7 +92,7 @@ conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const co
                              conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics);
 /* Fine where it never was open. */
 void cli_layers_close(cli_render_job *job);
-void cli_layers_report(cli_json *json, const cli_render_job *job);
+void cli_render_layers_report(cli_json *json, const cli_render_job *job);
 
 /* Reads the inputs into one set of splats, which the caller releases, also after a failure. */
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);

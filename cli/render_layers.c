@@ -94,7 +94,7 @@ void cli_layers_close(cli_render_job *job) {
   job->layers.file = NULL;
 }
 
-void cli_layers_report(cli_json *json, const cli_render_job *job) {
+void cli_render_layers_report(cli_json *json, const cli_render_job *job) {
   const conic_layers_drawn *d = &job->layers.drawn;
   cli_json_count(json, "clouds_culled", d->n_clouds_culled);
   cli_json_number(json, "error_px", d->error_px);

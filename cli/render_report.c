@@ -29,7 +29,7 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
   }
   cli_json_close(json);
   if (job->layers.file)
-    cli_layers_report(json, job);
+    cli_render_layers_report(json, job);
   else
     cli_json_count(json, "clouds_culled", job->selection.n_culled);
   if (job->octree)
