@@ -12,11 +12,11 @@
 
 typedef struct bands {
   const conic_layers_band_drawing *d;
-  uint32_t *chosen; /* places that may meet the band */
+  uint32_t *chosen; /* places that may meet the window */
   size_t n_chosen;
-  uint64_t *starting; /* a row of tiles: splats of the places whose first it is */
+  uint64_t *starting; /* a row or column of tiles: splats of the places whose first it is */
   uint64_t most;      /* splats at a time */
-  int tile, n_rows;   /* of tiles */
+  int tile;
 } bands;
 
 /* How many splats a place gives, about: of a grazing one few. */
@@ -25,35 +25,63 @@ static uint64_t weight_of(const bands *b, const conic_layers_place *place) {
   return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16 + 1 : 0;
 }
 
-static int meets(const conic_layers_place *place, int y_begin, int y_end) {
-  return place->state != CONIC_PLACE_HIDDEN && place->sight.y_begin < y_end && place->sight.y_end > y_begin;
+static int meets(const conic_layers_place *place, const conic_window *window) {
+  const conic_layers_sight *s = &place->sight;
+  return place->state != CONIC_PLACE_HIDDEN && s->y_begin < window->y_end && s->y_end > window->y_begin &&
+         s->x_begin < window->x_end && s->x_end > window->x_begin;
 }
 
-/* The last row of tiles, exclusive, of a band that begins with `first`: as many as there is memory for, at least one.
- */
-static int end_of_band(bands *b, int first) {
+/* Shortens the window, from its far end along an axis, to as many tiles as there is memory for, at least one. */
+static void shorten(bands *b, conic_window *window, int is_along_x) {
   const conic_layers_cut *cut = b->d->cut;
-  int y_begin = first * b->tile, end = first;
+  int begin = is_along_x ? window->x_begin : window->y_begin, *end = is_along_x ? &window->x_end : &window->y_end;
+  int first = begin / b->tile, n_tiles = (*end + b->tile - 1) / b->tile, last = first;
   uint64_t n = 0;
-  memset(b->starting, 0, (size_t)b->n_rows * sizeof *b->starting);
+  memset(b->starting + first, 0, (size_t)(n_tiles - first) * sizeof *b->starting);
   for (size_t i = 0; i < cut->n; i++) {
     const conic_layers_place *place = &cut->places[i];
-    if (meets(place, y_begin, b->d->camera->height)) {
-      int y = place->sight.y_begin > y_begin ? place->sight.y_begin : y_begin;
-      b->starting[y / b->tile] += weight_of(b, place);
-    }
+    int from = is_along_x ? place->sight.x_begin : place->sight.y_begin;
+    if (meets(place, window))
+      b->starting[(from > begin ? from : begin) / b->tile] += weight_of(b, place);
   }
   do
-    n += b->starting[end++];
-  while (end < b->n_rows && n + b->starting[end] <= b->most);
-  return end;
+    n += b->starting[last++];
+  while (last < n_tiles && n + b->starting[last] <= b->most);
+  *end = last * b->tile < *end ? last * b->tile : *end;
 }
 
-static conic_status gather(bands *b, int y_begin, int y_end) {
+static uint64_t count_splats(const bands *b, const conic_window *window) {
+  uint64_t n = 0;
+  for (size_t i = 0; i < b->d->cut->n; i++)
+    if (meets(&b->d->cut->places[i], window))
+      n += weight_of(b, &b->d->cut->places[i]);
+  return n;
+}
+
+/* The next window after one that was drawn, from left to right and then downwards: whole rows of tiles where there is
+ * memory for them, else a part of one row. 0 after the last. */
+static int next_window(bands *b, conic_window *window) {
+  int width = b->d->camera->width, height = b->d->camera->height;
+  if (window->x_end < width) {
+    window->x_begin = window->x_end;
+    window->x_end = width;
+  } else {
+    *window = (conic_window){0, width, window->y_end, height};
+    if (window->y_begin < height)
+      shorten(b, window, 0);
+  }
+  if (window->y_begin >= height)
+    return 0;
+  if (count_splats(b, window) > b->most)
+    shorten(b, window, 1);
+  return 1;
+}
+
+static conic_status gather(bands *b, const conic_window *window) {
   const conic_layers_band_drawing *d = b->d;
   b->n_chosen = 0;
   for (size_t i = 0; i < d->cut->n; i++)
-    if (meets(&d->cut->places[i], y_begin, y_end))
+    if (meets(&d->cut->places[i], window))
       b->chosen[b->n_chosen++] = (uint32_t)i;
   conic_layers_gathering gathering = {.cut = d->cut,
                                       .chosen = b->chosen,
@@ -65,19 +93,20 @@ static conic_status gather(bands *b, int y_begin, int y_end) {
 }
 
 /* Numbers in the set become numbers in the file. */
-static void rename_rows(const conic_layers_band_drawing *d, int y_begin, int y_end) {
+static void rename_window(const conic_layers_band_drawing *d, const conic_window *window) {
   uint32_t *ids = d->image->planes[CONIC_PLANE_ID];
-  size_t width = (size_t)d->image->width;
-  for (size_t i = width * (size_t)y_begin; ids && i < width * (size_t)y_end; i++)
-    if (ids[i] < d->set->splats.count)
-      ids[i] = d->set->ids[ids[i]];
+  for (int y = window->y_begin; ids && y < window->y_end; y++)
+    for (int x = window->x_begin; x < window->x_end; x++) {
+      uint32_t *id = &ids[(size_t)y * (size_t)d->image->width + (size_t)x];
+      *id = *id < d->set->splats.count ? d->set->ids[*id] : *id;
+    }
 }
 
 /* Splats that an earlier band has counted already. */
 typedef struct recount {
   const bands *b;
   conic_view view;
-  int y_begin;
+  const conic_window *window;
   conic_chunk *chunks; /* a thread */
 } recount;
 
@@ -91,8 +120,9 @@ static void recount_piece(void *data, size_t i_piece, int i_thread) {
   conic_surface surface;
   conic_ray ray;
   conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
-  if (d->cut->places[piece->i_place].sight.y_begin >= r->y_begin)
-    return;
+  const conic_layers_sight *sight = &d->cut->places[piece->i_place].sight;
+  if (sight->y_begin >= r->window->y_begin && sight->x_begin >= r->window->x_begin)
+    return; /* this window is the first that it meets */
   for (size_t i = 0; i < piece->n_kept; i++) {
     conic_chunk one = {.n_drawn = 0};
     conic_project_one(&r->view, &d->set->splats, piece->at + i, &place, &one);
@@ -126,10 +156,10 @@ static void take_from(const recount *r, int n_threads, conic_method method, coni
 }
 
 /* Takes out of a band's counts what belongs to an earlier one. */
-static conic_status count_once(const bands *b, int y_begin, conic_render_statistics *band) {
+static conic_status count_once(const bands *b, const conic_window *window, conic_render_statistics *band) {
   const conic_layers_band_drawing *d = b->d;
   conic_context *context = d->layers->context;
-  recount r = {.b = b, .y_begin = y_begin};
+  recount r = {.b = b, .window = window};
   conic_status status = conic_view_init(context, &d->set->splats, d->camera, d->render, d->render->near_z,
                                         d->render->splat_length, &r.view);
   if (status != CONIC_OK)
@@ -163,52 +193,48 @@ static void add_up(const conic_render_statistics *band, conic_render_statistics 
   sum->ms.frame += before.ms.frame;
 }
 
-static conic_status draw_rows(bands *b, int y_begin, int y_end, conic_render_statistics *sum) {
+static conic_status draw_window(bands *b, const conic_window *window, conic_render_statistics *sum) {
   const conic_layers_band_drawing *d = b->d;
   conic_render_statistics band;
-  conic_status status = gather(b, y_begin, y_end);
+  conic_status status = gather(b, window);
   if (status == CONIC_OK)
-    status = conic_render_rows(d->renderer, &d->set->splats, d->camera, d->render, y_begin, y_end, d->image, &band);
-  if (status == CONIC_OK && y_begin > 0)
-    status = count_once(b, y_begin, &band);
+    status = conic_render_window(d->renderer, &d->set->splats, d->camera, d->render, window, d->image, &band);
+  if (status == CONIC_OK && (window->y_begin > 0 || window->x_begin > 0))
+    status = count_once(b, window, &band);
   if (status != CONIC_OK)
     return status;
-  rename_rows(d, y_begin, y_end);
+  rename_window(d, window);
   add_up(&band, sum);
   return CONIC_OK;
 }
 
-static conic_status draw_whole(bands *b, conic_render_statistics *statistics) {
+static conic_status draw_whole(bands *b, const conic_window *whole, conic_render_statistics *statistics) {
   const conic_layers_band_drawing *d = b->d;
-  conic_status status = gather(b, 0, d->camera->height);
+  conic_status status = gather(b, whole);
   if (status == CONIC_OK)
     status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
                                   d->image, statistics);
   if (status == CONIC_OK)
-    rename_rows(d, 0, d->camera->height);
+    rename_window(d, whole);
   return status;
 }
 
 static conic_status draw(bands *b, conic_render_statistics *statistics, int *n_bands) {
   const conic_layers_band_drawing *d = b->d;
+  const conic_window whole = {0, d->camera->width, 0, d->camera->height};
+  conic_window window = {0, d->camera->width, 0, 0};
   conic_status status = CONIC_OK;
-  int end = end_of_band(b, 0);
   *n_bands = 1;
-  if (end == b->n_rows)
-    return draw_whole(b, statistics);
+  if (count_splats(b, &whole) <= b->most)
+    return draw_whole(b, &whole, statistics);
   if (d->samples > 1)
     return conic_fail(
         d->layers->context, CONIC_ERROR_MEMORY,
         "%s: the picture needs more splats than memory is given; with samples it cannot be drawn in bands",
         d->layers->name);
   memset(statistics, 0, sizeof *statistics);
-  *n_bands = 0;
-  for (int first = 0; first < b->n_rows && status == CONIC_OK; first = end) {
-    end = end_of_band(b, first);
-    int y_end = end * b->tile < d->camera->height ? end * b->tile : d->camera->height;
-    status = draw_rows(b, first * b->tile, y_end, statistics);
-    ++*n_bands;
-  }
+  for (*n_bands = 0; status == CONIC_OK && next_window(b, &window); ++*n_bands)
+    status = draw_window(b, &window, statistics);
   return status;
 }
 
@@ -216,10 +242,10 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
                                      int *n_bands) {
   conic_context *context = drawing->layers->context;
   bands b = {.d = drawing, .tile = drawing->render->tile};
-  b.n_rows = (drawing->camera->height + b.tile - 1) / b.tile;
+  int longer = drawing->camera->width > drawing->camera->height ? drawing->camera->width : drawing->camera->height;
   b.most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
   b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
-  b.starting = conic_memory_allocate(context, (size_t)b.n_rows, sizeof *b.starting);
+  b.starting = conic_memory_allocate(context, (size_t)(longer / b.tile + 1), sizeof *b.starting);
   conic_status status = b.chosen && b.starting ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
   conic_memory_release(context, b.chosen);
   conic_memory_release(context, b.starting);

@@ -1,4 +1,4 @@
-/* Bands of a picture's rows, each with no more splats than memory holds. */
+/* A picture in bands, or parts of them, each with no more splats than memory holds. */
 #ifndef LOD_LAYERS_BANDS_H
 #define LOD_LAYERS_BANDS_H
 

@@ -122,7 +122,7 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
   if (status == CONIC_OK && d->options->may_be_coarser)
     status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
   if (status == CONIC_OK && wants_hiding(d))
-    status = conic_layers_hide(d->layers, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
+    status = conic_layers_hide(d->layers, renderer, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
   if (status != CONIC_OK)
     return status;
   conic_layers_band_drawing bands = {.layers = d->layers,

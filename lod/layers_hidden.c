@@ -16,6 +16,7 @@ enum { FIRST_SHARE = 32, NEXT_SHARE = 16 };
 
 typedef struct hiding {
   conic_layers *layers;
+  conic_renderer *renderer;
   const conic_layers_view *view;
   const conic_camera *camera;
   const conic_render_options *render;
@@ -97,7 +98,7 @@ static conic_status draw_chosen(hiding *h, size_t n_chosen, uint32_t *spare) {
   sort_ascending(h->chosen, spare, n_chosen);
   conic_status status = conic_layers_gather(h->layers, &gathering, h->set);
   if (status == CONIC_OK)
-    status = conic_render_hiding(h->layers->hider, &h->set->splats, h->camera, h->render, h->horizon.pixels);
+    status = conic_render_hiding(h->renderer, &h->set->splats, h->camera, h->render, h->horizon.pixels);
   if (status == CONIC_OK)
     conic_horizon_update(h->layers->context, &h->horizon);
   return status;
@@ -159,13 +160,23 @@ static conic_status hide(hiding *h, uint32_t *spare) {
   return status;
 }
 
-conic_status conic_layers_hide(conic_layers *layers, const conic_layers_view *view, const conic_camera *camera,
-                               const conic_render_options *render, double until_s, conic_layers_cut *cut,
-                               conic_layers_set *set) {
+conic_status conic_layers_hide(conic_layers *layers, conic_renderer *renderer, const conic_layers_view *view,
+                               const conic_camera *camera, const conic_render_options *render, double until_s,
+                               conic_layers_cut *cut, conic_layers_set *set) {
   conic_context *context = layers->context;
-  hiding h = {
-      .layers = layers, .view = view, .camera = camera, .render = render, .cut = cut, .set = set, .until_s = until_s};
-  conic_status status = layers->hider ? CONIC_OK : conic_renderer_create(context, &layers->hider);
+  hiding h = {.layers = layers,
+              .renderer = renderer,
+              .view = view,
+              .camera = camera,
+              .render = render,
+              .cut = cut,
+              .set = set,
+              .until_s = until_s};
+  conic_status status = CONIC_OK;
+  if (!conic_renderer_has_parts(renderer)) {
+    status = layers->hider ? CONIC_OK : conic_renderer_create(context, &layers->hider);
+    h.renderer = layers->hider;
+  }
   if (status == CONIC_OK)
     status = conic_horizon_open(context, camera->width, camera->height, &h.horizon);
   uint32_t *order = conic_memory_allocate(context, 3 * cut->n, sizeof *order);

@@ -11,8 +11,8 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
 
 /* Sets the states of the cut's places. Places are drawn from front to back, no more than how deep they hide, a share at
  * a time; what lies wholly behind what was drawn so far is not drawn any more. Errors: as conic_layers_gather. */
-conic_status conic_layers_hide(conic_layers *layers, const conic_layers_view *view, const conic_camera *camera,
-                               const conic_render_options *render, double until_s, conic_layers_cut *cut,
-                               conic_layers_set *set);
+conic_status conic_layers_hide(conic_layers *layers, conic_renderer *renderer, const conic_layers_view *view,
+                               const conic_camera *camera, const conic_render_options *render, double until_s,
+                               conic_layers_cut *cut, conic_layers_set *set);
 
 #endif

@@ -17,7 +17,7 @@ struct conic_layers {
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */
   conic_layers_store store;
-  conic_renderer *hider;        /* draws how deep things hide; made when it is first needed */
+  conic_renderer *hider;        /* draws how deep things hide, for other devices that do not; made when needed */
   struct conic_layers_set *set; /* what is gathered to be drawn; likewise */
 };
 

@@ -45,7 +45,7 @@ typedef struct frame {
   conic_finish finish;
   const conic_tile_kernels *kernels;
   conic_image *image;
-  int y_begin, y_end;      /* the rows that are drawn: whole tiles */
+  conic_window window;     /* the pixels that are drawn: whole tiles */
   float *hiding;           /* in the place of an image; else null */
   char *sorters, *scratch; /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
@@ -218,11 +218,16 @@ static void report_progress(frame *f) {
     atomic_store(&f->is_cancelled, 1);
 }
 
+static int is_in_window(const frame *f, size_t i_tile) {
+  int x = (int)(i_tile % (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  int y = (int)(i_tile / (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  return x >= f->window.x_begin && x < f->window.x_end && y >= f->window.y_begin && y < f->window.y_end;
+}
+
 static void tile_task(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
-  int y = (int)(i_tile / (size_t)f->bins.n_tiles_x) * f->bins.tile;
   f->n_fragments[i_tile] = f->n_covered[i_tile] = 0;
-  if (y < f->y_begin || y >= f->y_end || atomic_load(&f->is_cancelled))
+  if (!is_in_window(f, i_tile) || atomic_load(&f->is_cancelled))
     return;
   if (i_thread == 0)
     report_progress(f);
@@ -378,7 +383,7 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   return status;
 }
 
-/* All of conic_render, for the rows and the plane that `f` names already. */
+/* All of conic_render, for the window and the plane that `f` names already. */
 static conic_status render(frame *f, const conic_camera *camera, const conic_render_options *options,
                            conic_render_statistics *statistics) {
   double near_z, splat_length, start = seconds_now();
@@ -419,32 +424,40 @@ static conic_status check_arguments(const conic_renderer *renderer, const conic_
   return CONIC_OK;
 }
 
+static conic_window whole_of(const conic_camera *camera) {
+  return (conic_window){0, camera->width, 0, camera->height};
+}
+
 conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                           const conic_render_options *options, conic_image *image,
                           conic_render_statistics *statistics) {
   conic_status status = check_arguments(renderer, image ? splats : NULL, camera, options, image);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .image = image, .y_end = camera->height};
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .window = whole_of(camera)};
   return render(&f, camera, options, statistics);
 }
 
+int conic_renderer_has_parts(const conic_renderer *renderer) {
+  return !renderer->backend;
+}
+
 static conic_status check_part(const conic_renderer *renderer) {
-  if (renderer->backend)
+  if (!conic_renderer_has_parts(renderer))
     return conic_fail(renderer->context, CONIC_ERROR_UNSUPPORTED,
                       "render: only the processor draws a picture in parts; more memory makes it one");
   return CONIC_OK;
 }
 
-conic_status conic_render_rows(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
-                               const conic_render_options *options, int y_begin, int y_end, conic_image *image,
-                               conic_render_statistics *statistics) {
+conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, const conic_window *window, conic_image *image,
+                                 conic_render_statistics *statistics) {
   conic_status status = check_arguments(renderer, image ? splats : NULL, camera, options, image);
   if (status == CONIC_OK)
     status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .image = image, .y_begin = y_begin, .y_end = y_end};
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .window = *window};
   return render(&f, camera, options, statistics);
 }
 
@@ -455,6 +468,6 @@ conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *s
     status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .hiding = hiding, .y_end = camera->height};
+  frame f = {.renderer = renderer, .splats = splats, .hiding = hiding, .window = whole_of(camera)};
   return render(&f, camera, options, NULL);
 }
