@@ -26,7 +26,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 enum {
   PROBE_BYTES = 1 << 16,  /* the first request's: it says how large the file is, and holds its beginning */
   JOINED_BYTES = 1 << 19, /* ranges are joined to requests of up to so many, */
-  GAP_BYTES = 1 << 13,    /* across gaps of up to so many, which are dropped */
+  GAP_BYTES = 1 << 12,    /* across gaps of up to so many, which are dropped */
   LEAST_BYTES_PER_SECOND = 1024,
   MOST_REDIRECTS = 5,
   MOST_CONNECTIONS = 16

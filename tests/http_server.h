@@ -21,7 +21,7 @@ typedef struct http_server {
   size_t n_bytes;
   pthread_t thread;
   atomic_int n_requests, n_connections, n_busy, is_stopping;
-  int n_good; /* so many answers are good before it misbehaves */
+  atomic_int n_good; /* so many answers are good before it misbehaves */
 } http_server;
 
 typedef struct http_connection {
@@ -215,7 +215,7 @@ static inline void *http_serve(void *cookie) {
     else if (strcmp(r.mode, "endless") == 0)
       is_open = http_say(connection.socket, "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\n") &&
                 http_repeat(server, connection.socket, "for ever and ever and ever and ever and ever and ever", 0);
-    else if (i_request < server->n_good)
+    else if (i_request < atomic_load(&server->n_good))
       is_open = http_answer_well(server, connection.socket, &r);
     else
       is_open = http_misbehave(server, connection.socket, &r, i_request);
@@ -256,7 +256,7 @@ static inline void http_server_start(http_server *server, const unsigned char *b
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   server->bytes = bytes;
   server->n_bytes = n_bytes;
-  server->n_good = n_good;
+  atomic_store(&server->n_good, n_good);
   server->listener = socket(AF_INET, SOCK_STREAM, 0);
   if (server->listener < 0 || bind(server->listener, (struct sockaddr *)&address, sizeof address) != 0 ||
       listen(server->listener, 64) != 0 || getsockname(server->listener, (struct sockaddr *)&address, &length) != 0) {
