@@ -175,7 +175,7 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
   if (!layers->set)
     return CONIC_ERROR_MEMORY;
   drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
-  uint64_t n_read = layers->store.n_read, n_received = conic_ranges_received(layers->ranges);
+  uint64_t n_read = layers->store.n_read;
   begin(&d, render);
   d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);
   d.held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.held);
@@ -185,7 +185,8 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
     return status;
   d.drawn.n_clouds_culled = layers->header.n_clouds - d.drawn.n_clouds;
   d.drawn.n_clouds_read = layers->store.n_read - n_read;
-  d.drawn.n_bytes_received = conic_ranges_received(layers->ranges) - n_received;
+  d.drawn.n_bytes_received = conic_ranges_received(layers->ranges) - layers->n_told;
+  layers->n_told += d.drawn.n_bytes_received;
   if (statistics)
     *statistics = counted;
   if (drawn)

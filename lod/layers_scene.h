@@ -13,6 +13,7 @@ struct conic_layers {
   conic_layers_access access;
   int is_remote;
   conic_ranges *ranges;
+  uint64_t n_told; /* bytes received that a picture's statistics have told of */
   conic_layers_header header;
   conic_layers_entry *entries;
   uint64_t *first_sample; /* number of each cloud's first, in the order of the file */

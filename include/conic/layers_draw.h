@@ -95,7 +95,7 @@ typedef struct conic_layers_drawn {
   uint64_t n_clouds_missing; /* could not be read, or not in time */
   uint64_t n_clouds_read;    /* and decoded; the others were in the cache */
   uint64_t n_splats_left;    /* of the places, hidden and not drawn */
-  uint64_t n_bytes_received; /* over the network */
+  uint64_t n_bytes_received; /* over the network, since the picture before or the opening */
   int n_bands;               /* the picture was drawn in so many */
   int n_levels;              /* of the deepest cloud drawn, plus 1 */
 } conic_layers_drawn;
