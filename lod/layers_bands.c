@@ -14,8 +14,7 @@ typedef struct bands {
   const conic_layers_band_drawing *d;
   uint32_t *chosen; /* places that may meet the window */
   size_t n_chosen;
-  uint64_t *starting; /* a row or column of tiles: splats of the places whose first it is */
-  uint64_t most;      /* splats at a time */
+  double most; /* splats at a time */
   int tile;
 } bands;
 
@@ -25,37 +24,44 @@ static uint64_t weight_of(const bands *b, const conic_layers_place *place) {
   return place->state == CONIC_PLACE_SHOWN ? n : place->state == CONIC_PLACE_GRAZING ? n / 16 + 1 : 0;
 }
 
-static int meets(const conic_layers_place *place, const conic_window *window) {
-  const conic_layers_sight *s = &place->sight;
-  return place->state != CONIC_PLACE_HIDDEN && s->y_begin < window->y_end && s->y_end > window->y_begin &&
-         s->x_begin < window->x_end && s->x_end > window->x_begin;
+/* How much of a place's extent lies between begin and end. */
+static double share_of(int place_begin, int place_end, int begin, int end) {
+  int from = place_begin > begin ? place_begin : begin, to = place_end < end ? place_end : end;
+  return from < to ? (double)(to - from) / (double)(place_end - place_begin) : 0.0;
+}
+
+/* How many of a place's splats are in a window, if they are spread evenly over its pixels. */
+static double splats_in(const bands *b, const conic_layers_place *place, const conic_window *window) {
+  const conic_window *pixels = &place->sight.pixels;
+  double share = share_of(pixels->x_begin, pixels->x_end, window->x_begin, window->x_end);
+  if (place->state == CONIC_PLACE_HIDDEN || share == 0.0)
+    return 0.0;
+  share *= share_of(pixels->y_begin, pixels->y_end, window->y_begin, window->y_end);
+  return share * (double)weight_of(b, place);
+}
+
+static double count_splats(const bands *b, const conic_window *window) {
+  double n = 0.0;
+  for (size_t i = 0; i < b->d->cut->n; i++)
+    n += splats_in(b, &b->d->cut->places[i], window);
+  return n;
 }
 
 /* Shortens the window, from its far end along an axis, to as many tiles as there is memory for, at least one. */
 static void shorten(bands *b, conic_window *window, int is_along_x) {
-  const conic_layers_cut *cut = b->d->cut;
   int begin = is_along_x ? window->x_begin : window->y_begin, *end = is_along_x ? &window->x_end : &window->y_end;
-  int first = begin / b->tile, n_tiles = (*end + b->tile - 1) / b->tile, last = first;
-  uint64_t n = 0;
-  memset(b->starting + first, 0, (size_t)(n_tiles - first) * sizeof *b->starting);
-  for (size_t i = 0; i < cut->n; i++) {
-    const conic_layers_place *place = &cut->places[i];
-    int from = is_along_x ? place->sight.x_begin : place->sight.y_begin;
-    if (meets(place, window))
-      b->starting[(from > begin ? from : begin) / b->tile] += weight_of(b, place);
+  int whole = *end;
+  double n = 0.0;
+  for (*end = begin; *end < whole;) {
+    conic_window next = *window;
+    *(is_along_x ? &next.x_begin : &next.y_begin) = *end;
+    int next_end = *end + b->tile < whole ? *end + b->tile : whole;
+    *(is_along_x ? &next.x_end : &next.y_end) = next_end;
+    n += count_splats(b, &next);
+    if (*end > begin && n > b->most)
+      return;
+    *end = next_end;
   }
-  do
-    n += b->starting[last++];
-  while (last < n_tiles && n + b->starting[last] <= b->most);
-  *end = last * b->tile < *end ? last * b->tile : *end;
-}
-
-static uint64_t count_splats(const bands *b, const conic_window *window) {
-  uint64_t n = 0;
-  for (size_t i = 0; i < b->d->cut->n; i++)
-    if (meets(&b->d->cut->places[i], window))
-      n += weight_of(b, &b->d->cut->places[i]);
-  return n;
 }
 
 /* The next window after one that was drawn, from left to right and then downwards: whole rows of tiles where there is
@@ -77,18 +83,19 @@ static int next_window(bands *b, conic_window *window) {
   return 1;
 }
 
-static conic_status gather(bands *b, const conic_window *window) {
+static conic_status gather(bands *b, const conic_window *window, int is_whole) {
   const conic_layers_band_drawing *d = b->d;
   b->n_chosen = 0;
   for (size_t i = 0; i < d->cut->n; i++)
-    if (meets(&d->cut->places[i], window))
+    if (splats_in(b, &d->cut->places[i], window) > 0.0)
       b->chosen[b->n_chosen++] = (uint32_t)i;
   conic_layers_gathering gathering = {.cut = d->cut,
                                       .chosen = b->chosen,
                                       .n_chosen = b->n_chosen,
+                                      .view = d->view,
+                                      .window = is_whole ? NULL : window,
                                       .cutoff = d->render->kernel.cutoff,
                                       .until_s = HUGE_VAL};
-  memcpy(gathering.eye, d->eye, sizeof gathering.eye);
   return conic_layers_gather(d->layers, &gathering, d->set);
 }
 
@@ -110,25 +117,36 @@ typedef struct recount {
   conic_chunk *chunks; /* a thread */
 } recount;
 
+/* Whether the window is the first that these pixels meet. */
+static int is_first(const conic_window *pixels, const conic_window *window) {
+  return pixels->y_begin >= window->y_begin && pixels->x_begin >= window->x_begin;
+}
+
 static void recount_piece(void *data, size_t i_piece, int i_thread) {
   recount *r = data;
   const conic_layers_band_drawing *d = r->b->d;
   const conic_layers_piece *piece = &d->set->pieces[i_piece];
+  const conic_layers_place *place = &d->cut->places[piece->i_place];
+  const conic_splats *splats = &d->set->splats;
   conic_chunk *sum = &r->chunks[i_thread];
   conic_footprint footprint;
   conic_box box;
   conic_surface surface;
   conic_ray ray;
-  conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
-  const conic_layers_sight *sight = &d->cut->places[piece->i_place].sight;
-  if (sight->y_begin >= r->window->y_begin && sight->x_begin >= r->window->x_begin)
-    return; /* this window is the first that it meets */
+  conic_projected at = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
+  if (is_first(&place->sight.pixels, r->window))
+    return;
   for (size_t i = 0; i < piece->n_kept; i++) {
+    size_t k = piece->at + i;
+    const float position[3] = {splats->position[0][k], splats->position[1][k], splats->position[2][k]};
+    conic_window pixels = place->sight.pixels;
+    conic_layers_narrow(d->view, position, (double)d->layers->entries[place->node].radius, &pixels);
+    if (is_first(&pixels, r->window))
+      continue;
     conic_chunk one = {.n_drawn = 0};
-    conic_project_one(&r->view, &d->set->splats, piece->at + i, &place, &one);
+    conic_project_one(&r->view, splats, k, &at, &one);
     sum->n_drawn += one.n_drawn;
     sum->n_rays += one.n_rays;
-    sum->n_culled += one.n_culled;
     sum->n_skipped += one.n_skipped;
     sum->n_fallback += one.n_fallback;
   }
@@ -140,15 +158,12 @@ static void take_from(const recount *r, int n_threads, conic_method method, coni
   memset(&twice, 0, sizeof twice);
   for (int i = 0; i < n_threads; i++) {
     twice.splats_drawn += r->chunks[i].n_drawn;
-    twice.splats_culled += r->chunks[i].n_culled;
     twice.splats_skipped += r->chunks[i].n_skipped;
     twice.splats_fallback += r->chunks[i].n_fallback;
     n_rays += r->chunks[i].n_rays;
   }
   conic_method_count(method, n_rays, &twice);
-  band->splats_in -= twice.splats_drawn + twice.splats_culled + twice.splats_skipped;
   band->splats_drawn -= twice.splats_drawn;
-  band->splats_culled -= twice.splats_culled;
   band->splats_skipped -= twice.splats_skipped;
   band->splats_fallback -= twice.splats_fallback;
   for (int i = 0; i < CONIC_N_METHODS; i++)
@@ -169,6 +184,10 @@ static conic_status count_once(const bands *b, const conic_window *window, conic
     return CONIC_ERROR_MEMORY;
   conic_parallel_for(context, d->set->n_pieces, recount_piece, &r);
   take_from(&r, conic_context_threads(context), d->render->method, band);
+  band->splats_in = 0;
+  for (size_t i = 0; i < d->set->n_pieces; i++)
+    if (is_first(&d->cut->places[d->set->pieces[i].i_place].sight.pixels, window))
+      band->splats_in += d->set->pieces[i].n_chosen;
   conic_memory_release(context, r.chunks);
   return CONIC_OK;
 }
@@ -196,10 +215,10 @@ static void add_up(const conic_render_statistics *band, conic_render_statistics 
 static conic_status draw_window(bands *b, const conic_window *window, conic_render_statistics *sum) {
   const conic_layers_band_drawing *d = b->d;
   conic_render_statistics band;
-  conic_status status = gather(b, window);
+  conic_status status = gather(b, window, 0);
   if (status == CONIC_OK)
     status = conic_render_window(d->renderer, &d->set->splats, d->camera, d->render, window, d->image, &band);
-  if (status == CONIC_OK && (window->y_begin > 0 || window->x_begin > 0))
+  if (status == CONIC_OK)
     status = count_once(b, window, &band);
   if (status != CONIC_OK)
     return status;
@@ -210,7 +229,7 @@ static conic_status draw_window(bands *b, const conic_window *window, conic_rend
 
 static conic_status draw_whole(bands *b, const conic_window *whole, conic_render_statistics *statistics) {
   const conic_layers_band_drawing *d = b->d;
-  conic_status status = gather(b, whole);
+  conic_status status = gather(b, whole, 1);
   if (status == CONIC_OK)
     status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
                                   d->image, statistics);
@@ -225,7 +244,7 @@ static conic_status draw(bands *b, conic_render_statistics *statistics, int *n_b
   conic_window window = {0, d->camera->width, 0, 0};
   conic_status status = CONIC_OK;
   *n_bands = 1;
-  if (count_splats(b, &whole) <= b->most)
+  if (count_splats(b, &whole) <= b->most) /* all lies within it: this is no estimate */
     return draw_whole(b, &whole, statistics);
   if (d->samples > 1)
     return conic_fail(
@@ -235,6 +254,7 @@ static conic_status draw(bands *b, conic_render_statistics *statistics, int *n_b
   memset(statistics, 0, sizeof *statistics);
   for (*n_bands = 0; status == CONIC_OK && next_window(b, &window); ++*n_bands)
     status = draw_window(b, &window, statistics);
+  statistics->splats_culled = statistics->splats_in - statistics->splats_drawn - statistics->splats_skipped;
   return status;
 }
 
@@ -242,12 +262,9 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
                                      int *n_bands) {
   conic_context *context = drawing->layers->context;
   bands b = {.d = drawing, .tile = drawing->render->tile};
-  int longer = drawing->camera->width > drawing->camera->height ? drawing->camera->width : drawing->camera->height;
-  b.most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
+  b.most = (double)(conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1);
   b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
-  b.starting = conic_memory_allocate(context, (size_t)(longer / b.tile + 1), sizeof *b.starting);
-  conic_status status = b.chosen && b.starting ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
+  conic_status status = b.chosen ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
   conic_memory_release(context, b.chosen);
-  conic_memory_release(context, b.starting);
   return status;
 }

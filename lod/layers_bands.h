@@ -10,7 +10,7 @@ typedef struct conic_layers_band_drawing {
   const conic_camera *camera;
   const conic_render_options *render; /* near_z and splat_length given */
   const conic_layers_cut *cut;
-  double eye[3]; /* relative to the origin */
+  const conic_layers_view *view;
   int samples;
   conic_image *image;
   conic_layers_set *set;

@@ -130,10 +130,10 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
                                      .camera = d->camera,
                                      .render = &d->render,
                                      .cut = &d->cut,
+                                     .view = &d->view,
                                      .samples = d->options->samples,
                                      .image = image,
                                      .set = d->set};
-  memcpy(bands.eye, d->view.eye, sizeof bands.eye);
   status = conic_layers_draw_bands(&bands, statistics, &d->drawn.n_bands);
   if (status != CONIC_OK)
     return status;

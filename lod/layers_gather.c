@@ -108,12 +108,47 @@ static conic_status list_pieces(gather *g) {
   return status;
 }
 
-/* Whether a splat of a grazing place may be seen: its plane is near the eye. */
-static inline int is_grazing(const conic_layers_cloud *cloud, size_t i, const double eye[3], double offset) {
+/* What of a piece's samples is taken. */
+typedef struct sieve {
+  const conic_layers_cloud *cloud;
+  const conic_layers_place *place;
+  const conic_layers_view *view;
+  const conic_window *window; /* null: all of the place is in it */
+  double radius;
+} sieve;
+
+static int is_within(const conic_window *inner, const conic_window *outer) {
+  return inner->x_begin >= outer->x_begin && inner->x_end <= outer->x_end && inner->y_begin >= outer->y_begin &&
+         inner->y_end <= outer->y_end;
+}
+
+static sieve begin_sieve(const gather *g, const conic_layers_piece *piece) {
+  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_window *window = g->asked->window;
+  return (sieve){.cloud = conic_layers_store_find(&g->layers->store, piece->cloud),
+                 .place = place,
+                 .view = g->asked->view,
+                 .window = window && is_within(&place->sight.pixels, window) ? NULL : window,
+                 .radius = (double)g->layers->entries[place->node].radius};
+}
+
+/* Whether a splat of a place that is hidden otherwise may be seen: its plane is near the eye. */
+static inline int is_chosen(const sieve *s, size_t i) {
   double along = 0.0;
+  if (s->place->state != CONIC_PLACE_GRAZING)
+    return 1;
   for (int axis = 0; axis < 3; axis++)
-    along += (double)cloud->normal[axis][i] * ((double)cloud->position[axis][i] - eye[axis]);
-  return !(fabs(along) >= offset);
+    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->eye[axis]);
+  return !(fabs(along) >= s->place->offset);
+}
+
+static inline int is_in_window(const sieve *s, size_t i) {
+  if (!s->window)
+    return 1;
+  const float position[3] = {s->cloud->position[0][i], s->cloud->position[1][i], s->cloud->position[2][i]};
+  conic_window pixels = s->place->sight.pixels;
+  return conic_layers_narrow(s->view, position, s->radius, &pixels) && pixels.x_begin < s->window->x_end &&
+         pixels.x_end > s->window->x_begin && pixels.y_begin < s->window->y_end && pixels.y_end > s->window->y_begin;
 }
 
 static void count_piece(const gather *g, conic_layers_piece *piece) {
@@ -125,12 +160,16 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
     conic_layers_range(&layers->header, cloud, &layers->entries[place->node], &first, &end);
   piece->first = (uint32_t)first;
   piece->end = (uint32_t)end;
-  piece->n_kept = piece->end - piece->first;
-  if (place->state != CONIC_PLACE_GRAZING)
+  sieve s = begin_sieve(g, piece);
+  piece->n_chosen = piece->n_kept = piece->end - piece->first;
+  if (place->state != CONIC_PLACE_GRAZING && !s.window)
     return;
-  piece->n_kept = 0;
+  piece->n_chosen = piece->n_kept = 0;
   for (size_t i = first; i < end; i++)
-    piece->n_kept += (uint32_t)is_grazing(cloud, i, g->asked->eye, place->offset);
+    if (is_chosen(&s, i)) {
+      piece->n_chosen++;
+      piece->n_kept += (uint32_t)is_in_window(&s, i);
+    }
 }
 
 static void count_task(void *data, size_t i_task, int i_thread) {
@@ -210,8 +249,9 @@ static void fill_piece(const gather *g, const conic_layers_piece *piece) {
     copy_all(&c, n, sigma, first_id);
     return;
   }
+  sieve s = begin_sieve(g, piece);
   for (size_t i = 0; i < n && k < piece->n_kept; i++)
-    if (is_grazing(cloud, piece->first + i, g->asked->eye, place->offset))
+    if (is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i))
       copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);
 }
 
@@ -233,7 +273,7 @@ static size_t place_pieces(gather *g) {
     const conic_layers_piece *before = i > g->first ? &g->set->pieces[i - 1] : NULL;
     if (before && before->cloud == piece->cloud &&
         is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node])) {
-      piece->n_kept = 0;
+      piece->n_chosen = piece->n_kept = 0;
     }
     piece->at = at;
     at += piece->n_kept;
@@ -285,10 +325,12 @@ static conic_status take_clouds(gather *g, uint32_t *clouds, size_t n) {
   return status;
 }
 
-/* What the set will come to: all of the places that are shown, and some of the others'. */
+/* What the set will come to: all of the places that are shown, and some of the others'; in a window, there is no
+ * telling.
+ */
 static size_t expect(const gather *g) {
   size_t n = 0;
-  for (size_t k = 0; k < g->asked->n_chosen; k++) {
+  for (size_t k = 0; k < g->asked->n_chosen && !g->asked->window; k++) {
     const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
     size_t n_drawn = g->layers->entries[place->node].n_drawn;
     n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;

@@ -8,7 +8,8 @@
 typedef struct conic_layers_piece {
   uint32_t cloud, i_place;
   uint32_t first, end; /* its samples, */
-  uint32_t n_kept;     /* of which so many are drawn, */
+  uint32_t n_chosen;   /* of which so many are to be drawn, */
+  uint32_t n_kept;     /* and so many may meet the window, */
   size_t at;           /* from here on in the set */
 } conic_layers_piece;
 
@@ -23,14 +24,15 @@ struct conic_layers_set {
 };
 typedef struct conic_layers_set conic_layers_set;
 
-/* Bytes that drawing takes for a splat of a set, the set's own included. */
-enum { CONIC_LAYERS_SPLAT_BYTES = 176 };
+/* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
+enum { CONIC_LAYERS_SPLAT_BYTES = 208 };
 
 typedef struct conic_layers_gathering {
   const conic_layers_cut *cut;
   const uint32_t *chosen; /* places of the cut, ascending */
   size_t n_chosen;
-  double eye[3]; /* relative to the origin */
+  const conic_layers_view *view;
+  const conic_window *window; /* only what may meet it is gathered; null: all */
   float cutoff;
   double until_s; /* of the monotonic clock; infinite: clouds are waited for */
 } conic_layers_gathering;

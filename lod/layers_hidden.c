@@ -40,8 +40,8 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
     if (!(distance > 0.0))
       continue;
     area_px += 0.5 * (double)entry->n_place * spacing * spacing * scale * scale;
-    int x = (int)((double)(sight->x_begin + sight->x_end) / 2.0 / view->width * COLUMNS);
-    int y = (int)((double)(sight->y_begin + sight->y_end) / 2.0 / view->height * COLUMNS);
+    int x = (int)((double)(sight->pixels.x_begin + sight->pixels.x_end) / 2.0 / view->width * COLUMNS);
+    int y = (int)((double)(sight->pixels.y_begin + sight->pixels.y_end) / 2.0 / view->height * COLUMNS);
     is_met[(y < COLUMNS ? y : COLUMNS - 1) * COLUMNS + (x < COLUMNS ? x : COLUMNS - 1)] = 1;
   }
   for (size_t i = 0; i < sizeof is_met; i++)
@@ -53,7 +53,7 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
 static void judge(const hiding *h, conic_layers_place *place) {
   const conic_layers_entry *entry = &h->layers->entries[place->node];
   const conic_layers_sight *s = &place->sight;
-  double hides = (double)conic_horizon_least(&h->horizon, s->x_begin, s->x_end, s->y_begin, s->y_end);
+  double hides = (double)conic_horizon_least(&h->horizon, &s->pixels);
   double offset = conic_layers_hidden_offset(h->view, entry, s, hides);
   place->state = CONIC_PLACE_SHOWN;
   if (offset == HUGE_VAL)
@@ -92,8 +92,8 @@ static void sort_ascending(uint32_t *values, uint32_t *other, size_t n) {
 }
 
 static conic_status draw_chosen(hiding *h, size_t n_chosen, uint32_t *spare) {
-  conic_layers_gathering gathering = {.cut = h->cut, .chosen = h->chosen, .n_chosen = n_chosen, .until_s = h->until_s};
-  memcpy(gathering.eye, h->view->eye, sizeof gathering.eye);
+  conic_layers_gathering gathering = {
+      .cut = h->cut, .chosen = h->chosen, .n_chosen = n_chosen, .view = h->view, .until_s = h->until_s};
   gathering.cutoff = h->render->kernel.cutoff;
   sort_ascending(h->chosen, spare, n_chosen);
   conic_status status = conic_layers_gather(h->layers, &gathering, h->set);

@@ -69,12 +69,12 @@ void conic_horizon_update(conic_context *context, conic_horizon *horizon) {
   }
 }
 
-float conic_horizon_least(const conic_horizon *horizon, int x_begin, int x_end, int y_begin, int y_end) {
-  int level = 0;
-  while (level + 1 < horizon->n_levels && ((x_end - x_begin) >> (CELL_BITS + level) >= MOST_CELLS ||
-                                           (y_end - y_begin) >> (CELL_BITS + level) >= MOST_CELLS))
+float conic_horizon_least(const conic_horizon *horizon, const conic_window *window) {
+  int width = window->x_end - window->x_begin, height = window->y_end - window->y_begin, level = 0;
+  while (level + 1 < horizon->n_levels &&
+         (width >> (CELL_BITS + level) >= MOST_CELLS || height >> (CELL_BITS + level) >= MOST_CELLS))
     level++;
   int bits = CELL_BITS + level;
-  return least_of(horizon->levels[level].cells, horizon->levels[level].width, x_begin >> bits,
-                  ((x_end - 1) >> bits) + 1, y_begin >> bits, ((y_end - 1) >> bits) + 1);
+  return least_of(horizon->levels[level].cells, horizon->levels[level].width, window->x_begin >> bits,
+                  ((window->x_end - 1) >> bits) + 1, window->y_begin >> bits, ((window->y_end - 1) >> bits) + 1);
 }

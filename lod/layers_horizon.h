@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "conic/context.h"
+#include "raster/part.h"
 
 enum { CONIC_HORIZON_LEVELS = 16 };
 
@@ -25,7 +25,7 @@ void conic_horizon_close(conic_context *context, conic_horizon *horizon);
 /* Makes the levels agree with the pixels. */
 void conic_horizon_update(conic_context *context, conic_horizon *horizon);
 
-/* No more than the least of the pixels from (x_begin, y_begin) to before (x_end, y_end), which are in the picture. */
-float conic_horizon_least(const conic_horizon *horizon, int x_begin, int x_end, int y_begin, int y_end);
+/* No more than the least of the window's pixels, which are in the picture. */
+float conic_horizon_least(const conic_horizon *horizon, const conic_window *window);
 
 #endif

@@ -104,9 +104,9 @@ static int set_pixels(const conic_layers_view *view, const conic_layers_entry *e
   project_sphere(p[1], p[2], radius, view->fy, view->cy, &low[1], &high[1]);
   if (!view->is_exact_outline)
     margin += most_px(view, (double)entry->sphere, length_of(p) + radius, front);
-  clamp_range(low[0] - margin, high[0] + margin, view->width, &sight->x_begin, &sight->x_end);
-  clamp_range(low[1] - margin, high[1] + margin, view->height, &sight->y_begin, &sight->y_end);
-  return sight->x_begin < sight->x_end && sight->y_begin < sight->y_end;
+  clamp_range(low[0] - margin, high[0] + margin, view->width, &sight->pixels.x_begin, &sight->pixels.x_end);
+  clamp_range(low[1] - margin, high[1] + margin, view->height, &sight->pixels.y_begin, &sight->pixels.y_end);
+  return sight->pixels.x_begin < sight->pixels.x_end && sight->pixels.y_begin < sight->pixels.y_end;
 }
 
 static int is_outside(const conic_layers_view *view, const double p[3], double radius) {
@@ -156,13 +156,35 @@ int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *e
   if (!(front > view->near_z)) {
     sight->error_px = entry->error > 0.0f ? HUGE_VAL : 0.0;
     sight->near_iz = HUGE_VAL;
-    sight->x_end = view->width;
-    sight->y_end = view->height;
+    sight->pixels.x_end = view->width;
+    sight->pixels.y_end = view->height;
     return 1;
   }
   sight->error_px = most_px(view, (double)entry->error, distance + radius, front);
   sight->near_iz = (1.0 + slack) / front;
   return set_pixels(view, entry, p, radius, sight);
+}
+
+static void narrow_range(double middle, double reach, int *begin, int *end) {
+  double low = middle - reach, high = middle + reach;
+  *begin = low > (double)*begin ? low < (double)*end ? (int)low : *end : *begin;
+  *end = high < (double)*end ? high > (double)*begin ? (int)high + 1 : *begin : *end;
+}
+
+int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels) {
+  double p[3];
+  for (int row = 0; row < 3; row++) {
+    const double *m = view->rotation[row];
+    p[row] = ((m[0] * (double)position[0] + m[1] * (double)position[1]) + m[2] * (double)position[2]) +
+             view->translation[row];
+  }
+  double distance = length_of(p), front = p[2] - radius * (1.0 + slack) - 1e-6 * distance;
+  if (!(front > view->near_z))
+    return 1;
+  double reach = most_px(view, radius * (1.0 + slack), distance + radius, front) + view->growth_px;
+  narrow_range(view->cx + view->fx * p[0] / p[2], reach, &pixels->x_begin, &pixels->x_end);
+  narrow_range(view->cy + view->fy * p[1] / p[2], reach, &pixels->y_begin, &pixels->y_end);
+  return pixels->x_begin < pixels->x_end && pixels->y_begin < pixels->y_end;
 }
 
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry) {

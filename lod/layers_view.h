@@ -5,6 +5,7 @@
 #include "conic/camera.h"
 #include "conic/render.h"
 #include "lod/layers_format.h"
+#include "raster/part.h"
 
 typedef struct conic_layers_view {
   int width, height;
@@ -28,14 +29,18 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
 
 /* What a picture shows of a place at most. */
 typedef struct conic_layers_sight {
-  double error_px;                    /* infinite where the place reaches the near plane */
-  double near_iz;                     /* no inverse depth of its splats is greater; infinite likewise */
-  double distance;                    /* of its nearest point, at least, to the eye */
-  int x_begin, x_end, y_begin, y_end; /* the pixels that it may cover */
+  double error_px;     /* infinite where the place reaches the near plane */
+  double near_iz;      /* no inverse depth of its splats is greater; infinite likewise */
+  double distance;     /* of its nearest point, at least, to the eye */
+  conic_window pixels; /* those that it may cover */
 } conic_layers_sight;
 
 /* 0 where nothing of the place can be in the picture. */
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight);
+
+/* Narrows a place's pixels to those that one of its splats, at a position relative to the origin, may cover. 0 where
+ * there are none. */
+int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels);
 
 /* The least |n·p| of the place's splats: how far from the eye their planes are. 0 where that is not known. */
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry);
