@@ -1,94 +1,99 @@
-/* Layered point clouds for tests that draw: shells within shells, so that much is hidden, some of it but for splats
- * seen from their edge. */
+/* Layered point clouds for tests: built of a set of splats, and read back whole. */
 #ifndef TESTS_LAYERS_FIXTURE_H
 #define TESTS_LAYERS_FIXTURE_H
 
-#include "tests/fixture.h"
+#include "lod/layers_decode.h"
+#include "lod/layers_read.h"
+#include "tests/files.h"
 
-enum { LAYERS_SHELLS = 8, LAYERS_SHELL_SPLATS = 9000 };
-
-/* Writes the cloud; ends the program where that fails. */
-static inline void layers_build(conic_context *context, const char *path, uint32_t cloud_size) {
+/* Splats of a scene, circles with colours. */
+static inline void layers_scene(conic_context *context, conic_scene_type type, size_t n, double offset,
+                                conic_splats *splats) {
   conic_scene_options options;
-  conic_layers_options layers_options;
-  conic_layers_builder *builder;
   conic_scene *scene;
-  conic_splats shell;
   conic_scene_options_init(&options);
-  conic_layers_options_init(&layers_options);
-  options.type = CONIC_SCENE_SPHERE;
-  options.count = LAYERS_SHELL_SPLATS;
-  layers_options.cloud_size = cloud_size;
-  if (conic_scene_create(context, &options, &scene) != CONIC_OK ||
-      conic_splats_allocate(context, options.count, conic_scene_fields(options.type), &shell) != CONIC_OK ||
-      conic_layers_builder_open(context, path, &layers_options, &builder) != CONIC_OK)
-    exit(1);
-  for (int i_shell = 0; i_shell < LAYERS_SHELLS; i_shell++) {
-    float radius = 1.0f - 0.12f * (float)i_shell;
-    if (conic_scene_sample(scene, 0, options.count, &shell) != CONIC_OK)
-      exit(1);
-    for (size_t i = 0; i < shell.count; i++)
-      for (int axis = 0; axis < 3; axis++) {
-        shell.position[axis][i] *= radius;
-        shell.tangent_u[axis][i] *= radius;
-        shell.tangent_v[axis][i] *= radius;
-        shell.color[axis][i] *= (float)((i_shell + axis) % 3) / 2.0f;
-      }
-    if (conic_layers_builder_append(builder, &shell) != CONIC_OK)
-      exit(1);
-  }
-  if (conic_layers_builder_finish(builder, NULL) != CONIC_OK)
-    exit(1);
-  conic_splats_release(context, &shell);
+  options.type = type;
+  options.count = n;
+  options.offset[0] = offset;
+  CHECK_OK(conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, splats));
+  CHECK_OK(conic_scene_create(context, &options, &scene));
+  CHECK_OK(conic_scene_sample(scene, 0, n, splats));
   conic_scene_destroy(scene);
 }
 
-/* One frame of a cloud. */
-typedef struct layers_frame {
-  fixture f;
-  conic_layers *layers;
-  conic_layers_access access;
-  conic_layers_draw_options draw;
-  conic_layers_drawn drawn;
-  conic_status status;
-} layers_frame;
-
-static inline layers_frame layers_open(int threads, const char *name, const conic_layers_access *access) {
-  layers_frame frame;
-  conic_framing framing;
-  conic_layers_scale scale;
-  memset(&frame, 0, sizeof frame);
-  frame.f = fixture_open(threads);
-  conic_layers_draw_options_init(&frame.draw);
-  frame.status = conic_layers_open(frame.f.context, name, access, &frame.layers);
-  if (frame.status != CONIC_OK)
-    return frame;
-  conic_layers_measure(frame.layers, 1.5f, &scale);
-  conic_framing_init(&framing);
-  framing.width = 200;
-  framing.height = 160;
-  CHECK_OK(conic_camera_frame(frame.f.context, &framing, scale.minimum, scale.maximum, &frame.f.camera));
-  return frame;
+/* Builds PATH of a set, in batches. */
+static inline conic_status layers_build(conic_context *context, const conic_splats *splats, const char *path,
+                                        const conic_layers_options *options, conic_layers_statistics *statistics) {
+  conic_layers_builder *builder;
+  conic_status status = conic_layers_builder_open(context, path, options, &builder);
+  if (status != CONIC_OK)
+    return status;
+  for (size_t first = 0; first < splats->count && status == CONIC_OK; first += 700) {
+    conic_splats batch = *splats;
+    size_t left = splats->count - first;
+    batch.count = left < 700 ? left : 700;
+    float **arrays[] = {batch.position, batch.tangent_u, batch.tangent_v, batch.normal, batch.color};
+    for (int i = 0; i < 15; i++)
+      if (arrays[i / 3][i % 3])
+        arrays[i / 3][i % 3] += first;
+    status = conic_layers_builder_append(builder, &batch);
+  }
+  if (status == CONIC_OK)
+    return conic_layers_builder_finish(builder, statistics);
+  conic_layers_builder_abandon(builder);
+  return status;
 }
 
-static inline void layers_close(layers_frame *frame) {
-  conic_layers_close(frame->layers);
-  fixture_close(&frame->f);
+/* A file's clouds, one after the other. */
+typedef struct layers_sample {
+  uint64_t key;
+  float position[3], normal[3], color[3];
+  uint32_t cloud;
+} layers_sample;
+
+typedef struct layers_all {
+  conic_layers_view view;
+  size_t n;
+  layers_sample *samples;
+} layers_all;
+
+static inline void layers_read(conic_context *context, const char *path, layers_all *all) {
+  conic_layers_decoder *decoder;
+  memset(all, 0, sizeof *all);
+  if (conic_layers_view_open(context, path, &all->view) != CONIC_OK ||
+      conic_layers_decoder_create(context, &all->view.header, &decoder) != CONIC_OK)
+    exit(1);
+  all->samples = calloc((size_t)all->view.header.n_samples, sizeof *all->samples);
+  for (uint32_t i = 0; i < all->view.header.n_clouds && all->samples; i++) {
+    const conic_layers_entry *entry = &all->view.entries[i];
+    void *block = aligned_alloc(64, conic_layers_cloud_bytes(&all->view.header, entry) + 64);
+    conic_layers_cloud cloud;
+    conic_layers_cloud_place(&all->view.header, entry, block, &cloud);
+    CHECK(!conic_layers_decode(decoder, entry, all->view.mapping.bytes + entry->offset, &cloud));
+    for (size_t k = 0; k < cloud.count; k++) {
+      layers_sample *to = &all->samples[all->n++];
+      *to = (layers_sample){.key = cloud.keys[k], .cloud = i};
+      for (int axis = 0; axis < 3; axis++) {
+        to->position[axis] = cloud.position[axis][k];
+        to->normal[axis] = cloud.normal[axis][k];
+        to->color[axis] = cloud.color[0] ? cloud.color[axis][k] : 1.0f;
+      }
+    }
+    free(block);
+  }
+  conic_layers_decoder_destroy(decoder);
 }
 
-/* Draws the frame into its image, all planes. */
-static inline conic_status layers_draw(layers_frame *frame) {
-  fixture *f = &frame->f;
-  conic_image_release(f->context, &f->image);
-  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &f->image));
-  return conic_layers_draw(frame->layers, f->renderer, &f->camera, &f->options, &frame->draw, &f->image, &f->statistics,
-                           &frame->drawn);
+static inline void layers_release(layers_all *all) {
+  free(all->samples);
+  conic_layers_view_close(&all->view);
 }
 
-static inline int layers_same_picture(const conic_image *a, const conic_image *b) {
-  for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (conic_image_hash(a, (conic_plane)i) != conic_image_hash(b, (conic_plane)i))
-      return 0;
+/* Whether a build without zstd is why a test cannot run. */
+static inline int layers_are_missing(void) {
+  for (int i = 0; conic_feature_at(i); i++)
+    if (strcmp(conic_feature_at(i)->name, "zstd") == 0)
+      return !conic_feature_at(i)->available;
   return 1;
 }
 

@@ -2,7 +2,7 @@
  * what else of it is promised. */
 #include "tests/files.h"
 #include "tests/image_fixture.h"
-#include "tests/layers_fixture.h"
+#include "tests/layers_frame.h"
 
 static const char *path;
 

@@ -3,7 +3,7 @@
 #include "tests/files.h"
 #include "tests/http_server.h"
 #include "tests/image_fixture.h"
-#include "tests/layers_fixture.h"
+#include "tests/layers_frame.h"
 
 static unsigned char *bytes;
 static size_t n_bytes;
