@@ -65,7 +65,7 @@ typedef struct conic_range_answer {
 /* The next answer, in any order: 1, or 0 where none came within so many seconds or nothing is asked for. */
 int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
 
-/* Gives an answer's bytes back. */
+/* Gives an answer's bytes back, before the ranges are closed. */
 void conic_ranges_release(conic_ranges *ranges, conic_range_answer *answer);
 
 /* Forgets all that was asked for and not yet answered. */

@@ -130,14 +130,16 @@ static void check_good_server(conic_context *context) {
   conic_range_answer answer;
   CHECK_OK(conic_ranges_request(ranges, &first));
   CHECK(conic_ranges_next(ranges, 1.0, &answer) && memcmp(answer.bytes, bytes + 100, 1000) == 0);
-  conic_ranges_close(ranges); /* with an answer held and nothing else */
+  conic_ranges_release(ranges, &answer);
+  conic_ranges_close(ranges);
   CHECK(atomic_load(&server.n_requests) == n_before);
   ranges = open_mode(context, &server, "good", &options, CONIC_OK);
   for (uint32_t i = 0; i < 50; i++) {
     conic_range range = {.offset = 70000 + 50000 * (uint64_t)i, .n_bytes = 100, .priority = i, .id = i};
     CHECK_OK(conic_ranges_request(ranges, &range));
   }
-  conic_ranges_next(ranges, 0.0, &answer); /* requests are under way now, or answered */
+  if (conic_ranges_next(ranges, 0.0, &answer)) /* requests are under way now, or answered */
+    conic_ranges_release(ranges, &answer);
   conic_ranges_cancel(ranges);
   CHECK(take_all(ranges, 8).n_good == N_RANGES); /* and nothing of them comes after */
   conic_ranges_close(ranges);
