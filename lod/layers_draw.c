@@ -158,7 +158,6 @@ static void end(drawing *d) {
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
-  conic_layers_set_release(context, d->set);
   conic_memory_release(context, d->needed);
   conic_memory_release(context, d->held);
 }
