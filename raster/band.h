@@ -122,6 +122,18 @@ typedef struct conic_band {
   conic_block_sums *sums;
 } conic_band;
 
+/* Where a strip keeps the pixel in the given column and row of the tile. */
+static inline size_t conic_strip_place(int column, int row) {
+  return (size_t)(column * CONIC_STRIP_ROWS + row % CONIC_STRIP_ROWS);
+}
+
+/* The strip that has pixel l of a block of the band, and where. */
+static inline const conic_nearest_strip *conic_strip_of(const conic_band *band, int block, int l, size_t *at) {
+  int column = block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, row = l % CONIC_BLOCK_EDGE;
+  *at = conic_strip_place(column, row);
+  return &band->nearest[row / CONIC_STRIP_ROWS];
+}
+
 /* Nothing covers the block. */
 static inline int conic_block_is_empty(const conic_band *band, int block) {
   return band->n_kept[block] == 0 && band->not_kept[block] == band->n;

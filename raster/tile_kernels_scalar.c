@@ -153,15 +153,10 @@ static void accumulate(conic_band *band) {
   }
 }
 
-/* Where the pixel in the given column and row of the tile is kept. */
-static size_t strip_place(int column, int row) {
-  return (size_t)(column * CONIC_STRIP_ROWS + row % CONIC_STRIP_ROWS);
-}
-
 /* Returns whether the splat covers the pixel in the given column and row of the tile. */
 static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int column, int row) {
   conic_nearest_strip *strip = &band->nearest[row / CONIC_STRIP_ROWS];
-  size_t at = strip_place(column, row);
+  size_t at = conic_strip_place(column, row);
   conic_fragment fragment;
   if (!fragment_at(band, i_footprint, band->x + column, band->y + row, &fragment))
     return 0;
@@ -187,20 +182,13 @@ static void nearest(conic_band *band) {
   }
 }
 
-/* Where pixel l of a block of the band is kept. */
-static const conic_nearest_strip *strip_of(const conic_band *band, int block, int l, size_t *at) {
-  int column = block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, row = l % CONIC_BLOCK_EDGE;
-  *at = strip_place(column, row);
-  return &band->nearest[row / CONIC_STRIP_ROWS];
-}
-
 /* The nearest splats' colour, normal and weight. */
 static void take_block(const conic_band *band, int block) {
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
     size_t at;
-    const conic_nearest_strip *strip = strip_of(band, block, l, &at);
+    const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
     float heaviest_weight = 0.0f;
     conic_fragment fragment = {.q = strip->q[at], .scale = strip->scale[at]};
     if (!(strip->iz[at] > 0.0f))
@@ -217,7 +205,7 @@ static void take_nearest(conic_band *band) {
     band->not_kept[block] = band->n;
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
       size_t at;
-      const conic_nearest_strip *strip = strip_of(band, block, l, &at);
+      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
       band->n_kept[block] |= strip->iz[at] > 0.0f;
     }
     if (!conic_block_is_empty(band, block))
