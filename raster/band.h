@@ -100,6 +100,9 @@ typedef struct conic_nearest_strip {
   float scale[CONIC_STRIP_PIXELS];
 } conic_nearest_strip;
 
+struct conic_triangle_frame;
+struct conic_triangle_row;
+
 typedef struct conic_band {
   const conic_view *view;
   const conic_projected *projected;
@@ -120,6 +123,9 @@ typedef struct conic_band {
   int n_rows;
   conic_nearest_strip *nearest; /* two a row of blocks */
   conic_block_sums *sums;
+  /* Where triangles meet the band, else null: the frame's, and what they are to the band's pixels. */
+  const struct conic_triangle_frame *triangle_frame;
+  struct conic_triangle_row *triangles;
 } conic_band;
 
 /* Where a strip keeps the pixel in the given column and row of the tile. */
