@@ -130,6 +130,8 @@ conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const 
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
   if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0)
     job->options.near_z = conic_default_near(splats);
+  if (status == CONIC_OK && job->is_patch)
+    status = cli_patch_open(session, job, splats);
   job->estimate_ms += 1e3 * (cli_seconds() - start);
   return status;
 }

@@ -41,15 +41,7 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
   const conic_surface *surface = work->surface;
   const conic_neighbours *tree = &surface->tree;
   size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
-  const float *bounds = tree->boxes[tree->n_leaves - 1 + i_leaf];
-  double box[6], margin = 0.0;
-  for (int i = 0; i < 6; i++)
-    box[i] = (double)bounds[i];
-  for (size_t slot = begin; slot < end; slot++) {
-    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
-    margin = own > margin ? own : margin;
-  }
-  conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
+  conic_surface_share_leaf(surface, i_leaf, workspace);
   for (size_t slot = begin; slot < end; slot++) {
     conic_landing projection;
     const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],

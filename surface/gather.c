@@ -144,6 +144,19 @@ void conic_surface_gather(const conic_surface *surface, const double box[6], dou
   }
 }
 
+void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic_workspace *workspace) {
+  const conic_neighbours *tree = &surface->tree;
+  size_t end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
+  double box[6], margin = 0.0;
+  for (int i = 0; i < 6; i++)
+    box[i] = (double)tree->boxes[tree->n_leaves - 1 + i_leaf][i];
+  for (size_t slot = conic_neighbours_leaf_begin(tree, i_leaf); slot < end; slot++) {
+    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
+    margin = own > margin ? own : margin;
+  }
+  conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
+}
+
 /* Where a candidate is, its scale and mass. */
 static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
   if (source & CONIC_CLUSTER_BIT) {
