@@ -27,9 +27,21 @@ double conic_fit_gain(const conic_fit *fit, int degree, double x, double y) {
   return gain;
 }
 
+void conic_fit_solve(conic_fit *fit, int degree) {
+  double *c = fit->coefficients;
+  int n = conic_n_coefficients(degree);
+  for (int j = 0; j < CONIC_MAX_COLUMNS; j++)
+    c[j] = 0.0;
+  for (int j = n; j-- > 0;) {
+    c[j] = fit->upper[j][fit->n_columns];
+    for (int k = j + 1; k < n; k++)
+      c[j] -= fit->upper[j][k] * c[k];
+  }
+}
+
 conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, conic_workspace *workspace,
                                         double frame[3][3], double t, conic_fit *fit) {
-  double before2[CONIC_MAX_COLUMNS], *coefficients = fit->coefficients;
+  double before2[CONIC_MAX_COLUMNS];
   int n = conic_n_coefficients(surface->options.degree);
   surface->kernels->factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2,
                            before2);
@@ -38,14 +50,11 @@ conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, 
       return CONIC_SURFACE_ILL_CONDITIONED;
   if (!(conic_fit_gain(fit, surface->options.degree, 0.0, 0.0) <= MOST_GAIN))
     return CONIC_SURFACE_ILL_CONDITIONED;
-  for (int j = n; j-- > 0;) {
-    coefficients[j] = fit->upper[j][n];
-    for (int k = j + 1; k < n; k++)
-      coefficients[j] -= fit->upper[j][k] * coefficients[k];
-  }
-  fit->value = coefficients[0] * h;
-  fit->slope[0] = coefficients[1];
-  fit->slope[1] = coefficients[2];
+  fit->n_columns = n;
+  conic_fit_solve(fit, surface->options.degree);
+  fit->value = fit->coefficients[0] * h;
+  fit->slope[0] = fit->coefficients[1];
+  fit->slope[1] = fit->coefficients[2];
   for (int axis = 0; axis < 3; axis++)
     fit->foot[axis] = t * frame[2][axis];
   memcpy(fit->frame, frame, sizeof fit->frame);

@@ -11,7 +11,7 @@
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 
 /* What a sample's error may grow to at a patch's rim, squared, and how steep the patch may be there. */
-static const double MOST_GAIN = 4.0, MOST_SLOPE = 2.0;
+static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
 
 /* A patch that is not sound to its rim is made smaller in such steps, down to this share of its splat's outline: there
  * it just covers the cell of the tangent plane that the splat was made for. */
@@ -149,18 +149,26 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   double r[3], turn = 0.0, h = (double)surface->h[slot];
   for (int axis = 0; axis < 3; axis++)
     r[axis] = (double)surface->tree.position[axis][slot];
+  const float side[3] = {surface->normal[0][slot], surface->normal[1][slot], surface->normal[2][slot]};
+  workspace->side = side;
   conic_surface_project_one(surface, r, h, CONIC_NO_SLOT, 1, workspace, &landing);
   work->outcomes[slot] = (uint8_t)landing.outcome;
   double outline = outline_of(patches, surface->tree.point_of_slot[slot]);
   if (landing.outcome != CONIC_SURFACE_DONE || !(outline > 0.0))
     return;
-  const conic_fit *fit = &workspace->fit;
+  conic_fit *fit = &workspace->fit;
   for (int axis = 0; axis < 3; axis++)
     turn += (double)surface->normal[axis][slot] * fit->frame[2][axis];
-  double radius = radius_of(workspace, h);
-  radius = sound_radius(fit, surface->options.degree, h, radius > outline ? radius : outline, LEAST_SHARE * outline);
-  if (radius > 0.0)
-    set_patch(&patches->patches[slot], fit, surface->options.degree, r, h, radius, turn < 0.0 ? -1.0 : 1.0);
+  double radius = radius_of(workspace, h), least = LEAST_SHARE * outline;
+  radius = radius > least ? radius : least;
+  for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the splat has */
+    conic_fit_solve(fit, degree);
+    double sound = sound_radius(fit, degree, h, radius, least);
+    if (!(sound > 0.0))
+      continue;
+    set_patch(&patches->patches[slot], fit, degree, r, h, sound, turn < 0.0 ? -1.0 : 1.0);
+    return;
+  }
 }
 
 static void lay_chunk(void *data, size_t i_item, int i_thread) {
@@ -245,6 +253,7 @@ static void report_patches(conic_patches *patches, const uint8_t *outcomes) {
     report->outcomes[slot == CONIC_NO_SLOT ? CONIC_SURFACE_NOT_FINITE : outcomes[slot]]++;
     report->n_patches += slot != CONIC_NO_SLOT && patches->patches[slot].radius > 0.0f;
   }
+
   report->n_bytes = tree->n_slots * (sizeof(conic_patch) + 1 + sizeof(uint32_t)) + 4 * tree->n_leaves * sizeof(float);
 }
 

@@ -47,6 +47,7 @@ typedef struct conic_fit {
   double value, slope[2];      /* at q */
   double frame[3][3], foot[3]; /* q - r */
   double coefficients[CONIC_MAX_COLUMNS];
+  int n_columns; /* without the heights, which come last */
   double upper[CONIC_MAX_COLUMNS][CONIC_MAX_COLUMNS], norms2[CONIC_MAX_COLUMNS];
 } conic_fit;
 
@@ -58,6 +59,7 @@ typedef struct conic_workspace {
   conic_near near;
   conic_near other_near; /* of a second point, while those of the first are still wanted */
   conic_fit fit;         /* of the last point projected; valid where that was DONE by a polynomial */
+  const float *side;     /* where not null, samples whose normals point away from this are none */
   size_t n_evaluations;
   int is_trusting;      /* points found are not looked for again: for measures, not for results */
   int is_out_of_memory; /* set by whoever could not get some; what was asked for is then not there */
@@ -123,6 +125,9 @@ conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, si
  * ILL_CONDITIONED or DONE. */
 conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, conic_workspace *workspace,
                                         double frame[3][3], double t, conic_fit *fit);
+
+/* The coefficients of the best polynomial of a degree no higher than the one that was fitted. */
+void conic_fit_solve(conic_fit *fit, int degree);
 
 /* The variance of the polynomial's value at (x, y), in units of h, when every sample has a variance of 1 / weight. */
 double conic_fit_gain(const conic_fit *fit, int degree, double x, double y);
