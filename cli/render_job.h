@@ -41,7 +41,6 @@ typedef struct cli_render_job {
   /* Of --method patch: the points' polynomials, and the frame's samples. */
   conic_patches *patches;
   conic_patch_selection patch_selection;
-  int is_epsilon_of_points; /* ε goes with the splats of the points, not with the samples */
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */

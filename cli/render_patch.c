@@ -18,10 +18,8 @@ conic_status cli_patch_open(cli_session *session, cli_render_job *job, const con
   options.surface.h = job->h.value * spacing;
   if (status == CONIC_OK)
     status = conic_patches_create(session->context, splats, &options, &job->patches);
-  if (status == CONIC_OK && job->options.epsilon < 0.0) { /* the points', not their samples' */
+  if (status == CONIC_OK && job->options.epsilon < 0.0) /* the points', not their samples' */
     job->options.epsilon = (double)job->options.kernel.cutoff * job->options.splat_length;
-    job->is_epsilon_of_points = 1;
-  }
   return status;
 }
 
