@@ -267,7 +267,7 @@ static int explain(cli_session *session, explain_job *job) {
   if (status == CONIC_OK)
     status = cli_scene_measure(session, &job->scene, &splats);
   exit_code = status == CONIC_OK ? answer(session, job, &splats) : cli_exit_of(status);
-  cli_patch_close(session, &job->scene);
+  cli_patch_close(&job->scene);
   conic_splats_release(session->context, &splats);
   return exit_code;
 }

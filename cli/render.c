@@ -216,7 +216,7 @@ static int run(cli_session *session, int argc, char **argv) {
     if (status == CONIC_OK)
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
-    cli_patch_close(session, &job);
+    cli_patch_close(&job);
     conic_splats_release(session->context, &splats);
     cli_lod_close(session, &job);
   }

@@ -73,7 +73,7 @@ conic_status cli_patch_open(cli_session *session, cli_render_job *job, const con
 /* Samples them for a frame; *ms is what it took. */
 conic_status cli_patch_select(cli_render_job *job, const conic_camera *camera, double *ms);
 /* Ends both; fine where they never were. */
-void cli_patch_close(cli_session *session, cli_render_job *job);
+void cli_patch_close(cli_render_job *job);
 
 /* Reads the inputs into one set of splats, which the caller releases, also after a failure. */
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);

@@ -30,10 +30,7 @@ conic_status cli_patch_select(cli_render_job *job, const conic_camera *camera, d
   return status;
 }
 
-void cli_patch_close(cli_session *session, cli_render_job *job) {
-  if (!job->patches)
-    return;
-  conic_patch_selection_release(session->context, &job->patch_selection);
+void cli_patch_close(cli_render_job *job) {
   conic_patches_destroy(job->patches);
   job->patches = NULL;
 }

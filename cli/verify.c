@@ -196,7 +196,7 @@ static int verify(cli_session *session, verify_job *job) {
   exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_patch_close(session, &job->scene);
+  cli_patch_close(&job->scene);
   conic_splats_release(session->context, &splats);
   return exit_code;
 }

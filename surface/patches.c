@@ -254,18 +254,22 @@ static void report_patches(conic_patches *patches, const uint8_t *outcomes) {
     report->n_patches += slot != CONIC_NO_SLOT && patches->patches[slot].radius > 0.0f;
   }
 
-  report->n_bytes = tree->n_slots * (sizeof(conic_patch) + 1 + sizeof(uint32_t)) + 4 * tree->n_leaves * sizeof(float);
+  report->n_bytes =
+      tree->n_slots * (sizeof(conic_patch) + 2 + 3 * sizeof(uint32_t)) + 4 * tree->n_leaves * sizeof(float);
 }
 
 static conic_status allocate(conic_patches *patches) {
   conic_context *context = patches->context;
   size_t n = patches->surface->tree.n_slots, n_nodes = 2 * patches->surface->tree.n_leaves;
   patches->patches = conic_memory_allocate_zeroed(context, n, sizeof *patches->patches);
-  patches->plans = conic_memory_allocate(context, n, sizeof *patches->plans);
   patches->counts = conic_memory_allocate(context, n, sizeof *patches->counts);
   patches->node_reach = conic_memory_allocate(context, n_nodes, sizeof(float));
   patches->node_radius = conic_memory_allocate(context, n_nodes, sizeof(float));
-  int is_whole = patches->patches && patches->plans && patches->counts && patches->node_reach && patches->node_radius;
+  int is_whole = patches->patches && patches->counts && patches->node_reach && patches->node_radius;
+  for (int i = 0; i < 2; i++) {
+    is_whole &= (patches->frames[i].plans = conic_memory_allocate_zeroed(context, n, 1)) != NULL;
+    is_whole &= (patches->frames[i].starts = conic_memory_allocate(context, n, sizeof(uint32_t))) != NULL;
+  }
   return is_whole ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
@@ -316,7 +320,7 @@ void conic_patches_destroy(conic_patches *patches) {
   conic_context *context = patches->context;
   conic_surface_destroy(patches->surface);
   conic_memory_release(context, patches->patches);
-  conic_memory_release(context, patches->plans);
+  conic_patches_release_frames(patches);
   conic_memory_release(context, patches->counts);
   conic_memory_release(context, patches->node_reach);
   conic_memory_release(context, patches->node_radius);

@@ -4,6 +4,23 @@
 
 #include "conic/patches.h"
 #include "surface/patch.h"
+#include "surface/patches_view.h"
+
+/* What becomes of a slot in a picture; from PLAN_GRID on, which grid of the pyramid. */
+enum { CONIC_PLAN_CULLED = 0, CONIC_PLAN_SPLAT = 1, CONIC_PLAN_DEEP = 2, CONIC_PLAN_GRID = 3 };
+
+/* The grids of the pyramid, each at most 1.5 times as fine as the one before. */
+enum { CONIC_N_GRIDS = 10 };
+extern const int conic_grid_sizes[CONIC_N_GRIDS];
+
+/* One picture's samples. */
+typedef struct conic_patches_frame {
+  conic_splats splats; /* with room for more */
+  uint32_t *points;    /* of every sample */
+  size_t room;
+  uint8_t *plans;   /* by slot */
+  uint32_t *starts; /* by slot: its first sample, where it is drawn */
+} conic_patches_frame;
 
 struct conic_patches {
   conic_context *context;
@@ -15,9 +32,23 @@ struct conic_patches {
   float *node_radius;         /* and the greatest radius of its patches */
   conic_patches_report report;
 
-  /* Of the picture at hand. */
-  uint8_t *plans;   /* by slot: what becomes of it */
-  uint32_t *counts; /* by slot: samples, where it is a patch */
+  uint32_t *counts;              /* by slot: samples, where its plan is DEEP */
+  conic_patches_frame frames[2]; /* this picture's, and the last one's, whose grids are taken over */
+  int i_frame;
 };
+
+/* Releases what pictures took. */
+void conic_patches_release_frames(conic_patches *patches);
+
+/* Decides what becomes of every slot; also how many samples the DEEP ones have. */
+void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, uint8_t *plans);
+
+/* How many rows a patch needs, seen from no nearer than a sphere about p. */
+double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around);
+
+/* A patch that no grid of the pyramid is fine enough for, as cells of its own, each as fine as it needs. `to` may be
+ * null. Returns how many samples there are. */
+size_t conic_patch_sample_deep(const conic_patches_view *view, const conic_patch *patch, int degree, double cutoff,
+                               const conic_grid_samples *to);
 
 #endif

@@ -51,26 +51,26 @@ CONIC_API void conic_patches_destroy(conic_patches *patches);
 
 CONIC_API void conic_patches_describe(const conic_patches *patches, conic_patches_report *report);
 
-/* A picture's splats, in the order of the points. Zero before the first use; the memory is kept from call to call. */
+/* A picture's splats, in the order of the points. Its memory is the patches' own, and its contents stay until the next
+ * picture is selected. */
 typedef struct conic_patch_selection {
   conic_splats splats;
-  uint32_t *points; /* of every splat: the point that it stands for */
-  size_t n_patches; /* patches that were sampled */
-  size_t n_samples; /* and into how many splats */
-  size_t n_splats;  /* points that are drawn as their own splats */
-  size_t n_culled;  /* points out of sight */
-  size_t room;      /* of the arrays */
+  const uint32_t *points; /* of every splat: the point that it stands for */
+  size_t n_patches;       /* patches that were sampled */
+  size_t n_samples;       /* and into how many splats */
+  size_t n_splats;        /* points that are drawn as their own splats */
+  size_t n_culled;        /* points out of sight */
+  size_t n_kept;          /* of the samples: taken over from the last picture */
 } conic_patch_selection;
 
 /* Chooses and samples what a camera sees: of `render`, the near distance, prefilter and culling count. A point whose
- * patch would take few pixels is its own splat. Errors: ARGUMENT, MEMORY. */
+ * patch would take few pixels is its own splat. Grids that the last picture had
+ * are not made again. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera,
                                             const conic_render_options *render, conic_patch_selection *selection);
 
 /* Replaces the numbers of an image's id plane, indices in the selection, by those of the points. */
 CONIC_API void conic_patch_selection_name(const conic_patch_selection *selection, conic_image *image);
-
-CONIC_API void conic_patch_selection_release(conic_context *context, conic_patch_selection *selection);
 
 #ifdef __cplusplus
 }
