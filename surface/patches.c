@@ -296,7 +296,12 @@ static conic_status lay(conic_patches *patches) {
 
 conic_status conic_patches_create(conic_context *context, const conic_splats *splats,
                                   const conic_patches_options *options, conic_patches **patches) {
+  conic_patches_options defaults;
   *patches = NULL;
+  if (!options) {
+    conic_patches_options_init(&defaults);
+    options = &defaults;
+  }
   conic_status status = check_options(context, splats, options);
   if (status != CONIC_OK)
     return status;

@@ -43,8 +43,9 @@ typedef struct conic_patches_report {
 } conic_patches_report;
 
 /* Lays a patch about every point of `splats` (with tangent axes) that has one. The set must outlive the patches, which
- * draw its splats where there is no patch or none is needed; splats with clip lines stay splats. On success the caller
- * owns *patches. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED (the instruction set), MEMORY, CANCELLED. */
+ * draw its splats where there is no patch or none is needed; splats with clip lines stay splats. `options` may be null
+ * for the defaults. On success the caller owns *patches. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED (the
+ * instruction set), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_patches_create(conic_context *context, const conic_splats *splats,
                                             const conic_patches_options *options, conic_patches **patches);
 CONIC_API void conic_patches_destroy(conic_patches *patches);
