@@ -46,7 +46,7 @@ size_t conic_grid_count(const conic_grid_part *part);
 /* Where samples are written to. */
 typedef struct conic_grid_samples {
   float *position[3], *tangent_u[3], *tangent_v[3];
-  float *weight; /* 1 in the middle of the patch, and little at its rim */
+  float *weight; /* greatest in the middle of the patch, where they add up to 1; little at its rim */
 } conic_grid_samples;
 
 /* Samples a part row by row. Returns how many there are. */

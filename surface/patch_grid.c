@@ -2,10 +2,13 @@
 #include <math.h>
 
 #include "surface/patch.h"
+#include "surface/weight.h"
+
+#define TWO_PI 6.283185307179586
 
 enum { N_DIFFERENCES = CONIC_SURFACE_MAX_DEGREE + 1, LONGEST_ROW = 64 };
 
-/* What a sample at the rim weighs: little, but enough where it is alone. */
+/* What a sample at the rim weighs of one in the middle: little, but enough where it is alone. */
 static const double LEAST_WEIGHT = 0x1p-10;
 
 /* The columns of a row whose places, at odd multiples of 1/n, lie in the unit disc: from *first to before *end. */
@@ -87,7 +90,7 @@ static void collapse(const conic_patch *patch, int degree, double t, double heig
 }
 
 /* From the unit disc to the world: places and tangent axes of one row. */
-static void place_row(const conic_patch *patch, double sigma, double t, const double *restrict s,
+static void place_row(const conic_patch *patch, double sigma, double peak, double t, const double *restrict s,
                       const double (*restrict g)[LONGEST_ROW], size_t n, size_t at, const conic_grid_samples *to) {
   for (int axis = 0; axis < 3; axis++) {
     double along = (double)patch->along[axis], across = (double)patch->across[axis];
@@ -103,13 +106,19 @@ static void place_row(const conic_patch *patch, double sigma, double t, const do
   float *restrict weight = to->weight + at;
   for (size_t i = 0; i < n; i++) {
     double inside = 1.0 - (s[i] * s[i] + t * t), w = inside * inside;
-    weight[i] = (float)(w > LEAST_WEIGHT ? w : LEAST_WEIGHT);
+    weight[i] = (float)(peak * (w > LEAST_WEIGHT ? w : LEAST_WEIGHT));
   }
+}
+
+/* So that the samples in the middle together weigh 1, as a splat does there: their Gaussians' sum without it. */
+static double peak_of(double cutoff) {
+  double outline2 = CONIC_SAMPLE_OUTLINE * CONIC_SAMPLE_OUTLINE, cutoff2 = cutoff * cutoff;
+  return cutoff2 / (TWO_PI * outline2 * (1.0 - conic_weight_exp(0.5 * cutoff2)));
 }
 
 size_t conic_grid_sample(const conic_patch *patch, int degree, double cutoff, const conic_grid_part *part,
                          const conic_grid_samples *to) {
-  double step = 2.0 / (double)part->n, sigma = CONIC_SAMPLE_OUTLINE * step / cutoff;
+  double step = 2.0 / (double)part->n, sigma = CONIC_SAMPLE_OUTLINE * step / cutoff, peak = peak_of(cutoff);
   size_t at = 0;
   for (int64_t row = part->row; row < part->row + part->n_rows; row++) {
     double height[N_DIFFERENCES], along[N_DIFFERENCES], across[N_DIFFERENCES], s[LONGEST_ROW], g[3][LONGEST_ROW];
@@ -125,7 +134,7 @@ size_t conic_grid_sample(const conic_patch *patch, int degree, double cutoff, co
       for (int k = 0; k < 3; k++)
         g[k][i] = walk_on(&walks[k]);
     }
-    place_row(patch, sigma, t, s, (const double(*)[LONGEST_ROW])g, n, at, to);
+    place_row(patch, sigma, peak, t, s, (const double(*)[LONGEST_ROW])g, n, at, to);
     at += n;
   }
   return at;

@@ -6,8 +6,9 @@
 #include "surface/patch.h"
 #include "surface/patches_view.h"
 
-/* What becomes of a slot in a picture; from PLAN_GRID on, which grid of the pyramid. */
-enum { CONIC_PLAN_CULLED = 0, CONIC_PLAN_SPLAT = 1, CONIC_PLAN_DEEP = 2, CONIC_PLAN_GRID = 3 };
+/* What becomes of a slot in a picture; from PLAN_GRID on, which grid of the pyramid. FADING is beside a grid: the splat
+ * is drawn too, so that one goes over into the other. */
+enum { CONIC_PLAN_CULLED = 0, CONIC_PLAN_SPLAT = 1, CONIC_PLAN_DEEP = 2, CONIC_PLAN_GRID = 3, CONIC_PLAN_FADING = 64 };
 
 /* The grids of the pyramid, each at most 1.5 times as fine as the one before. */
 enum { CONIC_N_GRIDS = 10 };
@@ -42,6 +43,9 @@ void conic_patches_release_frames(conic_patches *patches);
 
 /* Decides what becomes of every slot; also how many samples the DEEP ones have. */
 void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, uint8_t *plans);
+
+/* What a FADING slot's patch weighs; the rest is its splat's. */
+double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot);
 
 /* How many rows a patch needs, seen from no nearer than a sphere about p. */
 double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around);

@@ -9,8 +9,8 @@ const int conic_grid_sizes[CONIC_N_GRIDS] = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64}
 
 enum { N_SUBTREES = 64 };
 
-/* A patch of fewer pixels than this about its middle is its point's splat. */
-static const double LEAST_RADIUS_PX = 4.0;
+/* A patch of fewer pixels than the first about its middle is its point's splat; from the second on it is itself. */
+static const double LEAST_RADIUS_PX = 4.0, SURE_RADIUS_PX = 6.0;
 
 /* No grid need be so fine that its samples are nearer to the surface, or to its slope, than this; nor coarser. */
 static const double OFF_PX = 0.25, OFF_SLOPE = 0.01, LEAST_ROWS = 6.0;
@@ -52,14 +52,24 @@ static int faces_away(const conic_patches_view *view, const conic_patch *patch, 
   return along > 1.001 * (slope * sqrt(across2 > 0.0 ? across2 : 0.0) + around * (1.0 + slope));
 }
 
+/* A slot's place in camera space; returns how far it reaches. */
+static double place_of(const conic_patches *patches, const conic_patches_view *view, size_t slot, double p[3]) {
+  const conic_neighbours *tree = &patches->surface->tree;
+  const double place[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  conic_patches_to_camera(view, place, p);
+  return (double)patches->patches[slot].reach;
+}
+
+double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot) {
+  double p[3], reach = place_of(patches, view, slot, p);
+  double radius_px = conic_patches_pixels(view, p, reach, (double)patches->patches[slot].radius);
+  return (radius_px - LEAST_RADIUS_PX) / (SURE_RADIUS_PX - LEAST_RADIUS_PX);
+}
+
 static uint8_t plan_slot(const planning *work, size_t slot) {
-  const conic_patches *patches = work->patches;
-  const conic_patch *patch = &patches->patches[slot];
-  const double place[3] = {(double)patches->surface->tree.position[0][slot],
-                           (double)patches->surface->tree.position[1][slot],
-                           (double)patches->surface->tree.position[2][slot]};
-  double p[3], reach = (double)patch->reach;
-  conic_patches_to_camera(work->view, place, p);
+  const conic_patch *patch = &work->patches->patches[slot];
+  double p[3], reach = place_of(work->patches, work->view, slot, p);
   if (!conic_patches_sees(work->view, p, reach))
     return CONIC_PLAN_CULLED;
   double radius_px = conic_patches_pixels(work->view, p, reach, (double)patch->radius);
@@ -68,9 +78,10 @@ static uint8_t plan_slot(const planning *work, size_t slot) {
   if (work->view->cull_back && faces_away(work->view, patch, reach))
     return CONIC_PLAN_CULLED;
   double rows = conic_patch_rows(work->view, patch, p, reach);
+  int fading = radius_px < SURE_RADIUS_PX ? CONIC_PLAN_FADING : 0;
   for (int i = 0; i < CONIC_N_GRIDS; i++)
     if (rows <= (double)conic_grid_sizes[i])
-      return (uint8_t)(CONIC_PLAN_GRID + i);
+      return (uint8_t)((CONIC_PLAN_GRID + i) | fading);
   return CONIC_PLAN_DEEP;
 }
 

@@ -23,9 +23,12 @@ typedef struct selecting {
 
 static size_t count_of(const selecting *work, uint32_t slot) {
   uint8_t plan = work->frame->plans[slot];
-  return plan >= CONIC_PLAN_GRID   ? work->grid_counts[plan - CONIC_PLAN_GRID]
-         : plan == CONIC_PLAN_DEEP ? work->patches->counts[slot]
-                                   : plan;
+  if (plan <= CONIC_PLAN_SPLAT)
+    return plan;
+  if (plan == CONIC_PLAN_DEEP)
+    return work->patches->counts[slot];
+  int is_fading = (plan & CONIC_PLAN_FADING) != 0;
+  return work->grid_counts[(plan & ~CONIC_PLAN_FADING) - CONIC_PLAN_GRID] + (is_fading ? 1 : 0);
 }
 
 static void count_chunk(void *data, size_t i_item, int i_thread) {
@@ -72,7 +75,7 @@ static void make_grid(const selecting *work, uint32_t slot, size_t at) {
     conic_patch_sample_deep(&work->view, patch, degree, cutoff, &to);
     return;
   }
-  conic_grid_part part = conic_grid_whole(conic_grid_sizes[plan - CONIC_PLAN_GRID]);
+  conic_grid_part part = conic_grid_whole(conic_grid_sizes[(plan & ~CONIC_PLAN_FADING) - CONIC_PLAN_GRID]);
   conic_grid_sample(patch, degree, cutoff, &part, &to);
 }
 
@@ -88,9 +91,21 @@ static void put_grid(const selecting *work, size_t point, uint32_t slot, size_t 
     to->opacity[i] *= from->opacity[point];
 }
 
+/* A patch that comes in beside its splat, which is the last of the n. */
+static void put_fading(const selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
+  const conic_splats *to = &work->frame->splats;
+  double share = conic_patches_share(work->patches, &work->view, slot);
+  put_grid(work, point, slot, at, n - 1);
+  for (size_t i = at; i < at + n - 1; i++)
+    to->opacity[i] *= (float)share;
+  copy_samples(work->patches->splats, point, to, at + n - 1, 1);
+  to->opacity[at + n - 1] *= (float)(1.0 - share);
+}
+
 /* Whether the last picture has the very grid. Points that coincide with another are made anew: they have no start. */
 static int is_kept(const selecting *work, size_t point, uint32_t slot) {
-  return work->frame->plans[slot] >= CONIC_PLAN_GRID && work->last->plans[slot] == work->frame->plans[slot] &&
+  uint8_t plan = work->frame->plans[slot];
+  return plan >= CONIC_PLAN_GRID && plan < CONIC_PLAN_FADING && work->last->plans[slot] == plan &&
          work->patches->surface->tree.point_of_slot[slot] == point;
 }
 
@@ -102,6 +117,8 @@ static size_t put_point(const selecting *work, size_t point, size_t at, size_t *
     return 0;
   if (slot == CONIC_NO_SLOT || work->frame->plans[slot] == CONIC_PLAN_SPLAT)
     copy_samples(work->patches->splats, point, &work->frame->splats, at, 1);
+  else if (work->frame->plans[slot] & CONIC_PLAN_FADING)
+    put_fading(work, point, slot, at, n);
   else if (is_kept(work, point, slot)) {
     copy_samples(&work->last->splats, work->last->starts[slot], &work->frame->splats, at, n);
     *n_kept += n;

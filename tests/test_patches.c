@@ -48,7 +48,7 @@ static void check_part(const conic_patch *patch, int degree, const conic_grid_pa
                            arrays[9]};
   const double cutoff = 1.5, n = (double)part->n, sigma = CONIC_SAMPLE_OUTLINE * 2.0 / n / cutoff;
   size_t at = 0, count = conic_grid_sample(patch, degree, cutoff, part, &to);
-  double off = 0.0;
+  double off = 0.0, peak = cutoff * cutoff / (2.0 * acos(-1.0) * 0.81 * (1.0 - exp(-0.5 * cutoff * cutoff)));
   CHECK(count == conic_grid_count(part));
   for (int64_t row = part->row; row < part->row + part->n_rows; row++)
     for (int64_t column = part->column; column < part->column + part->n_columns; column++) {
@@ -66,7 +66,7 @@ static void check_part(const conic_patch *patch, int degree, const conic_grid_pa
         off = fmax(off, fabs(sigma * (across + g[2] * normal) - (double)to.tangent_v[axis][at]));
       }
       double inside = 1.0 - s * s - t * t;
-      off = fmax(off, fabs(fmax(inside * inside, 0x1p-10) - (double)to.weight[at]));
+      off = fmax(off, fabs(peak * fmax(inside * inside, 0x1p-10) - (double)to.weight[at]));
       at++;
     }
   CHECK(at == count);
