@@ -212,8 +212,8 @@ static void test_patches(fixture *f) {
   n_last = selection.n_patches;
   printf("%-42s %zu, then %zu of 1500\n", "from splats to patches", n_first, n_last);
   CHECK(n_first < 100 && n_last > n_first + 700);
-  check_frames(f, "from splats to patches", "patch", approach, 61, 5e-3, (run){0.11, 0.002, 0.03});
-  check_frames(f, "from splats to patches", "patch", approach, 121, 1e-3, (run){0.07, 0.002, 0.01});
+  check_frames(f, "from splats to patches", "patch", approach, 61, 5e-3, (run){0.11, 0.004, 0.03});
+  check_frames(f, "from splats to patches", "patch", approach, 121, 1e-3, (run){0.07, 0.004, 0.01});
   conic_patches_destroy(patches);
   patches = NULL;
 }
