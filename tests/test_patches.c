@@ -48,7 +48,7 @@ static void check_part(const conic_patch *patch, int degree, const conic_grid_pa
                            arrays[9]};
   const double cutoff = 1.5, n = (double)part->n, sigma = CONIC_SAMPLE_OUTLINE * 2.0 / n / cutoff;
   size_t at = 0, count = conic_grid_sample(patch, degree, cutoff, part, &to);
-  double off = 0.0, peak = cutoff * cutoff / (2.0 * acos(-1.0) * 0.81 * (1.0 - exp(-0.5 * cutoff * cutoff)));
+  double off = 0.0, peak = cutoff * cutoff / (2.0 * acos(-1.0) * 1.17 * 1.17 * (1.0 - exp(-0.5 * cutoff * cutoff)));
   CHECK(count == conic_grid_count(part));
   for (int64_t row = part->row; row < part->row + part->n_rows; row++)
     for (int64_t column = part->column; column < part->column + part->n_columns; column++) {
