@@ -297,7 +297,7 @@ conic_status conic_obj_read(conic_input *input, conic_model *model) {
   obj_reader reader = {.input = input};
   int is_done = 0;
   input->continues_lines = 1;
-  conic_status status = conic_builder_begin(input->context, model, 0, &reader.builder);
+  conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   while (status == CONIC_OK && !is_done) {
     status = read_statement(&reader);
     if (status == CONIC_OK)

@@ -7,6 +7,7 @@
 #include "conic/contributions.h"
 #include "conic/export.h"
 #include "conic/image.h"
+#include "conic/layers.h"
 #include "conic/model.h"
 #include "conic/octree.h"
 #include "conic/opencl.h"
