@@ -32,6 +32,9 @@ struct conic_surface {
   conic_surface_clusters clusters;
 };
 
+/* A point's unit normal: of its axes where it has some, else the given one; zero where that is none. */
+void conic_surface_unit_normal(const conic_splats *points, size_t i, double normal[3]);
+
 /* The samples about a box, in the tree's order, for the points in it to choose their neighbours from. */
 typedef struct conic_candidates {
   size_t n, capacity;
