@@ -58,6 +58,7 @@ wanted["mls thin"]="${wanted[make]} error hausdorff to_thinned.max from_thinned.
 wanted["mls densify"]=${wanted[make]}
 wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
+wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"

@@ -12,6 +12,7 @@
 #include "conic/octree.h"
 #include "conic/opencl.h"
 #include "conic/oracle.h"
+#include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/scene.h"
 #include "conic/splats.h"
