@@ -132,43 +132,6 @@ static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_PLANES + 1]) {
   hashes[CONIC_N_PLANES] = f->statistics.triangle_fragments * 1000003u + f->statistics.pixels_covered;
 }
 
-static conic_texture *make_texture(fixture *f) {
-  conic_image image;
-  conic_texture *texture;
-  CHECK_OK(conic_image_allocate(f->context, 37, 20, 1u << CONIC_PLANE_RGBA, &image));
-  float *rgba = image.planes[CONIC_PLANE_RGBA];
-  for (int i = 0; i < 37 * 20; i++)
-    for (int channel = 0; channel < 4; channel++)
-      rgba[4 * i + channel] = channel == 3 ? 1.0f : (float)((i * 7 + channel * 5) % 11) / 11.0f;
-  CHECK_OK(conic_texture_create(f->context, &image, CONIC_WRAP_REPEAT, &texture));
-  conic_image_release(f->context, &image);
-  return texture;
-}
-
-/* Triangles of all sizes around and behind the camera, with colours, normals and a texture. */
-static conic_triangles fill_wild(fixture *f, size_t count) {
-  conic_triangles t = triangles_make(f, count, 3 * count, 7);
-  uint64_t state = 3;
-  for (size_t i = 0; i < count; i++) {
-    double size = pow(10.0, -3.0 * fixture_random(&state)), center[3];
-    for (int axis = 0; axis < 3; axis++)
-      center[axis] = 4.0 * (fixture_random(&state) - 0.5) + (axis == 2 ? 1.5 : 0.0);
-    for (size_t k = 3 * i; k < 3 * i + 3; k++) {
-      for (int axis = 0; axis < 3; axis++) {
-        t.position[axis][k] = (float)(center[axis] + size * (fixture_random(&state) - 0.5));
-        t.color[axis][k] = (float)fixture_random(&state);
-        t.normal[axis][k] = (float)(fixture_random(&state) - 0.5);
-      }
-      for (int axis = 0; axis < 2; axis++)
-        t.texture_coordinate[axis][k] = (float)(8.0 * fixture_random(&state) - 4.0);
-    }
-    triangles_corner(&t, i, (uint32_t)(3 * i), (uint32_t)(3 * i + 1), (uint32_t)(3 * i + 2));
-  }
-  t.position[0][5] = NAN;
-  CHECK_OK(conic_triangles_texture(f->context, &t, make_texture(f)));
-  return t;
-}
-
 /* Threads, tiles and instruction sets change nothing; with splats and without, blended and not. */
 static void check_identity(void) {
   static const int thread_counts[] = {1, 3};
@@ -182,7 +145,7 @@ static void check_identity(void) {
       f.camera.cam_from_world[2][3] = has_splats ? 3.0 : 0.0;
       f.options.near_z = 0.05;
       f.options.shading = CONIC_SHADE_PHONG;
-      conic_triangles t = fill_wild(&f, 2500);
+      conic_triangles t = triangles_wild(&f, 2500);
       for (int variant = 0; variant < 2 * CONIC_N_ISAS * 4; variant++) {
         int isa = variant / 2 % CONIC_N_ISAS, samples = variant / 2 / CONIC_N_ISAS == 3 ? 2 : 1;
         uint64_t hashes[CONIC_N_PLANES + 1], *of_first = expected[has_splats][variant % 2][samples - 1];
@@ -210,7 +173,7 @@ static void check_defined(void) {
   fixture_scene(&f, CONIC_SCENE_TORUS, 2000);
   fixture_camera(&f, 120, 90, 80.0);
   f.camera.cam_from_world[2][3] = 3.0;
-  conic_triangles t = fill_wild(&f, 800);
+  conic_triangles t = triangles_wild(&f, 800);
   size_t n_triangles = 0, n_splats = 0;
   CHECK_OK(triangles_render(&f, &t, 1));
   for (int y = 0; y < 90; y++)
