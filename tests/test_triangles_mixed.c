@@ -195,6 +195,55 @@ static void check_defined(void) {
   fixture_close(&f);
 }
 
+/* What is said of a pixel adds up to it. */
+static void check_explained(int passes) {
+  fixture f = fixture_open(1);
+  conic_contributions *c;
+  size_t n_hidden = 0, n_mixed = 0;
+  fixture_scene(&f, CONIC_SCENE_TORUS, 2000);
+  fixture_camera(&f, 60, 45, 40.0);
+  f.camera.cam_from_world[2][3] = 3.0;
+  f.options.passes = passes;
+  f.options.epsilon = 0.2;
+  conic_triangles t = triangles_wild(&f, 800);
+  const conic_drawing drawing = {&f.splats, &t};
+  CHECK_OK(triangles_render(&f, &t, 1));
+  CHECK_OK(conic_contributions_create_drawing(f.context, &drawing, &f.camera, &f.options, &c));
+  for (int y = 0; y < 45; y++)
+    for (int x = 0; x < 60; x++) {
+      const conic_contribution *splats;
+      const conic_triangle_contribution *triangles;
+      size_t n_splats, n_triangles;
+      float weight = 0.0f, nearest = 0.0f;
+      uint32_t count = 0, id = CONIC_NO_ID;
+      CHECK_OK(conic_contributions_at(c, x, y, &splats, &n_splats));
+      CHECK_OK(conic_contributions_triangles_at(c, x, y, &triangles, &n_triangles));
+      for (size_t i = 0; i < n_splats; i++)
+        if (splats[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
+          weight += splats[i].weight;
+          count++;
+          id = splats[i].inverse_depth > nearest ? splats[i].splat : id;
+          nearest = splats[i].inverse_depth > nearest ? splats[i].inverse_depth : nearest;
+        }
+      for (size_t i = 0; i < n_triangles; i++) {
+        n_hidden += triangles[i].verdict == CONIC_CONTRIBUTION_HIDDEN;
+        if (triangles[i].verdict != CONIC_CONTRIBUTION_VISIBLE)
+          continue;
+        n_mixed += count > 0;
+        weight += 1.0f;
+        count++;
+        id = triangles[i].inverse_depth > nearest ? 2000 + triangles[i].triangle : id;
+      }
+      CHECK(weight == *fixture_pixel(&f, CONIC_PLANE_WEIGHT, x, y));
+      CHECK(count == fixture_index(&f, CONIC_PLANE_COUNT, x, y));
+      CHECK(id == fixture_index(&f, CONIC_PLANE_ID, x, y));
+    }
+  CHECK(n_hidden > 100 && (n_mixed > 10 || passes == 1));
+  conic_contributions_destroy(c);
+  conic_triangles_release(f.context, &t);
+  fixture_close(&f);
+}
+
 /* A drawing without triangles is conic_render's picture. */
 static void check_splats_alone(void) {
   fixture f = fixture_open(1);
@@ -217,6 +266,8 @@ int main(void) {
   check_order();
   check_identity();
   check_defined();
+  check_explained(3);
+  check_explained(1);
   check_splats_alone();
   return check_result();
 }
