@@ -215,7 +215,44 @@ void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_tria
   find_normal(&look, &p, world_from_cam, ray[0], ray[1], normal);
 }
 
-static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
+/* Lists the records that a row sees, each once or little more often. */
+static int list_records(const conic_band *band, uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS]) {
+  int n = 0;
+  uint32_t last = UINT32_MAX;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (uint32_t left = band->triangles->visible[block]; left; left &= left - 1) {
+      uint32_t i_record = band->triangles->blocks[block].record[__builtin_ctz(left)];
+      records[n] = i_record;
+      n += i_record != last;
+      last = i_record;
+    }
+  return n;
+}
+
+void conic_triangle_fetch_row(const conic_band *band) {
+  const conic_triangle_frame *frame = band->triangle_frame;
+  const conic_triangles *t = frame->triangles;
+  uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS + 1];
+  int n = list_records(band, records);
+  if (n <= 2 * CONIC_BAND_BLOCKS)
+    return;
+  for (int i = 0; i < n; i++)
+    __builtin_prefetch(t->corners[frame->records[records[i]].index]);
+  for (int i = 0; i < n; i++) {
+    const uint32_t *corners = t->corners[frame->records[records[i]].index];
+    for (int k = 0; k < 3; k++)
+      for (int axis = 0; axis < 3; axis++) {
+        __builtin_prefetch(&t->position[axis][corners[k]]);
+        if (t->normal[0] && !t->normal_corners)
+          __builtin_prefetch(&t->normal[axis][corners[k]]);
+        if (t->color[0])
+          __builtin_prefetch(&t->color[axis][corners[k]]);
+      }
+  }
+}
+
+void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
+                              int l) {
   conic_block_sums *sums = &band->sums[block];
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
@@ -248,6 +285,6 @@ void conic_triangles_add(conic_band *band, const conic_finish *finish, const con
     conic_triangle_rank_block(band, block);
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
       if (row->visible[block] >> l & 1)
-        add_pixel(band, finish, rays, block, l);
+        conic_triangle_add_pixel(band, finish, rays, block, l);
   }
 }
