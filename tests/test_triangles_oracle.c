@@ -27,7 +27,7 @@ int main(void) {
   f.options.cull_back = 1;
   check(&f, &t, "wild, culled, samples", 2);
   f.options.cull_back = 0;
-  fixture_scene(&f, CONIC_SCENE_TORUS, 1500);
+  triangles_torus_of_splats(&f, 1500);
   f.camera.cam_from_world[2][3] = 3.0;
   check(&f, &t, "wild and a torus", 1);
   f.options.method = CONIC_METHOD_RAY;

@@ -102,4 +102,10 @@ static inline conic_triangles triangles_wild(fixture *f, size_t count) {
   return t;
 }
 
+/* A torus of splats in the midst of the wild triangles. */
+static inline void triangles_torus_of_splats(fixture *f, size_t count) {
+  fixture_scene(f, CONIC_SCENE_TORUS, count);
+  f->splats.origin[2] = 1.5;
+}
+
 #endif
