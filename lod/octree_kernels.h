@@ -5,18 +5,17 @@
 #include "lod/octree_cover.h"
 #include "lod/octree_fit.h"
 
-/* Which of the leaves first … first + CONIC_INSIDE_BATCH - 1 surely do not widen the reach, bit by bit. */
-enum { CONIC_INSIDE_BATCH = 8 };
-typedef unsigned conic_inside_function(const conic_splats *leaves, size_t first, double cutoff,
-                                       const conic_node_frame *frame, const conic_leaf_reach *reach);
-
 typedef struct conic_octree_kernels {
   conic_cover_function *cover;
-  conic_inside_function *find_inside;
+  conic_find_near_function *find_near;
+  conic_add_reach_function *add_reach;
+  conic_choose_ratio_function *choose_ratio;
 } conic_octree_kernels;
 
-extern conic_cover_function conic_cover_baseline, conic_cover_avx2;
-extern conic_inside_function conic_find_inside_baseline, conic_find_inside_avx2;
+extern conic_cover_function conic_cover_baseline, conic_cover_avx2, conic_cover_avx512;
+extern conic_find_near_function conic_find_near_baseline, conic_find_near_avx2, conic_find_near_avx512;
+extern conic_add_reach_function conic_add_reach_baseline, conic_add_reach_avx2, conic_add_reach_avx512;
+extern conic_choose_ratio_function conic_choose_ratio_baseline, conic_choose_ratio_avx2, conic_choose_ratio_avx512;
 
 /* The fastest that this machine has. */
 conic_octree_kernels conic_octree_kernels_choose(void);
