@@ -8,7 +8,7 @@
 
 /* Where a disc is sampled: points of the unit disc, none of which is farther from all of them than the gap. */
 enum { CONIC_DISC_SAMPLES = 32 };
-#define CONIC_DISC_GAP 0.27
+#define CONIC_DISC_GAP 0.2565
 typedef struct conic_disc_samples {
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES];
 } conic_disc_samples;

@@ -185,14 +185,18 @@ CONIC_INLINE lanes count_error(lanes dx, lanes dy, const lanes disc[N_NUMBERS], 
   return lanes_max(distance * CONIC_COVER_WEIGHT, around) + disc[AT_ERROR];
 }
 
-/* Lowers each sample's error to what this disc gives. */
+/* Lowers each sample's error to what this disc gives, but where all are near enough. */
 static void approach(const flat_block *block, unsigned lane, cover *c) {
+  const lanes enough = lanes_of(c->enough);
   lanes disc[N_NUMBERS];
   for (int k = 0; k < N_NUMBERS; k++)
     disc[k] = lanes_of((*block)[k][lane]);
   for (int i = 0; i < CONIC_DISC_SAMPLES; i += CONIC_LANES) {
+    lanes nearest = lanes_load(c->nearest + i);
+    if (!lanes_any(lanes_less(enough, nearest)))
+      continue;
     lanes dx = lanes_load(c->x + i) - disc[AT_X], dy = lanes_load(c->y + i) - disc[AT_Y];
-    lanes_store(c->nearest + i, lanes_min(count_error(dx, dy, disc, c->gap), lanes_load(c->nearest + i)));
+    lanes_store(c->nearest + i, lanes_min(count_error(dx, dy, disc, c->gap), nearest));
   }
 }
 
@@ -281,14 +285,27 @@ static middle_box box_of_node(const conic_node_disc *node, float error) {
   return box;
 }
 
-/* Lowers the errors by the node's own discs, and by what is near in their blocks. */
+/* Which places of a block are among begin … end, which reaches into it. */
+static unsigned bits_of_own(size_t block, size_t begin, size_t end) {
+  size_t first = block * CONIC_DISC_BLOCK, last = first + CONIC_DISC_BLOCK;
+  unsigned bits = (1u << CONIC_DISC_BLOCK) - 1, before = begin > first ? (1u << (begin - first)) - 1 : 0;
+  return (last > end ? bits >> (last - end) : bits) & ~before;
+}
+
+static void approach_all(const flat_block *block, unsigned bits, cover *c) {
+  for (; bits; bits &= bits - 1)
+    approach(block, (unsigned)__builtin_ctz(bits), c);
+}
+
+/* Lowers the errors by the node's own discs, and then by what is near in their blocks. */
 static void approach_own(const conic_discs *discs, size_t begin, size_t end, cover *c) {
   middle_box box = box_of_node(c->node, c->enough);
   for (size_t block = begin / CONIC_DISC_BLOCK; block * CONIC_DISC_BLOCK < end; block++) {
+    unsigned own = bits_of_own(block, begin, end);
     flat_block flat;
     flatten(c, discs, block, flat);
-    for (unsigned bits = find_in_block(discs->center, discs->half, block, &box); bits; bits &= bits - 1)
-      approach((const flat_block *)&flat, (unsigned)__builtin_ctz(bits), c);
+    approach_all((const flat_block *)&flat, own, c);
+    approach_all((const flat_block *)&flat, find_in_block(discs->center, discs->half, block, &box) & ~own, c);
   }
 }
 

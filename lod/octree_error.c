@@ -417,7 +417,7 @@ static conic_status run_pass(error_pass *pass) {
 }
 
 conic_status conic_octree_find_errors(conic_octree *octree) {
-  error_pass pass = {.octree = octree, .kernels = conic_octree_kernels_choose(), .sizes = {1, 64, 1, 2048}};
+  error_pass pass = {.octree = octree, .kernels = conic_octree_kernels_choose(), .sizes = {1, 64, 1, 8192}};
   conic_status status = CONIC_OK;
   conic_disc_samples_init(&pass.samples);
   while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {
