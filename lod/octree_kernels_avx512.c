@@ -4,8 +4,10 @@
 #define ADD_REACH conic_add_reach_avx512
 #define CHOOSE_RATIO conic_choose_ratio_avx512
 #define MEASURE conic_measure_avx512
+#define PUT conic_put_avx512
 #include "lod/octree_cover_body.h"
 #include "lod/octree_measure_body.h"
+#include "lod/octree_put_body.h"
 #include "lod/octree_reach_body.h"
 #else
 typedef int conic_not_this_machine;

@@ -3,6 +3,8 @@
 #define ADD_REACH conic_add_reach_baseline
 #define CHOOSE_RATIO conic_choose_ratio_baseline
 #define MEASURE conic_measure_baseline
+#define PUT conic_put_baseline
 #include "lod/octree_cover_body.h"
 #include "lod/octree_measure_body.h"
+#include "lod/octree_put_body.h"
 #include "lod/octree_reach_body.h"

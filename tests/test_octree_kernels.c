@@ -1,8 +1,7 @@
 /* The loops of building give the same on every instruction set, and what they leave out would change nothing. */
 #include "core/memory.h"
 #include "lod/octree_kernels.h"
-#include "tests/check.h"
-#include "tests/fixture.h"
+#include "tests/octree_fixture.h"
 
 enum { N_DISCS = 1000, ROOM = 1024, N_ARRAYS = 13, N_NODES = 300, N_BLOCKS = ROOM / CONIC_DISC_BLOCK };
 
@@ -137,7 +136,57 @@ static void test_ratio(void) {
   fixture_close(&f);
 }
 
+/* Measured and taken apart, nodes are the same on every instruction set; what is put are the nodes' own numbers. */
+static void test_choosing(void) {
+  enum { N = 3000, N_PUT = 77 };
+  static float pixels[2][N + CONIC_OCTREE_GROUP];
+  static uint32_t ids[2][N_PUT], sources[N_PUT];
+  fixture f = fixture_open(1);
+  conic_splats put[2];
+  const conic_octree_kernels chosen = conic_octree_kernels_choose();
+  fixture_scene(&f, CONIC_SCENE_KNOT, N);
+  octree_frame(&f, 200, 10, 30, 3.0);
+  f.options.cull_back = 1;
+  conic_octree *octree = octree_build(f.context, &f.splats, 0);
+  CHECK_OK(conic_octree_decode_all(octree));
+  conic_octree_view view;
+  conic_octree_view_init(octree, &f.camera, &f.options, conic_octree_near(octree), &view);
+  conic_measure_baseline(octree, &view, 0, octree->n_nodes, pixels[0]);
+  chosen.measure(octree, &view, 0, octree->n_nodes, pixels[1]);
+  CHECK(memcmp(pixels[0], pixels[1], octree->n_nodes * sizeof(float)) == 0);
+  for (uint32_t k = 0; k < N_PUT; k++)
+    sources[k] = k % 3 ? k * 31 : CONIC_NODE_BIT | (k * 11);
+  for (int i = 0; i < 2; i++) {
+    unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES;
+    CHECK_OK(conic_splats_allocate(f.context, N_PUT + 5, fields, &put[i]));
+    (i ? chosen.put : conic_put_baseline)(octree, sources, N_PUT, view.eye, &put[i], ids[i], 0);
+  }
+  int n_turned = 0, n_other = 0;
+  for (size_t k = 0; k < N_PUT; k++) {
+    int is_node = sources[k] >> 31 != 0;
+    const conic_drawn_node *from = &(is_node ? octree->drawn : octree->drawn_leaves)[sources[k] & ~CONIC_NODE_BIT];
+    n_turned += put[0].tangent_v[0][k] != from->tangent_v[0];
+    n_other += ids[0][k] != from->id || ids[1][k] != from->id || put[0].opacity[k] != from->opacity;
+    for (int axis = 0; axis < 3; axis++) {
+      n_other += put[0].position[axis][k] != from->position[axis] || put[0].color[axis][k] != from->color[axis] ||
+                 put[0].tangent_u[axis][k] != from->tangent_u[axis] ||
+                 fabsf(put[0].tangent_v[axis][k]) != fabsf(from->tangent_v[axis]);
+      n_other += put[1].position[axis][k] != from->position[axis] || put[1].color[axis][k] != from->color[axis] ||
+                 put[1].tangent_u[axis][k] != from->tangent_u[axis] ||
+                 put[1].tangent_v[axis][k] != put[0].tangent_v[axis][k];
+    }
+    CHECK(is_node || put[0].tangent_v[0][k] == from->tangent_v[0]);
+  }
+  CHECK(n_other == 0);
+  CHECK(n_turned > 0 && n_turned < N_PUT / 3);
+  conic_splats_release(f.context, &put[0]);
+  conic_splats_release(f.context, &put[1]);
+  conic_octree_destroy(octree);
+  fixture_close(&f);
+}
+
 int main(void) {
+  test_choosing();
   test_cover();
   test_reach();
   test_ratio();
