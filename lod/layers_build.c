@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "conic/layers.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "lod/layers_file.h"
@@ -84,6 +85,7 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     strcpy(made->path, path);
+    conic_output_sweep(context, path);
     status = conic_layers_intake_begin(context, made->path, share(made, 0.35), made->options.cutoff, &made->intake);
   }
   if (status == CONIC_OK)
