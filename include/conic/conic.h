@@ -12,11 +12,14 @@
 #include "conic/octree.h"
 #include "conic/opencl.h"
 #include "conic/oracle.h"
+#include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/scene.h"
 #include "conic/splats.h"
 #include "conic/status.h"
 #include "conic/surface.h"
+#include "conic/texture.h"
+#include "conic/triangles.h"
 #include "conic/version.h"
 
 #endif
