@@ -74,6 +74,10 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "lpc") == 0) {
+    conic_layers_info info;
+    return conic_layers_describe(context, path, &info);
+  }
   if (is_picture(target)) {
     status = conic_image_read(context, path, &image);
     if (status == CONIC_OK)
