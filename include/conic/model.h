@@ -24,10 +24,11 @@ typedef enum conic_model_kind {
 CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
 
 typedef struct conic_model {
-  conic_splats points;      /* vertices, raw points or splats */
-  size_t n_triangles;       /* 0 for a set of points */
-  uint32_t (*triangles)[3]; /* vertex indices, each below points.count; polygons and strips are triangulated */
-  conic_model_kind kind;    /* of the file that was read */
+  conic_splats points;       /* vertices, raw points or splats */
+  size_t n_triangles;        /* 0 for a set of points */
+  uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
+  conic_model_kind kind;     /* of the file that was read */
+  struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
 } conic_model;
 
 typedef struct conic_read_options {
@@ -35,6 +36,9 @@ typedef struct conic_read_options {
 
   /* The cutoff F_g of the kernel that will draw: a `radius` in a file is the splat's outline, so σ = radius / F_g. */
   float cutoff;
+
+  /* Keep what only triangles have: normals and texture coordinates of corners, materials. */
+  int keeps_faces;
 } conic_read_options;
 
 CONIC_API void conic_read_options_init(conic_read_options *options);
@@ -47,6 +51,17 @@ CONIC_API void conic_read_options_init(conic_read_options *options);
  * byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
+
+/* Takes a batch of a file's points, which is valid during the call only. An answer other than CONIC_OK ends the reading
+ * with it. */
+typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batch);
+
+/* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
+ * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ,
+ * and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All batches have the
+ * same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
+CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
+                                          conic_batch_receiver *receive, void *cookie);
 
 CONIC_API void conic_model_release(conic_context *context, conic_model *model);
 
