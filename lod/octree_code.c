@@ -97,8 +97,10 @@ double conic_code_length_of(const conic_code_scale *scale, double longest, uint1
   return longest * power(scale, -(int)code, OCTAVE_STEPS);
 }
 
+/* Of what an int holds. */
 static int round_to_int(double value) {
-  return (int)floor(value + 0.5);
+  int whole = (int)(value + 0.5); /* towards 0 */
+  return whole - ((double)whole > value + 0.5);
 }
 
 static double sign_of(double value) {
@@ -239,8 +241,9 @@ void conic_code_extent(const conic_code_scale *scale, double *reach, double *rad
 
 double conic_code_error(const conic_code_scale *scale, double error, double radius, uint8_t *code) {
   int steps = 0;
-  while (steps < 255 && 2.0 * radius * scale->share[steps + 1] >= error)
-    steps++;
+  for (int bit = 128; bit; bit /= 2) /* the most that still give `error` or more */
+    if (2.0 * radius * scale->share[steps + bit] >= error)
+      steps += bit;
   code[AT_ERROR] = (uint8_t)steps;
   return 2.0 * radius * scale->share[steps];
 }
