@@ -93,6 +93,28 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
   return CONIC_OK;
 }
 
+static void write_triangles(cli_json *json, const explain_job *job, const conic_triangle_contribution *list, size_t n,
+                            double visible_weight) {
+  if (!job->scene.triangles.count)
+    return;
+  cli_json_array(json, "triangles");
+  for (size_t i = 0; i < n; i++) {
+    cli_json_object(json, NULL);
+    cli_json_text(json, "verdict", conic_contribution_verdict_name(list[i].verdict));
+    cli_json_number(json, "weight", 1.0);
+    if (list[i].verdict == CONIC_CONTRIBUTION_VISIBLE)
+      cli_json_number(json, "share", 1.0 / visible_weight);
+    cli_json_number(json, "depth", (double)list[i].depth);
+    cli_json_number(json, "inverse_depth", (double)list[i].inverse_depth);
+    cli_json_number(json, "hides", (double)list[i].hides);
+    cli_json_count(json, "triangle", list[i].triangle);
+    write_vector(json, "color", list[i].color);
+    write_vector(json, "normal", list[i].normal);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+}
+
 /* The pixel as it is drawn. */
 static void write_planes(cli_json *json, const explain_job *job) {
   size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
@@ -114,16 +136,24 @@ static void write_planes(cli_json *json, const explain_job *job) {
 
 static conic_status write_pixel(cli_json *json, const explain_job *job) {
   const conic_contribution *list;
-  size_t n, counts[CONIC_N_CONTRIBUTION_VERDICTS] = {0};
+  const conic_triangle_contribution *triangles;
+  size_t n, n_triangles, counts[CONIC_N_CONTRIBUTION_VERDICTS] = {0};
   float visible_weight = 0.0f, threshold = 0.0f;
   const double pixel[2] = {job->pixel[0], job->pixel[1]};
   conic_status status = conic_contributions_at(job->contributions, job->pixel[0], job->pixel[1], &list, &n);
+  if (status == CONIC_OK)
+    status =
+        conic_contributions_triangles_at(job->contributions, job->pixel[0], job->pixel[1], &triangles, &n_triangles);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < n; i++) {
     counts[list[i].verdict]++;
     visible_weight += list[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? list[i].weight : 0.0f;
     threshold = threshold < list[i].hides ? list[i].hides : threshold;
+  }
+  for (size_t i = 0; i < n_triangles; i++) {
+    visible_weight += triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? 1.0f : 0.0f;
+    threshold = threshold < triangles[i].hides ? triangles[i].hides : threshold;
   }
   write_numbers(json, "pixel", pixel, 2);
   write_planes(json, job);
@@ -136,6 +166,7 @@ static conic_status write_pixel(cli_json *json, const explain_job *job) {
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     status = write_contribution(json, job, &list[i], (double)visible_weight);
   cli_json_close(json);
+  write_triangles(json, job, triangles, n_triangles, (double)visible_weight);
   return status;
 }
 
@@ -218,7 +249,9 @@ static conic_status draw(cli_session *session, explain_job *job, const conic_spl
     status = conic_renderer_create(session->context, &renderer);
   if (status != CONIC_OK)
     return status;
-  status = conic_render(renderer, splats, &job->camera, &job->scene.options, &job->image, NULL);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_render_drawing(session->context, renderer, &drawing, &job->camera, &job->scene.options, 1, &job->image,
+                                NULL);
   conic_renderer_destroy(renderer);
   if (status == CONIC_OK && job->scene.patches)
     conic_patch_selection_name(&job->scene.patch_selection, &job->image);
@@ -245,7 +278,9 @@ static int answer(cli_session *session, explain_job *job, const conic_splats *sp
   int exit_code = status == CONIC_OK ? check_questions(job, splats) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;
-  status = conic_contributions_create(session->context, splats, &job->camera, &job->scene.options, &job->contributions);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_contributions_create_drawing(session->context, &drawing, &job->camera, &job->scene.options,
+                                              &job->contributions);
   if (status == CONIC_OK)
     status = draw(session, job, splats);
   if (status == CONIC_OK)
@@ -267,8 +302,7 @@ static int explain(cli_session *session, explain_job *job) {
   if (status == CONIC_OK)
     status = cli_scene_measure(session, &job->scene, &splats);
   exit_code = status == CONIC_OK ? answer(session, job, &splats) : cli_exit_of(status);
-  cli_patch_close(&job->scene);
-  conic_splats_release(session->context, &splats);
+  cli_scene_release(session, &job->scene, &splats);
   return exit_code;
 }
 

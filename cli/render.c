@@ -143,8 +143,9 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
   const conic_splats *chosen = job->octree    ? &job->selection.splats
                                : job->patches ? &job->patch_selection.splats
                                               : splats;
+  const conic_drawing drawing = cli_scene_drawing(job, chosen);
   if (status == CONIC_OK)
-    status = conic_render_samples(session->context, renderer, chosen, camera, &job->options, job->samples, image,
+    status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
                                   statistics);
   if (status == CONIC_OK && job->octree)
     conic_selection_name(&job->selection, image);
@@ -216,8 +217,7 @@ static int run(cli_session *session, int argc, char **argv) {
     if (status == CONIC_OK)
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
-    cli_patch_close(&job);
-    conic_splats_release(session->context, &splats);
+    cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
   }
   free(job.inputs);

@@ -182,16 +182,16 @@ conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers
   return status;
 }
 
-/* The nodes some levels below, or the leaves that come before. */
 typedef void visit(void *data, const conic_layers_branch *below);
 
-static void visit_ahead(const conic_layers_branch *branch, int n_levels, visit *visitor, void *data) {
-  if (n_levels == 0 || !branch->children[0]) {
+/* The nodes that bounds are found from. */
+static void visit_below(const conic_layers_branch *branch, uint64_t n_place, visit *visitor, void *data) {
+  if (!branch->children[0] || conic_layers_is_far_below(n_place, branch->n_place)) {
     visitor(data, branch);
     return;
   }
   for (int i = 0; i < 2; i++)
-    visit_ahead(branch->children[i], n_levels - 1, visitor, data);
+    visit_below(branch->children[i], n_place, visitor, data);
 }
 
 typedef struct bounding {
@@ -219,7 +219,7 @@ void conic_layers_bound_node(const conic_layers_plan *plan, conic_thinner *thinn
   bounding bounds = {node, thinner};
   (void)plan;
   node->covering = 0.0;
-  visit_ahead(node, CONIC_LAYERS_LOOK_AHEAD, reach_out, &bounds);
+  visit_below(node, node->n_place, reach_out, &bounds);
   node->area = a->area + b->area;
   node->outline_low = a->outline_low < b->outline_low ? a->outline_low : b->outline_low;
   node->outline_high = larger(a->outline_high, b->outline_high);
@@ -233,7 +233,7 @@ void conic_layers_bound_node(const conic_layers_plan *plan, conic_thinner *thinn
   find_sphere(node);
   find_axis(node);
   node->cone = 1.0;
-  visit_ahead(node, CONIC_LAYERS_LOOK_AHEAD, widen_cone, &bounds);
+  visit_below(node, node->n_place, widen_cone, &bounds);
 }
 
 /* Not below the value, with room for the rounding of whoever uses it. */
@@ -241,36 +241,36 @@ static float rounded_up(double value) {
   return nextafterf((float)(value * (1.0 + 1e-6)), HUGE_VALF);
 }
 
-/* From the disc of a sample to what full resolution draws about it, in steps: a drawn disc reaches past its own
- * sample's there by no more than the difference of the outlines; and what is drawn there lies no farther from the disc
- * than its sample from this one, and what two discs of its outline part by that are turned against each other. */
+/* Between what is drawn and what full resolution draws, in steps. A drawn disc reaches past its own sample's there by
+ * no more than the difference of the outlines. What is drawn there lies no farther from the disc of a sample within the
+ * covering radius than that, and what the two discs part by that are turned against each other. */
 static double error_of(const conic_layers_branch *branch) {
   double half_turn = branch->cone < 0.0 ? 1.0 : sqrt(1.0 - branch->cone * branch->cone); /* sine of half the cone */
   double past = branch->radius - branch->outline_low;
-  double off = branch->covering + 2.0 * half_turn * branch->outline_high;
-  return branch->children[0] ? larger(past, off) : 0.0;
+  double off = branch->covering + (half_turn < 0.5 ? 2.0 * half_turn : 1.0) * branch->outline_high;
+  return branch->is_leaf ? 0.0 : larger(past, off);
 }
 
 void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_layers_branch *branch,
                                   conic_layers_entry *entry) {
   uint64_t differing = branch->first_key ^ branch->last_key;
   unsigned n_below = differing ? 64u - (unsigned)__builtin_clzll(differing) : 0u;
-  double q = plan->quantum, half_cell = 0.8660254037844387 + (double)(UINT64_C(1) << plan->bits) * 0x1p-22;
+  double q = plan->quantum, rounding = (double)(UINT64_C(1) << plan->bits) * 0x1p-22; /* of positions as floats */
   memset(entry, 0, sizeof *entry);
   entry->depth = (uint16_t)(3 * plan->bits - n_below);
   entry->key = branch->first_key >> n_below << n_below;
   entry->n_place = branch->n_place;
   entry->n_drawn = (uint32_t)branch->n_drawn;
   entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
-  entry->covering = rounded_up(branch->covering * q);
+  entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
   entry->radius = rounded_up(branch->radius * q);
-  entry->error = rounded_up((error_of(branch) + half_cell) * q);
+  entry->error = rounded_up((error_of(branch) + 0.8660254037844387 + rounding) * q);
   entry->sphere = rounded_up((branch->sphere + branch->radius) * q);
-  double slack = 0.0; /* of the centre's own rounding */
+  double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {
     double center = (branch->center[axis] + 0.5) * q;
     entry->center[axis] = (float)center;
-    slack += fabs((double)entry->center[axis] - center) + (double)(UINT64_C(1) << plan->bits) * q * 0x1p-24;
+    slack += fabs((double)entry->center[axis] - center);
     entry->axis[axis] = (float)branch->axis[axis];
   }
   entry->sphere = rounded_up((double)entry->sphere + slack);

@@ -4,12 +4,18 @@
 
 #include "lod/layers_tree.h"
 
-/* Bounds are found from the samples that so many levels below stand for the place, and from how far these are off. */
-enum { CONIC_LAYERS_LOOK_AHEAD = 4 };
+/* A node's bounds are found from the samples that stand for the nodes below whose place holds at most this fraction of
+ * its own's samples, or for leaves, and from how far these are off. */
+enum { CONIC_LAYERS_FRACTION = 32 };
+
+static inline int conic_layers_is_far_below(uint64_t n_place, uint64_t n_place_below) {
+  return n_place_below <= n_place / CONIC_LAYERS_FRACTION;
+}
 
 struct conic_layers_branch {
   conic_layers_branch *children[2]; /* as far down as bounds look */
   uint32_t nodes[2];                /* theirs, once they are on the shelf */
+  int is_leaf;
   uint64_t first_key, last_key, n_place;
   size_t n_drawn;
   conic_layers_sample *samples;     /* those drawn, until its cloud is packed */

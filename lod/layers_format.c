@@ -301,3 +301,22 @@ void conic_layers_write_index(conic_layers_header *header, const conic_layers_en
 double conic_layers_position_error(const conic_layers_header *header) {
   return header->quantum * 0.8660254037844387 + header->quantum * (double)(UINT64_C(1) << header->bits) * 0x1p-22;
 }
+
+void conic_layers_mend(unsigned char *bytes, size_t n_bytes) {
+  conic_layers_header header;
+  if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
+    return;
+  fields_from_bytes(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
+  size_t index_bytes = (size_t)conic_layers_index_bytes(&header), offset_at = 8, sum_at = 16, size_at = 32;
+  if (index_bytes > n_bytes - CONIC_LAYERS_HEADER_BYTES)
+    return;
+  for (uint32_t i = 0; i < header.n_clouds; i++) {
+    unsigned char *entry = bytes + CONIC_LAYERS_HEADER_BYTES + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    uint64_t offset = get_bits(entry + offset_at, 8), n = get_bits(entry + size_at, 4);
+    if (offset <= n_bytes && n <= n_bytes - offset)
+      put_bits(entry + sum_at, 8, conic_checksum(bytes + offset, (size_t)n));
+  }
+  header.index_sum = conic_checksum(bytes + CONIC_LAYERS_HEADER_BYTES, index_bytes);
+  fields_to_bytes(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
+  put_bits(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+}

@@ -11,6 +11,12 @@ typedef struct point {
   float x, y, z;
 } point;
 
+/* A point that was chosen, in its cell's chain. */
+typedef struct link {
+  point at;
+  uint32_t next;
+} link;
+
 /* A cell of the grid that holds points. */
 typedef struct cell {
   uint64_t place; /* its number on each axis; NO_PLACE: free */
@@ -26,11 +32,12 @@ struct conic_thinner {
   uint32_t *order; /* in which they are looked at */
   size_t n_ordered;
   size_t n_chosen;
-  uint32_t *chosen;
-  uint32_t *next;
-  size_t n_cells; /* a power of two, over twice the chosen */
+  uint32_t *chosen; /* which, and */
+  link *links;      /* where */
+  size_t n_cells;   /* a power of two, over twice the chosen */
   cell *cells;
-  double edge;
+  float edge, cells_a_step;
+  point last; /* the last chosen point that was found near */
 };
 
 conic_status conic_thinner_create(conic_context *context, size_t most_points, conic_thinner **thinner) {
@@ -45,9 +52,9 @@ conic_status conic_thinner_create(conic_context *context, size_t most_points, co
   made->points = conic_memory_allocate(context, most_points, sizeof *made->points);
   made->order = conic_memory_allocate(context, most_points, sizeof *made->order);
   made->chosen = conic_memory_allocate(context, most_points, sizeof *made->chosen);
-  made->next = conic_memory_allocate(context, most_points, sizeof *made->next);
+  made->links = conic_memory_allocate(context, most_points, sizeof *made->links);
   made->cells = conic_memory_allocate(context, n_cells, sizeof *made->cells);
-  if (made->points && made->order && made->chosen && made->next && made->cells) {
+  if (made->points && made->order && made->chosen && made->links && made->cells) {
     *thinner = made;
     return CONIC_OK;
   }
@@ -61,7 +68,7 @@ void conic_thinner_destroy(conic_context *context, conic_thinner *thinner) {
   conic_memory_release(context, thinner->points);
   conic_memory_release(context, thinner->order);
   conic_memory_release(context, thinner->chosen);
-  conic_memory_release(context, thinner->next);
+  conic_memory_release(context, thinner->links);
   conic_memory_release(context, thinner->cells);
   conic_memory_release(context, thinner);
 }
@@ -95,15 +102,16 @@ void conic_thinner_load(conic_thinner *thinner, const uint64_t *keys, size_t str
   shuffle(thinner);
 }
 
-/* Cells are twice the distance wide, so that what is within the distance of a point lies in the eight cells whose
- * common corner is nearest to it. */
+/* Cells are twice the distance wide and a hair, so that what is within the distance of a point lies in the eight cells
+ * whose common corner is nearest to it. */
 static void clear(conic_thinner *thinner, double distance, size_t n_points) {
   size_t n_cells = 64;
   while (n_cells < 2 * n_points)
     n_cells *= 2;
   thinner->n_cells = n_cells;
   thinner->n_chosen = 0;
-  thinner->edge = distance > 1.0 ? 2.0 * distance : 2.0;
+  thinner->edge = (float)((distance > 1.0 ? 2.0 * distance : 2.0) * (1.0 + 1e-4));
+  thinner->cells_a_step = 1.0f / thinner->edge;
   memset(thinner->cells, 0xff, n_cells * sizeof *thinner->cells);
 }
 
@@ -124,19 +132,20 @@ static float squared_distance(point a, point b) {
   return x * x + y * y + z * z;
 }
 
-/* Whether one of the cell's points is nearer than `*nearest2`, the square of a distance, which becomes the least. With
- * `enough2` above it the first that is not farther will do. */
-static void look_into(const conic_thinner *thinner, uint64_t place, point at, float enough2, float *nearest2) {
+/* The least squared distance to a point of the cell, if it is below `nearest2`; else that. The first that is not above
+ * `enough2` will do. */
+static float look_into(conic_thinner *thinner, uint64_t place, point at, float enough2, float nearest2) {
   const cell *found = find_cell(thinner, place);
   if (found->place == NO_PLACE)
-    return;
-  for (uint32_t i = found->first; i != NO_POINT; i = thinner->next[i]) {
-    float distance2 = squared_distance(at, thinner->points[thinner->chosen[i]]);
-    if (distance2 < *nearest2)
-      *nearest2 = distance2;
-    if (*nearest2 <= enough2)
-      return;
+    return nearest2;
+  for (uint32_t i = found->first; i != NO_POINT && !(nearest2 <= enough2); i = thinner->links[i].next) {
+    float distance2 = squared_distance(at, thinner->links[i].at);
+    if (distance2 < nearest2) {
+      nearest2 = distance2;
+      thinner->last = thinner->links[i].at;
+    }
   }
+  return nearest2;
 }
 
 typedef struct octant {
@@ -147,23 +156,23 @@ static octant octant_of(const conic_thinner *thinner, point at) {
   const float coordinates[3] = {at.x, at.y, at.z};
   octant o;
   for (int axis = 0; axis < 3; axis++) {
-    double scaled = (double)coordinates[axis] / thinner->edge, below = floor(scaled);
-    o.cell[axis] = (int32_t)below;
-    o.side[axis] = scaled - below < 0.5 ? -1 : 1;
+    float scaled = coordinates[axis] * thinner->cells_a_step;
+    o.cell[axis] = (int32_t)scaled;
+    o.side[axis] = scaled - (float)o.cell[axis] < 0.5f ? -1 : 1;
   }
   return o;
 }
 
 /* The square of the distance to the nearest chosen point, if that is within half a cell; else some value that is more.
  * Stops at what is near enough. */
-static float nearest_within_cells(const conic_thinner *thinner, point at, float enough2) {
+static float nearest_within_cells(conic_thinner *thinner, point at, float enough2) {
   float nearest2 = HUGE_VALF;
   octant o = octant_of(thinner, at);
   for (int i = 0; i < 8 && !(nearest2 <= enough2); i++)
-    look_into(thinner,
-              place_of(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
-                       o.cell[2] + (i & 4 ? o.side[2] : 0)),
-              at, enough2, &nearest2);
+    nearest2 = look_into(thinner,
+                         place_of(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
+                                  o.cell[2] + (i & 4 ? o.side[2] : 0)),
+                         at, enough2, nearest2);
   return nearest2;
 }
 
@@ -173,7 +182,7 @@ static void insert(conic_thinner *thinner, uint32_t i_point) {
   cell *found = find_cell(thinner, place);
   uint32_t i = (uint32_t)thinner->n_chosen++;
   thinner->chosen[i] = i_point;
-  thinner->next[i] = found->place == place ? found->first : NO_POINT;
+  thinner->links[i] = (link){thinner->points[i_point], found->place == place ? found->first : NO_POINT};
   found->place = place;
   found->first = i;
 }
@@ -191,8 +200,8 @@ static size_t throw_darts(conic_thinner *thinner, double distance, size_t most) 
   return thinner->n_chosen;
 }
 
-/* So near to what is asked for is good enough; so often it is tried. */
-enum { NEAR_ENOUGH = 12, MOST_TRIES = 8 };
+/* Off by this fraction is near enough; so often it is tried. */
+enum { NEAR_ENOUGH = 8, MOST_TRIES = 8 };
 
 static size_t off_by(size_t n, size_t target) {
   return n > target ? n - target : target - n;
@@ -243,19 +252,21 @@ size_t conic_thinner_choose(conic_thinner *thinner, size_t target, size_t most, 
 static float nearest_of_all(const conic_thinner *thinner, point at) {
   float nearest2 = HUGE_VALF;
   for (size_t i = 0; i < thinner->n_chosen; i++) {
-    float distance2 = squared_distance(at, thinner->points[thinner->chosen[i]]);
+    float distance2 = squared_distance(at, thinner->links[i].at);
     nearest2 = distance2 < nearest2 ? distance2 : nearest2;
   }
   return nearest2;
 }
 
 double conic_thinner_reach(conic_thinner *thinner, const uint64_t *keys, size_t n, double beyond, double reach) {
-  double half_edge = 0.5 * thinner->edge;
-  float near2 = (float)(half_edge * half_edge);
+  thinner->last = thinner->links[0].at;
+  float half_edge = 0.5f * thinner->edge, near2 = half_edge * half_edge * (1.0f - 1e-4f);
   for (size_t i = 0; i < n; i++) {
     point at = point_of(keys[i]);
     double enough = reach - beyond;
     float enough2 = enough > 0.0 ? (float)(enough * enough) : 0.0f;
+    if (squared_distance(at, thinner->last) <= enough2) /* points that follow each other lie together */
+      continue;
     float nearest2 = nearest_within_cells(thinner, at, enough2);
     if (nearest2 <= enough2)
       continue;

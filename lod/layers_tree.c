@@ -108,6 +108,7 @@ static conic_status grow_leaf(conic_layers_worker *worker, const conic_layers_sa
   leaf->first_key = samples[0].key;
   leaf->last_key = samples[n - 1].key;
   leaf->n_place = n;
+  leaf->is_leaf = 1;
   conic_status status = conic_layers_bound_leaf(&worker->plan, leaf);
   if (status == CONIC_OK)
     *branch = leaf;
@@ -197,15 +198,15 @@ static conic_status shelve_rest(conic_layers_worker *worker, conic_layers_branch
   return shelve(worker, child, worker->candidates, n, shelf);
 }
 
-/* Nothing looks so far down any more. */
-static void forget(conic_context *context, conic_layers_branch *branch, int n_levels) {
+/* Drops what no node of so large a place, nor a larger one, looks at any more. */
+static void forget(conic_context *context, conic_layers_branch *branch, uint64_t n_place) {
+  int is_far = conic_layers_is_far_below(n_place, branch->n_place);
   for (int i = 0; i < 2 && branch->children[i]; i++)
-    if (n_levels > 1)
-      forget(context, branch->children[i], n_levels - 1);
-    else {
+    if (is_far) {
       conic_layers_branch_destroy(context, branch->children[i]);
       branch->children[i] = NULL;
-    }
+    } else
+      forget(context, branch->children[i], n_place);
 }
 
 /* The distance for the thinning, from the area and from how the children's came out. */
@@ -216,7 +217,7 @@ static double guess_distance(const conic_layers_branch *const children[2], size_
     packing += own;
     weight += children[i]->distance > 0.0 ? children[i]->area : 0.0;
   }
-  double share = weight > 0.0 ? packing / weight : 0.65; /* of darts of all sizes on a plane, 0.70 */
+  double share = weight > 0.0 ? packing / weight : 0.43; /* measured; of darts on all of a plane it is 0.70 */
   return sqrt(share * area / (double)target);
 }
 
@@ -264,7 +265,7 @@ conic_status conic_layers_join(conic_layers_worker *worker, conic_layers_branch 
   status = shelve_rest(worker, children[0], worker->is_chosen, shelf, &(*parent)->nodes[0]);
   if (status == CONIC_OK)
     status = shelve_rest(worker, children[1], worker->is_chosen + n_first, shelf, &(*parent)->nodes[1]);
-  forget(context, *parent, CONIC_LAYERS_LOOK_AHEAD);
+  forget(context, *parent, (*parent)->n_place);
   if (status == CONIC_OK)
     return CONIC_OK;
   conic_layers_branch_destroy(context, *parent);
