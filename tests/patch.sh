@@ -58,6 +58,8 @@ run 0 render lone.xyz -o lone.pfm --method patch --size 16x16
 run 2 render torus.cot -o x.pfm --method patch --error 2
 run 2 render torus.ply -o x.pfm --method patch --deep x.exr
 run 2 render torus.ply -o x.pfm --method patch --degree 5
+run 2 render torus.ply -o x.pfm --method patch --as mesh
+run 2 verify torus.ply --method patch --as mesh
 run 2 bench --method patch
 [[ ! -e x.pfm && ! -e x.exr ]] || fail "something was left of what failed"
 
