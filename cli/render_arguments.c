@@ -153,6 +153,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
                      command);
   if (job->texture_path && job->as != CLI_AS_MESH)
     return cli_usage("%s: --texture lies on triangles; give --as mesh, too", command);
+  if (job->is_patch && job->as == CLI_AS_MESH)
+    return cli_usage("%s: --method patch draws points; not with --as mesh", command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
@@ -201,8 +203,6 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return cli_usage("render: --deep lists splats, not triangles; give --as points");
   if (job->is_patch && (cli_lod_is_wanted(job) || job->deep_path))
     return cli_usage("render: --method patch draws samples of its own: not with --error, --budget or --deep");
-  if (job->is_patch && job->as == CLI_AS_MESH)
-    return cli_usage("render: --method patch draws points; not with --as mesh");
   if (job->error_px > 0.0 && job->budget)
     return cli_usage("render: --error and --budget are two ways to choose; give one of both");
   if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
