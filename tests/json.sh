@@ -63,6 +63,7 @@ wanted[layer]="${wanted[make]} clouds levels bytes bits_per_sample spacing quant
 wanted["info of a layered cloud"]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
   bits.index bounds.min bounds.max sound"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
+wanted["render of a layered cloud"]="${wanted[render]} error_px layers.clouds layers.places_coarser layers.clouds_missing"
 wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
