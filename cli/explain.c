@@ -48,8 +48,10 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
 }
 
 /* What a splat is on the screen, whatever the pixel. */
-static void write_projection(cli_json *json, const conic_projection *p) {
+static void write_projection(cli_json *json, const explain_job *job, const conic_projection *p) {
   cli_json_count(json, "splat", p->splat);
+  if (job->scene.patches)
+    cli_json_count(json, "point", job->scene.patch_selection.points[p->splat]);
   cli_json_text(json, "fate", conic_fate_name(p->fate));
   if (p->fate > CONIC_FATE_RAY)
     return;
@@ -86,7 +88,7 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
     cli_json_number(json, "plane_inverse_depth", (double)c->plane_inverse_depth);
     cli_json_number(json, "hides", (double)c->hides);
   }
-  write_projection(json, &projection);
+  write_projection(json, job, &projection);
   cli_json_close(json);
   return CONIC_OK;
 }
@@ -174,7 +176,7 @@ static conic_status write_splat(cli_json *json, const explain_job *job) {
   if (status != CONIC_OK)
     return status;
   cli_json_object(json, "projection");
-  write_projection(json, &projection);
+  write_projection(json, job, &projection);
   cli_json_close(json);
   return CONIC_OK;
 }
@@ -186,7 +188,7 @@ static int write_report(cli_session *session, const explain_job *job) {
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_text(json, "method", conic_method_name(job->scene.options.method));
+  cli_json_text(json, "method", cli_method_name(&job->scene));
   cli_json_count(json, "width", (uint64_t)job->camera.width);
   cli_json_count(json, "height", (uint64_t)job->camera.height);
   if (job->is_splat_given)
@@ -251,6 +253,8 @@ static conic_status draw(cli_session *session, explain_job *job, const conic_spl
   status = conic_render_drawing(session->context, renderer, &drawing, &job->camera, &job->scene.options, 1, &job->image,
                                 NULL);
   conic_renderer_destroy(renderer);
+  if (status == CONIC_OK && job->scene.patches)
+    conic_patch_selection_name(&job->scene.patch_selection, &job->image);
   return status;
 }
 
@@ -265,7 +269,12 @@ static int check_questions(const explain_job *job, const conic_splats *splats) {
 }
 
 static int answer(cli_session *session, explain_job *job, const conic_splats *splats) {
+  double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &job->camera);
+  if (status == CONIC_OK && job->scene.patches) { /* what is drawn, and explained, are the picture's samples */
+    status = cli_patch_select(&job->scene, &job->camera, &ms);
+    splats = &job->scene.patch_selection.splats;
+  }
   int exit_code = status == CONIC_OK ? check_questions(job, splats) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;

@@ -172,6 +172,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
+  f->bins.by_pixels = f->finish.options->passes == 1;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
@@ -382,6 +383,9 @@ static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing
 
 /* By the loops of this machine's processor. */
 static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  int blends = options->passes != 1;
+  f->view.needs_nearness = blends;
+  f->view.needs_slope = blends || f->image->planes[CONIC_PLANE_Z];
   conic_status status = plan_tiles(f, options->tile);
   if (status == CONIC_OK)
     status = plan_records(f);
