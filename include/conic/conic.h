@@ -16,6 +16,8 @@
 #include "conic/splats.h"
 #include "conic/status.h"
 #include "conic/surface.h"
+#include "conic/texture.h"
+#include "conic/triangles.h"
 #include "conic/version.h"
 
 #endif

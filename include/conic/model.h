@@ -24,10 +24,11 @@ typedef enum conic_model_kind {
 CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
 
 typedef struct conic_model {
-  conic_splats points;      /* vertices, raw points or splats */
-  size_t n_triangles;       /* 0 for a set of points */
-  uint32_t (*triangles)[3]; /* vertex indices, each below points.count; polygons and strips are triangulated */
-  conic_model_kind kind;    /* of the file that was read */
+  conic_splats points;       /* vertices, raw points or splats */
+  size_t n_triangles;        /* 0 for a set of points */
+  uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
+  conic_model_kind kind;     /* of the file that was read */
+  struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
 } conic_model;
 
 typedef struct conic_read_options {
@@ -35,6 +36,9 @@ typedef struct conic_read_options {
 
   /* The cutoff F_g of the kernel that will draw: a `radius` in a file is the splat's outline, so σ = radius / F_g. */
   float cutoff;
+
+  /* Keep what only triangles have: normals and texture coordinates of corners, materials. */
+  int keeps_faces;
 } conic_read_options;
 
 CONIC_API void conic_read_options_init(conic_read_options *options);

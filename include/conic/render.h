@@ -108,8 +108,13 @@ typedef struct conic_render_statistics {
   uint64_t splats_by_method[CONIC_N_METHODS]; /* of the drawn, by the formula used */
   uint64_t fragments;                         /* splat–pixel pairs inside a cutoff */
   uint64_t pixels_covered;
-  double near_z;  /* the one used */
-  double epsilon; /* c of the automatic ε, or the fixed ε */
+  uint64_t triangles_in;      /* = culled + skipped + drawn */
+  uint64_t triangles_culled;  /* behind near, off-screen, back-facing, or between the places of the samples */
+  uint64_t triangles_skipped; /* not finite, or too far out to be projected */
+  uint64_t triangles_drawn;
+  uint64_t triangle_fragments; /* triangle–sample pairs that are covered */
+  double near_z;               /* the one used */
+  double epsilon;              /* c of the automatic ε, or the fixed ε */
   int epsilon_is_fixed;
   int threads, tile;
   const char *isa;              /* what the hot loops used; static */
