@@ -61,7 +61,8 @@ static conic_status weld(conic_context *context, const conic_mesh *mesh, conic_a
 static void look_at_faces(const conic_mesh *mesh, conic_adjacency *adjacency) {
   for (size_t i = 0; i < mesh->n_faces; i++) {
     const uint32_t *face = mesh->faces[i];
-    int is_finite = is_finite_vertex(mesh, face[0]) && is_finite_vertex(mesh, face[1]) && is_finite_vertex(mesh, face[2]);
+    int is_finite =
+        is_finite_vertex(mesh, face[0]) && is_finite_vertex(mesh, face[1]) && is_finite_vertex(mesh, face[2]);
     uint32_t a = adjacency->place[face[0]], b = adjacency->place[face[1]], c = adjacency->place[face[2]];
     int is_three = a != b && b != c && c != a;
     adjacency->oddities.nan += !is_finite;
@@ -126,30 +127,30 @@ static void join_edges(const conic_mesh *mesh, const edge_list *edges, conic_adj
 
 /* --- orientation --- */
 
-/* The neighbours of a face over edges of just two. */
 typedef struct orienting {
   const conic_mesh *mesh;
   conic_adjacency *adjacency;
-  uint32_t *opposite; /* of each half edge: the other, or none */
   uint32_t *queue;
   uint8_t *is_seen;
 } orienting;
 
-static void pair_up(orienting *o, const edge_list *edges) {
-  memset(o->opposite, 0xFF, o->mesh->n_faces * 3 * sizeof *o->opposite);
+static void pair_up(const conic_mesh *mesh, const edge_list *edges, conic_adjacency *adjacency) {
+  memset(adjacency->across, 0xFF, mesh->n_faces * 3 * sizeof *adjacency->across);
   for (size_t begin = 0, end; begin < edges->n; begin = end) {
     for (end = begin + 1; end < edges->n && edges->items[end].key == edges->items[begin].key;)
       end++;
+    for (size_t i = begin; i < end && end > begin + 2; i++)
+      adjacency->across[edges->items[i].value] = CONIC_CROWDED_EDGE;
     if (end != begin + 2)
       continue;
-    o->opposite[edges->items[begin].value] = edges->items[begin + 1].value;
-    o->opposite[edges->items[begin + 1].value] = edges->items[begin].value;
+    adjacency->across[edges->items[begin].value] = edges->items[begin + 1].value;
+    adjacency->across[edges->items[begin + 1].value] = edges->items[begin].value;
   }
 }
 
 /* Whether both faces run along the edge in the same direction: then one of them is wound against the other. */
 static int runs_along(const orienting *o, uint32_t half_edge) {
-  return start_of(o->mesh, o->adjacency, half_edge) == start_of(o->mesh, o->adjacency, o->opposite[half_edge]);
+  return start_of(o->mesh, o->adjacency, half_edge) == start_of(o->mesh, o->adjacency, o->adjacency->across[half_edge]);
 }
 
 /* Gives the faces that hang together with `first` their sides: most of them keep theirs. */
@@ -162,12 +163,12 @@ static void orient_piece(orienting *o, uint32_t first) {
     uint32_t face = o->queue[next];
     n_turned += side[face] < 0;
     for (uint32_t half = 3 * face; half < 3 * face + 3; half++) {
-      uint32_t other = o->opposite[half] == none ? none : o->opposite[half] / 3;
-      if (other == none)
+      uint32_t across = o->adjacency->across[half], other = across / 3;
+      if (!conic_edge_is_shared(across))
         continue;
       int8_t wanted = (int8_t)(runs_along(o, half) ? -side[face] : side[face]);
       if (o->is_seen[other]) {
-        o->adjacency->oddities.twisted += side[other] != wanted && half < o->opposite[half];
+        o->adjacency->oddities.twisted += side[other] != wanted && half < across;
         continue;
       }
       o->is_seen[other] = 1;
@@ -182,21 +183,15 @@ static void orient_piece(orienting *o, uint32_t first) {
   o->adjacency->oddities.n_pieces++;
 }
 
-static conic_status orient(conic_context *context, const conic_mesh *mesh, const edge_list *edges,
-                           conic_adjacency *adjacency) {
-  orienting o = {mesh, adjacency, conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *o.opposite),
-                 conic_memory_allocate(context, mesh->n_faces, sizeof *o.queue),
+static conic_status orient(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency) {
+  orienting o = {mesh, adjacency, conic_memory_allocate(context, mesh->n_faces, sizeof *o.queue),
                  conic_memory_allocate_zeroed(context, mesh->n_faces, sizeof *o.is_seen)};
-  conic_status status = o.opposite && o.queue && o.is_seen ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    pair_up(&o, edges);
-    for (uint32_t i = 0; i < mesh->n_faces; i++)
-      if (adjacency->side[i] && !o.is_seen[i])
-        orient_piece(&o, i);
-  }
+  conic_status status = o.queue && o.is_seen ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (uint32_t i = 0; i < mesh->n_faces && status == CONIC_OK; i++)
+    if (adjacency->side[i] && !o.is_seen[i])
+      orient_piece(&o, i);
   conic_memory_release(context, o.is_seen);
   conic_memory_release(context, o.queue);
-  conic_memory_release(context, o.opposite);
   return status;
 }
 
@@ -207,16 +202,18 @@ conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu triangles are too many", mesh->n_faces);
   adjacency->place = conic_memory_allocate(context, mesh->n_vertices, sizeof *adjacency->place);
   adjacency->side = conic_memory_allocate(context, mesh->n_faces, sizeof *adjacency->side);
+  adjacency->across = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->across);
   adjacency->joints = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->joints);
-  conic_status status =
-      adjacency->place && adjacency->side && adjacency->joints ? weld(context, mesh, adjacency) : CONIC_ERROR_MEMORY;
+  int has_room = adjacency->place && adjacency->side && adjacency->across && adjacency->joints;
+  conic_status status = has_room ? weld(context, mesh, adjacency) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     look_at_faces(mesh, adjacency);
     status = list_edges(context, mesh, adjacency, &edges);
   }
   if (status == CONIC_OK) {
     join_edges(mesh, &edges, adjacency);
-    status = orient(context, mesh, &edges, adjacency);
+    pair_up(mesh, &edges, adjacency);
+    status = orient(context, mesh, adjacency);
   }
   conic_memory_release(context, edges.items);
   if (status != CONIC_OK)
@@ -227,6 +224,7 @@ conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh
 void conic_adjacency_release(conic_context *context, conic_adjacency *adjacency) {
   conic_memory_release(context, adjacency->place);
   conic_memory_release(context, adjacency->side);
+  conic_memory_release(context, adjacency->across);
   conic_memory_release(context, adjacency->joints);
   memset(adjacency, 0, sizeof *adjacency);
 }

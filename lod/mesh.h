@@ -32,9 +32,14 @@ typedef struct conic_mesh_oddities {
   size_t n_pieces; /* what hangs together */
 } conic_mesh_oddities;
 
+#define CONIC_OPEN_EDGE UINT32_MAX          /* there is no other face */
+#define CONIC_CROWDED_EDGE (UINT32_MAX - 1) /* there are several */
+
 typedef struct conic_adjacency {
   uint32_t *place;  /* of each vertex: the first vertex at the same position */
   int8_t *side;     /* of each face: 1; -1 where it is wound against its neighbours; 0 where it is of no use */
+  uint32_t *across; /* of each face's edges, 3 · face + the corner where it begins: that of the other face, or OPEN or
+                       CROWDED */
   size_t n_joints;
   conic_joint *joints;
   conic_mesh_oddities oddities;
@@ -44,6 +49,10 @@ typedef struct conic_adjacency {
  * MEMORY. On success the caller releases *adjacency; on failure it is empty. */
 conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency);
 void conic_adjacency_release(conic_context *context, conic_adjacency *adjacency);
+
+static inline int conic_edge_is_shared(uint32_t across) {
+  return across < CONIC_CROWDED_EDGE;
+}
 
 static inline void conic_mesh_corner(const conic_mesh *mesh, size_t i_face, int corner, double at[3]) {
   for (int axis = 0; axis < 3; axis++)
