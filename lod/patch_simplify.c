@@ -21,17 +21,19 @@ typedef enum vertex_kind {
 } vertex_kind;
 
 typedef struct vertex {
-  uint32_t original; /* in the mesh */
-  uint32_t ring;     /* its first slot, 3 · triangle + corner, or none */
-  uint32_t target;   /* what it would best be drawn onto */
-  uint8_t kind, is_old, is_alive;
+  uint32_t original;             /* in the mesh */
+  uint32_t material;             /* of its faces */
+  uint32_t ring;                 /* its first slot, 3 · triangle + corner, or none */
+  uint32_t target;               /* what it would best be drawn onto */
+  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face */
   double at[3];
   conic_quadric quadric;
 } vertex;
 
 typedef struct triangle {
-  uint32_t corners[3]; /* vertices */
-  uint32_t next[3];    /* slots in the rings */
+  uint32_t corners[3];   /* vertices */
+  uint32_t originals[3]; /* of the mesh: with their attributes */
+  uint32_t next[3];      /* slots in the rings */
   uint32_t face, points;
   double normal[3]; /* of the mesh's face */
   int is_alive;
@@ -120,21 +122,23 @@ static conic_status make_room(conic_simplifier *s, size_t n_faces) {
 }
 
 /* The patch's number of a mesh's vertex. */
-static uint32_t add_vertex(conic_simplifier *s, uint32_t original) {
+static uint32_t add_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
   uint32_t place = s->mesh->adjacency->place[original];
   if (s->number[place] == none) {
     vertex *v = &s->vertices[s->n_vertices];
     memset(v, 0, sizeof *v);
     v->original = original;
+    v->material = material;
     v->ring = v->target = none;
-    v->is_alive = 1;
     for (int axis = 0; axis < 3; axis++)
       v->at[axis] = (double)s->mesh->mesh.position[axis][original];
     s->number[place] = (uint32_t)s->n_vertices++;
   }
   vertex *v = &s->vertices[s->number[place]];
-  if (v->original != original)
+  if (v->original != original || v->material != material) {
     v->kind = VERTEX_LOCKED;
+    v->is_seam = 1;
+  }
   return s->number[place];
 }
 
@@ -156,7 +160,9 @@ static void add_triangle(conic_simplifier *s, uint32_t face) {
   conic_patch_face_normal(s->mesh, face, t->normal);
   for (int corner = 0; corner < 3; corner++) {
     size_t n_before = s->n_vertices;
-    uint32_t k = add_vertex(s, s->mesh->mesh.faces[face][corner]);
+    const uint32_t *materials = s->mesh->triangles->material;
+    t->originals[corner] = s->mesh->mesh.faces[face][corner];
+    uint32_t k = add_vertex(s, t->originals[corner], materials ? materials[face] : 0);
     vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
@@ -284,7 +290,7 @@ static int is_open_edge(const conic_simplifier *s, uint32_t u, uint32_t v) {
 }
 
 static int may_go(const conic_simplifier *s, uint32_t u, uint32_t v) {
-  if (s->vertices[u].kind == VERTEX_BORDER && !is_open_edge(s, u, v))
+  if (s->vertices[v].is_seam || (s->vertices[u].kind == VERTEX_BORDER && !is_open_edge(s, u, v)))
     return 0;
   return keeps_surface(s, u, v) && keeps_facing(s, u, v);
 }
@@ -351,12 +357,12 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
       s->n_alive--;
     } else {
       t->corners[slot % 3] = v;
+      t->originals[slot % 3] = s->vertices[v].original;
       t->next[slot % 3] = s->vertices[v].ring;
       s->vertices[v].ring = slot;
     }
     slot = following;
   }
-  s->vertices[u].is_alive = 0;
   conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);
   while (homeless != none) {
     uint32_t next = s->points[homeless].next;
@@ -382,8 +388,7 @@ static conic_status take_level(conic_simplifier *s, conic_patch_levels *levels) 
     const triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
-    for (int corner = 0; corner < 3; corner++)
-      level->corners[level->n][corner] = s->vertices[t->corners[corner]].original;
+    memcpy(level->corners[level->n], t->originals, sizeof t->originals);
     level->face[level->n++] = t->face;
   }
   for (size_t i = 0; i < s->n_points; i++)

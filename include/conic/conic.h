@@ -6,6 +6,7 @@
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/hybrid.h"
 #include "conic/image.h"
 #include "conic/model.h"
 #include "conic/octree.h"
