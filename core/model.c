@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/faces.h"
 #include "core/input.h"
 #include "core/las.h"
 #include "core/memory.h"
@@ -24,6 +25,7 @@ const char *conic_model_kind_name(conic_model_kind kind) {
 void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
+  conic_faces_destroy(context, model->faces);
   memset(model, 0, sizeof *model);
 }
 
@@ -125,7 +127,7 @@ static conic_status read_by_kind(conic_input *input, const char *path, const con
     status = conic_ply_read(input, options, model);
     break;
   case CONIC_MODEL_OBJ:
-    status = conic_obj_read(input, model);
+    status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
     status = conic_xyz_read(input, model);

@@ -6,6 +6,7 @@
 
 #include "core/builder.h"
 #include "core/color.h"
+#include "core/faces.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/number.h"
@@ -36,8 +37,12 @@ typedef struct obj_reader {
   size_t normal_capacity;
   corner *corners;
   size_t n_corners, corner_capacity;
+  conic_faces *faces; /* the model's, where the reader keeps what faces have besides vertices */
   int is_origin_set;
 } obj_reader;
+
+/* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
+typedef uint32_t face_corner[3];
 
 static conic_status wrong(const obj_reader *reader, const char *what) {
   return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
@@ -125,16 +130,22 @@ static conic_status read_normal(obj_reader *reader) {
   reader->normals = normals;
   if (status == CONIC_OK)
     memcpy(reader->normals[reader->counts[NORMAL]++], values, sizeof values);
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add_normal(reader->input->context, reader->faces, values);
   return status;
 }
 
-/* Texture coordinates are counted, so that indices can be checked, and dropped. */
+/* Texture coordinates are counted, so that indices can be checked, and kept only where that is asked for. */
 static conic_status read_texture(obj_reader *reader) {
-  double values[3];
+  double values[3] = {0.0, 0.0, 0.0};
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n < 1)
     return wrong(reader, "a texture coordinate has 1 to 3 values");
+  if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)
+    return wrong(reader, "too many texture coordinates");
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add_coordinate(reader->input->context, reader->faces, values);
   reader->counts[TEXTURE]++;
   return status;
 }
@@ -177,10 +188,9 @@ static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, u
 }
 
 /* v, v/t, v//n or v/t/n. */
-static conic_status read_corner(obj_reader *reader, const char *word, size_t length, uint32_t *i_vertex) {
+static conic_status read_corner(obj_reader *reader, const char *word, size_t length, face_corner resolved) {
   const char *c = word, *end = word + length;
-  uint32_t resolved[N_KINDS] = {0, 0, 0};
-  int has_kind[N_KINDS] = {0, 0, 0};
+  resolved[VERTEX] = resolved[TEXTURE] = resolved[NORMAL] = CONIC_NO_CORNER;
   for (int kind = VERTEX; kind < N_KINDS; kind++) {
     int64_t index;
     if (kind > VERTEX) {
@@ -199,12 +209,10 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
     if (status != CONIC_OK)
       return status;
-    has_kind[kind] = 1;
   }
   if (c != end)
     return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
-  *i_vertex = resolved[VERTEX];
-  if (!has_kind[NORMAL])
+  if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
   void *corners = reader->corners;
   conic_status status =
@@ -215,8 +223,17 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
   return status;
 }
 
+static conic_status add_triangle(obj_reader *reader, const face_corner a, const face_corner b, const face_corner c) {
+  const uint32_t normals[3] = {a[NORMAL], b[NORMAL], c[NORMAL]};
+  const uint32_t coordinates[3] = {a[TEXTURE], b[TEXTURE], c[TEXTURE]};
+  conic_status status = conic_builder_add_triangle(&reader->builder, a[VERTEX], b[VERTEX], c[VERTEX]);
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add(reader->input->context, reader->faces, normals, coordinates);
+  return status;
+}
+
 static conic_status read_face(obj_reader *reader) {
-  uint32_t first = 0, previous = 0, current = 0;
+  face_corner first = {0, 0, 0}, previous = {0, 0, 0}, current;
   for (uint64_t n = 0;; n++) {
     const char *word;
     size_t length;
@@ -225,13 +242,46 @@ static conic_status read_face(obj_reader *reader) {
       return status;
     if (length == 0 || word[0] == '#')
       return n < 3 ? wrong(reader, "a face has at least 3 corners") : CONIC_OK;
-    status = read_corner(reader, word, length, &current);
+    status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
-      status = conic_builder_add_triangle(&reader->builder, first, previous, current);
+      status = add_triangle(reader, first, previous, current);
     if (status != CONIC_OK)
       return status;
-    first = n == 0 ? current : first;
-    previous = current;
+    if (n == 0)
+      memcpy(first, current, sizeof first);
+    memcpy(previous, current, sizeof previous);
+  }
+}
+
+/* usemtl NAME */
+static conic_status read_material(obj_reader *reader) {
+  const char *word;
+  size_t length;
+  conic_status status = conic_input_word(reader->input, &word, &length);
+  if (status != CONIC_OK || !reader->faces)
+    return status;
+  if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
+    return wrong(reader, "too many materials");
+  return conic_faces_use_material(reader->input->context, reader->faces, word, length);
+}
+
+/* mtllib FILE …: paths are relative to the model's folder. */
+static conic_status read_libraries(obj_reader *reader) {
+  const char *word, *name = reader->input->name, *slash = strrchr(name, '/');
+  char path[2 * CONIC_INPUT_LONGEST_WORD];
+  size_t length;
+  for (;;) {
+    conic_status status = conic_input_word(reader->input, &word, &length);
+    if (status != CONIC_OK || length == 0 || !reader->faces)
+      return status;
+    size_t folder = slash && word[0] != '/' ? (size_t)(slash + 1 - name) : 0;
+    if (folder + length > sizeof path || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
+      return wrong(reader, "a material file's name is too long, or there are too many");
+    memcpy(path, name, folder);
+    memcpy(path + folder, word, length);
+    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, folder + length);
+    if (status != CONIC_OK)
+      return status;
   }
 }
 
@@ -240,7 +290,8 @@ static conic_status read_statement(obj_reader *reader) {
   static const struct {
     const char *keyword;
     conic_status (*read)(obj_reader *reader);
-  } statements[] = {{"v", read_vertex}, {"vn", read_normal}, {"vt", read_texture}, {"f", read_face}};
+  } statements[] = {{"v", read_vertex}, {"vn", read_normal},       {"vt", read_texture},
+                    {"f", read_face},   {"usemtl", read_material}, {"mtllib", read_libraries}};
   const char *word;
   size_t length;
   conic_status status = conic_input_word(reader->input, &word, &length);
@@ -293,11 +344,15 @@ static conic_status gather_normals(obj_reader *reader) {
   return CONIC_OK;
 }
 
-conic_status conic_obj_read(conic_input *input, conic_model *model) {
+conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
   obj_reader reader = {.input = input};
   int is_done = 0;
   input->continues_lines = 1;
   conic_status status = conic_builder_begin(input->context, model, 0, &reader.builder);
+  if (status == CONIC_OK && options->keeps_faces) {
+    status = conic_faces_create(input->context, &model->faces);
+    reader.faces = model->faces;
+  }
   while (status == CONIC_OK && !is_done) {
     status = read_statement(&reader);
     if (status == CONIC_OK)

@@ -1,0 +1,13 @@
+/* Material files (MTL) beside an OBJ: of each material its diffuse colour and picture. */
+#ifndef CORE_MATERIAL_FILE_H
+#define CORE_MATERIAL_FILE_H
+
+#include "conic/triangles.h"
+#include "core/faces.h"
+
+/* Fills in those of the `names`' materials that the file at `path` has; what it says of others is passed over. Pictures
+ * are looked for in the file's folder; one that cannot be read is a warning. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
+                                      conic_material *materials);
+
+#endif
