@@ -105,8 +105,7 @@ conic_status conic_chy_make_materials(conic_hybrid *hybrid) {
   conic_status status = CONIC_OK;
   if (hybrid->n_materials == 0)
     return CONIC_OK;
-  hybrid->materials =
-      conic_memory_allocate_zeroed(hybrid->context, hybrid->n_materials, sizeof *hybrid->materials);
+  hybrid->materials = conic_memory_allocate_zeroed(hybrid->context, hybrid->n_materials, sizeof *hybrid->materials);
   if (!hybrid->materials)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < hybrid->n_materials && status == CONIC_OK; i++) {
