@@ -258,7 +258,7 @@ static int explain(cli_session *session, explain_job *job) {
   if (status == CONIC_OK)
     status = cli_scene_measure(session, &job->scene, &splats);
   exit_code = status == CONIC_OK ? answer(session, job, &splats) : cli_exit_of(status);
-  conic_splats_release(session->context, &splats);
+  cli_scene_release(session, &job->scene, &splats);
   return exit_code;
 }
 

@@ -138,9 +138,10 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
   conic_status status = job->octree ? cli_lod_select(job, camera, &lod_ms) : CONIC_OK;
+  const conic_drawing drawing = cli_scene_drawing(job, job->octree ? &job->selection.splats : splats);
   if (status == CONIC_OK)
-    status = conic_render_samples(session->context, renderer, job->octree ? &job->selection.splats : splats, camera,
-                                  &job->options, job->samples, image, statistics);
+    status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
+                                  statistics);
   if (status == CONIC_OK && job->octree)
     conic_selection_name(&job->selection, image);
   statistics->ms.lod = lod_ms;
@@ -209,7 +210,7 @@ static int run(cli_session *session, int argc, char **argv) {
     if (status == CONIC_OK)
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
-    conic_splats_release(session->context, &splats);
+    cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
   }
   free(job.inputs);

@@ -8,6 +8,7 @@
 static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
+static const char *const as_words[] = {"points", "mesh", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 /* Options whose words are checked after all have been read. */
@@ -150,6 +151,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
   if (job->camera_path && (raw->is_framing_given || job->is_up_given))
     return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
                      command);
+  if (job->texture_path && job->as != CLI_AS_MESH)
+    return cli_usage("%s: --texture lies on triangles; give --as mesh, too", command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
@@ -194,6 +197,8 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return answer;
   if (cli_lod_is_wanted(job) && job->deep_path)
     return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
+  if (job->as != CLI_AS_POINTS && job->deep_path)
+    return cli_usage("render: --deep lists splats, not triangles; give --as points");
   if (job->error_px > 0.0 && job->budget)
     return cli_usage("render: --error and --budget are two ways to choose; give one of both");
   if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
@@ -252,6 +257,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
+      {"as", CLI_CHOICE, &job->as, "WHAT",
+       "what a mesh is drawn as: points (a splat a vertex) or mesh (triangles) [points]", .choices = as_words},
+      {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto [conic]", .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},

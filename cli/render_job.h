@@ -7,6 +7,8 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1 } cli_representation;
+
 typedef struct cli_render_job {
   /* What was asked for. */
   const char **inputs;
@@ -27,6 +29,8 @@ typedef struct cli_render_job {
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws */
+  int as;                       /* what meshes are drawn as, a cli_representation */
+  const char *texture_path;     /* of meshes that are drawn as such, in place of their own; null: none */
   double error_px;              /* 0: every splat */
   unsigned long long budget;    /* 0: no limit */
 
@@ -34,6 +38,8 @@ typedef struct cli_render_job {
   conic_octree *octree;
   conic_octree_info info;
   conic_selection selection;
+
+  conic_triangles triangles; /* read beside the splats, with --as mesh */
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
@@ -59,8 +65,13 @@ conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, dou
 /* Ends both; fine where they never were. */
 void cli_lod_close(cli_session *session, cli_render_job *job);
 
-/* Reads the inputs into one set of splats, which the caller releases, also after a failure. */
+/* What is drawn: the splats and the job's triangles. */
+conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats);
+
+/* Reads the inputs into one set of splats, which the caller releases by cli_scene_release, also after a failure; and
+ * into the job's triangles. */
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);
+void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats);
 /* Fills in what every frame would find anew: the near distance and the scale of ε. Of an octree the splats are of no
  * matter here and in cli_scene_camera. */
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats);

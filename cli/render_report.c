@@ -15,6 +15,13 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "splats_fallback", s->splats_fallback);
   cli_json_count(json, "fragments", s->fragments);
   cli_json_count(json, "pixels_covered", s->pixels_covered);
+  if (s->triangles_in) {
+    cli_json_count(json, "triangles_in", s->triangles_in);
+    cli_json_count(json, "triangles_culled", s->triangles_culled);
+    cli_json_count(json, "triangles_skipped", s->triangles_skipped);
+    cli_json_count(json, "triangles_drawn", s->triangles_drawn);
+    cli_json_count(json, "triangle_fragments", s->triangle_fragments);
+  }
   cli_json_number(json, "overdraw", overdraw);
   cli_json_text(json, "method", conic_method_name(job->options.method));
   cli_json_object(json, "methods");
@@ -24,6 +31,8 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
   cli_json_close(json);
   cli_json_object(json, "primitives");
   cli_json_count(json, "splats", s->splats_drawn);
+  if (s->triangles_in)
+    cli_json_count(json, "triangles", s->triangles_drawn);
   if (job->octree) { /* of what was handed over to be drawn */
     cli_json_count(json, "leaves", job->selection.splats.count - job->selection.n_inner);
     cli_json_count(json, "inner_nodes", job->selection.n_inner);
@@ -65,6 +74,8 @@ static void report_times(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "ms_first", job->first_frame_ms);
   cli_json_number(json, "msplats_per_s", per_second_in_millions((double)s->splats_in, s->ms.frame));
   cli_json_number(json, "drawn_msplats_per_s", per_second_in_millions((double)s->splats_drawn, s->ms.frame));
+  if (s->triangles_in)
+    cli_json_number(json, "mtriangles_per_s", per_second_in_millions((double)s->triangles_in, s->ms.frame));
   cli_json_number(json, "mfragments_per_s", per_second_in_millions((double)s->fragments, s->ms.frame));
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }

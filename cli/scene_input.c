@@ -44,8 +44,18 @@ static conic_status read_octree(cli_session *session, const char *path, conic_sp
   return status;
 }
 
+/* A model's faces become triangles. */
+static conic_status take_triangles(cli_session *session, cli_render_job *job, conic_model *model) {
+  conic_triangles triangles;
+  conic_status status = conic_triangles_take(session->context, model, &triangles);
+  if (status == CONIC_OK)
+    status = conic_triangles_append(session->context, &job->triangles, &triangles);
+  conic_triangles_release(session->context, &triangles);
+  return status;
+}
+
 /* Reads an input, and gives its points axes where it has none. */
-static conic_status read_input(cli_session *session, const cli_render_job *job, const char *path, conic_splats *splats,
+static conic_status read_input(cli_session *session, cli_render_job *job, const char *path, conic_splats *splats,
                                conic_model_kind *kind, double *estimate_seconds) {
   conic_model model;
   conic_read_options read_options;
@@ -57,12 +67,18 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
   conic_estimate_options_init(&estimate_options);
   read_options.cutoff = estimate_options.cutoff = job->options.kernel.cutoff;
   estimate_options.n_neighbours = job->n_neighbours;
+  read_options.keeps_faces = job->as == CLI_AS_MESH;
   conic_status status = conic_model_read(session->context, path, &read_options, &model);
   if (status != CONIC_OK)
     return status;
   *kind = model.kind;
   double start = cli_seconds();
   status = check_extent(job, path, &model);
+  if (status == CONIC_OK && read_options.keeps_faces && model.n_triangles) {
+    status = take_triangles(session, job, &model);
+    conic_model_release(session->context, &model);
+    return status;
+  }
   if (status == CONIC_OK)
     status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
   if (status == CONIC_OK && splats->count == 0) {
@@ -72,6 +88,22 @@ static conic_status read_input(cli_session *session, const cli_render_job *job, 
     status = conic_splats_append(session->context, splats, &model.points);
   *estimate_seconds += cli_seconds() - start;
   conic_model_release(session->context, &model);
+  return status;
+}
+
+/* --texture: in place of what the files name. */
+static conic_status lay_texture(cli_session *session, cli_render_job *job) {
+  conic_texture *texture;
+  if (!job->triangles.texture_coordinate[0]) {
+    cli_error(CLI_INPUT, "%s: the mesh has no texture coordinates for it", job->texture_path);
+    return CONIC_ERROR_INPUT;
+  }
+  conic_status status = conic_texture_read(session->context, job->texture_path, CONIC_WRAP_REPEAT, &texture);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_triangles_texture(session->context, &job->triangles, texture);
+  if (status != CONIC_OK)
+    conic_texture_destroy(texture);
   return status;
 }
 
@@ -88,6 +120,11 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
       return status;
     n_las += kind == CONIC_MODEL_LAS;
   }
+  if (job->texture_path && job->triangles.count) {
+    conic_status status = lay_texture(session, job);
+    if (status != CONIC_OK)
+      return status;
+  }
   if (n_las == job->n_inputs && !job->is_up_given) { /* surveys have heights in z */
     job->framing.up[0] = job->framing.up[1] = 0.0;
     job->framing.up[2] = 1.0;
@@ -95,6 +132,16 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   job->read_ms = 1e3 * (cli_seconds() - start - estimate_seconds);
   job->estimate_ms = 1e3 * estimate_seconds;
   return CONIC_OK;
+}
+
+conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats) {
+  conic_drawing drawing = {splats, &job->triangles};
+  return drawing;
+}
+
+void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats) {
+  conic_splats_release(session->context, splats);
+  conic_triangles_release(session->context, &job->triangles);
 }
 
 /* Lengths in spacings become world units. */
@@ -126,10 +173,12 @@ conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const 
   conic_status status = resolve_lengths(session, job, splats);
   if (job->octree)
     measure_octree(job);
-  else if (status == CONIC_OK)
+  else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0)
-    job->options.near_z = conic_default_near(splats);
+  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0) {
+    const conic_drawing drawing = cli_scene_drawing(job, splats);
+    job->options.near_z = conic_drawing_near(&drawing);
+  }
   job->estimate_ms += 1e3 * (cli_seconds() - start);
   return status;
 }
@@ -143,8 +192,10 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   if (job->octree) {
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);
-  } else
-    conic_splats_bounds(splats, low, high);
+  } else {
+    const conic_drawing drawing = cli_scene_drawing(job, splats);
+    conic_drawing_bounds(&drawing, low, high);
+  }
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
   return conic_camera_frame(session->context, &framing, low, high, camera);
 }

@@ -191,7 +191,7 @@ static int verify(cli_session *session, verify_job *job) {
   exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  conic_splats_release(session->context, &splats);
+  cli_scene_release(session, &job->scene, &splats);
   return exit_code;
 }
 

@@ -77,6 +77,9 @@ typedef struct conic_nearest_fragments {
   uint32_t footprint[CONIC_BLOCK_PIXELS];
 } conic_nearest_fragments;
 
+struct conic_triangle_frame;
+struct conic_triangle_row;
+
 typedef struct conic_band {
   const conic_view *view;
   const conic_projected *projected;
@@ -97,6 +100,9 @@ typedef struct conic_band {
   int n_rows;
   conic_nearest_fragments *nearest;
   conic_block_sums *sums;
+  /* Where triangles meet the band, else null: the frame's, and what they are to the band's pixels. */
+  const struct conic_triangle_frame *triangle_frame;
+  struct conic_triangle_row *triangles;
 } conic_band;
 
 /* Nothing covers the block. */

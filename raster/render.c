@@ -12,6 +12,7 @@
 #include "raster/backend.h"
 #include "raster/bins.h"
 #include "raster/clip_lines.h"
+#include "raster/drawing.h"
 #include "raster/method.h"
 #include "raster/ticks.h"
 #include "raster/tile.h"
@@ -32,6 +33,7 @@ struct conic_renderer {
   conic_backend *backend; /* null: the loops here */
   kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
       times, lengths;
+  conic_triangle_frame triangles;
 };
 
 /* One frame on its way through the stages. */
@@ -46,8 +48,10 @@ typedef struct frame {
   conic_image *image;
   char *sorters, *scratch; /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
+  conic_triangle_frame *triangles;   /* null: there are none */
   stage_times *times;                /* a thread */
   uint64_t *n_fragments, *n_covered; /* a tile */
+  atomic_size_t n_triangle_fragments;
   atomic_size_t n_tiles_done;
   atomic_int is_cancelled;
 } frame;
@@ -91,6 +95,7 @@ void conic_renderer_destroy(conic_renderer *renderer) {
     conic_memory_release(renderer->context, all[i]->pointer);
   if (renderer->backend)
     renderer->backend->destroy(renderer->backend);
+  conic_triangle_frame_release(renderer->context, &renderer->triangles);
   conic_memory_release(renderer->context, renderer);
 }
 
@@ -131,8 +136,9 @@ static conic_status plan_records(frame *f) {
   conic_projected *projected = &f->projected;
   size_t n = f->splats->count;
   projected->chunks = room(renderer, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
-  projected->footprints = room(renderer, &renderer->footprints, n, sizeof *projected->footprints);
-  projected->surfaces = room(renderer, &renderer->surfaces, n, sizeof *projected->surfaces);
+  size_t n_named = n ? n : 1; /* where nothing is, sums name the first */
+  projected->footprints = room(renderer, &renderer->footprints, n_named, sizeof *projected->footprints);
+  projected->surfaces = room(renderer, &renderer->surfaces, n_named, sizeof *projected->surfaces);
   projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
   if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
@@ -205,6 +211,9 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
   conic_bins_gather(bins, i_tile, tile->scratch.entries);
+  tile->triangles = f->triangles;
+  tile->triangle_tile = f->triangles ? &f->triangles->tiles[i_thread] : NULL;
+  tile->i_tile = i_tile;
 }
 
 /* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
@@ -232,6 +241,7 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   f->times[i_thread].resolve += report.resolve;
   f->n_fragments[i_tile] = report.n_fragments;
   f->n_covered[i_tile] = report.n_covered;
+  atomic_fetch_add(&f->n_triangle_fragments, report.n_triangle_fragments);
   atomic_fetch_add(&f->n_tiles_done, 1);
 }
 
@@ -293,6 +303,9 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];
   }
+  if (f->triangles)
+    conic_triangle_frame_count(f->triangles, statistics);
+  statistics->triangle_fragments = atomic_load(&f->n_triangle_fragments);
   statistics->threads = conic_context_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
   statistics->isa = f->kernels->name;
@@ -311,18 +324,6 @@ double conic_default_near(const conic_splats *splats) {
   for (int i = 0; i < 3; i++)
     diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
   return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
-}
-
-/* What of the scene the picture depends on as a whole: the near distance and the automatic ε's scale. */
-static conic_status measure_scene(conic_context *context, const conic_splats *splats,
-                                  const conic_render_options *options, double *near_z, double *splat_length) {
-  *near_z = options->near_z;
-  *splat_length = options->splat_length;
-  if (!(*near_z > 0.0))
-    *near_z = conic_default_near(splats);
-  if (!(*splat_length > 0.0) && options->epsilon < 0.0)
-    return conic_splats_length(context, splats, splat_length);
-  return CONIC_OK;
 }
 
 static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {
@@ -349,6 +350,8 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = seconds_now();
   conic_status status = project_and_sort(f);
+  if (status == CONIC_OK && f->triangles)
+    status = conic_triangle_frame_prepare(f->triangles, f->kernels);
   if (status != CONIC_OK)
     return status;
   double sorted = seconds_now();
@@ -356,6 +359,23 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   double done = seconds_now();
   share_out(f, 1e3 * (sorted - start), 1e3 * (done - sorted), ms);
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
+}
+
+/* The drawing's triangles, if there are any. */
+static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
+                                    const conic_render_options *options) {
+  conic_context *context = f->renderer->context;
+  if (!drawing->triangles)
+    return CONIC_OK;
+  if (f->renderer->backend)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this device draws no triangles");
+  if (drawing->triangles->count > UINT32_MAX - 1 - f->splats->count)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: there are more than 4,294,967,294 splats and triangles");
+  f->triangles = &f->renderer->triangles;
+  f->triangles->first_id = (uint32_t)f->splats->count;
+  conic_triangle_frame_begin(f->triangles, context, drawing->triangles, &f->view, camera);
+  conic_triangle_frame_tiles(f->triangles, options->tile);
+  return conic_triangles_check(context, drawing->triangles, "render");
 }
 
 /* By the loops of this machine's processor. */
@@ -372,12 +392,13 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   return status;
 }
 
-conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
-                          const conic_render_options *options, conic_image *image,
-                          conic_render_statistics *statistics) {
-  double near_z, splat_length, start = seconds_now();
+conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
+                                const conic_camera *camera, const conic_render_options *options, conic_image *image,
+                                conic_render_statistics *statistics) {
+  double start = seconds_now();
   conic_render_statistics counted;
   conic_context *context = renderer->context;
+  const conic_splats *splats = drawing->splats;
   memset(&counted, 0, sizeof counted);
   if (!splats || !camera || !options || !image || options->size != sizeof *options)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
@@ -388,11 +409,14 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
   if (!f.kernels)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
                       conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
-  conic_status status = measure_scene(context, splats, options, &near_z, &splat_length);
+  conic_render_options scaled = *options;
+  conic_status status = conic_whole_drawing_scale(context, drawing, &scaled);
   if (status == CONIC_OK)
-    status = conic_view_init(context, splats, camera, options, near_z, splat_length, &f.view);
+    status = conic_view_init(context, splats, camera, options, scaled.near_z, scaled.splat_length, &f.view);
   if (status == CONIC_OK)
     status = prepare_finish(&f, camera, options);
+  if (status == CONIC_OK)
+    status = begin_triangles(&f, drawing, camera, options);
   if (status == CONIC_OK && renderer->backend)
     status = renderer->backend->draw(renderer->backend, &f.view, splats, &f.finish, image, &counted);
   else if (status == CONIC_OK)
@@ -404,4 +428,11 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
   if (statistics)
     *statistics = counted;
   return CONIC_OK;
+}
+
+conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                          const conic_render_options *options, conic_image *image,
+                          conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  return conic_render_whole(renderer, &alone, camera, options, image, statistics);
 }

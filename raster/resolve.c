@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "raster/coverage.h"
+#include "raster/triangle_frame.h"
 
 /* A finished pixel, before it is written to the planes that the image has. */
 typedef struct pixel {
@@ -86,7 +87,9 @@ static void resolve_pixel(const conic_band *band, const conic_finish *finish, co
   float z = 0.0f;
   if (is_covered) {
     finish_covered(band, finish, block, l, rays->x[x - rays->x_begin], rays->y[y - rays->y_begin], &p);
-    z = conic_plane_z(&band->projected->footprints[band->sums[block].heaviest[l]], x, y);
+    z = band->triangles && band->triangles->heaviest[block] >> l & 1
+            ? 1.0f / band->triangles->blocks[block].iz[l]
+            : conic_plane_z(&band->projected->footprints[band->sums[block].heaviest[l]], x, y);
   } else
     finish_uncovered(finish, &p);
   store(image, CONIC_PLANE_RGBA, at, p.rgba, 4);
@@ -96,6 +99,15 @@ static void resolve_pixel(const conic_band *band, const conic_finish *finish, co
   store(image, CONIC_PLANE_Z, at, &z, 1);
 }
 
+/* Of the nearest that is seen. */
+static uint32_t id_of(const conic_band *band, int block, int l) {
+  const conic_triangle_row *triangles = band->triangles;
+  if (!triangles || !(triangles->nearest[block] >> l & 1))
+    return band->projected->surfaces[band->sums[block].nearest[l]].index;
+  const conic_triangle_frame *frame = band->triangle_frame;
+  return frame->first_id + frame->records[triangles->blocks[block].record[l]].index;
+}
+
 static void resolve_block_indices(const conic_band *band, int block, int l, size_t at, conic_image *image) {
   const conic_block_sums *sums = &band->sums[block];
   uint32_t *count = image->planes[CONIC_PLANE_COUNT], *id = image->planes[CONIC_PLANE_ID];
@@ -103,7 +115,7 @@ static void resolve_block_indices(const conic_band *band, int block, int l, size
   if (count)
     count[at] = is_covered ? sums->count[l] : 0;
   if (id)
-    id[at] = is_covered ? band->projected->surfaces[sums->nearest[l]].index : CONIC_NO_ID;
+    id[at] = is_covered ? id_of(band, block, l) : CONIC_NO_ID;
 }
 
 void conic_band_resolve_indices(const conic_band *band, conic_image *image) {

@@ -76,6 +76,12 @@ CONIC_INLINE lanes plane_z(const conic_band *band, const conic_block_sums *sums,
   return lanes_keep(covered, 1.0f / iz);
 }
 
+/* The triangles' own, where they are the heaviest. */
+CONIC_INLINE lanes triangle_z(const conic_band *band, int block, size_t at, lanes z) {
+  unsigned is_heaviest = band->triangles->heaviest[block] >> at & ((1u << CONIC_LANES) - 1);
+  return lanes_select(lanes_mask_of(is_heaviest), 1.0f / lanes_load(band->triangles->blocks[block].iz + at), z);
+}
+
 CONIC_INLINE void finish_part(const conic_band *band, const conic_block_sums *sums, const conic_finish *finish,
                               const conic_tile_rays *rays, int block, size_t at, finished *done) {
   const conic_render_options *options = finish->options;
@@ -141,6 +147,8 @@ CONIC_INLINE void resolve_part(conic_band *band, int block, int part, const coni
     done.z = lanes_of(0.0f);
     if (image->planes[CONIC_PLANE_Z])
       done.z = plane_z(band, sums, at, x, band->y, done.covered);
+    if (band->triangles && image->planes[CONIC_PLANE_Z])
+      done.z = triangle_z(band, block, at, done.z);
     band->n_covered += lanes_count(done.covered);
   }
   store_part(&done, (size_t)column, image, rows);

@@ -8,9 +8,9 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "raster/drawing.h"
 #include "raster/method.h"
 #include "raster/projected.h"
-#include "raster/scene_scale.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
@@ -136,7 +136,9 @@ static conic_camera fine_camera(const conic_camera *camera, int samples, int fir
 static void add_statistics(const conic_render_statistics *band, conic_render_statistics *sum) {
   conic_render_milliseconds ms = sum->ms;
   uint64_t fragments = sum->fragments, pixels_covered = sum->pixels_covered;
+  uint64_t triangle_fragments = sum->triangle_fragments;
   *sum = *band;
+  sum->triangle_fragments += triangle_fragments;
   sum->fragments += fragments;
   sum->pixels_covered += pixels_covered;
   sum->ms.setup += ms.setup;
@@ -174,8 +176,9 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static conic_status count_whole(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+static conic_status count_whole(conic_context *context, const conic_whole_drawing *drawing, const conic_camera *camera,
                                 const conic_render_options *options, conic_render_statistics *s) {
+  const conic_splats *splats = drawing->splats;
   census c = {.splats = splats};
   size_t n_tasks = (splats->count + COUNTED_TOGETHER - 1) / COUNTED_TOGETHER;
   conic_status status =
@@ -197,10 +200,10 @@ static conic_status count_whole(conic_context *context, const conic_splats *spla
   }
   conic_method_count(options->method, n_rays, s);
   conic_memory_release(context, c.chunks);
-  return CONIC_OK;
+  return conic_whole_drawing_count(context, drawing, &c.view, camera, s);
 }
 
-static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_splats *splats,
+static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_whole_drawing *drawing,
                               const conic_camera *camera, const conic_render_options *options, reduction *r,
                               conic_render_statistics *sum) {
   conic_render_statistics band;
@@ -209,7 +212,7 @@ static conic_status draw_band(conic_renderer *renderer, conic_context *context, 
       conic_image_allocate(context, camera->width, camera->height, conic_image_planes(r->image), &fine);
   if (status != CONIC_OK)
     return status;
-  status = conic_render(renderer, splats, camera, options, &fine, &band);
+  status = conic_render_whole(renderer, drawing, camera, options, &fine, &band);
   if (status == CONIC_OK) {
     double start = milliseconds_now();
     r->fine = &fine;
@@ -227,14 +230,14 @@ static int band_rows(const conic_camera *camera, int samples) {
   return n < 1 ? 1 : n < (size_t)camera->height ? (int)n : camera->height;
 }
 
-conic_status conic_render_samples(conic_context *context, conic_renderer *renderer, const conic_splats *splats,
-                                  const conic_camera *camera, const conic_render_options *options, int samples,
-                                  conic_image *image, conic_render_statistics *statistics) {
+static conic_status render_samples(conic_context *context, conic_renderer *renderer, const conic_whole_drawing *drawing,
+                                   const conic_camera *camera, const conic_render_options *options, int samples,
+                                   conic_image *image, conic_render_statistics *statistics) {
   conic_render_statistics sum;
   double start = milliseconds_now();
   if (samples == 1)
-    return conic_render(renderer, splats, camera, options, image, statistics);
-  if (!splats || !camera || !options || !image || options->size != sizeof *options)
+    return conic_render_whole(renderer, drawing, camera, options, image, statistics);
+  if (!drawing->splats || !camera || !options || !image || options->size != sizeof *options)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "render: an argument is null, or the options were not initialised");
   if (image->width != camera->width || image->height != camera->height)
@@ -245,21 +248,38 @@ conic_status conic_render_samples(conic_context *context, conic_renderer *render
                       CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
   conic_render_options same = *options;
   reduction r = {.image = image, .samples = (size_t)samples};
-  conic_status status = conic_scene_scale(context, splats, &same);
+  conic_status status = conic_whole_drawing_scale(context, drawing, &same);
   memset(&sum, 0, sizeof sum);
   int rows = band_rows(camera, samples);
   for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
     int n_rows = camera->height - y < rows ? camera->height - y : rows;
     conic_camera fine = fine_camera(camera, samples, y, n_rows);
     r.first_row = (size_t)y;
-    status = draw_band(renderer, context, splats, &fine, &same, &r, &sum);
+    status = draw_band(renderer, context, drawing, &fine, &same, &r, &sum);
   }
   if (status == CONIC_OK && rows < camera->height) {
     conic_camera whole = fine_camera(camera, samples, 0, camera->height);
-    status = count_whole(context, splats, &whole, &same, &sum);
+    status = count_whole(context, drawing, &whole, &same, &sum);
   }
   sum.ms.frame = milliseconds_now() - start;
   if (status == CONIC_OK && statistics)
     *statistics = sum;
   return status;
+}
+
+conic_status conic_render_samples(conic_context *context, conic_renderer *renderer, const conic_splats *splats,
+                                  const conic_camera *camera, const conic_render_options *options, int samples,
+                                  conic_image *image, conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  return render_samples(context, renderer, &alone, camera, options, samples, image, statistics);
+}
+
+conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
+                                  const conic_camera *camera, const conic_render_options *options, int samples,
+                                  conic_image *image, conic_render_statistics *statistics) {
+  conic_whole_drawing whole;
+  if (!drawing)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the drawing is null");
+  conic_whole_drawing_of(drawing, &whole);
+  return render_samples(context, renderer, &whole, camera, options, samples, image, statistics);
 }

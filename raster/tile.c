@@ -4,6 +4,7 @@
 
 #include "raster/stream.h"
 #include "raster/ticks.h"
+#include "raster/triangle_tile.h"
 
 _Static_assert(CONIC_GATHER_SLACK <= CONIC_SELECT_SLACK, "room behind the entries");
 
@@ -35,6 +36,20 @@ static void select_band(const conic_tile *tile, const conic_tile_kernels *kernel
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
+/* The triangles of a row, if there are any. */
+static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band) {
+  band->triangles = NULL;
+  if (tile->triangles)
+    conic_triangle_tile_row(tile->triangles, tile->triangle_tile, i_row, band);
+}
+
+static void draw_triangles(const conic_tile *tile, const conic_tile_kernels *kernels, conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  kernels->triangles_draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
+  report->n_triangle_fragments = tile->triangle_tile->n_fragments;
+  report->visibility += conic_ticks() - start;
+}
+
 /* Visibility and accumulation of all rows, each resolved at once. */
 static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
@@ -43,8 +58,13 @@ static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kerne
     select_band(tile, kernels, i_row, band);
     uint64_t listed = conic_ticks();
     kernels->visibility(band);
+    begin_triangles(tile, i_row, band);
+    if (band->triangles)
+      kernels->triangles_hide(band, rays);
     uint64_t seen = conic_ticks();
     kernels->accumulate(band);
+    if (band->triangles)
+      kernels->triangles_add(band, finish, rays);
     uint64_t summed = conic_ticks();
     kernels->resolve(band, finish, rays, image);
     report->lists += listed - start;
@@ -65,6 +85,11 @@ static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kerne
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
     band->nearest = tile->scratch.nearest + i_row * (CONIC_BAND_BLOCKS + 1);
     kernels->take_nearest(band);
+    begin_triangles(tile, i_row, band);
+    if (band->triangles) {
+      conic_triangles_win(band);
+      kernels->triangles_add(band, finish, rays);
+    }
     kernels->resolve(band, finish, rays, image);
   }
   report->resolve += conic_ticks() - seen;
@@ -89,6 +114,8 @@ void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const 
                      .sums = tile->scratch.sums};
   memset(report, 0, sizeof *report);
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
+  if (tile->triangles)
+    draw_triangles(tile, kernels, report);
   if (finish->options->passes == 1)
     draw_nearest(tile, kernels, finish, &rays, &band, image, report);
   else

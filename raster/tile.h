@@ -20,12 +20,15 @@ typedef struct conic_tile {
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */
   conic_tile_scratch scratch;
+  const conic_triangle_frame *triangles; /* null: there are none */
+  conic_triangle_tile *triangle_tile;    /* what they are drawn in */
+  size_t i_tile;
 } conic_tile;
 
 /* What a tile's passes took, in ticks, and found. */
 typedef struct conic_tile_report {
   uint64_t lists, visibility, accumulate, resolve;
-  uint64_t n_fragments, n_covered;
+  uint64_t n_fragments, n_covered, n_triangle_fragments;
 } conic_tile_report;
 
 /* The scratch memory that tiles of up to n_references need, one after the other. */

@@ -8,6 +8,7 @@
 
 #include "raster/bins.h"
 #include "raster/resolve.h"
+#include "raster/triangle_frame.h"
 
 /* select may write so many entries past those that it counts. */
 #define CONIC_SELECT_SLACK 16
@@ -36,6 +37,14 @@ typedef struct conic_tile_kernels {
   void (*take_nearest)(conic_band *band);
   /* Pass 3: the image's pixels, and n_covered. */
   void (*resolve)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image);
+  /* Triangles: the vertices begin … end - 1 on the screen. */
+  void (*triangle_vertices)(const conic_triangle_frame *frame, size_t begin, size_t end, conic_screen_vertex *vertices);
+  /* The nearest at each pixel of the tile whose first is (x, y): blocks, covered, n_fragments. */
+  void (*triangles_draw)(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);
+  /* After pass 1: which of a band's triangles are seen, and what they hide, in its thresholds. */
+  void (*triangles_hide)(conic_band *band, const conic_tile_rays *rays);
+  /* After pass 2: adds those that are seen to the sums; heaviest, nearest. */
+  void (*triangles_add)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
 } conic_tile_kernels;
 
 extern const conic_tile_kernels conic_tile_kernels_scalar;

@@ -480,7 +480,23 @@ static void accumulate(conic_band *band) {
 
 #include "raster/nearest_body.h"
 #include "raster/project_body.h"
+#include "raster/triangle_body.h"
+
 #include "raster/resolve_body.h"
 
-const conic_tile_kernels TABLE = {NAME,       project,    keys,    move,         select_references,
-                                  visibility, accumulate, nearest, take_nearest, resolve};
+const conic_tile_kernels TABLE = {
+    .name = NAME,
+    .project = project,
+    .keys = keys,
+    .move = move,
+    .select = select_references,
+    .visibility = visibility,
+    .accumulate = accumulate,
+    .nearest = nearest,
+    .take_nearest = take_nearest,
+    .resolve = resolve,
+    .triangle_vertices = triangle_vertices,
+    .triangles_draw = triangles_draw,
+    .triangles_hide = triangles_hide,
+    .triangles_add = triangles_add,
+};

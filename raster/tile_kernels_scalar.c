@@ -3,6 +3,7 @@
 
 #include "raster/coverage.h"
 #include "raster/tile_kernels.h"
+#include "raster/triangle_tile.h"
 
 /* The fragment of a footprint at pixel l of a block: 1 where it is covered. */
 static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, int l, conic_fragment *fragment) {
@@ -216,6 +217,19 @@ static void take_nearest(conic_band *band) {
   }
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {"scalar",          conic_project_range, keys,       move,
-                                                      select_references, visibility,          accumulate, nearest,
-                                                      take_nearest,      conic_band_resolve};
+const conic_tile_kernels conic_tile_kernels_scalar = {
+    .name = "scalar",
+    .project = conic_project_range,
+    .keys = keys,
+    .move = move,
+    .select = select_references,
+    .visibility = visibility,
+    .accumulate = accumulate,
+    .nearest = nearest,
+    .take_nearest = take_nearest,
+    .resolve = conic_band_resolve,
+    .triangle_vertices = conic_triangle_vertices,
+    .triangles_draw = conic_triangles_draw,
+    .triangles_hide = conic_triangles_hide,
+    .triangles_add = conic_triangles_add,
+};

@@ -87,7 +87,7 @@ CONIC_API conic_status conic_triangles_take(conic_context *context, conic_model 
 CONIC_API conic_status conic_triangles_read(conic_context *context, const char *path, conic_triangles *triangles);
 
 /* Appends `more` to `triangles`, rebased to its origin; arrays that only one of the two has are filled for the other
- * with what absence means. The textures of `more` move; the rest of it stays. Errors: MEMORY; `triangles` is then as it
+ * with what absence means. The textures of `more` move, and all of it where `triangles` is empty. Errors: MEMORY; `triangles` is then as it
  * was, and so is `more`. */
 CONIC_API conic_status conic_triangles_append(conic_context *context, conic_triangles *triangles,
                                               conic_triangles *more);
@@ -117,7 +117,7 @@ CONIC_API double conic_drawing_near(const conic_drawing *drawing);
 
 /* conic_render_samples (1 sample: conic_render) for splats and triangles together. In the plane `id`, triangle j is
  * the number of splats + j. Triangles with a vertex that is not finite are skipped and counted. With splats alone the
- * picture is conic_render_samples' own, bit for bit. Errors: as there; ARGUMENT also where triangles have arrays
+ * picture is conic_render_samples' own, bit for bit. Errors: as there; INPUT where triangles have arrays
  * missing or indices out of range (conic_triangles_check), UNSUPPORTED where the renderer draws by a device that knows
  * no triangles. */
 CONIC_API conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer,

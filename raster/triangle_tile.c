@@ -1,0 +1,253 @@
+/* The plain C reference of the triangles' slots: a sample at a time. */
+#include "raster/triangle_tile.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "raster/coverage.h"
+#include "raster/triangle_look.h"
+
+void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,
+                             conic_band *band) {
+  uint32_t any = 0;
+  for (int block = 0; block < band->n_blocks; block++)
+    any |= tile->covered[i_row][block];
+  band->triangles = any ? &tile->row : NULL;
+  band->triangle_frame = frame;
+  if (!any)
+    return;
+  memset(&tile->row, 0, sizeof tile->row);
+  tile->row.blocks = tile->blocks[i_row];
+  memcpy(tile->row.covered, tile->covered[i_row], sizeof tile->row.covered);
+}
+
+unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
+                                     conic_triangle_tile *tile) {
+  const conic_triangle_record *record = &frame->records[i_record];
+  const conic_box *box = &record->box;
+  const float iz_far = conic_triangle_far(record), iz_near = conic_triangle_near(record);
+  int x_begin = box->x_begin > x ? box->x_begin : x, y_begin = box->y_begin > y ? box->y_begin : y;
+  int x_end = box->x_end < x + frame->tile ? box->x_end : x + frame->tile;
+  int y_end = box->y_end < y + frame->tile ? box->y_end : y + frame->tile;
+  unsigned n_covered = 0;
+  conic_triangle_edges edges;
+  conic_triangle_edges_of(record, &edges);
+  for (int j = y_begin; j < y_end; j++)
+    for (int i = x_begin; i < x_end; i++) {
+      int is_inside = 1, column = i % CONIC_BLOCK_EDGE, row = j % CONIC_BLOCK_EDGE;
+      int64_t e[3];
+      for (int k = 0; k < 3; k++) {
+        e[k] = conic_triangle_edge_at(&edges, k, i - column, j - row);
+        is_inside &= e[k] + (edges.a[k] * column + edges.b[k] * row) * CONIC_SUBPIXELS + edges.bias[k] >= 0;
+      }
+      if (!is_inside)
+        continue;
+      conic_affine depth = conic_triangle_depth(record, &edges, e[1], e[2]);
+      float iz = conic_affine_at(&depth, (float)column, (float)row);
+      iz = iz > iz_far ? iz : iz_far;
+      iz = iz < iz_near ? iz : iz_near;
+      conic_triangle_block *block = &tile->blocks[(j - y) / CONIC_BLOCK_EDGE][(i - x) / CONIC_BLOCK_EDGE];
+      int l = column * CONIC_BLOCK_EDGE + row;
+      n_covered++;
+      if (!(block->iz[l] < iz))
+        continue;
+      block->iz[l] = iz;
+      block->record[l] = i_record;
+    }
+  return n_covered;
+}
+
+void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile) {
+  tile->n_fragments = 0;
+  memset(tile->covered, 0, sizeof tile->covered);
+  memset(tile->blocks, 0, sizeof tile->blocks);
+  for (size_t i = 0; i < frame->n_chunks; i++) {
+    const conic_triangle_chunk *chunk = &frame->chunks[i];
+    const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
+    const uint32_t *entries = frame->entries + chunk->first_entry;
+    for (uint32_t k = begin[0]; k < begin[1]; k++)
+      tile->n_fragments += conic_triangle_draw_samples(frame, (uint32_t)chunk->first_record + entries[k], x, y, tile);
+  }
+  for (int i_row = 0; i_row < CONIC_BAND_BLOCKS; i_row++)
+    for (int block = 0; block < CONIC_BAND_BLOCKS; block++)
+      for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+        tile->covered[i_row][block] |= tile->blocks[i_row][block].iz[l] > 0.0f ? 1u << l : 0u;
+}
+
+void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays) {
+  conic_triangle_row *row = band->triangles;
+  int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
+  float epsilon = band->triangle_frame->epsilon;
+  for (int block = 0; block < band->n_blocks; block++) {
+    row->visible[block] = row->covered[block];
+    if (!row->covered[block] || conic_block_is_empty(band, block))
+      continue;
+    float *threshold = band->kept[block].threshold;
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      if (!(row->covered[block] >> l & 1))
+        continue;
+      float iz = row->blocks[block].iz[l], dx = rays->block_x[block][l], dy = rays->block_y[i_row][l];
+      float hides = iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
+      if (!(iz >= threshold[l]))
+        row->visible[block] &= ~(1u << l);
+      threshold[l] = hides > threshold[l] ? hides : threshold[l];
+    }
+  }
+}
+
+void conic_triangles_win(conic_band *band) {
+  conic_triangle_row *row = band->triangles;
+  for (int block = 0; block < band->n_blocks; block++) {
+    row->visible[block] = row->covered[block];
+    if (!row->covered[block] || conic_block_is_empty(band, block))
+      continue;
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      if (!(row->blocks[block].iz[l] > band->nearest[block].iz[l])) {
+        row->visible[block] &= ~(1u << l);
+        continue;
+      }
+      conic_block_sums *sums = &band->sums[block];
+      sums->weight[l] = 0.0f;
+      sums->count[l] = 0;
+      for (int axis = 0; axis < 3; axis++)
+        sums->color[axis][l] = sums->normal[axis][l] = 0.0f;
+    }
+  }
+}
+
+static void rank(const conic_band *band, int block, int l, int *is_heaviest, int *is_nearest) {
+  const conic_block_sums *sums = &band->sums[block];
+  int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+  conic_fragment fragment;
+  *is_heaviest = *is_nearest = 1;
+  if (!(sums->weight[l] > 0.0f))
+    return;
+  const conic_footprint *heaviest = &band->projected->footprints[sums->heaviest[l]];
+  if (conic_fragment_at(band->view, band->projected, heaviest, x, y, &fragment))
+    *is_heaviest = 1.0f > conic_final_weight(band->view, heaviest, fragment.q, fragment.scale);
+  if (!band->keeps_indices)
+    return;
+  const conic_footprint *nearest = &band->projected->footprints[sums->nearest[l]];
+  if (conic_fragment_at(band->view, band->projected, nearest, x, y, &fragment))
+    *is_nearest = band->triangles->blocks[block].iz[l] > fragment.iz;
+}
+
+void conic_triangle_rank_block(const conic_band *band, int block) {
+  conic_triangle_row *row = band->triangles;
+  for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+    int is_heaviest, is_nearest;
+    if (!(row->visible[block] >> l & 1))
+      continue;
+    rank(band, block, l, &is_heaviest, &is_nearest);
+    row->heaviest[block] |= (uint32_t)is_heaviest << l;
+    row->nearest[block] |= (uint32_t)is_nearest << l;
+  }
+}
+
+/* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
+ * pixel, where that is asked for. */
+typedef struct place {
+  float at[2], by_x[2], by_y[2];
+} place;
+
+static float at_least_zero(float x) {
+  return x > 0.0f ? x : 0.0f;
+}
+
+static void find_place(const conic_triangle_look *look, float column, float row, place *p) {
+  float iz = conic_affine_at(&look->iz, column, row), at[2], by_x[2], by_y[2];
+  iz = iz > look->iz_far ? iz : look->iz_far;
+  iz = iz < look->iz_near ? iz : look->iz_near;
+  float z = 1.0f / iz;
+  const conic_affine *weights[2] = {&look->first, &look->second};
+  for (int i = 0; i < 2; i++) {
+    at[i] = at_least_zero(conic_affine_at(weights[i], column, row) * z);
+    at[i] = at[i] < 1.0f ? at[i] : 1.0f;
+    by_x[i] = (weights[i]->by_x - at[i] * look->iz.by_x) * z;
+    by_y[i] = (weights[i]->by_y - at[i] * look->iz.by_y) * z;
+  }
+  for (int i = 0; i < 2; i++) {
+    p->at[i] = look->is_piece ? look->at[0][i] + (at[0] * look->at[1][i] + at[1] * look->at[2][i]) : at[i];
+    p->by_x[i] = look->is_piece ? by_x[0] * look->at[1][i] + by_x[1] * look->at[2][i] : by_x[i];
+    p->by_y[i] = look->is_piece ? by_y[0] * look->at[1][i] + by_y[1] * look->at[2][i] : by_y[i];
+  }
+}
+
+static void find_color(const conic_triangle_look *look, const place *p, float color[3]) {
+  float uv[2], along[2], across[2], texel[3];
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] =
+        look->color[0][channel] + (p->at[0] * look->color[1][channel] + p->at[1] * look->color[2][channel]);
+  if (!look->texture)
+    return;
+  for (int i = 0; i < 2; i++) {
+    uv[i] = look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]);
+    along[i] = p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i];
+    across[i] = p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i];
+  }
+  conic_texture_sample(look->texture, uv, along, across, texel);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] *= texel[channel];
+}
+
+/* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
+static void find_normal(const conic_triangle_look *look, const place *p, const conic_finish *finish, float dx, float dy,
+                        float normal[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = look->face[axis];
+  if (look->has_normals) {
+    float mean[3], scale;
+    for (int axis = 0; axis < 3; axis++)
+      mean[axis] = look->normal[0][axis] + (p->at[0] * look->normal[1][axis] + p->at[1] * look->normal[2][axis]);
+    float squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2];
+    scale = 1.0f / sqrtf(squared);
+    for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
+      normal[axis] = mean[axis] * scale;
+  }
+  float away = 0.0f;
+  for (int i = 0; i < 3; i++) {
+    const float *m = finish->world_from_cam[i];
+    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
+  }
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
+}
+
+static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
+  conic_block_sums *sums = &band->sums[block];
+  const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
+  int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
+  conic_triangle_look look;
+  place p;
+  float color[3], normal[3];
+  conic_triangle_look_at(band->triangle_frame, record, band->x + block * CONIC_BLOCK_EDGE, band->y, &look);
+  find_place(&look, (float)(l / CONIC_BLOCK_EDGE), (float)(l % CONIC_BLOCK_EDGE), &p);
+  find_color(&look, &p, color);
+  find_normal(&look, &p, finish, rays->block_x[block][l], rays->block_y[i_row][l], normal);
+  sums->weight[l] += 1.0f;
+  sums->count[l]++;
+  float size = 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    sums->color[axis][l] += color[axis];
+    sums->normal[axis][l] += normal[axis];
+    size += fabsf(sums->normal[axis][l]);
+  }
+  for (int axis = 0; axis < 3 && !(size > 0.0f); axis++)
+    sums->normal[axis][l] = normal[axis] * CONIC_LEAST_WEIGHT;
+}
+
+void conic_triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays) {
+  conic_triangle_row *row = band->triangles;
+  for (int block = 0; block < band->n_blocks; block++) {
+    if (!row->visible[block])
+      continue;
+    if (conic_block_is_empty(band, block)) {
+      memset(&band->sums[block], 0, sizeof band->sums[block]);
+      band->n_kept[block] = 1;
+    }
+    conic_triangle_rank_block(band, block);
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      if (row->visible[block] >> l & 1)
+        add_pixel(band, finish, rays, block, l);
+  }
+}

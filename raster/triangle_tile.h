@@ -1,0 +1,26 @@
+/* A tile's triangles: which is the nearest at each pixel, and what that does to the splats' passes. */
+#ifndef RASTER_TRIANGLE_TILE_H
+#define RASTER_TRIANGLE_TILE_H
+
+#include "raster/resolve.h"
+#include "raster/triangle_frame.h"
+
+/* Points the band to the tile's row; null where no triangle is in it. */
+void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row, conic_band *band);
+
+/* A record in a tile, sample by sample; returns how many it covers. For those of a few samples, and the plain C
+ * reference for all. */
+unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
+                                     conic_triangle_tile *tile);
+
+/* Finds out where visible triangles of a block are the heaviest and the nearest of what is visible, before they are
+ * added to its sums. */
+void conic_triangle_rank_block(const conic_band *band, int block);
+
+/* The plain C references of the slots. */
+void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);
+void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays);
+void conic_triangles_win(conic_band *band);
+void conic_triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
+
+#endif
