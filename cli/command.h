@@ -13,7 +13,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_make, cli_prepare, cli_octree, cli_mls, cli_render, cli_diff, cli_info, cli_verify,
-    cli_explain, cli_chart, cli_bench, cli_devices;
+    cli_explain, cli_chart, cli_bench, cli_devices, cli_hybrid;
 
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);

@@ -210,8 +210,8 @@ static conic_status draw(cli_session *session, explain_job *job, const conic_spl
   conic_renderer *renderer;
   if (!job->is_pixel_given)
     return CONIC_OK;
-  conic_status status = conic_image_allocate(session->context, job->camera.width, job->camera.height,
-                                             (1u << CONIC_N_PLANES) - 1, &job->image);
+  conic_status status =
+      conic_image_allocate(session->context, job->camera.width, job->camera.height, CONIC_DRAWN_PLANES, &job->image);
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status != CONIC_OK)

@@ -7,7 +7,7 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
-typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1 } cli_representation;
+typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1, CLI_AS_HYBRID = 2 } cli_representation;
 
 typedef struct cli_render_job {
   /* What was asked for. */
@@ -41,6 +41,13 @@ typedef struct cli_render_job {
 
   conic_triangles triangles; /* read beside the splats, with --as mesh */
 
+  /* A .chy, or a mesh with --as hybrid: the only input, and what was chosen of it for the frame. */
+  conic_hybrid *hybrid;
+  conic_hybrid_info hybrid_info;
+  conic_hybrid_selection hybrid_selection;
+  const char *clusters_path; /* --clusters; null: none */
+  int only_kind;             /* --only: a conic_hybrid_kind, or -1 */
+
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
   double first_frame_ms;
@@ -64,6 +71,17 @@ conic_status cli_lod_open(cli_session *session, cli_render_job *job);
 conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, double *ms);
 /* Ends both; fine where they never were. */
 void cli_lod_close(cli_session *session, cli_render_job *job);
+
+/* Whether the only input is a hybrid model, or is to be made one. */
+int cli_hybrid_is_wanted(const cli_render_job *job);
+/* Reads or builds it into the job. */
+conic_status cli_hybrid_open(cli_session *session, cli_render_job *job);
+/* Chooses for a frame; *ms is what it took. */
+conic_status cli_hybrid_select(cli_render_job *job, const conic_camera *camera, double *ms);
+/* --clusters: the patches in colours of their own, as they are shaded in `image`. */
+conic_status cli_hybrid_write_clusters(cli_session *session, const char *path, const conic_image *image);
+/* Ends it; fine where it never was. */
+void cli_hybrid_close(cli_session *session, cli_render_job *job);
 
 /* What is drawn: the splats and the job's triangles. */
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats);

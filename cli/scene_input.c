@@ -111,6 +111,8 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
   memset(splats, 0, sizeof *splats);
+  if (cli_hybrid_is_wanted(job))
+    return cli_hybrid_open(session, job);
   if (cli_lod_is_wanted(job))
     return cli_lod_open(session, job);
   for (int i = 0; i < job->n_inputs; i++) {
@@ -136,6 +138,10 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats) {
   conic_drawing drawing = {splats, &job->triangles};
+  if (job->hybrid) {
+    drawing.splats = &job->hybrid_selection.splats;
+    drawing.triangles = &job->hybrid_selection.triangles;
+  }
   return drawing;
 }
 
@@ -148,8 +154,9 @@ void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *
 static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double spacing = 1.0;
   conic_status status = CONIC_OK;
-  if (job->octree && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
-    cli_error(CLI_USAGE, "render: lengths in spacings need every splat; give world units with --error or --budget");
+  if ((job->octree || job->hybrid) && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
+    cli_error(CLI_USAGE,
+              "render: lengths in spacings need every splat; give world units with --error, --budget or a hybrid");
     return CONIC_ERROR_ARGUMENT;
   }
   if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
@@ -161,21 +168,21 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
   return status;
 }
 
-/* What an octree knows of the splats that it was built from. */
-static void measure_octree(cli_render_job *job) {
-  job->options.splat_length = job->info.splat_length;
+/* What an octree or a hybrid knows of what it was built from. */
+static void measure_built(cli_render_job *job) {
+  job->options.splat_length = job->hybrid ? job->hybrid_info.splat_length : job->info.splat_length;
   if (job->options.near_z == 0.0)
-    job->options.near_z = job->info.near_z;
+    job->options.near_z = job->hybrid ? job->hybrid_info.near_z : job->info.near_z;
 }
 
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
   conic_status status = resolve_lengths(session, job, splats);
-  if (job->octree)
-    measure_octree(job);
+  if (job->octree || job->hybrid)
+    measure_built(job);
   else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0) {
+  if (status == CONIC_OK && !job->octree && !job->hybrid && job->options.near_z == 0.0) {
     const conic_drawing drawing = cli_scene_drawing(job, splats);
     job->options.near_z = conic_drawing_near(&drawing);
   }
@@ -189,7 +196,10 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   conic_framing framing = job->framing;
   if (job->camera_path)
     return conic_camera_read(session->context, job->camera_path, camera);
-  if (job->octree) {
+  if (job->hybrid) {
+    memcpy(low, job->hybrid_info.minimum, sizeof low);
+    memcpy(high, job->hybrid_info.maximum, sizeof high);
+  } else if (job->octree) {
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);
   } else {

@@ -268,3 +268,17 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
   return CONIC_OK;
 }
+
+void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {
+  const uint32_t *id = image->planes[CONIC_PLANE_ID];
+  uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
+  size_t n_splats = selection->splats.count, n_triangles = selection->triangles.count;
+  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+    if (id[i] < n_splats)
+      cluster[i] = selection->splat_cluster[id[i]];
+    else if (id[i] - n_splats < n_triangles)
+      cluster[i] = selection->triangles.cluster[id[i] - n_splats];
+    else
+      cluster[i] = CONIC_NO_ID;
+  }
+}
