@@ -131,9 +131,9 @@ static int run(cli_session *session, int argc, char **argv) {
   const cli_option options[] = {
       {.name = "o", .type = CLI_TEXT, .value = &job.output, .argument = "OUT.chy", .help = "the file to write"},
       {"phase1", CLI_NUMBER, &job.options.phase1, "COST",
-       "what is flat together is joined up to this cost; more: larger clusters [0.2]", -1e6, 1e6},
+       "what is flat together is joined up to this cost; more: larger clusters [0.12]", -1e6, 1e6},
       {"phase2", CLI_NUMBER, &job.options.phase2, "COST",
-       "what is small then is gathered to patches of surfels up to this cost; -2: none, 1e6: all [0.12]", -1e6, 1e6},
+       "what is small then is gathered to patches of surfels up to this cost; -2: none, 1e6: all [0.4]", -1e6, 1e6},
       {"largest", CLI_NUMBER, &job.options.most_area, "SHARE",
        "of the mesh's area, the most that a cluster of the first phase has [0.02]", 1e-9, 1e6},
       {"density", CLI_NUMBER, &job.options.density, "N", "surfels along a patch's mean edge [2]", 0.01, 64},

@@ -133,7 +133,7 @@ static double shape_of(const conic_face_sums *a, const conic_face_sums *b, const
 }
 
 conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_face_sums *b, double shared,
-                                         double whole_area) {
+                                         double largest_area) {
   conic_joining_cost cost = {0.0, 0.0, 0.0, 0.0};
   conic_face_sums both = conic_face_sums_join(a, b, shared);
   double normal[3], d;
@@ -145,6 +145,6 @@ conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_f
   cost.fit = fit > 0.0 ? fit : 0.0;
   cost.direction = direction > 0.0 ? direction : 0.0;
   cost.shape = shape_of(a, b, &both);
-  cost.size = sqrt(both.area / whole_area);
+  cost.size = both.area / largest_area;
   return cost;
 }

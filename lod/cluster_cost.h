@@ -40,10 +40,10 @@ typedef struct conic_joining_cost {
   double fit;       /* mean squared distance from the plane */
   double direction; /* mean of (1 - n·nᵢ)² */
   double shape;     /* how much more ragged the whole is than both parts, over its own raggedness: -1 to 1 */
-  double size;      /* √(its share of the whole area) */
+  double size;      /* its area over the largest that a cluster of the first phase may have */
 } conic_joining_cost;
 
 conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_face_sums *b, double shared,
-                                         double whole_area);
+                                         double largest_area);
 
 #endif

@@ -22,7 +22,7 @@ void conic_hybrid_options_init(conic_hybrid_options *options) {
   memset(options, 0, sizeof *options);
   options->size = sizeof *options;
   options->phase1 = 0.12;
-  options->phase2 = 0.12;
+  options->phase2 = 0.4;
   options->most_area = 0.02;
   options->density = 2.0;
   options->cutoff = 1.5f;

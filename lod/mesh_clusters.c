@@ -34,7 +34,7 @@ typedef struct joining {
   uint32_t *ring;        /* of each cluster: a slot, or none */
   uint32_t *degree, *grown, *parent;
   uint8_t *is_new; /* joined in this phase */
-  double whole_area;
+  double largest_area;
   int phase;
   conic_heap queue;
   size_t n_evaluations;
@@ -93,10 +93,10 @@ static uint32_t find_joint(const joining *j, uint32_t a, uint32_t b) {
 static double cost_of(const joining *j, uint32_t i) {
   const joint *own = &j->joints[i];
   const conic_face_sums *a = &j->sums[own->ends[0]], *b = &j->sums[own->ends[1]];
-  conic_joining_cost cost = conic_joining_cost_of(a, b, own->length, j->whole_area);
+  conic_joining_cost cost = conic_joining_cost_of(a, b, own->length, j->largest_area);
   if (j->phase == 2)
     return cost.shape + cost.size;
-  if (a->area + b->area > j->options->most_area * j->whole_area)
+  if (a->area + b->area > j->largest_area)
     return HUGE_VAL;
   return (cost.fit + cost.direction) + cost.shape;
 }
@@ -206,15 +206,17 @@ static conic_status begin(joining *j, const conic_mesh *mesh, const conic_adjace
   if (!j->joints || !j->keys || !j->queue.slots || !j->sums || !j->ring || !j->parent || !j->degree || !j->grown ||
       !j->is_new)
     return CONIC_ERROR_MEMORY;
+  double whole_area = 0.0;
   j->queue.keys = j->keys;
   for (size_t i = 0; i < j->n_clusters; i++) {
     j->ring[i] = none;
     j->parent[i] = (uint32_t)i;
     if (adjacency->side[i]) {
       j->sums[i] = conic_face_sums_of(mesh, adjacency, &box, i);
-      j->whole_area += j->sums[i].area;
+      whole_area += j->sums[i].area;
     }
   }
+  j->largest_area = j->options->most_area * whole_area;
   for (size_t i = 0; i < j->n_joints; i++) {
     const conic_joint *from = &adjacency->joints[i];
     uint32_t twin = from->faces[0] == from->faces[1] ? none : find_joint(j, from->faces[0], from->faces[1]);

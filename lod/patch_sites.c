@@ -12,6 +12,9 @@ static const uint32_t none = UINT32_MAX;
 static const double lattice_step = 0.7;
 enum { MOST_SIDES = 32 };
 
+/* The least cosine between two faces that may have a surfel in common. */
+static const double alike = 0.5;
+
 conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
                                 size_t size) {
   if (count <= *room)
@@ -157,7 +160,7 @@ static uint32_t nearest_site(const conic_sampler *s, const double at[3], const d
       const conic_site *site = &s->sites[i];
       double x = at[0] - site->at[0], y = at[1] - site->at[1], z = at[2] - site->at[2];
       double distance2 = (x * x + y * y) + z * z;
-      if ((distance2 < least || (distance2 == least && i < found)) && conic_dot(facing, site->facing) >= 0.0) {
+      if ((distance2 < least || (distance2 == least && i < found)) && conic_dot(facing, site->facing) >= alike) {
         least = distance2;
         found = i;
       }
