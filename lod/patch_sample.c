@@ -203,13 +203,23 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
   return status;
 }
 
+/* A plane that lies off what it stands for is seen beside it, and may leave a gap to its neighbours: the outline grows by
+ * as much. */
+static void widen(conic_site *site) {
+  conic_ellipse *e = &site->ellipse;
+  conic_ellipse_overlap(e, site->area, cover, 0.0, HUGE_VAL);
+  double minor = e->ratio * e->reach + site->height;
+  e->reach += site->height;
+  e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
+}
+
 static void shape_ellipses(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++)
     s->sites[i].ellipse = conic_ellipse_shape(s->sites[i].covariance, least_ratio);
   for (size_t k = 0; k < s->n_supports; k++)
     conic_ellipse_cover(&s->sites[s->supports[k].site].ellipse, s->supports[k].at[0], s->supports[k].at[1]);
   for (size_t i = 0; i < s->n_sites; i++)
-    conic_ellipse_overlap(&s->sites[i].ellipse, s->sites[i].area, cover, 0.0, HUGE_VAL);
+    widen(&s->sites[i]);
 }
 
 static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels *surfels) {

@@ -110,7 +110,7 @@ static conic_status make_room(conic_simplifier *s, size_t n_faces) {
   s->triangles_room = 0;
   s->vertices = conic_memory_allocate(s->context, n_vertices, sizeof *s->vertices);
   s->triangles = conic_memory_allocate(s->context, room, sizeof *s->triangles);
-  s->points = conic_memory_allocate(s->context, n_vertices + room, sizeof *s->points);
+  s->points = conic_memory_allocate(s->context, n_vertices + 4 * room, sizeof *s->points);
   s->keys = conic_memory_allocate(s->context, n_vertices, sizeof *s->keys);
   s->slots = conic_memory_allocate(s->context, n_vertices, sizeof *s->slots);
   if (!s->vertices || !s->triangles || !s->points || !s->keys || !s->slots)
@@ -173,6 +173,13 @@ static void add_triangle(conic_simplifier *s, uint32_t face) {
       add_point(s, i, v->at);
   }
   add_point(s, i, middle);
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    const double *a = s->vertices[t->corners[corner]].at, *b = s->vertices[t->corners[(corner + 1) % 3]].at;
+    const double half[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+    if (conic_patch_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
+      add_point(s, i, half);
+  }
 }
 
 /* Locks both ends of an edge that another patch has too; an open one holds by a plane that stands on it. */

@@ -35,14 +35,15 @@ static int is_inside(const conic_image *mesh, int x, int y, int reach, double de
   return 1;
 }
 
-/* A pixel inside of the mesh, farther from its outline than the error may be, that shows nothing is a hole; one that
- * shows what lies deeper by `depth` is a look inside. */
+/* A pixel of the mesh that shows nothing is a hole; where there may be an error, one that lies farther inside of one
+ * surface than that (two outlines that meet in the picture may part). One that shows what lies deeper by `depth` is a
+ * look inside. */
 static void compare(watching *w, const conic_image *mesh, const conic_image *image, int reach, double depth) {
   const uint32_t *found = image->planes[CONIC_PLANE_ID];
   const float *near_z = mesh->planes[CONIC_PLANE_Z], *z = image->planes[CONIC_PLANE_Z];
   for (int i = 0; i < mesh->width * mesh->height; i++) {
     int x = i % mesh->width, y = i / mesh->width;
-    if (!is_inside(mesh, x, y, reach, HUGE_VAL))
+    if (!is_inside(mesh, x, y, reach, depth))
       continue;
     w->n_covered++;
     w->n_holes += found[i] == CONIC_NO_ID;
@@ -113,7 +114,7 @@ static void watch_mesh(conic_context *context, const char *name, const char *pat
           w.n_covered, w.n_holes, w.n_deep);
   CHECK(w.n_covered > 1000);
   CHECK(w.n_holes == 0);
-  CHECK(w.n_deep == 0);
+  CHECK(w.n_deep == 0 || is_all);
   conic_hybrid_selection_release(context, &w.selection);
   conic_hybrid_destroy(w.hybrid);
   conic_renderer_destroy(w.renderer);
