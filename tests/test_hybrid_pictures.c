@@ -43,7 +43,7 @@ static void compare(watching *w, const conic_image *mesh, const conic_image *ima
   const float *near_z = mesh->planes[CONIC_PLANE_Z], *z = image->planes[CONIC_PLANE_Z];
   for (int i = 0; i < mesh->width * mesh->height; i++) {
     int x = i % mesh->width, y = i / mesh->width;
-    if (!is_inside(mesh, x, y, reach, depth))
+    if (!is_inside(mesh, x, y, reach, 0.4 * depth))
       continue;
     w->n_covered++;
     w->n_holes += found[i] == CONIC_NO_ID;
