@@ -14,9 +14,10 @@ typedef struct clustered {
 } clustered;
 
 /* Takes the triangles over. */
-static clustered cluster(conic_context *context, conic_triangles *triangles, double phase1, double phase2) {
+static clustered cluster(conic_context *context, conic_triangles *triangles, double phase1, double phase2,
+                         double most_area) {
   clustered c = {.context = context};
-  const conic_clustering_options options = {phase1, phase2, 0.05};
+  const conic_clustering_options options = {phase1, phase2, most_area};
   CHECK_OK(conic_flat_mesh(context, triangles, &c.triangles));
   conic_triangles_release(context, triangles);
   c.mesh.n_vertices = c.triangles.n_vertices;
@@ -189,7 +190,7 @@ static void test_odd_faces(conic_context *context) {
   put_face(&mesh, 6, 0, 6, 1); /* two places */
   put_face(&mesh, 7, 0, 1, 7);
   put_face(&mesh, 8, 9, 9, 9);
-  clustered c = cluster(context, &mesh, 0.2, 0.2);
+  clustered c = cluster(context, &mesh, 0.2, 0.2, 0.05);
   CHECK(c.adjacency.oddities.nan == 1 && c.adjacency.oddities.zero == 2 && c.adjacency.oddities.welded == 1);
   CHECK(c.adjacency.oddities.crowded >= 1);
   check_all(&c);
@@ -212,7 +213,7 @@ static void test_one_sided(conic_context *context) {
     put_face(&mesh, 2 * k, a, b, c);
     put_face(&mesh, 2 * k + 1, c, b, d);
   }
-  clustered c = cluster(context, &mesh, 0.2, -2.0);
+  clustered c = cluster(context, &mesh, 0.2, -2.0, 0.05);
   CHECK(c.adjacency.oddities.twisted == 1 && c.adjacency.oddities.n_pieces == 1);
   CHECK(c.adjacency.oddities.open == 2 * N);
   check_all(&c);
@@ -233,7 +234,7 @@ static void test_turned(conic_context *context) {
       mixed.corners[i][1] = first;
       n_turned++;
     }
-  clustered a = cluster(context, &straight, 0.12, 0.4), b = cluster(context, &mixed, 0.12, 0.4);
+  clustered a = cluster(context, &straight, 0.12, 0.4, 0.05), b = cluster(context, &mixed, 0.12, 0.4, 0.05);
   CHECK(a.adjacency.oddities.turned == 0 && b.adjacency.oddities.turned == n_turned);
   CHECK(b.adjacency.oddities.twisted == 0);
   CHECK(a.clusters.n_clusters == b.clusters.n_clusters);
@@ -253,7 +254,7 @@ static void test_soup(conic_context *context) {
     put_vertex(&mesh, i, random_unit(&state), random_unit(&state), random_unit(&state));
   for (uint32_t i = 0; i < N; i++)
     put_face(&mesh, i, 3 * i, 3 * i + 1, 3 * i + 2);
-  clustered c = cluster(context, &mesh, 1e6, 1e6);
+  clustered c = cluster(context, &mesh, 1e6, 1e6, 0.05);
   CHECK(c.clusters.n_clusters == N && c.adjacency.oddities.n_pieces == N && c.adjacency.n_joints == 0);
   check_all(&c);
   release(&c);
@@ -282,7 +283,7 @@ static void test_cube(conic_context *context) {
         put_face(&mesh, n_faces++, a + 1, a + SIDE + 1, a + SIDE + 2);
       }
   }
-  clustered c = cluster(context, &mesh, 0.15, -2.0);
+  clustered c = cluster(context, &mesh, 0.15, -2.0, 1.0);
   uint32_t side_of[12 * SIDE * SIDE];
   size_t n_bent = 0;
   memset(side_of, 0xFF, sizeof side_of);
@@ -300,7 +301,7 @@ static void test_cube(conic_context *context) {
 static void test_file(conic_context *context, const char *path) {
   conic_triangles mesh;
   CHECK_OK(conic_triangles_read(context, path, &mesh));
-  clustered c = cluster(context, &mesh, 0.12, 0.4);
+  clustered c = cluster(context, &mesh, 0.12, 0.4, 0.05);
   CHECK(c.clusters.n_first > c.clusters.n_clusters);
   CHECK(c.clusters.n_evaluations < 100 * c.mesh.n_faces);
   check_all(&c);
