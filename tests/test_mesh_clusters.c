@@ -260,40 +260,36 @@ static void test_soup(conic_context *context) {
   release(&c);
 }
 
-/* A cube of many squares: at a cost that no corner is worth, no cluster goes around one. */
-static void test_cube(conic_context *context) {
-  enum { SIDE = 8 };
+/* Two unit squares that share a side, flat or at a right angle: costs that can be worked out by hand. */
+static void test_two_squares(conic_context *context, int is_bent) {
   conic_triangles mesh;
-  make(context, (size_t)6 * (SIDE + 1) * (SIDE + 1), (size_t)6 * 2 * SIDE * SIDE, &mesh);
-  size_t n_vertices = 0, n_faces = 0;
-  for (int face = 0; face < 6; face++) {
-    uint32_t first = (uint32_t)n_vertices;
-    for (int i = 0; i <= SIDE; i++)
-      for (int j = 0; j <= SIDE; j++) {
-        double at[3];
-        at[face % 3] = face < 3 ? -0.5 : 0.5;
-        at[(face + 1) % 3] = (face < 3 ? j : i) / (double)SIDE - 0.5;
-        at[(face + 2) % 3] = (face < 3 ? i : j) / (double)SIDE - 0.5;
-        put_vertex(&mesh, n_vertices++, at[0], at[1], at[2]);
-      }
-    for (uint32_t i = 0; i < SIDE; i++)
-      for (uint32_t j = 0; j < SIDE; j++) {
-        uint32_t a = first + i * (SIDE + 1) + j;
-        put_face(&mesh, n_faces++, a, a + SIDE + 1, a + 1);
-        put_face(&mesh, n_faces++, a + 1, a + SIDE + 1, a + SIDE + 2);
-      }
-  }
-  clustered c = cluster(context, &mesh, 0.15, -2.0, 1.0);
-  uint32_t side_of[12 * SIDE * SIDE];
-  size_t n_bent = 0;
-  memset(side_of, 0xFF, sizeof side_of);
-  for (size_t i = 0; i < c.mesh.n_faces; i++) {
-    uint32_t side = (uint32_t)(i / (2 * SIDE * SIDE)), *known = &side_of[c.clusters.of_face[i]];
-    n_bent += *known != UINT32_MAX && *known != side;
-    *known = side;
-  }
-  CHECK(n_bent == 0 && c.clusters.n_clusters < 100);
-  CHECK(c.adjacency.oddities.open == 0 && c.adjacency.oddities.twisted == 0);
+  make(context, 6, 4, &mesh);
+  put_vertex(&mesh, 0, 0, 0, 0);
+  put_vertex(&mesh, 1, 0, 1, 0);
+  put_vertex(&mesh, 2, 1, 0, 0);
+  put_vertex(&mesh, 3, 1, 1, 0);
+  put_vertex(&mesh, 4, is_bent ? 1 : 2, 0, is_bent);
+  put_vertex(&mesh, 5, is_bent ? 1 : 2, 1, is_bent);
+  put_face(&mesh, 0, 0, 2, 1);
+  put_face(&mesh, 1, 1, 2, 3);
+  put_face(&mesh, 2, 2, 4, 3);
+  put_face(&mesh, 3, 3, 4, 5);
+  clustered c = cluster(context, &mesh, -2.0, -2.0, 1.0);
+  const conic_unit_box box = {{0.0, 0.0, 0.0}, 1.0};
+  conic_face_sums faces[4], squares[2];
+  for (size_t i = 0; i < 4; i++)
+    faces[i] = conic_face_sums_of(&c.mesh, &c.adjacency, &box, i);
+  squares[0] = conic_face_sums_join(&faces[0], &faces[1], sqrt(2.0));
+  squares[1] = conic_face_sums_join(&faces[2], &faces[3], sqrt(2.0));
+  CHECK(c.clusters.n_clusters == 4);
+  CHECK_NEAR(squares[0].outline, 4.0, 1e-12);
+  CHECK_NEAR(conic_face_sums_raggedness(&squares[0]), 16.0 / (4.0 * 3.14159265358979), 1e-12);
+  conic_joining_cost cost = conic_joining_cost_of(&squares[0], &squares[1], 1.0, 4.0);
+  double turn = 1.0 - sqrt(0.5);
+  CHECK_NEAR(cost.fit, is_bent ? 1.0 / 24.0 : 0.0, 1e-12); /* ∫ (t - ½)²/2 dt from either side of the ridge */
+  CHECK_NEAR(cost.direction, is_bent ? turn * turn : 0.0, 1e-12);
+  CHECK_NEAR(cost.shape, 1.0 - 16.0 / (36.0 / 2.0), 1e-12); /* outlines 4 and 6, areas 1 and 2 */
+  CHECK_NEAR(cost.size, 0.5, 1e-12);
   check_all(&c);
   release(&c);
 }
@@ -315,7 +311,8 @@ int main(int argc, char **argv) {
   test_one_sided(context);
   test_turned(context);
   test_soup(context);
-  test_cube(context);
+  test_two_squares(context, 0);
+  test_two_squares(context, 1);
   const char *path = check_data(source_folder, "cow.obj");
   if (path)
     test_file(context, path);
