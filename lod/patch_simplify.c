@@ -255,9 +255,10 @@ static int is_neighbour(const conic_simplifier *s, uint32_t a, uint32_t b) {
 /* How many of u's triangles have v, and how many corners of u's triangles neighbour v: where the surface is to stay
  * one, each of the former has one of the latter, opposite, and there are no others. */
 static int keeps_surface(const conic_simplifier *s, uint32_t u, uint32_t v) {
-  int n_between = 0, n_common = 0, n_open = 0;
+  int n_between = 0, n_common = 0, n_open = 0, n = 0;
   for (uint32_t slot = living(s, s->vertices[u].ring); slot != none; slot = after(s, slot)) {
     const triangle *t = &s->triangles[slot / 3];
+    n++;
     n_between += has_corner(t, v);
     /* Each neighbour once: as the corner after u; on a border, the last one comes as the corner before. */
     uint32_t next = t->corners[(slot % 3 + 1) % 3], last = t->corners[(slot % 3 + 2) % 3];
@@ -269,7 +270,7 @@ static int keeps_surface(const conic_simplifier *s, uint32_t u, uint32_t v) {
     n_open += is_last;
   }
   int is_border = s->vertices[u].kind == VERTEX_BORDER;
-  return n_between == (is_border ? 1 : 2) && n_common == n_between && n_open == is_border;
+  return n > n_between && n_between == (is_border ? 1 : 2) && n_common == n_between && n_open == is_border;
 }
 
 /* Whether no triangle that stays turns over or loses its area when u goes to v. */

@@ -74,6 +74,12 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "chy") == 0) {
+    conic_hybrid *hybrid;
+    status = conic_hybrid_read(context, path, &hybrid);
+    conic_hybrid_destroy(hybrid);
+    return status;
+  }
   if (is_picture(target)) {
     status = conic_image_read(context, path, &image);
     if (status == CONIC_OK)
