@@ -253,7 +253,7 @@ static int is_neighbour(const conic_simplifier *s, uint32_t a, uint32_t b) {
 }
 
 /* How many of u's triangles have v, and how many corners of u's triangles neighbour v: where the surface is to stay
- * one, each of the former has one of the latter, opposite, and there are no others. */
+ * one, each of the former has one of the latter, opposite, and there are no others; and some of u's triangles stay. */
 static int keeps_surface(const conic_simplifier *s, uint32_t u, uint32_t v) {
   int n_between = 0, n_common = 0, n_open = 0, n = 0;
   for (uint32_t slot = living(s, s->vertices[u].ring); slot != none; slot = after(s, slot)) {

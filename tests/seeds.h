@@ -259,7 +259,6 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);
-  seeds_hybrid(set, context, 0);
   seeds_hybrid(set, context, 1);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
