@@ -23,7 +23,6 @@ void conic_hybrid_options_init(conic_hybrid_options *options) {
   options->size = sizeof *options;
   options->phase1 = 0.12;
   options->phase2 = 0.4;
-  options->most_area = 0.02;
   options->density = 2.0;
   options->cutoff = 1.5f;
 }
@@ -63,8 +62,14 @@ static void release(building *b) {
 
 /* --- clusters --- */
 
+/* Where none is given, a share that has some 2000 faces if they are of one size; of small meshes a fiftieth. */
+static double most_area_of(const building *b) {
+  double share = 2000.0 / (double)b->flat.count;
+  return b->options->most_area > 0.0 ? b->options->most_area : share < 0.02 ? share : 0.02;
+}
+
 static conic_status find_clusters(building *b) {
-  const conic_clustering_options options = {b->options->phase1, b->options->phase2, b->options->most_area};
+  const conic_clustering_options options = {b->options->phase1, b->options->phase2, most_area_of(b)};
   conic_patch_mesh *mesh = &b->mesh;
   mesh->triangles = &b->flat;
   mesh->mesh = (conic_mesh){.n_vertices = b->flat.n_vertices,
@@ -431,7 +436,7 @@ static void report_oddities(building *b, const conic_triangles *mesh) {
 }
 
 static conic_status check_options(conic_context *context, const conic_hybrid_options *o) {
-  int is_good = o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 && o->most_area > 0.0 &&
+  int is_good = o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 && o->most_area >= 0.0 &&
                 o->density > 0.0 && o->density <= 64.0 && o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
                 (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
   return is_good ? CONIC_OK

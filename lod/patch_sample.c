@@ -174,7 +174,6 @@ static conic_status note_support(conic_sampler *s, uint32_t i_site, const double
   support->site = i_site;
   support->at[0] = conic_dot(d, site->u) - way * conic_dot(facing, site->u);
   support->at[1] = conic_dot(d, site->v) - way * conic_dot(facing, site->v);
-  conic_ellipse_add(site->covariance, support->at[0], support->at[1]);
   note_reach(site, support->at);
   site->height = fabs(way) > site->height ? fabs(way) : site->height;
   return CONIC_OK;
@@ -203,8 +202,8 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
   return status;
 }
 
-/* A plane that lies off what it stands for is seen beside it, and may leave a gap to its neighbours: the outline grows by
- * as much. */
+/* A plane that lies off what it stands for is seen beside it, and may leave a gap to its neighbours: the outline grows
+ * by as much. */
 static void widen(conic_site *site) {
   conic_ellipse *e = &site->ellipse;
   conic_ellipse_overlap(e, site->area, cover, 0.0, HUGE_VAL);
@@ -213,7 +212,30 @@ static void widen(conic_site *site) {
   e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
 }
 
+/* Moves a surfel within its plane to the middle of what it stands for: at the border of a patch that lies to one side.
+ */
+static void settle_center(conic_site *site) {
+  for (int k = 0; k < 2; k++) /* along the plane's axes, which are among the directions */
+    site->middle[k] =
+        0.5 * (site->reach[0][k * CONIC_SITE_DIRECTIONS / 2] - site->reach[1][k * CONIC_SITE_DIRECTIONS / 2]);
+  for (int k = 0; k < CONIC_SITE_DIRECTIONS; k++) {
+    double along = site->middle[0] * directions[k][0] + site->middle[1] * directions[k][1];
+    site->reach[0][k] -= along;
+    site->reach[1][k] += along;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    site->at[axis] += site->middle[0] * site->u[axis] + site->middle[1] * site->v[axis];
+}
+
 static void shape_ellipses(conic_sampler *s) {
+  for (size_t i = 0; i < s->n_sites; i++)
+    settle_center(&s->sites[i]);
+  for (size_t k = 0; k < s->n_supports; k++) {
+    conic_site *site = &s->sites[s->supports[k].site];
+    s->supports[k].at[0] -= site->middle[0];
+    s->supports[k].at[1] -= site->middle[1];
+    conic_ellipse_add(site->covariance, s->supports[k].at[0], s->supports[k].at[1]);
+  }
   for (size_t i = 0; i < s->n_sites; i++)
     s->sites[i].ellipse = conic_ellipse_shape(s->sites[i].covariance, least_ratio);
   for (size_t k = 0; k < s->n_supports; k++)

@@ -11,7 +11,7 @@ typedef struct conic_patch_level {
   size_t n;
   uint32_t (*corners)[3];
   uint32_t *face; /* of each: the face of the mesh that it came from */
-  double error;   /* no vertex of the patch, nor middle of an edge or a face, is farther from these triangles; measured */
+  double error; /* no vertex of the patch, nor middle of an edge or a face, is farther from these triangles; measured */
 } conic_patch_level;
 
 typedef struct conic_patch_levels {

@@ -39,6 +39,7 @@ typedef struct conic_site {
   /* Sums over what it stands for. */
   double normal[3], color[3], area, covariance[3];
   double u[3], v[3]; /* its plane */
+  double middle[2];  /* of what it stands for, in the plane */
   conic_ellipse ellipse;
   double height;                          /* of what it stands for above its plane, the most */
   double reach[2][CONIC_SITE_DIRECTIONS]; /* how far what it stands for reaches, and opposite */

@@ -29,7 +29,7 @@ typedef struct conic_hybrid_options {
   size_t size;      /* sizeof(conic_hybrid_options), set by the init function */
   double phase1;    /* what is flat is joined up to this cost */
   double phase2;    /* what is small is gathered up to this cost; what is, becomes surfels */
-  double most_area; /* no cluster of the first phase has a larger share of the whole area */
+  double most_area; /* no cluster of the first phase has a larger share of the whole area; 0: by the number of faces */
   conic_sampling sampling;
   double density;        /* surfels along the mean edge of a patch */
   float cutoff;          /* F_g of the kernel that will draw */
