@@ -108,23 +108,22 @@ static double first_spacing(const conic_ways_job *job, uint32_t patch) {
 static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, uint32_t patch) {
   conic_patch_ways *ways = &job->ways[patch];
   int is_gathered = job->mesh->clusters->is_gathered[patch], is_single = job->options->has_single_levels;
-  conic_sampling_job sampling = {job->mesh, patch, first_spacing(job, patch), (double)job->options->cutoff};
+  conic_sampling_job sampling = {job->mesh, &job->tree, patch, first_spacing(job, patch), (double)job->options->cutoff};
   conic_status status = CONIC_OK;
   int n_most = is_single ? is_gathered : CONIC_MOST_SURFEL_LEVELS;
   while (ways->n_surfels < n_most && status == CONIC_OK && sampling.spacing > 0.0) {
     conic_surfels *surfels = &ways->surfels[ways->n_surfels++];
+    int is_first = ways->n_surfels == 1;
+    surfels->error = is_first ? 0.0 : surfels[-1].error; /* it has no less than what it is coarser than */
     if (job->options->sampling == CONIC_SAMPLING_BOX)
       status = conic_patch_sample_box(job->context, &sampling, surfels);
     else
       status = conic_patch_sample(sampler, &sampling, surfels);
-    int is_first = ways->n_surfels == 1;
     if (surfels->n == 0 || (!is_first && 4 * surfels->n > 3 * surfels[-1].n)) { /* not worth a level */
       conic_surfels_release(job->context, surfels);
       ways->n_surfels--;
       break;
     }
-    if (!is_first && surfels->error < surfels[-1].error) /* it is bounded by what it is coarser than, too */
-      surfels->error = surfels[-1].error;
     if (surfels->n <= 2)
       break;
     sampling.spacing *= 2.0;
@@ -213,11 +212,14 @@ conic_status conic_find_ways(conic_ways_job *job) {
                     .workers = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.workers),
                     .statuses = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.statuses)};
   conic_status status = CONIC_ERROR_MEMORY;
-  if (pass.workers && pass.statuses) {
+  if (pass.workers && pass.statuses)
+    status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
+  if (status == CONIC_OK) {
     for (size_t i = 0; i < job->mesh->clusters->n_clusters; i++)
       job->ways[i].area = patch_area(job->mesh, (uint32_t)i);
     status = run_passes(&pass);
   }
+  conic_face_tree_release(job->context, &job->tree);
   conic_memory_release(job->context, pass.workers);
   conic_memory_release(job->context, pass.statuses);
   return status;

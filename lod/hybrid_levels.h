@@ -20,6 +20,7 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_patch_mesh *mesh;
   const conic_hybrid_options *options;
+  conic_face_tree tree;   /* private */
   conic_patch_ways *ways; /* of each patch; zero before */
   double sample_seconds, simplify_seconds;
 } conic_ways_job;

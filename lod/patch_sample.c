@@ -125,36 +125,24 @@ static void settle_planes(conic_sampler *s) {
 
 /* --- ellipses --- */
 
-static const double directions[CONIC_SITE_DIRECTIONS][2] = {{1.0, 0.0},
-                                                            {0.92387953251128674, 0.38268343236508978},
-                                                            {0.70710678118654752, 0.70710678118654752},
-                                                            {0.38268343236508978, 0.92387953251128674},
-                                                            {0.0, 1.0},
-                                                            {-0.38268343236508978, 0.92387953251128674},
-                                                            {-0.70710678118654752, 0.70710678118654752},
-                                                            {-0.92387953251128674, 0.38268343236508978}};
-
 static void note_reach(conic_site *site, const double at[2]) {
-  for (int k = 0; k < CONIC_SITE_DIRECTIONS; k++) {
-    double along = at[0] * directions[k][0] + at[1] * directions[k][1];
-    site->reach[0][k] = along > site->reach[0][k] ? along : site->reach[0][k];
-    site->reach[1][k] = -along > site->reach[1][k] ? -along : site->reach[1][k];
+  for (int k = 0; k < 2; k++) {
+    site->low[k] = at[k] < site->low[k] ? at[k] : site->low[k];
+    site->high[k] = at[k] > site->high[k] ? at[k] : site->high[k];
   }
 }
 
-/* How far the outline reaches beyond what it covers: for two convex shapes, the most over all directions of the
- * difference of how far they reach. */
-static double overhang_of(const conic_site *site) {
+/* How far the outline is from the mesh, where that is more than `known`. */
+static double stray_of(const conic_sampler *s, const conic_site *site, double known) {
   const conic_ellipse *e = &site->ellipse;
-  double most = 0.0;
-  for (int k = 0; k < CONIC_SITE_DIRECTIONS; k++) {
-    double major = directions[k][0] * e->major[0] + directions[k][1] * e->major[1];
-    double minor = e->ratio * (directions[k][1] * e->major[0] - directions[k][0] * e->major[1]);
-    double outline = e->reach * sqrt(major * major + minor * minor);
-    for (int way = 0; way < 2; way++)
-      most = outline - site->reach[way][k] > most ? outline - site->reach[way][k] : most;
+  for (int k = 0; k < 4; k++) { /* the ends of both axes */
+    double length = (k & 1 ? -e->reach : e->reach) * (k & 2 ? e->ratio : 1.0), at[3];
+    double x = length * (k & 2 ? -e->major[1] : e->major[0]), y = length * (k & 2 ? e->major[0] : e->major[1]);
+    for (int axis = 0; axis < 3; axis++)
+      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
+    known = conic_face_tree_farther(s->job->tree, at, known);
   }
-  return most;
+  return known;
 }
 
 /* Notes where a point of a face comes to lie in the plane of a site: along the face's normal, so that what is seen
@@ -215,14 +203,8 @@ static void widen(conic_site *site) {
 /* Moves a surfel within its plane to the middle of what it stands for: at the border of a patch that lies to one side.
  */
 static void settle_center(conic_site *site) {
-  for (int k = 0; k < 2; k++) /* along the plane's axes, which are among the directions */
-    site->middle[k] =
-        0.5 * (site->reach[0][k * CONIC_SITE_DIRECTIONS / 2] - site->reach[1][k * CONIC_SITE_DIRECTIONS / 2]);
-  for (int k = 0; k < CONIC_SITE_DIRECTIONS; k++) {
-    double along = site->middle[0] * directions[k][0] + site->middle[1] * directions[k][1];
-    site->reach[0][k] -= along;
-    site->reach[1][k] += along;
-  }
+  for (int k = 0; k < 2; k++)
+    site->middle[k] = 0.5 * (site->low[k] + site->high[k]);
   for (int axis = 0; axis < 3; axis++)
     site->at[axis] += site->middle[0] * site->u[axis] + site->middle[1] * site->v[axis];
 }
@@ -259,8 +241,8 @@ static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels
     surfel->color[axis] = (float)(own * texel[axis]);
   }
   surfels->n++;
-  double error = site->height + overhang_of(site);
-  surfels->error = error > surfels->error ? error : surfels->error;
+  surfels->error = site->height > surfels->error ? site->height : surfels->error;
+  surfels->error = stray_of(s, site, surfels->error);
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
   return CONIC_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef LOD_PATCH_SAMPLE_H
 #define LOD_PATCH_SAMPLE_H
 
+#include "lod/face_tree.h"
 #include "lod/patch.h"
 
 typedef struct conic_surfel {
@@ -13,14 +14,15 @@ typedef struct conic_surfel {
 typedef struct conic_surfels {
   size_t n, room;
   conic_surfel *items;
-  /* No point of the faces is farther from the surfel that stands for it, and no point of a surfel's outline from the
-   * part that it stands for, as measured where both have corners. */
+  /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
+   * measured at the ends of its axes. */
   double error;
   double reach; /* the longest half axis of an outline */
 } conic_surfels;
 
 typedef struct conic_sampling_job {
   const conic_patch_mesh *mesh;
+  const conic_face_tree *tree; /* of all its faces */
   uint32_t patch;
   double spacing; /* no two surfels that face alike are nearer than this */
   double cutoff;  /* standard deviations at which a splat ends */

@@ -9,7 +9,7 @@
 static const uint32_t none = UINT32_MAX;
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
-static const double lattice_step = 0.7;
+static const double lattice_step = 0.9;
 enum { MOST_SIDES = 32 };
 
 /* The least cosine between two faces that may have a surfel in common. */

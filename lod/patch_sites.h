@@ -29,9 +29,6 @@ static inline void conic_lattice_bary(const conic_lattice *l, int i, int j, doub
   bary[0] = (double)(l->sides - i - j) / (double)l->sides;
 }
 
-/* Half the directions that reaches are compared in: the others are opposite. */
-enum { CONIC_SITE_DIRECTIONS = 8 };
-
 typedef struct conic_site {
   double at[3], facing[3]; /* of its face */
   uint32_t face, next;     /* the next in its cell */
@@ -41,8 +38,8 @@ typedef struct conic_site {
   double u[3], v[3]; /* its plane */
   double middle[2];  /* of what it stands for, in the plane */
   conic_ellipse ellipse;
-  double height;                          /* of what it stands for above its plane, the most */
-  double reach[2][CONIC_SITE_DIRECTIONS]; /* how far what it stands for reaches, and opposite */
+  double height;          /* of what it stands for above its plane, the most */
+  double low[2], high[2]; /* the box of that, in the plane */
 } conic_site;
 
 /* A point that a site's ellipse must cover, in its plane. */
