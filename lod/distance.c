@@ -1,7 +1,5 @@
 #include "lod/distance.h"
 
-#include <math.h>
-
 #include "lod/mesh.h"
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
@@ -9,40 +7,42 @@ static void subtract(const double a[3], const double b[3], double difference[3])
     difference[axis] = a[axis] - b[axis];
 }
 
-static double distance2_to_side(const double p[3], const double a[3], const double b[3]) {
-  double side[3], way[3];
-  subtract(b, a, side);
-  subtract(p, a, way);
-  double length2 = conic_dot(side, side), t = length2 > 0.0 ? conic_dot(way, side) / length2 : 0.0;
-  t = t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    way[axis] -= t * side[axis];
-  return conic_dot(way, way);
+/* From p - a and the side b - a, of which `along` is the product; it lies between the ends. */
+static double distance2_to_side(const double way[3], const double side[3], double along) {
+  double length2 = conic_dot(side, side), t = length2 > 0.0 ? along / length2 : 0.0, sum = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double d = way[axis] - t * side[axis];
+    sum += d * d;
+  }
+  return sum;
 }
 
-/* Above the inside it is the distance from the plane, else that from the nearest side. */
+/* By regions: what is nearest is a corner, a side, or the inside; the products with the sides tell which (Ericson,
+ * Real- Time Collision Detection, §5.1.5). */
 double conic_distance2_to_triangle(const double p[3], const double a[3], const double b[3], const double c[3]) {
-  const double *corners[3] = {a, b, c};
-  double ab[3], ac[3], normal[3], way[3], side[3], inwards[3];
+  double ab[3], ac[3], ap[3], bp[3], cp[3], bc[3], normal[3];
   subtract(b, a, ab);
   subtract(c, a, ac);
+  subtract(p, a, ap);
+  double ab_ap = conic_dot(ab, ap), ac_ap = conic_dot(ac, ap);
+  if (ab_ap <= 0.0 && ac_ap <= 0.0)
+    return conic_dot(ap, ap);
+  subtract(p, b, bp);
+  double ab_bp = conic_dot(ab, bp), ac_bp = conic_dot(ac, bp);
+  if (ab_bp >= 0.0 && ac_bp <= ab_bp)
+    return conic_dot(bp, bp);
+  subtract(p, c, cp);
+  double ab_cp = conic_dot(ab, cp), ac_cp = conic_dot(ac, cp);
+  if (ac_cp >= 0.0 && ab_cp <= ac_cp)
+    return conic_dot(cp, cp);
+  if (ab_ap * ac_bp - ab_bp * ac_ap <= 0.0 && ab_ap >= 0.0 && ab_bp <= 0.0)
+    return distance2_to_side(ap, ab, ab_ap);
+  if (ab_cp * ac_ap - ab_ap * ac_cp <= 0.0 && ac_ap >= 0.0 && ac_cp <= 0.0)
+    return distance2_to_side(ap, ac, ac_ap);
+  subtract(c, b, bc);
+  if (ab_bp * ac_cp - ab_cp * ac_bp <= 0.0 && ac_bp - ab_bp >= 0.0 && ab_cp - ac_cp >= 0.0)
+    return distance2_to_side(bp, bc, conic_dot(bp, bc));
   conic_cross(ab, ac, normal);
-  double length2 = conic_dot(normal, normal), least = HUGE_VAL;
-  int is_above = length2 > 0.0;
-  for (int k = 0; k < 3; k++) {
-    subtract(corners[(k + 1) % 3], corners[k], side);
-    subtract(p, corners[k], way);
-    conic_cross(normal, side, inwards);
-    is_above = is_above && conic_dot(way, inwards) >= 0.0;
-  }
-  if (is_above) {
-    subtract(p, a, way);
-    double height = conic_dot(way, normal);
-    return height * height / length2;
-  }
-  for (int k = 0; k < 3; k++) {
-    double distance2 = distance2_to_side(p, corners[k], corners[(k + 1) % 3]);
-    least = distance2 < least ? distance2 : least;
-  }
-  return least;
+  double height = conic_dot(ap, normal);
+  return height * height / conic_dot(normal, normal);
 }

@@ -6,8 +6,8 @@
 #include "core/trigonometry.h"
 
 /* What drawing takes, in nanoseconds of one core: a primitive, and a pixel that it covers (docs/hybrid.md). */
-static const double triangle_ns = 60.0, triangle_pixel_ns = 3.0;
-static const double surfel_ns = 110.0, surfel_pixel_ns = 6.0;
+static const double triangle_ns = 90.0, triangle_pixel_ns = 2.0;
+static const double surfel_ns = 25.0, surfel_pixel_ns = 2.5;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(double side[3], int axis, double a, double b) {
