@@ -95,7 +95,7 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
 static void write_planes(cli_json *json, const explain_job *job) {
   size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
   cli_json_object(json, "planes");
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     size_t n = (size_t)plane->n_channels;
     double values[4];

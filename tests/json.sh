@@ -59,6 +59,10 @@ wanted["mls densify"]=${wanted[make]}
 wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
 
+wanted[hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches"
+wanted["info of a hybrid"]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound"
+
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"
   exit 77
