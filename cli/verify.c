@@ -32,7 +32,8 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();
-  status = conic_render_samples(session->context, renderer, splats, camera, &job->scene.options, job->scene.samples,
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->scene.options, job->scene.samples,
                                 &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   conic_renderer_destroy(renderer);
@@ -50,14 +51,20 @@ static conic_status check_size(const verify_job *job, const conic_camera *camera
 
 static conic_status compare(cli_session *session, verify_job *job, const conic_splats *splats) {
   conic_camera camera;
+  double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &camera);
+  if (status == CONIC_OK && job->scene.patches) { /* the oracle judges how samples are drawn, not where they are */
+    status = cli_patch_select(&job->scene, &camera, &ms);
+    splats = &job->scene.patch_selection.splats;
+  }
   if (status == CONIC_OK)
     status = get_image(session, job, splats, &camera);
   if (status == CONIC_OK)
     status = check_size(job, &camera);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render_samples(session->context, splats, &camera, &job->scene.options,
+    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &job->scene.options,
                                          (conic_oracle_question)job->question, job->scene.samples, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
@@ -118,7 +125,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   if (!json)
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
-  cli_json_text(json, "method", conic_method_name(job->scene.options.method));
+  cli_json_text(json, "method", cli_method_name(&job->scene));
   if (job->scene.samples > 1)
     cli_json_count(json, "samples", (uint64_t)job->scene.samples);
   report_planes(json, job);

@@ -46,6 +46,20 @@ static inline int conic_word_has(uint32_t word, uint32_t column) {
   return column >= conic_word_first(word) && column <= conic_word_last(word);
 }
 
+/* Where the nearest splat wins alone, words have pixels in place of blocks: the first and the last column (bits 0 … 7,
+ * 8 … 15) and row (16 … 23, 24 … 31) of a tile's. */
+static inline uint32_t conic_pixel_word_of(uint32_t first, uint32_t last, uint32_t first_row, uint32_t last_row) {
+  return first | last << 8 | first_row << 16 | last_row << 24;
+}
+
+static inline uint32_t conic_word_first_row(uint32_t word) {
+  return word >> 16 & 0xff;
+}
+
+static inline uint32_t conic_word_last_row(uint32_t word) {
+  return word >> 24;
+}
+
 /* The fragments of so many splats are kept for a block; those of further ones are evaluated again. */
 #define CONIC_KEPT_SPLATS 512
 
@@ -71,11 +85,20 @@ typedef struct conic_block_sums {
   uint32_t count[CONIC_BLOCK_PIXELS];    /* how many; likewise */
 } conic_block_sums;
 
-/* Where the nearest splat wins: its fragments; iz is 0 where there is none, and scale is meant of special ones only. */
-typedef struct conic_nearest_fragments {
-  float iz[CONIC_BLOCK_PIXELS], q[CONIC_BLOCK_PIXELS], scale[CONIC_BLOCK_PIXELS];
-  uint32_t footprint[CONIC_BLOCK_PIXELS];
-} conic_nearest_fragments;
+/* Where the nearest splat wins: its fragments in two rows of a tile's pixels, column by column, so that a few columns
+ * from any one on lie together: most splats are a handful of pixels wide. iz is 0 where there is none, and scale is
+ * meant of special ones only. The last columns are beside the tile, and stay as they are. */
+#define CONIC_STRIP_ROWS 2
+#define CONIC_TILE_STRIPS (CONIC_GREATEST_TILE / CONIC_STRIP_ROWS)
+#define CONIC_STRIP_SLACK 8
+#define CONIC_STRIP_PIXELS (CONIC_STRIP_ROWS * (CONIC_GREATEST_TILE + CONIC_STRIP_SLACK))
+
+typedef struct conic_nearest_strip {
+  _Alignas(64) float iz[CONIC_STRIP_PIXELS];
+  float q[CONIC_STRIP_PIXELS];
+  uint32_t footprint[CONIC_STRIP_PIXELS];
+  float scale[CONIC_STRIP_PIXELS];
+} conic_nearest_strip;
 
 struct conic_triangle_frame;
 struct conic_triangle_row;
@@ -93,17 +116,29 @@ typedef struct conic_band {
   size_t n_kept[CONIC_BAND_BLOCKS];   /* so many splats are in `kept`; */
   size_t not_kept[CONIC_BAND_BLOCKS]; /* the first of the band's that covers a pixel and is not, or n */
   conic_kept *kept;                   /* CONIC_BAND_BLOCKS + 1 */
-  /* The tile from this band on, where the nearest splat wins alone: its entries, and for CONIC_BAND_BLOCKS + 1 blocks
-   * of each row (the last for CONIC_NO_BLOCK) the fragments. */
+  /* The tile from this band on, where the nearest splat wins alone: its entries, whose words name pixels, and the
+   * fragments. */
   const conic_tile_entry *entries;
   size_t n_entries;
   int n_rows;
-  conic_nearest_fragments *nearest;
+  conic_nearest_strip *nearest; /* two a row of blocks */
   conic_block_sums *sums;
   /* Where triangles meet the band, else null: the frame's, and what they are to the band's pixels. */
   const struct conic_triangle_frame *triangle_frame;
   struct conic_triangle_row *triangles;
 } conic_band;
+
+/* Where a strip keeps the pixel in the given column and row of the tile. */
+static inline size_t conic_strip_place(int column, int row) {
+  return (size_t)(column * CONIC_STRIP_ROWS + row % CONIC_STRIP_ROWS);
+}
+
+/* The strip that has pixel l of a block of the band, and where. */
+static inline const conic_nearest_strip *conic_strip_of(const conic_band *band, int block, int l, size_t *at) {
+  int column = block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, row = l % CONIC_BLOCK_EDGE;
+  *at = conic_strip_place(column, row);
+  return &band->nearest[row / CONIC_STRIP_ROWS];
+}
 
 /* Nothing covers the block. */
 static inline int conic_block_is_empty(const conic_band *band, int block) {

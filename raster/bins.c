@@ -17,21 +17,24 @@ static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
   return range;
 }
 
-/* The first and the last block of a tile, along one axis, that the pixels begin … end - 1 meet. */
-static uint32_t first_block(int begin, int tile_begin) {
-  return begin > tile_begin ? (uint32_t)(begin - tile_begin) / CONIC_BLOCK_EDGE : 0;
+/* The first and the last of a tile's pixels, along one axis, that are among begin … end - 1. */
+static uint32_t first_pixel(int begin, int tile_begin) {
+  return begin > tile_begin ? (uint32_t)(begin - tile_begin) : 0;
 }
 
-static uint32_t last_block(int end, int tile_begin, int tile) {
-  int last = end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1;
-  return (uint32_t)last / CONIC_BLOCK_EDGE;
+static uint32_t last_pixel(int end, int tile_begin, int tile) {
+  return (uint32_t)(end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1);
 }
 
 /* The word of a box in the tile at (x, y). */
 static uint32_t word_in(const conic_bins *bins, const conic_box *box, int x, int y) {
-  int tile = bins->tile;
-  return conic_word_of(first_block(box->x_begin, x * tile), last_block(box->x_end, x * tile, tile),
-                       first_block(box->y_begin, y * tile), last_block(box->y_end, y * tile, tile));
+  int tile = bins->tile, left = x * tile, top = y * tile;
+  uint32_t first = first_pixel(box->x_begin, left), last = last_pixel(box->x_end, left, tile);
+  uint32_t first_row = first_pixel(box->y_begin, top), last_row = last_pixel(box->y_end, top, tile);
+  if (bins->by_pixels)
+    return conic_pixel_word_of(first, last, first_row, last_row);
+  return conic_word_of(first / CONIC_BLOCK_EDGE, last / CONIC_BLOCK_EDGE, first_row / CONIC_BLOCK_EDGE,
+                       last_row / CONIC_BLOCK_EDGE);
 }
 
 static size_t rounded(size_t bytes) {
@@ -137,7 +140,8 @@ static __attribute__((noinline)) void enter_all(const conic_bins *bins, const co
 static __attribute__((noinline)) void enter_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i,
                                                    uint32_t i_record, conic_tile_entry *entries) {
   uint32_t *next = sorter->next_entry, tiles[3], word = sorter->word[i], beyond = sorter->beyond[i];
-  uint32_t columns = (beyond & 0xff) << 8, rows = ((UINT32_C(2) << (beyond >> 8 & 0xff)) - 1) << 16;
+  uint32_t columns = (beyond & 0xff) << 8, last_row = beyond >> 8 & 0xff;
+  uint32_t rows = bins->by_pixels ? last_row << 24 : ((UINT32_C(2) << last_row) - 1) << 16;
   uint32_t words[3] = {columns | (word & 0xffff0000), (word & 0xffff) | rows, columns | rows};
   tiles_beyond(bins, sorter->tile[i], beyond, tiles);
   for (int k = 0; k < 3; k++) {
@@ -175,8 +179,8 @@ void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_
                      conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = chunk->first;
-  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, sorter->tile,
-                sorter->word, sorter->beyond);
+  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
+                sorter->tile, sorter->word, sorter->beyond);
   count(bins, sorter);
   size_t n_entries = place(bins, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
   n_entries++; /* one place behind all */

@@ -13,6 +13,7 @@ typedef struct conic_bins {
   int tile;      /* edge in pixels */
   int tile_bits; /* its binary logarithm */
   int n_tiles_x, n_tiles_y;
+  int by_pixels; /* words name pixels, not blocks */
   size_t n_tiles, n_chunks;
   uint32_t *tile_begin; /* [chunk][n_tiles + 1]: where a tile's entries begin among the chunk's */
   size_t *chunk_begin;  /* [chunk]: where the chunk's entries begin */
@@ -32,8 +33,8 @@ typedef struct conic_sorter {
 } conic_sorter;
 
 /* Where a box goes: the tile that holds its first pixel, the word there, and what is beyond that tile: 0 for most
- * boxes. Bits 0 … 7 and 8 … 15 then are the last column and row of blocks that it meets in the next tile along each
- * axis. */
+ * boxes. Bits 0 … 7 and 8 … 15 then are the last column and row, of blocks or pixels, that it meets in the next tile
+ * along each axis. */
 typedef struct conic_key {
   uint32_t tile, word, beyond;
 } conic_key;
@@ -42,14 +43,14 @@ typedef struct conic_key {
 #define CONIC_BEYOND_Y (UINT32_C(1) << 30)    /* … in y … */
 #define CONIC_BEYOND_MORE (UINT32_C(1) << 31) /* … and tiles after those. */
 
-static inline conic_key conic_key_of(const conic_box *box, int tile_bits, int n_tiles_x) {
+static inline conic_key conic_key_of(const conic_box *box, int tile_bits, int n_tiles_x, int by_pixels) {
   uint32_t x_begin = box->x_begin, x_last = box->x_end - 1u, y_begin = box->y_begin, y_last = box->y_end - 1u;
-  uint32_t in_tile = (1u << tile_bits) - 1, last_block = in_tile / CONIC_BLOCK_EDGE;
+  uint32_t in_tile = (1u << tile_bits) - 1, unit = by_pixels ? 1 : CONIC_BLOCK_EDGE, last = in_tile / unit;
   uint32_t n_x = (x_last >> tile_bits) - (x_begin >> tile_bits), n_y = (y_last >> tile_bits) - (y_begin >> tile_bits);
-  uint32_t column = (x_last & in_tile) / CONIC_BLOCK_EDGE, row = (y_last & in_tile) / CONIC_BLOCK_EDGE;
+  uint32_t column = (x_last & in_tile) / unit, row = (y_last & in_tile) / unit;
   conic_key key = {(y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits), 0, 0};
-  key.word = conic_word_of((x_begin & in_tile) / CONIC_BLOCK_EDGE, n_x ? last_block : column,
-                           (y_begin & in_tile) / CONIC_BLOCK_EDGE, n_y ? last_block : row);
+  key.word = (by_pixels ? conic_pixel_word_of : conic_word_of)((x_begin & in_tile) / unit, n_x ? last : column,
+                                                               (y_begin & in_tile) / unit, n_y ? last : row);
   if (n_x || n_y)
     key.beyond = column | row << 8 | (n_x ? CONIC_BEYOND_X : 0) | (n_y ? CONIC_BEYOND_Y : 0) |
                  (n_x > 1 || n_y > 1 ? CONIC_BEYOND_MORE : 0);

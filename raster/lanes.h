@@ -319,6 +319,24 @@ CONIC_INLINE void lanes_load_pairs(const uint32_t *from, index_lanes *first, ind
   *second = __builtin_shufflevector(low, high, CONIC_ODD_LANES);
 }
 
+#if CONIC_LANES == 16
+#define CONIC_PAIRED_LANES 0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15
+#elif CONIC_LANES == 8
+#define CONIC_PAIRED_LANES 0, 1, 4, 5, 2, 3, 6, 7
+#else
+#define CONIC_PAIRED_LANES 0, 1, 2, 3
+#endif
+
+typedef float half_lanes __attribute__((vector_size(2 * CONIC_LANES)));
+
+/* Half the lanes from each, pairs by turns. */
+CONIC_INLINE lanes lanes_of_pairs(const float *a, const float *b) {
+  half_lanes of_a, of_b;
+  memcpy(&of_a, a, sizeof of_a);
+  memcpy(&of_b, b, sizeof of_b);
+  return __builtin_shufflevector(of_a, of_b, CONIC_PAIRED_LANES);
+}
+
 /* first, first + 1, … */
 CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
   index_lanes ascending = {0};
@@ -340,6 +358,14 @@ CONIC_INLINE int_lanes lanes_rows(void) {
   for (int lane = 0; lane < CONIC_LANES; lane++)
     rows[lane] = lane % CONIC_BLOCK_ROWS;
   return rows;
+}
+
+/* 0, 1, … n - 1, 0, 1, … */
+CONIC_INLINE int_lanes lanes_alternating(int n) {
+  int_lanes alternating;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    alternating[lane] = lane % n;
+  return alternating;
 }
 
 /* conic_exp_negative (core/kernel.h) in every lane: the same operations in the same order. */

@@ -156,6 +156,14 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
     lanes_whole_records(fields, whole);
   else
     lanes_half_records(fields, half);
+  if (__builtin_expect(drawn == 0xffff, 1)) {
+    for (int lane = 0; lane < 16; lane++)
+      if (n_fields == 16)
+        _mm512_storeu_ps(to + lane * 16, whole[lane]);
+      else
+        _mm256_storeu_ps(to + lane * 8, half[lane]);
+    return;
+  }
   for (int lane = 0; lane < 16; lane++) {
     if (n_fields == 16)
       _mm512_storeu_ps(to, whole[lane]);

@@ -1,100 +1,156 @@
 /* The single pass in lanes, where the nearest splat wins alone: a tile splat by splat, then its colours. Included by
  * tile_kernels_body.h. */
-CONIC_INLINE unsigned keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest_fragments *kept, size_t at,
-                                   int is_special) {
-  lanes iz = lanes_load(kept->iz + at);
+CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest_strip *strip, size_t at,
+                               int is_special) {
+  lanes iz = lanes_load(strip->iz + at);
   lanes_mask nearer = f->covered & lanes_less(iz, f->iz);
-  lanes_store(kept->iz + at, lanes_select(nearer, f->iz, iz));
-  lanes_replace(kept->q + at, nearer, f->q);
-  lanes_replace_indices(kept->footprint + at, nearer, lanes_of_index(i_footprint));
+  lanes_replace(strip->iz + at, nearer, f->iz);
+  lanes_replace(strip->q + at, nearer, f->q);
+  lanes_replace_indices(strip->footprint + at, nearer, lanes_of_index(i_footprint));
   if (is_special)
-    lanes_replace(kept->scale + at, nearer, f->scale);
-  return lanes_count(f->covered);
+    lanes_replace(strip->scale + at, nearer, f->scale);
 }
 
-/* A tile's pixels: the columns of its bands, and the rows of each. */
-typedef struct tile_sites {
-  sites of_band;
-  lanes y[CONIC_BAND_BLOCKS];
-} tile_sites;
+/* A tile's pixels as its strips have them, NaN beside the tile and outside the image. */
+typedef struct strip_sites {
+  float x[CONIC_STRIP_PIXELS];
+  lanes y[CONIC_TILE_STRIPS];
+} strip_sites;
 
-CONIC_INLINE void find_tile_sites(const conic_band *band, tile_sites *s) {
-  find_sites(band, &s->of_band);
-  for (int i_row = 0; i_row < band->n_rows; i_row++)
-    s->y[i_row] = nan_beyond(lanes_rows() + (band->y + i_row * CONIC_BLOCK_EDGE), band->view->height);
+CONIC_INLINE void find_strip_sites(const conic_band *band, strip_sites *s) {
+  int right = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
+  right = right < band->view->width ? right : band->view->width;
+  for (int at = 0; at < CONIC_STRIP_PIXELS; at++) {
+    int x = band->x + at / CONIC_STRIP_ROWS;
+    s->x[at] = x < right ? (float)x : __builtin_nanf("");
+  }
+  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
+    s->y[i] = nan_beyond(lanes_alternating(CONIC_STRIP_ROWS) + (band->y + i * CONIC_STRIP_ROWS), band->view->height);
 }
 
-CONIC_INLINE unsigned nearest_in_block(const sources *from, const tile_sites *s, const conic_footprint *footprint,
-                                       uint32_t i_footprint, const splat_rows *rows, uint32_t block,
-                                       conic_nearest_fragments *row, int is_special) {
+/* An ellipse in all lanes, and what of it does not depend on the row: ellipse_fragments, with its operations in their
+ * order, but only what tells how near it is. */
+typedef struct ellipse_columns {
+  lanes y, dy0, s2, s3, iz0, iz_dy, iz_far, iz_near;
+  lanes s1_dx, iz_dx_dx;
+} ellipse_columns;
+
+CONIC_INLINE ellipse_columns begin_columns(const conic_footprint *footprint, lanes x) {
+  lanes dx = (x - footprint->x) + footprint->dx0;
+  return (ellipse_columns){lanes_of(footprint->y),      lanes_of(footprint->dy0),     lanes_of(footprint->s2),
+                           lanes_of(footprint->s3),     lanes_of(footprint->iz0),     lanes_of(footprint->iz_dy),
+                           lanes_of(footprint->iz_far), lanes_of(footprint->iz_near), footprint->s1 * dx,
+                           footprint->iz_dx * dx};
+}
+
+CONIC_INLINE void column_fragments(const ellipse_columns *e, lanes y, float support, fragments *f) {
+  lanes dy = (y - e->y) + e->dy0, minor = e->s3 * dy, major = e->s1_dx + e->s2 * dy;
+  f->q = major * major + minor * minor;
+  f->covered = lanes_less(f->q, lanes_of(support));
+  f->iz = lanes_min(lanes_max((e->iz0 + e->iz_dy * dy) + e->iz_dx_dx, e->iz_far), e->iz_near);
+}
+
+/* One splat in the pixels that its entry names, and those beside them that lanes have in one go. */
+CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
+                                  conic_nearest_strip *strips, index_lanes *n_covered) {
+  const conic_footprint *footprint = &from->footprints[entry->footprint];
+  const size_t begin = conic_word_first(entry->word) * CONIC_STRIP_ROWS,
+               end = (conic_word_last(entry->word) + 1) * CONIC_STRIP_ROWS;
+  const uint32_t first = conic_word_first_row(entry->word) / CONIC_STRIP_ROWS,
+                 last = conic_word_last_row(entry->word) / CONIC_STRIP_ROWS;
+  fragments f;
+  for (size_t at = begin; at < end; at += CONIC_LANES) {
+    const ellipse_columns columns = begin_columns(footprint, lanes_load(s->x + at));
+    for (uint32_t i = first; i <= last; i++) {
+      column_fragments(&columns, s->y[i], from->support, &f);
+      keep_nearest(&f, entry->footprint, &strips[i], at, 0);
+      *n_covered = lanes_increment(f.covered, *n_covered);
+    }
+  }
+}
+
+static __attribute__((noinline)) unsigned nearest_special(const sources *from, const strip_sites *s,
+                                                          const conic_tile_entry *entry, conic_nearest_strip *strips) {
+  const conic_footprint *footprint = &from->footprints[entry->footprint];
+  const size_t begin = conic_word_first(entry->word) * CONIC_STRIP_ROWS,
+               end = (conic_word_last(entry->word) + 1) * CONIC_STRIP_ROWS;
+  const uint32_t last = conic_word_last_row(entry->word) / CONIC_STRIP_ROWS;
   unsigned n_covered = 0;
   fragments f;
-  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
-    evaluate(from, footprint, rows, s->of_band.x[block * CONIC_PARTS + part], is_special, &f);
-    n_covered += keep_nearest(&f, i_footprint, &row[block], part * CONIC_LANES, is_special);
+  for (uint32_t i = conic_word_first_row(entry->word) / CONIC_STRIP_ROWS; i <= last; i++) {
+    const splat_rows rows = begin_rows(footprint, s->y[i]);
+    for (size_t at = begin; at < end; at += CONIC_LANES) {
+      evaluate(from, footprint, &rows, lanes_load(s->x + at), 1, &f);
+      keep_nearest(&f, entry->footprint, &strips[i], at, 1);
+      n_covered += lanes_count(f.covered);
+    }
   }
   return n_covered;
 }
 
-/* One splat in the blocks that its entry names; two columns in any case, like pass_splat. */
-CONIC_INLINE unsigned nearest_splat(const sources *from, const tile_sites *s, const conic_tile_entry *entry,
-                                    conic_nearest_fragments *nearest, int is_special) {
-  const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const uint32_t first = conic_word_first(entry->word), last = conic_word_last(entry->word), met = entry->word >> 16;
-  const uint32_t second = last > first ? first + 1 : CONIC_NO_BLOCK;
-  unsigned n_covered = 0;
-  for (int i_row = __builtin_ctz(met), last_row = 31 - __builtin_clz(met); i_row <= last_row; i_row++) {
-    conic_nearest_fragments *row = nearest + i_row * (CONIC_BAND_BLOCKS + 1);
-    const splat_rows rows = begin_rows(footprint, s->y[i_row]);
-    n_covered += nearest_in_block(from, s, footprint, entry->footprint, &rows, first, row, is_special);
-    n_covered += nearest_in_block(from, s, footprint, entry->footprint, &rows, second, row, is_special);
-    for (uint32_t block = first + 2; block <= last; block++)
-      n_covered += nearest_in_block(from, s, footprint, entry->footprint, &rows, block, row, is_special);
+/* The splats of the entries begin … end - 1, so few that no lane's count overflows. Returns how many pixels they
+ * cover. */
+static uint64_t nearest_of(conic_band *band, const sources *from, const strip_sites *s, size_t begin, size_t end) {
+  enum { AHEAD = 32 };
+  const conic_tile_entry *const entries = band->entries;
+  conic_nearest_strip *const strips = band->nearest;
+  const size_t n = band->n_entries;
+  index_lanes n_covered = lanes_of_index(0);
+  uint64_t sum = 0;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t later = entries[i + AHEAD < n ? i + AHEAD : i].footprint;
+    __builtin_prefetch(&from->footprints[later]);
+    __builtin_prefetch(&from->surfaces[later], 0, 2);
+    if (__builtin_expect(from->footprints[entries[i].footprint].s3 > 0.0f, 1))
+      nearest_ellipse(from, s, &entries[i], strips, &n_covered);
+    else {
+      prefetch_ray(from, entries[i + 12 < n ? i + 12 : i].footprint);
+      sum += nearest_special(from, s, &entries[i], strips);
+      band->has_special = 1;
+    }
   }
-  return n_covered;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    sum += n_covered[lane];
+  return sum;
 }
 
 static void nearest(conic_band *band) {
-  enum { AHEAD = 32 };
+  enum { COUNTABLE = 1 << 20 };
   const sources from = sources_of(band);
-  const conic_tile_entry *const entries = band->entries;
-  const size_t n = band->n_entries;
-  conic_nearest_fragments *const kept = band->nearest;
-  uint64_t n_fragments = 0;
-  int has_special = 0;
-  tile_sites s;
-  find_tile_sites(band, &s);
-  memset(kept, 0, (size_t)band->n_rows * (CONIC_BAND_BLOCKS + 1) * sizeof *kept);
-  for (size_t i = 0; i < n; i++) {
-    uint32_t later = entries[i + AHEAD < n ? i + AHEAD : i].footprint;
-    __builtin_prefetch(&from.footprints[later]);
-    __builtin_prefetch(&from.surfaces[later], 0, 2);
-    if (__builtin_expect(from.footprints[entries[i].footprint].s3 > 0.0f, 1))
-      n_fragments += nearest_splat(&from, &s, &entries[i], kept, 0);
-    else {
-      prefetch_ray(&from, entries[i + 12 < n ? i + 12 : i].footprint);
-      n_fragments += nearest_splat(&from, &s, &entries[i], kept, 1);
-      has_special = 1;
-    }
-  }
-  band->has_special = has_special;
-  band->n_fragments += n_fragments;
+  strip_sites s;
+  find_strip_sites(band, &s);
+  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
+    memset(band->nearest[i].iz, 0, sizeof band->nearest[i].iz);
+  band->has_special = 0;
+  for (size_t begin = 0, n = band->n_entries; begin < n; begin += COUNTABLE)
+    band->n_fragments += nearest_of(band, &from, &s, begin, begin + COUNTABLE < n ? begin + COUNTABLE : n);
 }
 
-/* The nearest splats' colour, normal and weight. */
-CONIC_INLINE void take_part(const conic_band *band, const sources *from, int block, size_t at) {
-  const conic_nearest_fragments *kept = &band->nearest[block];
+/* A part of a block from the two strips that it is in: what lies at `upper`, and as far on in the strip below. */
+CONIC_INLINE lanes load_part(const float *upper) {
+  return lanes_of_pairs(upper, upper + sizeof(conic_nearest_strip) / sizeof *upper);
+}
+
+/* The nearest splats' colour, normal and weight, in one part of a block. */
+CONIC_INLINE void take_part(const conic_band *band, const sources *from, int block, size_t at, lanes_mask covered) {
+  const conic_nearest_strip *strip = band->nearest;
+  const size_t of_strip = (size_t)block * CONIC_BLOCK_EDGE * CONIC_STRIP_ROWS + at / 2;
+  uint32_t footprint[CONIC_LANES];
   lanes surface[8], scale = lanes_of(1.0f); /* the fields of conic_surface */
-  lanes_mask covered = lanes_less(lanes_of(0.0f), lanes_load(kept->iz + at));
   part_sums to;
   clear_sums(&to);
-  to.heaviest = to.nearest = lanes_load_indices(kept->footprint + at);
-  lanes_gather_records(from->surfaces->color, kept->footprint + at, surface);
-  for (int lane = 0; lane < CONIC_LANES && band->has_special; lane++)
-    if (!(from->footprints[kept->footprint[at + (size_t)lane]].s3 > 0.0f))
-      scale[lane] = kept->scale[at + (size_t)lane];
-  to.weight =
-      weigh(from->view, 1.0f, lanes_load(kept->q + at), surface[7] * scale, covered, kind_of(&from->view->kernel));
+  to.nearest = (index_lanes)load_part((const float *)(const void *)(strip->footprint + of_strip));
+  to.heaviest = to.nearest = lanes_select_indices(covered, to.nearest, lanes_of_index(0)); /* else it is anything */
+  lanes_store_indices(footprint, to.nearest);
+  lanes_gather_records(from->surfaces->color, footprint, surface);
+  if (band->has_special) {
+    lanes kept = load_part(strip->scale + of_strip);
+    for (int lane = 0; lane < CONIC_LANES; lane++)
+      if (!(from->footprints[footprint[lane]].s3 > 0.0f))
+        scale[lane] = kept[lane];
+  }
+  to.weight = weigh(from->view, 1.0f, load_part(strip->q + of_strip), surface[7] * scale, covered,
+                    kind_of(&from->view->kernel));
   for (int axis = 0; axis < 3; axis++) { /* to 0, which a product may be below: -0 */
     to.color[axis] += to.weight * surface[axis];
     to.normal[axis] += to.weight * surface[3 + axis];
@@ -107,13 +163,15 @@ static void take_nearest(conic_band *band) {
   const sources from = sources_of(band);
   empty_blocks(band);
   for (int block = 0; block < band->n_blocks; block++) {
-    lanes nearest_iz = lanes_of(0.0f);
-    for (size_t at = 0; at < CONIC_BLOCK_PIXELS; at += CONIC_LANES)
-      nearest_iz = lanes_max(nearest_iz, lanes_load(band->nearest[block].iz + at));
-    if (!lanes_any(lanes_less(lanes_of(0.0f), nearest_iz)))
-      continue;
-    band->n_kept[block] = 1;
-    for (size_t at = 0; at < CONIC_BLOCK_PIXELS; at += CONIC_LANES)
-      take_part(band, &from, block, at);
+    const float *iz = band->nearest->iz + block * CONIC_BLOCK_EDGE * CONIC_STRIP_ROWS;
+    lanes_mask covered[CONIC_PARTS];
+    int is_any = 0;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      covered[part] = lanes_less(lanes_of(0.0f), load_part(iz + part * CONIC_LANES / 2));
+      is_any |= lanes_any(covered[part]);
+    }
+    band->n_kept[block] = (size_t)is_any;
+    for (int part = 0; part < CONIC_PARTS && is_any; part++)
+      take_part(band, &from, block, (size_t)part * CONIC_LANES, covered[part]);
   }
 }

@@ -128,8 +128,7 @@ static int wants_ray(const splat_setup *s, const projected_kernel *k) {
   return method == CONIC_METHOD_RAY || (method == CONIC_METHOD_AUTO ? is_coarse(s, k) : s->reach >= 0.25f);
 }
 
-static void set_depth(const splat_setup *s, const tangents *t, const projected_kernel *k, float vxx, float vyy,
-                      float determinant) {
+static void set_depth(const splat_setup *s, const projected_kernel *k, float vxx, float vyy, float determinant) {
   conic_footprint *footprint = s->footprint;
   float inverse_z = (float)s->inverse_z;
   /* R'g = -b·iz/w², without the cancellation of R' times g; then the gradient shrunk by the dilation, V⁻¹R'g. */
@@ -140,9 +139,13 @@ static void set_depth(const splat_setup *s, const tangents *t, const projected_k
   footprint->iz_dy = (vxx * rgy - k->rxy * rgx) / determinant;
   footprint->iz_far = inverse_z / s->farthest;
   footprint->iz_near = inverse_z / s->nearest;
-  float area = t->ux * t->vy - t->uy * t->vx;
-  footprint->plane_dx = finite_or(-inverse_z * (t->uz * t->vy - t->uy * t->vz) / area, 0.0f);
-  footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
+}
+
+/* The gradient of the plane's inverse depth. */
+static void set_slope(const splat_setup *s, const tangents *t) {
+  float inverse_z = (float)s->inverse_z, area = t->ux * t->vy - t->uy * t->vx;
+  s->footprint->plane_dx = finite_or(-inverse_z * (t->uz * t->vy - t->uy * t->vz) / area, 0.0f);
+  s->footprint->plane_dy = finite_or(-inverse_z * (t->ux * t->vz - t->vx * t->uz) / area, 0.0f);
 }
 
 /* In double, for what float cannot hold. */
@@ -212,7 +215,8 @@ static conic_outcome project_ray_before_near(const splat_setup *s, const tangent
   if (conic_box_is_empty(s->box))
     return CONIC_CULLED;
   set_reference(x_p, y_p, footprint);
-  set_depth(s, t, k, 1.0f, 1.0f, 1.0f);
+  set_depth(s, k, 1.0f, 1.0f, 1.0f);
+  set_slope(s, t);
   float inverse_z = (float)s->inverse_z, scale = inverse_z / (t->ux * t->vy - t->uy * t->vx);
   footprint->s2 = footprint->s3 = 0.0f;
   footprint->iz0 = inverse_z;
@@ -256,7 +260,10 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
   footprint->s2 = -(k->rxy / vyy) * footprint->s1;
   footprint->s3 = 1.0f / sqrtf(vyy);
   footprint->amplitude = k->root_determinant / sqrtf(determinant);
-  set_depth(s, t, k, vxx, vyy, determinant);
+  set_depth(s, k, vxx, vyy, determinant);
+  footprint->plane_dx = footprint->plane_dy = 0.0f;
+  if (view->needs_slope)
+    set_slope(s, t);
   return CONIC_DRAWN_VARIANCE;
 }
 
@@ -359,10 +366,13 @@ static void set_surface(const splat_setup *s, const float normal[3]) {
 /* ε-offset along the ray, and the opacity. */
 static void set_weighing(const splat_setup *s, float longer) {
   const conic_view *view = s->view;
-  float epsilon = view->epsilon_scale * (view->cutoff * longer);
-  epsilon = epsilon < view->epsilon_cap ? epsilon : view->epsilon_cap;
-  float distance = (float)sqrt((s->p[0] * s->p[0] + s->p[1] * s->p[1]) + s->p[2] * s->p[2]);
-  s->footprint->nearness = distance > 0.0f ? 1.0f / (1.0f + epsilon / distance) : 0.0f;
+  s->footprint->nearness = 0.0f;
+  if (view->needs_nearness) {
+    float epsilon = view->epsilon_scale * (view->cutoff * longer);
+    epsilon = epsilon < view->epsilon_cap ? epsilon : view->epsilon_cap;
+    float distance = (float)sqrt((s->p[0] * s->p[0] + s->p[1] * s->p[1]) + s->p[2] * s->p[2]);
+    s->footprint->nearness = distance > 0.0f ? 1.0f / (1.0f + epsilon / distance) : 0.0f;
+  }
   if (s->splats->opacity)
     s->footprint->amplitude *= s->splats->opacity[s->i];
 }

@@ -220,6 +220,9 @@ typedef struct records {
 
 CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, lanes longer, records *r) {
   doubles distance;
+  r->footprint[14] = lanes_of(0.0f);
+  if (!view->needs_nearness)
+    return;
   for (int half = 0; half < 2; half++) {
     half_doubles x = g->p[0].half[half], y = g->p[1].half[half], z = g->p[2].half[half];
     distance.half[half] = half_sqrt((x * x + y * y) + z * z);
@@ -291,10 +294,18 @@ CONIC_INLINE lanes check_rays(const group_screen *s, const records *r) {
   return not_finite;
 }
 
+/* set_slope of project.c, where it is due. */
+CONIC_INLINE void set_slopes(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
+  lanes inverse_z = g->inverse_z_float;
+  lanes dx = finite_or_zero(-inverse_z * (g->uz * g->vy - g->uy * g->vz) / g->area);
+  lanes dy = finite_or_zero(-inverse_z * (g->ux * g->vz - g->vx * g->uz) / g->area);
+  r->footprint[10] = view->needs_slope ? dx : lanes_keep(s->by_ray, dx);
+  r->footprint[11] = view->needs_slope ? dy : lanes_keep(s->by_ray, dy);
+}
+
 /* Everything but nearness and the surface; in the order of conic_footprint. Returns 0, but NaN in lanes with a field
  * that is not finite. */
-CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, float growth_px, float greatest_iz,
-                                  records *r) {
+CONIC_INLINE lanes set_footprints(const conic_view *view, const group_splats *g, const group_screen *s, records *r) {
   lanes inverse_z = g->inverse_z_float, not_finite = (s->fraction[0] + s->fraction[1]) * 0.0f;
   lanes factor = -inverse_z * (s->inverse_w * s->inverse_w), rgx = factor * s->bx, rgy = factor * s->by;
   r->footprint[0] = s->center[0];
@@ -307,13 +318,14 @@ CONIC_INLINE lanes set_footprints(const group_splats *g, const group_screen *s, 
   r->footprint[7] = inverse_z * s->inverse_w;
   r->footprint[8] = (s->vyy * rgx - s->rxy * rgy) / s->determinant;
   r->footprint[9] = (s->vxx * rgy - s->rxy * rgx) / s->determinant;
-  r->footprint[10] = finite_or_zero(-inverse_z * (g->uz * g->vy - g->uy * g->vz) / g->area);
-  r->footprint[11] = finite_or_zero(-inverse_z * (g->ux * g->vz - g->vx * g->uz) / g->area);
+  r->footprint[10] = r->footprint[11] = lanes_of(0.0f);
+  if (view->needs_slope || lanes_any(s->by_ray))
+    set_slopes(view, g, s, r);
   r->footprint[12] = inverse_z / g->farthest;
   r->footprint[13] = inverse_z / g->nearest;
   r->footprint[15] = s->root / lanes_sqrt(s->determinant);
   if (lanes_any(s->by_ray))
-    set_rays(g, s, r, growth_px, greatest_iz);
+    set_rays(g, s, r, view->growth_px, (float)(1.0 / view->near_z));
   for (int field = 4; field < 14; field++)
     not_finite += r->footprint[field] * 0.0f;
   return not_finite;
@@ -392,7 +404,7 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
   if (conic_method_is_dot(view->method))
     not_finite += set_dots(view, &g, s, r);
   else
-    not_finite += set_footprints(&g, s, view->growth_px, (float)(1.0 / view->near_z), r);
+    not_finite += set_footprints(view, &g, s, r);
   if (view->method == CONIC_METHOD_AUTO && lanes_any(s->by_ray))
     set_laplaces(view, &g, s, r);
   set_nearness(view, &g, longer, r);

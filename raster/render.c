@@ -172,6 +172,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
+  f->bins.by_pixels = f->finish.options->passes == 1;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
@@ -350,14 +351,16 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = seconds_now();
   conic_status status = project_and_sort(f);
+  double sorted = seconds_now();
   if (status == CONIC_OK && f->triangles)
     status = conic_triangle_frame_prepare(f->triangles, f->kernels);
   if (status != CONIC_OK)
     return status;
-  double sorted = seconds_now();
+  double prepared = seconds_now();
   conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
   double done = seconds_now();
-  share_out(f, 1e3 * (sorted - start), 1e3 * (done - sorted), ms);
+  share_out(f, 1e3 * (sorted - start), 1e3 * (done - prepared), ms);
+  ms->setup += 1e3 * (prepared - sorted);
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
 }
 
@@ -380,6 +383,9 @@ static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing
 
 /* By the loops of this machine's processor. */
 static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  int blends = options->passes != 1;
+  f->view.needs_nearness = blends;
+  f->view.needs_slope = blends || f->image->planes[CONIC_PLANE_Z];
   conic_status status = plan_tiles(f, options->tile);
   if (status == CONIC_OK)
     status = plan_records(f);

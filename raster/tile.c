@@ -13,8 +13,8 @@ static size_t padded(size_t n) {
 }
 
 size_t conic_tile_bytes(size_t n_references) {
-  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) +
-         (CONIC_BAND_BLOCKS + 1) * (CONIC_BAND_BLOCKS * sizeof(conic_nearest_fragments) + sizeof(conic_kept)) +
+  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + CONIC_TILE_STRIPS * sizeof(conic_nearest_strip) +
+         (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
          padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
 }
 
@@ -22,7 +22,7 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   conic_tile_scratch *scratch = &tile->scratch;
   size_t n = padded(tile->n_references);
   scratch->nearest = memory;
-  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_BAND_BLOCKS * (CONIC_BAND_BLOCKS + 1));
+  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_TILE_STRIPS);
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
   scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
   scratch->indices = (uint32_t *)(scratch->entries + n);
@@ -83,7 +83,7 @@ static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kerne
   report->visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
-    band->nearest = tile->scratch.nearest + i_row * (CONIC_BAND_BLOCKS + 1);
+    band->nearest = tile->scratch.nearest + i_row * (CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS);
     kernels->take_nearest(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles) {

@@ -19,8 +19,8 @@ typedef struct conic_tile_kernels {
   void (*project)(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                   conic_projected *projected, conic_chunk *chunk);
   /* conic_key_of every box. */
-  void (*keys)(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words,
-               uint32_t *beyond);
+  void (*keys)(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, int by_pixels, uint32_t *tiles,
+               uint32_t *words, uint32_t *beyond);
   /* Copies records: that of place i is order[i]. */
   void (*move)(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
                conic_surface *surfaces);

@@ -5,18 +5,23 @@
 #include "raster/tile_kernels.h"
 #include "raster/triangle_tile.h"
 
-/* The fragment of a footprint at pixel l of a block: 1 where it is covered. */
-static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, int l, conic_fragment *fragment) {
-  int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+/* The fragment of a footprint at a pixel: 1 where it is covered. */
+static int fragment_at(const conic_band *band, uint32_t i_footprint, int x, int y, conic_fragment *fragment) {
   const conic_footprint *footprint = &band->projected->footprints[i_footprint];
   return x < band->view->width && y < band->view->height &&
          conic_fragment_at(band->view, band->projected, footprint, x, y, fragment);
 }
 
-static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, uint32_t *tiles, uint32_t *words,
-                 uint32_t *beyond) {
+/* At pixel l of a block. */
+static int fragment_of(const conic_band *band, uint32_t i_footprint, int block, int l, conic_fragment *fragment) {
+  return fragment_at(band, i_footprint, band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE,
+                     band->y + l % CONIC_BLOCK_EDGE, fragment);
+}
+
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, int by_pixels, uint32_t *tiles,
+                 uint32_t *words, uint32_t *beyond) {
   for (size_t i = 0; i < n; i++) {
-    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x);
+    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x, by_pixels);
     tiles[i] = key.tile;
     words[i] = key.word;
     beyond[i] = key.beyond;
@@ -149,59 +154,48 @@ static void accumulate(conic_band *band) {
   }
 }
 
-/* The fragments of row i_row of the tile, where the nearest splat wins. */
-static conic_nearest_fragments *nearest_row(const conic_band *band, int i_row) {
-  return band->nearest + i_row * (CONIC_BAND_BLOCKS + 1);
-}
-
-/* Returns how many of the block's pixels the splat covers. */
-static unsigned keep_nearest(const conic_band *row, uint32_t i_footprint, int block) {
-  conic_nearest_fragments *nearest = &row->nearest[block];
-  unsigned n_covered = 0;
-  for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-    conic_fragment fragment;
-    if (!fragment_of(row, i_footprint, block, l, &fragment))
-      continue;
-    n_covered++;
-    if (!(nearest->iz[l] < fragment.iz))
-      continue;
-    nearest->iz[l] = fragment.iz;
-    nearest->q[l] = fragment.q;
-    nearest->scale[l] = fragment.scale;
-    nearest->footprint[l] = i_footprint;
-  }
-  return n_covered;
+/* Returns whether the splat covers the pixel in the given column and row of the tile. */
+static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int column, int row) {
+  conic_nearest_strip *strip = &band->nearest[row / CONIC_STRIP_ROWS];
+  size_t at = conic_strip_place(column, row);
+  conic_fragment fragment;
+  if (!fragment_at(band, i_footprint, band->x + column, band->y + row, &fragment))
+    return 0;
+  if (!(strip->iz[at] < fragment.iz))
+    return 1;
+  strip->iz[at] = fragment.iz;
+  strip->q[at] = fragment.q;
+  strip->scale[at] = fragment.scale;
+  strip->footprint[at] = i_footprint;
+  return 1;
 }
 
 static void nearest(conic_band *band) {
   band->has_special = 0;
-  memset(band->nearest, 0, (size_t)band->n_rows * (CONIC_BAND_BLOCKS + 1) * sizeof *band->nearest);
+  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
+    memset(band->nearest[i].iz, 0, sizeof band->nearest[i].iz);
   for (size_t i = 0; i < band->n_entries; i++) {
-    uint32_t word = band->entries[i].word;
-    band->has_special |= !(band->projected->footprints[band->entries[i].footprint].s3 > 0.0f);
-    for (int i_row = 0; i_row < band->n_rows; i_row++) {
-      conic_band row = *band;
-      row.y += i_row * CONIC_BLOCK_EDGE;
-      row.nearest = nearest_row(band, i_row);
-      for (int block = 0; block < band->n_blocks && word >> (16 + i_row) & 1; block++)
-        if (conic_word_has(word, (uint32_t)block))
-          band->n_fragments += keep_nearest(&row, band->entries[i].footprint, block);
-    }
+    const conic_tile_entry *entry = &band->entries[i];
+    band->has_special |= !(band->projected->footprints[entry->footprint].s3 > 0.0f);
+    for (int row = (int)conic_word_first_row(entry->word); row <= (int)conic_word_last_row(entry->word); row++)
+      for (int column = (int)conic_word_first(entry->word); column <= (int)conic_word_last(entry->word); column++)
+        band->n_fragments += keep_nearest(band, entry->footprint, column, row);
   }
 }
 
 /* The nearest splats' colour, normal and weight. */
 static void take_block(const conic_band *band, int block) {
-  const conic_nearest_fragments *nearest = &band->nearest[block];
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+    size_t at;
+    const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
     float heaviest_weight = 0.0f;
-    conic_fragment fragment = {.q = nearest->q[l], .scale = nearest->scale[l]};
-    if (!(nearest->iz[l] > 0.0f))
+    conic_fragment fragment = {.q = strip->q[at], .scale = strip->scale[at]};
+    if (!(strip->iz[at] > 0.0f))
       continue;
-    blend(band, nearest->footprint[l], block, l, &fragment, &heaviest_weight);
-    sums->nearest[l] = nearest->footprint[l];
+    blend(band, strip->footprint[at], block, l, &fragment, &heaviest_weight);
+    sums->nearest[l] = strip->footprint[at];
     sums->count[l] = 1;
   }
 }
@@ -210,8 +204,11 @@ static void take_nearest(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
     band->n_kept[block] = 0;
     band->not_kept[block] = band->n;
-    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
-      band->n_kept[block] |= band->nearest[block].iz[l] > 0.0f;
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      size_t at;
+      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
+      band->n_kept[block] |= strip->iz[at] > 0.0f;
+    }
     if (!conic_block_is_empty(band, block))
       take_block(band, block);
   }

@@ -25,7 +25,6 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
                                      conic_triangle_tile *tile) {
   const conic_triangle_record *record = &frame->records[i_record];
   const conic_box *box = &record->box;
-  const float iz_far = conic_triangle_far(record), iz_near = conic_triangle_near(record);
   int x_begin = box->x_begin > x ? box->x_begin : x, y_begin = box->y_begin > y ? box->y_begin : y;
   int x_end = box->x_end < x + frame->tile ? box->x_end : x + frame->tile;
   int y_end = box->y_end < y + frame->tile ? box->y_end : y + frame->tile;
@@ -34,20 +33,11 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
   conic_triangle_edges_of(record, &edges);
   for (int j = y_begin; j < y_end; j++)
     for (int i = x_begin; i < x_end; i++) {
-      int is_inside = 1, column = i % CONIC_BLOCK_EDGE, row = j % CONIC_BLOCK_EDGE;
-      int64_t e[3];
-      for (int k = 0; k < 3; k++) {
-        e[k] = conic_triangle_edge_at(&edges, k, i - column, j - row);
-        is_inside &= e[k] + (edges.a[k] * column + edges.b[k] * row) * CONIC_SUBPIXELS + edges.bias[k] >= 0;
-      }
-      if (!is_inside)
+      float iz;
+      if (!conic_triangle_sample(record, &edges, i, j, &iz))
         continue;
-      conic_affine depth = conic_triangle_depth(record, &edges, e[1], e[2]);
-      float iz = conic_affine_at(&depth, (float)column, (float)row);
-      iz = iz > iz_far ? iz : iz_far;
-      iz = iz < iz_near ? iz : iz_near;
       conic_triangle_block *block = &tile->blocks[(j - y) / CONIC_BLOCK_EDGE][(i - x) / CONIC_BLOCK_EDGE];
-      int l = column * CONIC_BLOCK_EDGE + row;
+      int l = i % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + j % CONIC_BLOCK_EDGE;
       n_covered++;
       if (!(block->iz[l] < iz))
         continue;
@@ -87,7 +77,7 @@ void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays) {
       if (!(row->covered[block] >> l & 1))
         continue;
       float iz = row->blocks[block].iz[l], dx = rays->block_x[block][l], dy = rays->block_y[i_row][l];
-      float hides = iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
+      float hides = conic_triangle_hides(epsilon, iz, dx, dy);
       if (!(iz >= threshold[l]))
         row->visible[block] &= ~(1u << l);
       threshold[l] = hides > threshold[l] ? hides : threshold[l];
@@ -102,7 +92,9 @@ void conic_triangles_win(conic_band *band) {
     if (!row->covered[block] || conic_block_is_empty(band, block))
       continue;
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      if (!(row->blocks[block].iz[l] > band->nearest[block].iz[l])) {
+      size_t at;
+      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
+      if (!(row->blocks[block].iz[l] > strip->iz[at])) {
         row->visible[block] &= ~(1u << l);
         continue;
       }
@@ -191,8 +183,8 @@ static void find_color(const conic_triangle_look *look, const place *p, float co
 }
 
 /* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
-static void find_normal(const conic_triangle_look *look, const place *p, const conic_finish *finish, float dx, float dy,
-                        float normal[3]) {
+static void find_normal(const conic_triangle_look *look, const place *p, const float world_from_cam[3][3], float dx,
+                        float dy, float normal[3]) {
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = look->face[axis];
   if (look->has_normals) {
@@ -206,24 +198,71 @@ static void find_normal(const conic_triangle_look *look, const place *p, const c
   }
   float away = 0.0f;
   for (int i = 0; i < 3; i++) {
-    const float *m = finish->world_from_cam[i];
+    const float *m = world_from_cam[i];
     away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
   }
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
 }
 
-static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
+void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
+                             float normal[3]) {
+  int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
+  conic_triangle_look look;
+  place p;
+  conic_triangle_look_at(frame, record, x - column, y - row, &look);
+  find_place(&look, (float)column, (float)row, &p);
+  find_color(&look, &p, color);
+  find_normal(&look, &p, world_from_cam, ray[0], ray[1], normal);
+}
+
+/* Lists the records that a row sees, each once or little more often. */
+static int list_records(const conic_band *band, uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS]) {
+  int n = 0;
+  uint32_t last = UINT32_MAX;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (uint32_t left = band->triangles->visible[block]; left; left &= left - 1) {
+      uint32_t i_record = band->triangles->blocks[block].record[__builtin_ctz(left)];
+      records[n] = i_record;
+      n += i_record != last;
+      last = i_record;
+    }
+  return n;
+}
+
+void conic_triangle_fetch_row(const conic_band *band) {
+  const conic_triangle_frame *frame = band->triangle_frame;
+  const conic_triangles *t = frame->triangles;
+  uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS + 1];
+  int n = list_records(band, records);
+  if (n <= 2 * CONIC_BAND_BLOCKS)
+    return;
+  for (int i = 0; i < n; i++)
+    __builtin_prefetch(t->corners[frame->records[records[i]].index]);
+  for (int i = 0; i < n; i++) {
+    const uint32_t *corners = t->corners[frame->records[records[i]].index];
+    for (int k = 0; k < 3; k++)
+      for (int axis = 0; axis < 3; axis++) {
+        __builtin_prefetch(&t->position[axis][corners[k]]);
+        if (t->normal[0] && !t->normal_corners)
+          __builtin_prefetch(&t->normal[axis][corners[k]]);
+        if (t->color[0])
+          __builtin_prefetch(&t->color[axis][corners[k]]);
+      }
+  }
+}
+
+void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
+                              int l) {
   conic_block_sums *sums = &band->sums[block];
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
-  conic_triangle_look look;
-  place p;
+  const float ray[2] = {rays->block_x[block][l], rays->block_y[i_row][l]};
   float color[3], normal[3];
-  conic_triangle_look_at(band->triangle_frame, record, band->x + block * CONIC_BLOCK_EDGE, band->y, &look);
-  find_place(&look, (float)(l / CONIC_BLOCK_EDGE), (float)(l % CONIC_BLOCK_EDGE), &p);
-  find_color(&look, &p, color);
-  find_normal(&look, &p, finish, rays->block_x[block][l], rays->block_y[i_row][l], normal);
+  conic_triangle_color_at(band->triangle_frame, record, finish->world_from_cam,
+                          band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, band->y + l % CONIC_BLOCK_EDGE,
+                          ray, color, normal);
   sums->weight[l] += 1.0f;
   sums->count[l]++;
   float size = 0.0f;
@@ -248,6 +287,6 @@ void conic_triangles_add(conic_band *band, const conic_finish *finish, const con
     conic_triangle_rank_block(band, block);
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
       if (row->visible[block] >> l & 1)
-        add_pixel(band, finish, rays, block, l);
+        conic_triangle_add_pixel(band, finish, rays, block, l);
   }
 }

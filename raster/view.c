@@ -129,5 +129,6 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
     view->epsilon_scale = CONIC_EPSILON_C;
     view->epsilon_cap = 4.0f * CONIC_EPSILON_C * view->cutoff * (float)splat_length;
   }
+  view->needs_nearness = view->needs_slope = 1;
   return CONIC_OK;
 }

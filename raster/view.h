@@ -32,6 +32,8 @@ typedef struct conic_view {
   float auto_limit;    /* the square of the error at which `auto` takes ray, over that of its bound's factor */
   float epsilon_scale; /* ε = epsilon_scale · F_g·max(|t_u|, |t_v|) … */
   float epsilon_cap;   /* … at most this; with a fixed ε the scale is infinite */
+  int needs_nearness;  /* footprints have theirs, else 0, since nothing blends; */
+  int needs_slope;     /* likewise plane_dx and plane_dy of what is no ray */
 } conic_view;
 
 /* Checks camera and options and fills the view. `splat_length` is the lower median of max(|t_u|, |t_v|), `near_z`

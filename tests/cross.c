@@ -32,8 +32,19 @@ static void check_projected(desk *d) {
   d->arenas[RAYS].compared = d->chunk.n_rays * sizeof(conic_ray);
 }
 
+/* What a single pass asks of the records. */
+static void run_project_for_nearest(const conic_tile_kernels *kernels, desk *d) {
+  d->view.needs_nearness = d->view.needs_slope = 0;
+  run_project(kernels, d);
+  d->view.needs_nearness = d->view.needs_slope = 1;
+}
+
 static void run_keys(const conic_tile_kernels *kernels, desk *d) {
-  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, d->tiles, d->keys, d->beyond);
+  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 0, d->tiles, d->keys, d->beyond);
+}
+
+static void run_keys_of_pixels(const conic_tile_kernels *kernels, desk *d) {
+  kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 1, d->tiles, d->keys, d->beyond);
 }
 
 /* An order that takes every record once. */
@@ -99,19 +110,16 @@ static void check_sums(desk *d) {
   }
 }
 
-/* The fragments of pixels that nothing covers may be anything, and scales but those of special splats, and all that is
- * beside the band. */
+/* The fragments of pixels that nothing covers may be anything, and scales but those of special splats. */
 static void check_nearest(desk *d) {
-  for (int i = 0; i < d->band.n_rows * (CONIC_BAND_BLOCKS + 1); i++) {
-    conic_nearest_fragments *nearest = &d->band.nearest[i];
-    if (i % (CONIC_BAND_BLOCKS + 1) == CONIC_NO_BLOCK)
-      memset(nearest, 0, sizeof *nearest);
-    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      if (nearest->iz[l] == 0.0f || d->projected.footprints[nearest->footprint[l]].s3 > 0.0f)
-        nearest->scale[l] = 0.0f;
-      if (nearest->iz[l] == 0.0f) {
-        nearest->q[l] = 0.0f;
-        nearest->footprint[l] = 0;
+  for (int i = 0; i < d->band.n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++) {
+    conic_nearest_strip *strip = &d->band.nearest[i];
+    for (int l = 0; l < CONIC_STRIP_PIXELS; l++) {
+      if (strip->iz[l] == 0.0f || d->projected.footprints[strip->footprint[l]].s3 > 0.0f)
+        strip->scale[l] = 0.0f;
+      if (strip->iz[l] == 0.0f) {
+        strip->q[l] = 0.0f;
+        strip->footprint[l] = 0;
       }
     }
   }
@@ -157,7 +165,9 @@ typedef struct slot {
 
 static const slot slots[] = {
     {"project", run_project, {NULL}, check_projected, A_SPLAT, 1, 0, 0},
+    {"project for nearest", run_project_for_nearest, {NULL}, check_projected, A_SPLAT, 1, 0, 1},
     {"keys", run_keys, {NULL}, NULL, A_RECORD, 0, 0, 0},
+    {"keys of pixels", run_keys_of_pixels, {NULL}, NULL, A_RECORD, 0, 0, 0},
     {"move", run_move, {NULL}, NULL, A_RECORD, 0, 0, 0},
     {"select", run_select, {NULL}, check_selected, AN_INDEX, 0, 0, 0},
     {"visibility", run_visibility, {NULL}, check_kept, A_FRAGMENT, 1, 0, 0},
@@ -213,8 +223,16 @@ static uint32_t word_of(const conic_band *band, const conic_box *box) {
                        between(top / CONIC_BLOCK_EDGE, last_row), between(bottom / CONIC_BLOCK_EDGE, last_row));
 }
 
+/* The same in pixels. */
+static uint32_t pixel_word_of(const conic_band *band, const conic_box *box) {
+  int last_column = band->n_blocks * CONIC_BLOCK_EDGE - 1, last_row = band->n_rows * CONIC_BLOCK_EDGE - 1;
+  return conic_pixel_word_of(between(box->x_begin - band->x, last_column),
+                             between(box->x_end - 1 - band->x, last_column), between(box->y_begin - band->y, last_row),
+                             between(box->y_end - 1 - band->y, last_row));
+}
+
 /* The band's list, as its tile would make it. */
-static void list_splats(desk *d) {
+static void list_splats(desk *d, int by_pixels) {
   conic_band *band = &d->band;
   band->n = 0;
   for (size_t k = 0; k < d->chunk.n_drawn && band->n < GREATEST_LIST; k++) {
@@ -223,11 +241,15 @@ static void list_splats(desk *d) {
         box->y_begin >= band->y + CONIC_BLOCK_EDGE || box->y_end <= band->y)
       continue;
     d->words[band->n] = word_of(band, box);
-    d->references[band->n] = (conic_tile_entry){(uint32_t)k, d->words[band->n]};
+    d->references[band->n] = (conic_tile_entry){(uint32_t)k, by_pixels ? pixel_word_of(band, box) : d->words[band->n]};
     d->list[band->n++] = (uint32_t)k;
   }
   band->entries = d->references;
   band->n_entries = band->n;
+}
+
+static int is_single_pass(const slot *s) {
+  return s->run == run_nearest || s->before[0] == run_nearest;
 }
 
 /* Where the slot begins on a band: what comes before it, done by the plain C table. */
@@ -240,7 +262,7 @@ static void prepare(const slot *s, desk *d, int x, int y) {
   d->band.n_rows = d->band.n_rows < CONIC_BAND_BLOCKS ? d->band.n_rows : CONIC_BAND_BLOCKS;
   d->band.n_fragments = d->band.n_covered = 0;
   conic_tile_rays_init(&d->view, x, y / CONIC_GREATEST_TILE * CONIC_GREATEST_TILE, &d->rays);
-  list_splats(d);
+  list_splats(d, is_single_pass(s));
   for (int i = 0; i < 3 && s->before[i]; i++)
     s->before[i](&conic_tile_kernels_scalar, d);
 }
