@@ -116,7 +116,7 @@ static int run(cli_session *session, int argc, char **argv) {
       {"largest", CLI_NUMBER, &job.options.most_area, "SHARE",
        "of the mesh's area, the most that a cluster of the first phase has; 0: that of 2000 faces, 0.02 at most [0]", 0,
        1e6},
-      {"density", CLI_NUMBER, &job.options.density, "N", "surfels along a patch's mean edge [2]", 0.01, 64},
+      {"density", CLI_NUMBER, &job.options.density, "N", "surfels along a patch's mean edge [2]", 0.01, 1024},
       {"sampling", CLI_CHOICE, &sampling, "HOW",
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh [its materials']"},
