@@ -93,6 +93,12 @@ static conic_status read_target(conic_context *context, const char *target, cons
   }
   if (strcmp(target, "mtl") == 0)
     return read_materials(context, path);
+  if (strcmp(target, "chy") == 0) {
+    conic_hybrid *hybrid;
+    status = conic_hybrid_read(context, path, &hybrid);
+    conic_hybrid_destroy(hybrid);
+    return status;
+  }
   if (is_picture(target)) {
     status = conic_image_read(context, path, &image);
     if (status == CONIC_OK)
