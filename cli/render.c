@@ -112,6 +112,18 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   return status;
 }
 
+/* --clusters: the patches of a hybrid in false colours. */
+static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  double start = cli_seconds();
+  if (!job->clusters_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->clusters_path, i_frame);
+  conic_status status = path ? cli_hybrid_write_clusters(session, path, image) : CONIC_ERROR_MEMORY;
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 /* --deep: the splats behind the picture's pixels. */
 static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                const conic_camera *camera, const conic_image *image, int i_frame) {
@@ -141,6 +153,7 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
     return cli_layers_draw(session, job, camera, renderer, image, statistics);
   conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
                         : job->patches ? cli_patch_select(job, camera, &lod_ms)
+                        : job->hybrid  ? cli_hybrid_select(job, camera, &lod_ms)
                                        : CONIC_OK;
   const conic_splats *chosen = job->octree    ? &job->selection.splats
                                : job->patches ? &job->patch_selection.splats
@@ -151,6 +164,8 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                                   statistics);
   if (status == CONIC_OK && job->octree)
     conic_selection_name(&job->selection, image);
+  if (status == CONIC_OK && image->planes[CONIC_PLANE_CLUSTER])
+    conic_hybrid_name(&job->hybrid_selection, image);
   if (status == CONIC_OK && job->patches)
     conic_patch_selection_name(&job->patch_selection, image);
   statistics->ms.lod = lod_ms;
@@ -174,6 +189,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_clusters(session, job, image, i_frame);
   return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
@@ -223,6 +240,7 @@ static int run(cli_session *session, int argc, char **argv) {
     cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
     cli_layers_close(&job);
+    cli_hybrid_close(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

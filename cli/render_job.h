@@ -8,7 +8,7 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
-typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1 } cli_representation;
+typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1, CLI_AS_HYBRID = 2 } cli_representation;
 
 /* Where the only input is a layered point cloud. */
 typedef struct cli_render_layers {
@@ -52,6 +52,7 @@ typedef struct cli_render_job {
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws */
   int as;                       /* what meshes are drawn as, a cli_representation */
+  int is_smooth;                /* meshes get vertex normals from their faces */
   const char *texture_path;     /* of meshes that are drawn as such, in place of their own; null: none */
   double error_px;              /* 0: every splat */
   unsigned long long budget;    /* 0: no limit */
@@ -66,6 +67,12 @@ typedef struct cli_render_job {
 
   conic_triangles triangles; /* read beside the splats, with --as mesh */
 
+  /* A .chy, or a mesh with --as hybrid: the only input, and what was chosen of it for the frame. */
+  conic_hybrid *hybrid;
+  conic_hybrid_info hybrid_info;
+  conic_hybrid_selection hybrid_selection;
+  const char *clusters_path; /* --clusters; null: none */
+  int only_kind;             /* --only: a conic_hybrid_kind, or -1 */
   /* Of --method patch: the points' polynomials, and the frame's samples. */
   conic_patches *patches;
   conic_patch_selection patch_selection;
@@ -107,6 +114,16 @@ conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const co
 void cli_layers_close(cli_render_job *job);
 void cli_render_layers_report(cli_json *json, const cli_render_job *job);
 
+/* Whether the only input is a hybrid model, or is to be made one. */
+int cli_hybrid_is_wanted(const cli_render_job *job);
+/* Reads or builds it into the job. */
+conic_status cli_hybrid_open(cli_session *session, cli_render_job *job);
+/* Chooses for a frame; *ms is what it took. */
+conic_status cli_hybrid_select(cli_render_job *job, const conic_camera *camera, double *ms);
+/* --clusters: the patches in colours of their own, as they are shaded in `image`. */
+conic_status cli_hybrid_write_clusters(cli_session *session, const char *path, const conic_image *image);
+/* Ends it; fine where it never was. */
+void cli_hybrid_close(cli_session *session, cli_render_job *job);
 /* "patch", or the method by which splats are drawn. */
 const char *cli_method_name(const cli_render_job *job);
 /* Lays patches about the points of measured splats, which must outlive them; ε then goes with the points. */

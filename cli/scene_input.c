@@ -127,12 +127,22 @@ static conic_status lay_texture(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* What the options say of triangles. */
+static conic_status dress_triangles(cli_session *session, cli_render_job *job) {
+  conic_status status = CONIC_OK;
+  if (job->is_smooth && job->triangles.count)
+    status = conic_triangles_smooth(session->context, &job->triangles);
+  return status == CONIC_OK && job->texture_path && job->triangles.count ? lay_texture(session, job) : status;
+}
+
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats) {
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
   memset(splats, 0, sizeof *splats);
   if (cli_layers_is_wanted(job) && job->draws_layers)
     return cli_layers_open(session, job);
+  if (cli_hybrid_is_wanted(job))
+    return cli_hybrid_open(session, job);
   if (cli_lod_is_wanted(job))
     return cli_lod_open(session, job);
   for (int i = 0; i < job->n_inputs; i++) {
@@ -142,11 +152,9 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
       return status;
     n_las += kind == CONIC_MODEL_LAS;
   }
-  if (job->texture_path && job->triangles.count) {
-    conic_status status = lay_texture(session, job);
-    if (status != CONIC_OK)
-      return status;
-  }
+  conic_status dressed = dress_triangles(session, job);
+  if (dressed != CONIC_OK)
+    return dressed;
   if (n_las == job->n_inputs && !job->is_up_given) { /* surveys have heights in z */
     job->framing.up[0] = job->framing.up[1] = 0.0;
     job->framing.up[2] = 1.0;
@@ -158,6 +166,10 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats) {
   conic_drawing drawing = {splats, &job->triangles};
+  if (job->hybrid) {
+    drawing.splats = &job->hybrid_selection.splats;
+    drawing.triangles = &job->hybrid_selection.triangles;
+  }
   return drawing;
 }
 
@@ -173,8 +185,9 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
   conic_status status = CONIC_OK;
   if (job->layers.file)
     spacing = job->layers.scale.spacing;
-  if (job->octree && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
-    cli_error(CLI_USAGE, "render: lengths in spacings need every splat; give world units with --error or --budget");
+  if ((job->octree || job->hybrid) && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
+    cli_error(CLI_USAGE,
+              "render: lengths in spacings need every splat; give world units with --error, --budget or a hybrid");
     return CONIC_ERROR_ARGUMENT;
   }
   if (!job->layers.file && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings))
@@ -186,11 +199,11 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
   return status;
 }
 
-/* What an octree knows of the splats that it was built from. */
-static void measure_octree(cli_render_job *job) {
-  job->options.splat_length = job->info.splat_length;
+/* What an octree or a hybrid knows of what it was built from. */
+static void measure_built(cli_render_job *job) {
+  job->options.splat_length = job->hybrid ? job->hybrid_info.splat_length : job->info.splat_length;
   if (job->options.near_z == 0.0)
-    job->options.near_z = job->info.near_z;
+    job->options.near_z = job->hybrid ? job->hybrid_info.near_z : job->info.near_z;
 }
 
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
@@ -199,11 +212,11 @@ conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const 
   if (job->layers.file) {
     job->options.splat_length = job->layers.scale.splat_length;
     job->options.near_z = job->options.near_z > 0.0 ? job->options.near_z : job->layers.scale.near_z;
-  } else if (job->octree)
-    measure_octree(job);
+  } else if (job->octree || job->hybrid)
+    measure_built(job);
   else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && !job->octree && !job->layers.file && job->options.near_z == 0.0) {
+  if (status == CONIC_OK && !job->octree && !job->hybrid && !job->layers.file && job->options.near_z == 0.0) {
     const conic_drawing drawing = cli_scene_drawing(job, splats);
     job->options.near_z = conic_drawing_near(&drawing);
   }
@@ -222,6 +235,9 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   if (job->layers.file) {
     memcpy(low, job->layers.scale.minimum, sizeof low);
     memcpy(high, job->layers.scale.maximum, sizeof high);
+  } else if (job->hybrid) {
+    memcpy(low, job->hybrid_info.minimum, sizeof low);
+    memcpy(high, job->hybrid_info.maximum, sizeof high);
   } else if (job->octree) {
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);

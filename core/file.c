@@ -169,3 +169,8 @@ void conic_output_sweep(conic_context *context, const char *path) {
     closedir(listing);
   conic_memory_release(context, folder);
 }
+
+int conic_file_is_there(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}

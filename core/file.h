@@ -29,4 +29,8 @@ void conic_output_abandon(conic_output *output);
  * outputs that are too large to be left lying about. */
 void conic_output_sweep(conic_context *context, const char *path);
 
+/* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
+ * lead to. */
+int conic_file_is_there(const char *path);
+
 #endif

@@ -83,10 +83,11 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
     made->options = *options;
   else
     conic_layers_options_init(&made->options);
-  made->path = conic_memory_allocate(context, strlen(path) + 1, 1);
+  size_t n_path = strlen(path) + 1;
+  made->path = conic_memory_allocate(context, n_path, 1);
   status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    strcpy(made->path, path);
+    memcpy(made->path, path, n_path);
     conic_output_sweep(context, path);
     status = conic_layers_intake_begin(context, made->path, share(made, 0.35), made->options.cutoff, &made->intake);
   }

@@ -66,6 +66,10 @@ wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitiv
 wanted["render of a layered cloud"]="${wanted[render]} error_px layers.clouds layers.places_coarser layers.clouds_missing"
 wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
+wanted[hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches"
+wanted["info of a hybrid"]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound"
+
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"
   exit 77

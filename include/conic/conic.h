@@ -6,6 +6,7 @@
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/hybrid.h"
 #include "conic/image.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
