@@ -32,7 +32,8 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();
-  status = conic_render_samples(session->context, renderer, splats, camera, &job->scene.options, job->scene.samples,
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->scene.options, job->scene.samples,
                                 &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   conic_renderer_destroy(renderer);
@@ -55,9 +56,10 @@ static conic_status compare(cli_session *session, verify_job *job, const conic_s
     status = get_image(session, job, splats, &camera);
   if (status == CONIC_OK)
     status = check_size(job, &camera);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render_samples(session->context, splats, &camera, &job->scene.options,
+    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &job->scene.options,
                                          (conic_oracle_question)job->question, job->scene.samples, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)

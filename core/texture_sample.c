@@ -8,6 +8,7 @@
 /* The filter of a pixel, and that of a texel, have a standard deviation of half their width, and end at two. */
 #define FILTER_VARIANCE 0.25f
 #define FILTER_SUPPORT 4.0f
+#define FILTER_END 0x1.152aaap-3f /* e⁻², which the Gaussian is lowered by, so that it ends at 0 */
 
 /* A footprint is no more than so many times as long as wide: a narrower one is widened. */
 #define GREATEST_RATIO 8.0f
@@ -93,7 +94,7 @@ static void filter(const conic_texture *texture, int i_level, const float place[
       float q = ((yy * dx - 2.0f * xy * dy) * dx + xx * dy * dy) * inverse;
       if (!(q < FILTER_SUPPORT))
         continue;
-      float weight = conic_exp_negative(-0.5f * q);
+      float weight = conic_exp_negative(-0.5f * q) - FILTER_END;
       const float *texel = row + 4 * (size_t)wrapped(i, level->width, texture->wrap);
       for (int channel = 0; channel < 3; channel++)
         sum[channel] += weight * texel[channel];

@@ -9,6 +9,7 @@
 #include "core/threads.h"
 #include "raster/oracle_exact.h"
 #include "raster/oracle_pixel.h"
+#include "raster/oracle_triangle.h"
 
 enum { BLOCK = 16, N_BINS = 1024 };
 
@@ -25,6 +26,9 @@ typedef struct worker {
   double *peaks;
   oracle_fragment *fragments;
   size_t room;
+  uint32_t *triangles; /* of the mesh: those that may touch the block */
+  size_t n_triangles;
+  oracle_seen_triangle seen;
   histogram absolute, of_peak;
   double quadrature;
   size_t n_weights, covered, unstable, undecided_ids, by_reason[CONIC_N_UNSTABLE_REASONS];
@@ -34,6 +38,7 @@ typedef struct job {
   conic_context *context;
   const conic_render_options *options;
   oracle_scene scene;
+  oracle_mesh mesh;
   conic_reference *reference;
   worker *workers;
   size_t blocks_across, first_block;
@@ -90,14 +95,14 @@ static void release_room(conic_context *context, worker *w) {
 }
 
 static int make_room(const job *j, worker *w, size_t n) {
-  if (n <= w->room)
+  if (w->fragments && n <= w->room)
     return 1;
   release_room(j->context, w);
   w->room = n + n / 2;
   w->candidates = conic_memory_allocate(j->context, w->room, sizeof *w->candidates);
   w->exacts = conic_memory_allocate(j->context, w->room, sizeof *w->exacts);
   w->peaks = conic_memory_allocate(j->context, w->room, sizeof *w->peaks);
-  w->fragments = conic_memory_allocate(j->context, w->room, sizeof *w->fragments);
+  w->fragments = conic_memory_allocate(j->context, w->room + 1, sizeof *w->fragments); /* and a triangle's */
   if (w->candidates && w->exacts && w->peaks && w->fragments)
     return 1;
   w->room = 0;
@@ -139,13 +144,29 @@ static ptrdiff_t find_candidates(const job *j, worker *w, double x, double y) {
   return (ptrdiff_t)n;
 }
 
+/* The triangles that may touch the block; 0 without memory. */
+static int find_triangles(const job *j, worker *w, double x, double y) {
+  w->n_triangles = 0;
+  if (j->mesh.n && !w->triangles)
+    w->triangles = conic_memory_allocate(j->context, j->mesh.n, sizeof *w->triangles);
+  if (j->mesh.n && !w->triangles)
+    return 0;
+  for (size_t i = 0; i < j->mesh.n; i++) {
+    const double(*box)[2] = (const double(*)[2])j->mesh.pieces[i].box;
+    if (box[0][0] <= 256.0 * (x + BLOCK) && box[1][0] >= 256.0 * x && box[0][1] <= 256.0 * (y + BLOCK) &&
+        box[1][1] >= 256.0 * y)
+      w->triangles[w->n_triangles++] = (uint32_t)i;
+  }
+  return 1;
+}
+
 /* Replaces the method's weights of what is visible by the exact ones. */
 static void weigh_exactly(const job *j, worker *w, double x, double y, size_t n_fragments) {
   for (size_t i = 0; i < n_fragments; i++) {
     oracle_fragment *f = &w->fragments[i];
     size_t which = (size_t)(f->candidate - w->candidates);
     double change, weight, error;
-    if (!f->is_visible)
+    if (!f->is_visible || f->candidate == &w->seen.candidate)
       continue;
     weight = conic_oracle_exact_weight(&j->scene.view, &w->exacts[which], x, y, &change);
     error = fabs(f->values[ORACLE_WEIGHT] - weight);
@@ -179,6 +200,11 @@ static void do_pixel(const job *j, worker *w, int column, int row, size_t n_cand
       is_covered |= w->fragments[n].covers;
       n++;
     }
+  if (w->n_triangles && conic_oracle_mesh_at(&j->mesh, &j->scene.view, w->triangles, w->n_triangles, column, row,
+                                             &w->seen, &w->fragments[n])) {
+    is_covered = 1;
+    n++;
+  }
   oracle_pixel pixel = nothing;
   unsigned doubt = conic_oracle_see(w->fragments, n);
   int is_exact = j->reference->question == CONIC_ORACLE_EXACT;
@@ -208,7 +234,7 @@ static void do_block(void *data, size_t i_item, int i_thread) {
   if (atomic_load(&j->has_failed))
     return;
   ptrdiff_t n = find_candidates(j, w, (double)left, (double)top);
-  if (n < 0) {
+  if (n < 0 || !find_triangles(j, w, (double)left, (double)top)) {
     atomic_store(&j->has_failed, 1);
     return;
   }
@@ -265,8 +291,10 @@ static conic_status compute(job *j) {
   j->reference->samples = 1;
   j->reference->covered_samples = j->reference->covered_pixels;
   j->reference->unstable_samples = j->reference->unstable_pixels;
-  for (int t = 0; t < n_threads && j->workers; t++)
+  for (int t = 0; t < n_threads && j->workers; t++) {
     release_room(j->context, &j->workers[t]);
+    conic_memory_release(j->context, j->workers[t].triangles);
+  }
   conic_memory_release(j->context, j->workers);
   return status;
 }
@@ -297,28 +325,47 @@ static conic_status check(conic_context *context, const conic_splats *splats, co
   return CONIC_OK;
 }
 
-conic_status conic_oracle_render(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options, conic_oracle_question question,
-                                 conic_reference *reference) {
+conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                               const conic_render_options *options, conic_oracle_question question,
+                               conic_reference *reference) {
+  static const conic_splats no_splats;
+  const conic_drawing whole = {drawing->splats ? drawing->splats : &no_splats, drawing->triangles};
   memset(reference, 0, sizeof *reference);
-  conic_status status = check(context, splats, camera, options, question);
+  conic_status status = check(context, whole.splats, camera, options, question);
+  if (status == CONIC_OK && whole.triangles)
+    status = conic_triangles_check(context, whole.triangles, "the oracle");
   if (status != CONIC_OK)
     return status;
-  job j = {.context = context, .options = options, .reference = reference};
+  conic_render_options settled = *options;
+  if (!(settled.near_z > 0.0) && whole.triangles)
+    settled.near_z = conic_drawing_near(&whole);
+  job j = {.context = context, .options = &settled, .reference = reference};
   reference->width = camera->width;
   reference->height = camera->height;
   reference->question = question;
   reference->white = conic_oracle_exp(options->exposure * 0.69314718055994530942);
   status = conic_oracle_allocate(context, reference);
   if (status == CONIC_OK)
-    status = conic_oracle_scene_create(context, splats, camera, options, &j.scene);
+    status = conic_oracle_scene_create(context, whole.splats, camera, &settled, &j.scene);
   if (status == CONIC_OK) {
-    status = compute(&j);
+    status = conic_oracle_mesh_create(context, &whole, &j.scene, &settled, &j.mesh);
+    if (status == CONIC_OK)
+      status = compute(&j);
+    conic_oracle_mesh_release(context, &j.mesh);
     conic_oracle_scene_release(context, &j.scene);
   }
   if (status != CONIC_OK)
     conic_reference_release(context, reference);
   return status;
+}
+
+conic_status conic_oracle_render(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, conic_oracle_question question,
+                                 conic_reference *reference) {
+  const conic_drawing alone = {splats, NULL};
+  memset(reference, 0, sizeof *reference);
+  conic_status status = check(context, splats, camera, options, question);
+  return status == CONIC_OK ? conic_oracle_draw(context, &alone, camera, options, question, reference) : status;
 }
 
 void conic_reference_release(conic_context *context, conic_reference *reference) {

@@ -62,6 +62,11 @@ void conic_oracle_shade(const conic_camera *camera, const conic_render_options *
 /* Room for the planes of a reference whose size is set, all zero; what there is of it stays after a failure. */
 conic_status conic_oracle_allocate(conic_context *context, conic_reference *reference);
 
+/* conic_oracle_render of splats and triangles. */
+conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                               const conic_render_options *options, conic_oracle_question question,
+                               conic_reference *reference);
+
 /* What an uncovered pixel shows. */
 void conic_oracle_background(const conic_render_options *options, double rgba[4]);
 

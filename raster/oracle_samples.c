@@ -106,12 +106,12 @@ static void reduce_all(const conic_reference *fine, int samples, conic_reference
     }
 }
 
-conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                         const conic_render_options *options, conic_oracle_question question,
-                                         int samples, conic_reference *reference) {
+conic_status conic_oracle_render_drawing(conic_context *context, const conic_drawing *drawing,
+                                         const conic_camera *camera, const conic_render_options *options,
+                                         conic_oracle_question question, int samples, conic_reference *reference) {
   conic_reference fine_reference;
   if (samples == 1)
-    return conic_oracle_render(context, splats, camera, options, question, reference);
+    return conic_oracle_draw(context, drawing, camera, options, question, reference);
   memset(reference, 0, sizeof *reference);
   if (!camera || samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > 65535 / samples ||
       camera->height > 65535 / samples)
@@ -124,7 +124,7 @@ conic_status conic_oracle_render_samples(conic_context *context, const conic_spl
   fine.fy *= samples;
   fine.cx *= samples;
   fine.cy *= samples;
-  conic_status status = conic_oracle_render(context, splats, &fine, options, question, &fine_reference);
+  conic_status status = conic_oracle_draw(context, drawing, &fine, options, question, &fine_reference);
   if (status != CONIC_OK)
     return status;
   reference->width = camera->width;
@@ -136,4 +136,13 @@ conic_status conic_oracle_render_samples(conic_context *context, const conic_spl
     conic_reference_release(context, reference);
   conic_reference_release(context, &fine_reference);
   return status;
+}
+
+conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                         const conic_render_options *options, conic_oracle_question question,
+                                         int samples, conic_reference *reference) {
+  const conic_drawing alone = {splats, NULL};
+  if (samples == 1 || !splats)
+    return conic_oracle_render(context, splats, camera, options, question, reference);
+  return conic_oracle_render_drawing(context, &alone, camera, options, question, samples, reference);
 }

@@ -226,7 +226,7 @@ static int place(const oracle_view *view, const conic_splats *splats, const coni
 
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                        const conic_render_options *options, oracle_scene *scene) {
-  double median;
+  double median = 0.0;
   scene->n = 0;
   scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
   scene->splats = conic_memory_allocate(context, splats->count, sizeof *scene->splats);
@@ -237,6 +237,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
     if (i % 65536 == 0)
       status = conic_progress(context, "verify", 0.0);
   }
+  scene->longest = status == CONIC_OK ? median : 0.0;
   if (status != CONIC_OK)
     conic_oracle_scene_release(context, scene);
   return status;

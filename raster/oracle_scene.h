@@ -28,6 +28,7 @@ typedef struct oracle_scene {
   oracle_view view;
   size_t n;
   oracle_splat *splats;
+  double longest; /* the median of the splats' longer axes, which caps the automatic ε */
 } oracle_scene;
 
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,

@@ -14,6 +14,7 @@
 #include "conic/image.h"
 #include "conic/render.h"
 #include "conic/splats.h"
+#include "conic/triangles.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -83,6 +84,13 @@ CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_s
 /* The same with samples × samples samples a pixel (docs/picture.md), 1 to 16. A pixel is as unstable as its samples are
  * together. All samples are kept until they are reduced: some 120 bytes each. */
 CONIC_API conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats,
+                                                   const conic_camera *camera, const conic_render_options *options,
+                                                   conic_oracle_question question, int samples,
+                                                   conic_reference *reference);
+
+/* The same of splats and triangles. Textures are filtered by conic_texture_sample, which the question is not about.
+ * Errors also: INPUT (conic_triangles_check). */
+CONIC_API conic_status conic_oracle_render_drawing(conic_context *context, const conic_drawing *drawing,
                                                    const conic_camera *camera, const conic_render_options *options,
                                                    conic_oracle_question question, int samples,
                                                    conic_reference *reference);
