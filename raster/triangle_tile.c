@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "raster/coverage.h"
-#include "raster/triangle_look.h"
+#include "raster/triangle_pixel.h"
 
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,
                              conic_band *band) {
@@ -25,7 +25,6 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
                                      conic_triangle_tile *tile) {
   const conic_triangle_record *record = &frame->records[i_record];
   const conic_box *box = &record->box;
-  const float iz_far = conic_triangle_far(record), iz_near = conic_triangle_near(record);
   int x_begin = box->x_begin > x ? box->x_begin : x, y_begin = box->y_begin > y ? box->y_begin : y;
   int x_end = box->x_end < x + frame->tile ? box->x_end : x + frame->tile;
   int y_end = box->y_end < y + frame->tile ? box->y_end : y + frame->tile;
@@ -34,20 +33,11 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
   conic_triangle_edges_of(record, &edges);
   for (int j = y_begin; j < y_end; j++)
     for (int i = x_begin; i < x_end; i++) {
-      int is_inside = 1, column = i % CONIC_BLOCK_EDGE, row = j % CONIC_BLOCK_EDGE;
-      int64_t e[3];
-      for (int k = 0; k < 3; k++) {
-        e[k] = conic_triangle_edge_at(&edges, k, i - column, j - row);
-        is_inside &= e[k] + (edges.a[k] * column + edges.b[k] * row) * CONIC_SUBPIXELS + edges.bias[k] >= 0;
-      }
-      if (!is_inside)
+      float iz;
+      if (!conic_triangle_covers(record, &edges, i, j, &iz))
         continue;
-      conic_affine depth = conic_triangle_depth(record, &edges, e[1], e[2]);
-      float iz = conic_affine_at(&depth, (float)column, (float)row);
-      iz = iz > iz_far ? iz : iz_far;
-      iz = iz < iz_near ? iz : iz_near;
       conic_triangle_block *block = &tile->blocks[(j - y) / CONIC_BLOCK_EDGE][(i - x) / CONIC_BLOCK_EDGE];
-      int l = column * CONIC_BLOCK_EDGE + row;
+      int l = i % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + j % CONIC_BLOCK_EDGE;
       n_covered++;
       if (!(block->iz[l] < iz))
         continue;
@@ -146,86 +136,18 @@ void conic_triangle_rank_block(const conic_band *band, int block) {
   }
 }
 
-/* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
- * pixel, where that is asked for. */
-typedef struct place {
-  float at[2], by_x[2], by_y[2];
-} place;
-
-static float at_least_zero(float x) {
-  return x > 0.0f ? x : 0.0f;
-}
-
-static void find_place(const conic_triangle_look *look, float column, float row, place *p) {
-  float iz = conic_affine_at(&look->iz, column, row), at[2], by_x[2], by_y[2];
-  iz = iz > look->iz_far ? iz : look->iz_far;
-  iz = iz < look->iz_near ? iz : look->iz_near;
-  float z = 1.0f / iz;
-  const conic_affine *weights[2] = {&look->first, &look->second};
-  for (int i = 0; i < 2; i++) {
-    at[i] = at_least_zero(conic_affine_at(weights[i], column, row) * z);
-    at[i] = at[i] < 1.0f ? at[i] : 1.0f;
-    by_x[i] = (weights[i]->by_x - at[i] * look->iz.by_x) * z;
-    by_y[i] = (weights[i]->by_y - at[i] * look->iz.by_y) * z;
-  }
-  for (int i = 0; i < 2; i++) {
-    p->at[i] = look->is_piece ? look->at[0][i] + (at[0] * look->at[1][i] + at[1] * look->at[2][i]) : at[i];
-    p->by_x[i] = look->is_piece ? by_x[0] * look->at[1][i] + by_x[1] * look->at[2][i] : by_x[i];
-    p->by_y[i] = look->is_piece ? by_y[0] * look->at[1][i] + by_y[1] * look->at[2][i] : by_y[i];
-  }
-}
-
-static void find_color(const conic_triangle_look *look, const place *p, float color[3]) {
-  float uv[2], along[2], across[2], texel[3];
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] =
-        look->color[0][channel] + (p->at[0] * look->color[1][channel] + p->at[1] * look->color[2][channel]);
-  if (!look->texture)
-    return;
-  for (int i = 0; i < 2; i++) {
-    uv[i] = look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]);
-    along[i] = p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i];
-    across[i] = p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i];
-  }
-  conic_texture_sample(look->texture, uv, along, across, texel);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] *= texel[channel];
-}
-
-/* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
-static void find_normal(const conic_triangle_look *look, const place *p, const conic_finish *finish, float dx, float dy,
-                        float normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = look->face[axis];
-  if (look->has_normals) {
-    float mean[3], scale;
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] = look->normal[0][axis] + (p->at[0] * look->normal[1][axis] + p->at[1] * look->normal[2][axis]);
-    float squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2];
-    scale = 1.0f / sqrtf(squared);
-    for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
-      normal[axis] = mean[axis] * scale;
-  }
-  float away = 0.0f;
-  for (int i = 0; i < 3; i++) {
-    const float *m = finish->world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
-}
-
 static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
   conic_block_sums *sums = &band->sums[block];
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
   conic_triangle_look look;
-  place p;
+  conic_triangle_weights weights;
   float color[3], normal[3];
   conic_triangle_look_at(band->triangle_frame, record, band->x + block * CONIC_BLOCK_EDGE, band->y, &look);
-  find_place(&look, (float)(l / CONIC_BLOCK_EDGE), (float)(l % CONIC_BLOCK_EDGE), &p);
-  find_color(&look, &p, color);
-  find_normal(&look, &p, finish, rays->block_x[block][l], rays->block_y[i_row][l], normal);
+  conic_triangle_weights_at(&look, (float)(l / CONIC_BLOCK_EDGE), (float)(l % CONIC_BLOCK_EDGE), &weights);
+  conic_triangle_color_at(&look, &weights, color);
+  conic_triangle_normal_at(&look, &weights, finish->world_from_cam, rays->block_x[block][l], rays->block_y[i_row][l],
+                           normal);
   sums->weight[l] += 1.0f;
   sums->count[l]++;
   float size = 0.0f;
