@@ -187,7 +187,7 @@ static conic_status measure(conic_frame *f, const host_array arrays[N_ARRAYS]) {
   f->triangle_bytes = sum;
   if (greatest > (double)device->greatest_buffer_bytes || sum > CONIC_SHARE_OF_MEMORY * (double)device->memory_bytes)
     return conic_fail(f->opencl->context, CONIC_ERROR_MEMORY,
-                      "opencl: the device cannot hold the triangles: they take %.0f MiB", sum / 1048576.0);
+                      "opencl: the device cannot hold the triangles: they take %.1f MiB", sum / 1048576.0);
   return CONIC_OK;
 }
 
