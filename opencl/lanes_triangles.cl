@@ -159,38 +159,119 @@ lanes_triangles(TRIANGLE_LISTS, __global lanes *thresholds, __global lanes *near
   n_fragments[2 * t.index + 1] = (uint)(n_covered >> 32);
 }
 
+/* The weights of a triangle's second and third corner at a block's pixels: conic_triangle_weights. */
+typedef struct lanes_weights {
+  lanes at[2], by_x[2], by_y[2];
+} lanes_weights;
+
+static lanes lanes_affine_at(const conic_affine *f) {
+  return (f->at + f->by_y * LANE_ROWS) + f->by_x * LANE_COLUMNS;
+}
+
+static void lanes_weights_at(const conic_triangle_look *look, lanes_weights *w) {
+  lanes iz = lanes_affine_at(&look->iz);
+  iz = iz > look->iz_far ? iz : look->iz_far;
+  iz = iz < look->iz_near ? iz : look->iz_near;
+  lanes z = 1.0f / iz;
+  const conic_affine *weights[2] = {&look->first, &look->second};
+  for (int i = 0; i < 2; i++) {
+    lanes at = lanes_at_least_zero(lanes_affine_at(weights[i]) * z);
+    w->at[i] = at < 1.0f ? at : 1.0f;
+    w->by_x[i] = (weights[i]->by_x - w->at[i] * look->iz.by_x) * z;
+    w->by_y[i] = (weights[i]->by_y - w->at[i] * look->iz.by_y) * z;
+  }
+  if (!look->is_piece)
+    return;
+  const lanes_weights of_piece = *w;
+  for (int i = 0; i < 2; i++) {
+    w->at[i] = look->at[0][i] + (of_piece.at[0] * look->at[1][i] + of_piece.at[1] * look->at[2][i]);
+    w->by_x[i] = of_piece.by_x[0] * look->at[1][i] + of_piece.by_x[1] * look->at[2][i];
+    w->by_y[i] = of_piece.by_y[0] * look->at[1][i] + of_piece.by_y[1] * look->at[2][i];
+  }
+}
+
+/* The texture's colour, pixel by pixel where the mask holds. */
+static void lanes_texture(const conic_triangle_look *look, const lanes_weights *w, int16 mask, lanes color[3]) {
+  lanes uv[2], along[2], across[2];
+  for (int i = 0; i < 2; i++) {
+    uv[i] = look->uv[0][i] + (w->at[0] * look->uv[1][i] + w->at[1] * look->uv[2][i]);
+    along[i] = w->by_x[0] * look->uv[1][i] + w->by_x[1] * look->uv[2][i];
+    across[i] = w->by_y[0] * look->uv[1][i] + w->by_y[1] * look->uv[2][i];
+  }
+  for (int lane = 0; lane < 16; lane++) {
+    float place[2], side[2], other[2], texel[3];
+    if (!((const int *)&mask)[lane])
+      continue;
+    for (int i = 0; i < 2; i++) {
+      place[i] = ((const float *)&uv[i])[lane];
+      side[i] = ((const float *)&along[i])[lane];
+      other[i] = ((const float *)&across[i])[lane];
+    }
+    conic_texture_sample(look->texture, place, side, other, texel);
+    for (int channel = 0; channel < 3; channel++)
+      ((float *)&color[channel])[lane] *= texel[channel];
+  }
+}
+
+static void lanes_normals(const conic_triangle_look *look, const lanes_weights *w, const conic_device_frame *frame,
+                          lanes dx, lanes dy, lanes normal[3]) {
+  lanes away = 0.0f;
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = look->face[axis];
+  if (look->has_normals) {
+    lanes mean[3];
+    for (int axis = 0; axis < 3; axis++)
+      mean[axis] = look->normal[0][axis] + (w->at[0] * look->normal[1][axis] + w->at[1] * look->normal[2][axis]);
+    lanes squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2], scale = 1.0f / sqrt(squared);
+    int16 is_usable = (squared > 1e-30f) & (squared < 1e30f);
+    for (int axis = 0; axis < 3; axis++)
+      normal[axis] = is_usable ? mean[axis] * scale : normal[axis];
+  }
+  for (int i = 0; i < 3; i++) {
+    const float *m = frame->world_from_cam[i];
+    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
+  }
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
+}
+
 /* What the triangles look like at a block's pixels. */
 typedef struct lanes_look {
   lanes color[3], normal[3];
   int16 index; /* in the set */
 } lanes_look;
 
-/* Triangle by triangle and, of each, pixel by pixel, by the shared text. */
+/* Takes one triangle's looks where the mask holds. */
+static void lanes_take_look(const conic_device_frame *frame, const conic_triangle_look *look, int16 mask, lanes dx,
+                            lanes dy, lanes_look *to) {
+  lanes_weights w;
+  lanes color[3], normal[3];
+  lanes_weights_at(look, &w);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] = look->color[0][channel] + (w.at[0] * look->color[1][channel] + w.at[1] * look->color[2][channel]);
+  if (look->texture)
+    lanes_texture(look, &w, mask, color);
+  lanes_normals(look, &w, frame, dx, dy, normal);
+  for (int axis = 0; axis < 3; axis++) {
+    to->color[axis] = mask ? color[axis] : to->color[axis];
+    to->normal[axis] = mask ? normal[axis] : to->normal[axis];
+  }
+}
+
+/* One triangle after the other. */
 static void lanes_look_at(const conic_device_frame *frame, const conic_triangle_frame *triangles, int16 visible,
                           int16 i_records, int x, int y, lanes dx, lanes dy, lanes_look *to) {
-  for (int first = 0; first < 16; first++) {
-    int i_record = ((const int *)&i_records)[first];
-    if (!((const int *)&visible)[first])
+  for (int lane = 0; lane < 16; lane++) {
+    int i_record = ((const int *)&i_records)[lane];
+    if (!((const int *)&visible)[lane])
       continue;
+    int16 mask = visible & (i_records == i_record);
     conic_triangle_record record = triangles->records[(uint)i_record];
     conic_triangle_look look;
     conic_triangle_look_at(triangles, &record, x, y, &look);
-    for (int lane = first; lane < 16; lane++) {
-      if (!((const int *)&visible)[lane] || ((const int *)&i_records)[lane] != i_record)
-        continue;
-      conic_triangle_weights weights;
-      float color[3], normal[3];
-      conic_triangle_weights_at(&look, (float)(lane / 4), (float)(lane % 4), &weights);
-      conic_triangle_color_at(&look, &weights, color);
-      conic_triangle_normal_at(&look, &weights, frame->world_from_cam, ((const float *)&dx)[lane],
-                               ((const float *)&dy)[lane], normal);
-      for (int axis = 0; axis < 3; axis++) {
-        ((float *)&to->color[axis])[lane] = color[axis];
-        ((float *)&to->normal[axis])[lane] = normal[axis];
-      }
-      ((int *)&to->index)[lane] = (int)record.index;
-      ((int *)&visible)[lane] = 0;
-    }
+    lanes_take_look(frame, &look, mask, dx, dy, to);
+    to->index = mask ? (int16)(int)record.index : to->index;
+    visible &= ~mask;
   }
 }
 
@@ -242,7 +323,7 @@ lanes_add_triangles(TRIANGLE_SET, __global const lanes *nearest_iz, __global con
     int16 visible =
         (iz > 0.0f) & (frame.is_single_pass ? iz > s.values[CONIC_SUM_NEAREST_IZ] : iz >= thresholds[at]);
     if (lanes_any(visible)) {
-      lanes_look look;
+      lanes_look look = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0};
       for (int i = 0; i < CONIC_N_SUMS && frame.is_single_pass; i++)
         s.values[i] = visible ? 0.0f : s.values[i];
       lanes_directions(columns, rows, x, y, &dx, &dy);
