@@ -48,8 +48,10 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
 }
 
 /* What a splat is on the screen, whatever the pixel. */
-static void write_projection(cli_json *json, const conic_projection *p) {
+static void write_projection(cli_json *json, const explain_job *job, const conic_projection *p) {
   cli_json_count(json, "splat", p->splat);
+  if (job->scene.patches)
+    cli_json_count(json, "point", job->scene.patch_selection.points[p->splat]);
   cli_json_text(json, "fate", conic_fate_name(p->fate));
   if (p->fate > CONIC_FATE_RAY)
     return;
@@ -86,9 +88,31 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
     cli_json_number(json, "plane_inverse_depth", (double)c->plane_inverse_depth);
     cli_json_number(json, "hides", (double)c->hides);
   }
-  write_projection(json, &projection);
+  write_projection(json, job, &projection);
   cli_json_close(json);
   return CONIC_OK;
+}
+
+static void write_triangles(cli_json *json, const explain_job *job, const conic_triangle_contribution *list, size_t n,
+                            double visible_weight) {
+  if (!job->scene.triangles.count)
+    return;
+  cli_json_array(json, "triangles");
+  for (size_t i = 0; i < n; i++) {
+    cli_json_object(json, NULL);
+    cli_json_text(json, "verdict", conic_contribution_verdict_name(list[i].verdict));
+    cli_json_number(json, "weight", 1.0);
+    if (list[i].verdict == CONIC_CONTRIBUTION_VISIBLE)
+      cli_json_number(json, "share", 1.0 / visible_weight);
+    cli_json_number(json, "depth", (double)list[i].depth);
+    cli_json_number(json, "inverse_depth", (double)list[i].inverse_depth);
+    cli_json_number(json, "hides", (double)list[i].hides);
+    cli_json_count(json, "triangle", list[i].triangle);
+    write_vector(json, "color", list[i].color);
+    write_vector(json, "normal", list[i].normal);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
 }
 
 /* The pixel as it is drawn. */
@@ -112,16 +136,24 @@ static void write_planes(cli_json *json, const explain_job *job) {
 
 static conic_status write_pixel(cli_json *json, const explain_job *job) {
   const conic_contribution *list;
-  size_t n, counts[CONIC_N_CONTRIBUTION_VERDICTS] = {0};
+  const conic_triangle_contribution *triangles;
+  size_t n, n_triangles, counts[CONIC_N_CONTRIBUTION_VERDICTS] = {0};
   float visible_weight = 0.0f, threshold = 0.0f;
   const double pixel[2] = {job->pixel[0], job->pixel[1]};
   conic_status status = conic_contributions_at(job->contributions, job->pixel[0], job->pixel[1], &list, &n);
+  if (status == CONIC_OK)
+    status =
+        conic_contributions_triangles_at(job->contributions, job->pixel[0], job->pixel[1], &triangles, &n_triangles);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < n; i++) {
     counts[list[i].verdict]++;
     visible_weight += list[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? list[i].weight : 0.0f;
     threshold = threshold < list[i].hides ? list[i].hides : threshold;
+  }
+  for (size_t i = 0; i < n_triangles; i++) {
+    visible_weight += triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? 1.0f : 0.0f;
+    threshold = threshold < triangles[i].hides ? triangles[i].hides : threshold;
   }
   write_numbers(json, "pixel", pixel, 2);
   write_planes(json, job);
@@ -134,6 +166,7 @@ static conic_status write_pixel(cli_json *json, const explain_job *job) {
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     status = write_contribution(json, job, &list[i], (double)visible_weight);
   cli_json_close(json);
+  write_triangles(json, job, triangles, n_triangles, (double)visible_weight);
   return status;
 }
 
@@ -143,7 +176,7 @@ static conic_status write_splat(cli_json *json, const explain_job *job) {
   if (status != CONIC_OK)
     return status;
   cli_json_object(json, "projection");
-  write_projection(json, &projection);
+  write_projection(json, job, &projection);
   cli_json_close(json);
   return CONIC_OK;
 }
@@ -155,7 +188,7 @@ static int write_report(cli_session *session, const explain_job *job) {
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_text(json, "method", conic_method_name(job->scene.options.method));
+  cli_json_text(json, "method", cli_method_name(&job->scene));
   cli_json_count(json, "width", (uint64_t)job->camera.width);
   cli_json_count(json, "height", (uint64_t)job->camera.height);
   if (job->is_splat_given)
@@ -216,8 +249,12 @@ static conic_status draw(cli_session *session, explain_job *job, const conic_spl
     status = conic_renderer_create(session->context, &renderer);
   if (status != CONIC_OK)
     return status;
-  status = conic_render(renderer, splats, &job->camera, &job->scene.options, &job->image, NULL);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_render_drawing(session->context, renderer, &drawing, &job->camera, &job->scene.options, 1, &job->image,
+                                NULL);
   conic_renderer_destroy(renderer);
+  if (status == CONIC_OK && job->scene.patches)
+    conic_patch_selection_name(&job->scene.patch_selection, &job->image);
   return status;
 }
 
@@ -232,11 +269,18 @@ static int check_questions(const explain_job *job, const conic_splats *splats) {
 }
 
 static int answer(cli_session *session, explain_job *job, const conic_splats *splats) {
+  double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &job->camera);
+  if (status == CONIC_OK && job->scene.patches) { /* what is drawn, and explained, are the picture's samples */
+    status = cli_patch_select(&job->scene, &job->camera, &ms);
+    splats = &job->scene.patch_selection.splats;
+  }
   int exit_code = status == CONIC_OK ? check_questions(job, splats) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;
-  status = conic_contributions_create(session->context, splats, &job->camera, &job->scene.options, &job->contributions);
+  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  status = conic_contributions_create_drawing(session->context, &drawing, &job->camera, &job->scene.options,
+                                              &job->contributions);
   if (status == CONIC_OK)
     status = draw(session, job, splats);
   if (status == CONIC_OK)

@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/layers_info.h"
 #include "cli/octree_info.h"
 #include "core/clip.h"
 
@@ -30,6 +31,10 @@ typedef struct info_job {
   conic_octree *octree;
   conic_octree_info info;
   conic_octree_defects broken;
+  /* of layered point clouds */
+  int is_layered;
+  conic_layers_info layers;
+  conic_layers_defects layer_defects;
   /* of images */
   conic_image image;
   size_t n_wrong_samples;
@@ -136,6 +141,16 @@ static int read_octree(cli_session *session, info_job *job) {
   return cli_exit_of(status);
 }
 
+static int read_layers(cli_session *session, info_job *job) {
+  conic_status status = conic_layers_describe(session->context, job->path, &job->layers);
+  if (status == CONIC_OK && job->is_check)
+    status = conic_layers_check(session->context, job->path, &job->layer_defects);
+  job->kind = "lpc";
+  job->is_layered = 1;
+  job->is_sound = cli_layers_are_sound(&job->layer_defects);
+  return cli_exit_of(status);
+}
+
 static int has_image(const info_job *job) {
   return job->image.width > 0;
 }
@@ -145,6 +160,8 @@ static int read_file(cli_session *session, info_job *job) {
   find_size(job);
   if (conic_octree_is_file(job->path))
     return read_octree(session, job);
+  if (conic_layers_is_file(job->path))
+    return read_layers(session, job);
   conic_status status = is_image ? conic_image_read(session->context, job->path, &job->image)
                                  : conic_model_read(session->context, job->path, NULL, &job->model);
   if (status != CONIC_OK)
@@ -223,13 +240,17 @@ static int print_text(const info_job *job) {
   printf("kind       %s\n", job->kind);
   if (job->has_bytes)
     printf("bytes      %" PRIu64, job->bytes);
-  size_t n_points = job->octree ? job->info.n_points : job->model.points.count;
+  uint64_t n_points = job->octree       ? job->info.n_points
+                      : job->is_layered ? job->layers.n_samples
+                                        : job->model.points.count;
   if (job->has_bytes && n_points)
     printf(" (%.1f a point)", (double)job->bytes / (double)n_points);
   if (job->has_bytes)
     putchar('\n');
   if (job->octree)
     cli_octree_print(&job->info, job->is_check ? &job->broken : NULL);
+  else if (job->is_layered)
+    cli_layers_print(&job->layers, job->is_check ? &job->layer_defects : NULL);
   else if (has_image(job))
     print_image(job);
   else
@@ -298,6 +319,8 @@ static int report(cli_session *session, const info_job *job) {
     cli_json_count(json, "bytes", job->bytes);
   if (job->octree)
     cli_octree_report(json, &job->info, job->is_check ? &job->broken : NULL);
+  else if (job->is_layered)
+    cli_layers_report(json, &job->layers, job->is_check ? &job->layer_defects : NULL);
   else if (has_image(job))
     report_image(json, job);
   else

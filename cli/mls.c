@@ -4,6 +4,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/mls_cells.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
 
@@ -22,13 +23,15 @@ typedef struct mls_job {
   cli_length h, max_error, spacing, hole;
   unsigned long long count;
   int has_count;
+  unsigned long long memory_mib;
+  int has_memory;
 
   conic_model model;
   conic_surface *surface;
   conic_splats result;
   conic_surface_report report;
   conic_repairs repairs;
-  size_t n_in;
+  size_t n_in, n_out;
   double unit; /* the median spacing, where a length is in it */
   double read_seconds, estimate_seconds, work_seconds, write_seconds;
 } mls_job;
@@ -78,28 +81,57 @@ static conic_status densify(mls_job *job) {
   return conic_surface_densify(job->surface, &options, &job->result, &job->report);
 }
 
+static conic_status project(mls_job *job) {
+  return conic_surface_clean(job->surface, &job->result, &job->report);
+}
+
+/* One h for all: cell by cell, which needs not all of them at a time. */
+static int is_by_cells(const mls_job *job) {
+  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0;
+}
+
+static conic_status clean_cells(mls_job *job) {
+  conic_clean_options options;
+  conic_clean_options_init(&options);
+  options.surface = job->options;
+  options.memory_bytes = (size_t)job->memory_mib << 20;
+  options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
+  double start = cli_seconds();
+  conic_status status = cli_mls_clean(job->session, &options, job->has_memory ? NULL : &job->model.points, job->input,
+                                      job->output, &job->report, &job->work_seconds);
+  job->write_seconds = cli_seconds() - start - job->work_seconds;
+  job->n_in = job->report.n_in;
+  job->n_out = job->report.n_out;
+  return status;
+}
+
 static conic_status work(mls_job *job) {
-  static conic_status (*const actions[N_MLS_ACTIONS])(mls_job *) = {[MLS_THIN] = thin, [MLS_DENSIFY] = densify};
+  static conic_status (*const actions[N_MLS_ACTIONS])(mls_job *) = {
+      [MLS_PROJECT] = project, [MLS_THIN] = thin, [MLS_DENSIFY] = densify};
   double start = cli_seconds();
   job->options.type = (conic_surface_type)job->type;
   job->options.plane = (conic_surface_plane)job->plane;
   job->options.weight = (conic_surface_weight)job->weight;
   job->options.isa = (conic_isa)job->isa;
   job->options.h = in_world(job, &job->h);
+  if (is_by_cells(job))
+    return clean_cells(job);
   conic_status status = conic_surface_create(job->session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
-    status = job->action == MLS_PROJECT ? conic_surface_clean(job->surface, &job->result, &job->report)
-                                        : actions[job->action](job);
+    status = actions[job->action](job);
+  job->n_out = job->result.count;
   job->work_seconds = cli_seconds() - start;
   return status;
 }
 
 static int write_points(mls_job *job) {
   double start = cli_seconds();
-  if (job->result.count == 0)
+  if (job->n_out == 0)
     return cli_error(CLI_INPUT, "%s: no point has a surface about it (%zu too few neighbours, %zu no minimum)",
                      job->input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
                      job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
+  if (is_by_cells(job)) /* it is written */
+    return CLI_DONE;
   int exit_code = cli_exit_of(conic_splats_write(job->session->context, job->output, &job->result, NULL));
   job->write_seconds = cli_seconds() - start;
   return exit_code;
@@ -159,7 +191,7 @@ static int write_statistics(mls_job *job, double total_seconds) {
     return exit_code;
   const conic_surface_report *report = &job->report;
   cli_json_count(json, "points_in", job->n_in);
-  cli_json_count(json, "points_out", job->result.count);
+  cli_json_count(json, "points_out", job->n_out);
   write_surface(json, job);
   if (job->action == MLS_PROJECT)
     write_projected(json, report);
@@ -185,7 +217,7 @@ static int run_job(mls_job *job) {
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = read_points(job);
+  conic_status status = job->has_memory ? CONIC_OK : read_points(job);
   if (status == CONIC_OK)
     status = work(job);
   exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
@@ -220,6 +252,9 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
       (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
     return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
+                     name);
+  if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
+    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
                      name);
   job->input = positional[1];
   return cli_check_outputs(job->session, &job->output, 1);
@@ -311,6 +346,14 @@ static int run(cli_session *session, int argc, char **argv) {
        .argument = "R",
        .help = "densify: circles of a greater radius are holes and stay [h]",
        .parse = cli_parse_length},
+      {.name = "memory",
+       .type = CLI_COUNT,
+       .value = &job.memory_mib,
+       .argument = "MIB",
+       .help = "project: work cell by cell in so much memory, the rest beside the output",
+       .minimum = 1,
+       .maximum = 1e9,
+       .is_given = &job.has_memory},
       {.name = "isa",
        .type = CLI_CHOICE,
        .value = &job.isa,

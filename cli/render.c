@@ -52,7 +52,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   const conic_render_statistics *s = &job->statistics;
   image->n_attributes = 0;
   name_attribute(image, "conicVersion", conic_version(), 0);
-  name_attribute(image, "conicMethod", conic_method_name(job->options.method), 0);
+  name_attribute(image, "conicMethod", cli_method_name(job), 0);
   name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
   name_attribute(image, "conicEpsilon", NULL, s->epsilon);
   name_attribute(image, "conicNear", NULL, s->near_z);
@@ -137,13 +137,20 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
-  conic_status status = job->octree ? cli_lod_select(job, camera, &lod_ms) : CONIC_OK;
-  const conic_drawing drawing = cli_scene_drawing(job, job->octree ? &job->selection.splats : splats);
+  conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
+                        : job->patches ? cli_patch_select(job, camera, &lod_ms)
+                                       : CONIC_OK;
+  const conic_splats *chosen = job->octree    ? &job->selection.splats
+                               : job->patches ? &job->patch_selection.splats
+                                              : splats;
+  const conic_drawing drawing = cli_scene_drawing(job, chosen);
   if (status == CONIC_OK)
     status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
                                   statistics);
   if (status == CONIC_OK && job->octree)
     conic_selection_name(&job->selection, image);
+  if (status == CONIC_OK && job->patches)
+    conic_patch_selection_name(&job->patch_selection, image);
   statistics->ms.lod = lod_ms;
   statistics->ms.frame += lod_ms;
   return status;

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", NULL};
+static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", "patch", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const as_words[] = {"points", "mesh", NULL};
@@ -199,6 +199,10 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
   if (job->as != CLI_AS_POINTS && job->deep_path)
     return cli_usage("render: --deep lists splats, not triangles; give --as points");
+  if (job->is_patch && (cli_lod_is_wanted(job) || job->deep_path))
+    return cli_usage("render: --method patch draws samples of its own: not with --error, --budget or --deep");
+  if (job->is_patch && job->as == CLI_AS_MESH)
+    return cli_usage("render: --method patch draws points; not with --as mesh");
   if (job->error_px > 0.0 && job->budget)
     return cli_usage("render: --error and --budget are two ways to choose; give one of both");
   if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
@@ -216,6 +220,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_render_options_init(&job->options);
   job->n_neighbours = estimate.n_neighbours;
   job->epsilon.value = job->near_z.value = -1.0;
+  job->degree = 3;
   job->n_frames = job->repeat = job->samples = 1;
   job->device.name = "cpu";
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
@@ -261,7 +266,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "what a mesh is drawn as: points (a splat a vertex) or mesh (triangles) [points]", .choices = as_words},
       {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"method", CLI_CHOICE, &method, "NAME",
-       "how a splat is projected and weighed: point, disc, affine, conic, ray, auto [conic]", .choices = method_words},
+       "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
+       "surface [conic]",
+       .choices = method_words},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
@@ -283,6 +290,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
       {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
        .parse = parse_planes},
+      {"degree", CLI_INT, &job->degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE},
+      {"h", CLI_PARSED, &job->h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
+       .parse = cli_parse_length, .dashes = "--"},
       {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
@@ -295,7 +305,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
-  o->method = (conic_method)method;
+  job->is_patch = method == CONIC_N_METHODS;
+  o->method = job->is_patch ? CONIC_METHOD_CONIC : (conic_method)method;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;

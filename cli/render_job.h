@@ -26,6 +26,9 @@ typedef struct cli_render_job {
   int samples;     /* N × N a pixel */
   unsigned planes; /* bits 1 << conic_plane */
   int n_neighbours;
+  int is_patch;                 /* --method patch: options.method draws its samples */
+  int degree;                   /* of its polynomials */
+  cli_length h;                 /* of its surface; 0: local */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws */
@@ -40,6 +43,10 @@ typedef struct cli_render_job {
   conic_selection selection;
 
   conic_triangles triangles; /* read beside the splats, with --as mesh */
+
+  /* Of --method patch: the points' polynomials, and the frame's samples. */
+  conic_patches *patches;
+  conic_patch_selection patch_selection;
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
@@ -64,6 +71,15 @@ conic_status cli_lod_open(cli_session *session, cli_render_job *job);
 conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, double *ms);
 /* Ends both; fine where they never were. */
 void cli_lod_close(cli_session *session, cli_render_job *job);
+
+/* "patch", or the method by which splats are drawn. */
+const char *cli_method_name(const cli_render_job *job);
+/* Lays patches about the points of measured splats, which must outlive them; ε then goes with the points. */
+conic_status cli_patch_open(cli_session *session, cli_render_job *job, const conic_splats *splats);
+/* Samples them for a frame; *ms is what it took. */
+conic_status cli_patch_select(cli_render_job *job, const conic_camera *camera, double *ms);
+/* Ends both; fine where they never were. */
+void cli_patch_close(cli_render_job *job);
 
 /* What is drawn: the splats and the job's triangles. */
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats);

@@ -23,16 +23,20 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "triangle_fragments", s->triangle_fragments);
   }
   cli_json_number(json, "overdraw", overdraw);
-  cli_json_text(json, "method", conic_method_name(job->options.method));
+  cli_json_text(json, "method", cli_method_name(job));
   cli_json_object(json, "methods");
   for (int i = 0; i < CONIC_N_METHODS; i++)
     if (s->splats_by_method[i])
       cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
   cli_json_close(json);
   cli_json_object(json, "primitives");
-  cli_json_count(json, "splats", s->splats_drawn);
+  cli_json_count(json, "splats", job->patches ? job->patch_selection.n_splats : s->splats_drawn);
   if (s->triangles_in)
     cli_json_count(json, "triangles", s->triangles_drawn);
+  if (job->patches) { /* of what was handed over to be drawn */
+    cli_json_count(json, "patches", job->patch_selection.n_patches);
+    cli_json_count(json, "samples", job->patch_selection.n_samples);
+  }
   if (job->octree) { /* of what was handed over to be drawn */
     cli_json_count(json, "leaves", job->selection.splats.count - job->selection.n_inner);
     cli_json_count(json, "inner_nodes", job->selection.n_inner);

@@ -140,6 +140,7 @@ conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *s
 }
 
 void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats) {
+  cli_patch_close(job); /* it refers to the splats */
   conic_splats_release(session->context, splats);
   conic_triangles_release(session->context, &job->triangles);
 }
@@ -179,6 +180,8 @@ conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const 
     const conic_drawing drawing = cli_scene_drawing(job, splats);
     job->options.near_z = conic_drawing_near(&drawing);
   }
+  if (status == CONIC_OK && job->is_patch)
+    status = cli_patch_open(session, job, splats);
   job->estimate_ms += 1e3 * (cli_seconds() - start);
   return status;
 }

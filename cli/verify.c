@@ -51,7 +51,12 @@ static conic_status check_size(const verify_job *job, const conic_camera *camera
 
 static conic_status compare(cli_session *session, verify_job *job, const conic_splats *splats) {
   conic_camera camera;
+  double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &camera);
+  if (status == CONIC_OK && job->scene.patches) { /* the oracle judges how samples are drawn, not where they are */
+    status = cli_patch_select(&job->scene, &camera, &ms);
+    splats = &job->scene.patch_selection.splats;
+  }
   if (status == CONIC_OK)
     status = get_image(session, job, splats, &camera);
   if (status == CONIC_OK)
@@ -120,7 +125,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   if (!json)
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
-  cli_json_text(json, "method", conic_method_name(job->scene.options.method));
+  cli_json_text(json, "method", cli_method_name(&job->scene));
   if (job->scene.samples > 1)
     cli_json_count(json, "samples", (uint64_t)job->scene.samples);
   report_planes(json, job);

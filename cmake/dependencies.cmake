@@ -31,21 +31,27 @@ else()
   set(OpenCL_FOUND FALSE)
 endif()
 
-# Looked for, so that the report below is whole, but nothing is built on them yet.
+if(CONIC_WITH_ZSTD) # which has no CMake package in Debian
+  find_library(ZSTD_LIBRARY zstd)
+  find_path(ZSTD_INCLUDE_FOLDER zstd.h)
+  mark_as_advanced(ZSTD_LIBRARY ZSTD_INCLUDE_FOLDER)
+endif()
+if(CONIC_WITH_ZSTD AND ZSTD_LIBRARY AND ZSTD_INCLUDE_FOLDER)
+  set(ZSTD_FOUND TRUE)
+else()
+  set(ZSTD_FOUND FALSE)
+endif()
+
+# Looked for, so that the report below is whole, but nothing is built on it yet.
 find_package(CURL QUIET)
-find_library(ZSTD_LIBRARY zstd)
-find_path(ZSTD_INCLUDE_FOLDER zstd.h)
-mark_as_advanced(ZSTD_LIBRARY ZSTD_INCLUDE_FOLDER)
 
 set(found_openexr ${OpenEXR_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
-if(ZSTD_LIBRARY AND ZSTD_INCLUDE_FOLDER)
-  set(found_zstd TRUE)
-endif()
+set(found_zstd ${ZSTD_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
-        "opencl:OpenCL (other devices)" "zstd:zstd (not used yet)" "curl:CURL (not used yet)")
+        "opencl:OpenCL (other devices)" "zstd:zstd (layered point clouds)" "curl:CURL (not used yet)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

@@ -4,12 +4,24 @@
 
 #include "core/memory.h"
 
-conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields, conic_builder *builder) {
+conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
+                                 const conic_delivery *delivery, conic_builder *builder) {
   memset(builder, 0, sizeof *builder);
   memset(model, 0, sizeof *model);
   builder->context = context;
+  builder->delivery = delivery;
   builder->model = model;
   return conic_splats_allocate(context, 0, fields, &model->points);
+}
+
+conic_status conic_builder_deliver(conic_builder *builder, int is_last) {
+  conic_splats *points = &builder->model->points;
+  if (!builder->delivery || points->count < (is_last ? 1 : builder->delivery->batch))
+    return CONIC_OK;
+  conic_status status = builder->delivery->receive(builder->delivery->cookie, points);
+  builder->n_delivered += points->count;
+  points->count = points->n_clips = 0;
+  return status;
 }
 
 /* Moves the points into arrays for `capacity` of them with the optional arrays of `fields`. conic_splats_append says

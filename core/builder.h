@@ -4,9 +4,19 @@
 
 #include "conic/model.h"
 
+/* Where a file's points go that are not kept: see conic_model_stream. XYZ and LAS deliver colours as they stand in the
+ * file. */
+typedef struct conic_delivery {
+  conic_batch_receiver *receive;
+  void *cookie;
+  size_t batch; /* points that are handed over at a time */
+} conic_delivery;
+
 typedef struct conic_builder {
   conic_context *context;
-  conic_model *model; /* points.count says how many points have been filled in */
+  const conic_delivery *delivery; /* null: the points are kept */
+  uint64_t n_delivered;           /* no longer in the model */
+  conic_model *model;             /* points.count says how many points have been filled in */
   size_t point_capacity, triangle_capacity, clip_capacity;
 } conic_builder;
 
@@ -15,7 +25,17 @@ typedef struct conic_builder {
 
 /* Starts with an empty model whose points have the optional arrays of `fields`. What has been built is released by
  * conic_model_release. Errors: MEMORY. */
-conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields, conic_builder *builder);
+conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
+                                 const conic_delivery *delivery, conic_builder *builder);
+
+/* Hands the points over, where they are not kept and are enough for a batch, or all the same if `is_last`; then there
+ * are none. Errors: the receiver's. */
+conic_status conic_builder_deliver(conic_builder *builder, int is_last);
+
+/* Points that have been built, delivered or not. */
+static inline uint64_t conic_builder_points(const conic_builder *builder) {
+  return builder->n_delivered + builder->model->points.count;
+}
 
 /* Room for `count` points in all; grows at least by half, so that many small steps cost little. Errors: MEMORY. */
 conic_status conic_builder_reserve_points(conic_builder *builder, size_t count);

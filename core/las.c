@@ -153,8 +153,8 @@ static conic_status check_sizes(las_reader *reader) {
 
 static conic_status truncated(const las_reader *reader) {
   return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                    "%s: the file ends within point %zu of %llu (at byte %llu)", reader->input->name,
-                    reader->builder.model->points.count, (unsigned long long)reader->n_points,
+                    "%s: the file ends within point %llu of %llu (at byte %llu)", reader->input->name,
+                    (unsigned long long)conic_builder_points(&reader->builder), (unsigned long long)reader->n_points,
                     (unsigned long long)conic_input_offset(reader->input));
 }
 
@@ -176,7 +176,7 @@ static void store(las_reader *reader, size_t n) {
   conic_splats *points = &reader->builder.model->points;
   convert(reader, 0, 4, CONIC_PLY_INT32, n);
   for (int axis = 0; axis < 3; axis++) {
-    if (points->count == 0) {
+    if (conic_builder_points(&reader->builder) == 0) {
       reader->first[axis] = reader->block[axis][0];
       points->origin[axis] = reader->block[axis][0] * reader->scale[axis] + reader->offset[axis];
     }
@@ -196,10 +196,10 @@ static conic_status read_points(las_reader *reader) {
   conic_input *input = reader->input;
   conic_status status = CONIC_OK;
   const conic_splats *points = &reader->builder.model->points;
-  if (input->has_size)
+  if (input->has_size && !reader->builder.delivery)
     status = conic_builder_reserve_points_exactly(&reader->builder, (size_t)reader->n_points);
-  while (status == CONIC_OK && points->count < reader->n_points) {
-    uint64_t left = reader->n_points - points->count;
+  while (status == CONIC_OK && conic_builder_points(&reader->builder) < reader->n_points) {
+    uint64_t left = reader->n_points - conic_builder_points(&reader->builder);
     status = conic_input_fill(input, reader->point_bytes);
     size_t n = conic_input_available(input) / reader->point_bytes;
     if (status != CONIC_OK)
@@ -209,14 +209,16 @@ static conic_status read_points(las_reader *reader) {
     n = n < BLOCK ? n : BLOCK;
     n = n < left ? n : (size_t)left;
     status = conic_builder_reserve_points(&reader->builder, points->count + n);
-    if (status == CONIC_OK)
+    if (status == CONIC_OK) {
       store(reader, n);
+      status = conic_builder_deliver(&reader->builder, 0);
+    }
     input->next += n * reader->point_bytes;
   }
-  return status;
+  return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
 }
 
-conic_status conic_las_read(conic_input *input, conic_model *model) {
+conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
   las_reader reader = {.input = input};
   conic_status status = read_header(&reader);
   if (status == CONIC_OK)
@@ -226,12 +228,13 @@ conic_status conic_las_read(conic_input *input, conic_model *model) {
   if (status == CONIC_OK)
     status = check_sizes(&reader);
   if (status == CONIC_OK)
-    status = conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, &reader.builder);
+    status =
+        conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, delivery, &reader.builder);
   if (status == CONIC_OK)
     status = skip_to_points(&reader);
   if (status == CONIC_OK)
     status = read_points(&reader);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && !delivery)
     status = conic_raw_colors_decode(input->context, &model->points, 0);
   return status;
 }

@@ -8,10 +8,11 @@
 #define CORE_LAS_H
 
 #include "conic/model.h"
+#include "core/builder.h"
 #include "core/input.h"
 
-/* Reads a model from the start of the file. On failure *model is for the caller to release. Errors: INPUT, MEMORY,
- * CANCELLED. */
-conic_status conic_las_read(conic_input *input, conic_model *model);
+/* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
+ * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
+conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model);
 
 #endif

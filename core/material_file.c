@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/input.h"
 #include "core/message.h"
@@ -78,13 +79,12 @@ static conic_status read_map(material_reader *reader) {
   if (n < 0 || (size_t)n >= sizeof path)
     return conic_fail(reader->input.context, CONIC_ERROR_INPUT, "%s: a picture's name is too long (line %llu)",
                       reader->input.name, (unsigned long long)reader->input.line);
-  conic_status status = conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
-  if (status == CONIC_ERROR_INPUT || status == CONIC_ERROR_UNSUPPORTED) {
-    conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is left out (line %llu)",
+  if (access(path, R_OK) != 0) {
+    conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
               reader->input.name, path, (unsigned long long)reader->input.line);
     return CONIC_OK;
   }
-  return status;
+  return conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
 }
 
 static conic_status read_statement(material_reader *reader) {

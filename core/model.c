@@ -1,4 +1,4 @@
-#include "conic/model.h"
+#include "core/model.h"
 
 #include <string.h>
 
@@ -114,47 +114,57 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   return CONIC_OK;
 }
 
-static conic_status read_by_kind(conic_input *input, const char *path, const conic_read_options *options,
-                                 conic_model *model) {
-  conic_model_kind kind = CONIC_MODEL_PLY;
+conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
   conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
-  if (status == CONIC_OK)
-    status = find_kind(input, path, &kind);
-  if (status != CONIC_OK)
-    return status;
+  return status == CONIC_OK ? find_kind(input, path, kind) : status;
+}
+
+conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
+                                   const conic_delivery *delivery, conic_model *model) {
+  conic_status status = CONIC_OK;
   switch (kind) {
   case CONIC_MODEL_PLY:
-    status = conic_ply_read(input, options, model);
+    status = conic_ply_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_OBJ:
     status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, model);
+    status = conic_xyz_read(input, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, model);
+    status = conic_las_read(input, delivery, model);
     break;
   }
   model->kind = kind;
   return status;
 }
 
+conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
+                                      conic_read_options *settings) {
+  conic_read_options_init(settings);
+  if (!options)
+    return CONIC_OK;
+  if (options->size != sizeof *settings || !(options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
+  *settings = *options;
+  return CONIC_OK;
+}
+
 conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                               conic_model *model) {
   conic_read_options settings;
+  conic_model_kind kind = CONIC_MODEL_PLY;
   conic_input input;
   memset(model, 0, sizeof *model);
-  conic_read_options_init(&settings);
-  if (options) {
-    if (options->size != sizeof settings || !(options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f))
-      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
-    settings = *options;
-  }
-  conic_status status = conic_input_open(context, path, &input);
+  conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK)
+    status = conic_input_open(context, path, &input);
   if (status != CONIC_OK)
     return status;
-  status = read_by_kind(&input, path, &settings, model);
+  status = conic_model_find_kind(&input, path, &kind);
+  if (status == CONIC_OK)
+    status = conic_model_read_kind(&input, kind, &settings, NULL, model);
   conic_input_close(&input);
   if (status != CONIC_OK)
     conic_model_release(context, model);

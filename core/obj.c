@@ -348,7 +348,7 @@ conic_status conic_obj_read(conic_input *input, const conic_read_options *option
   obj_reader reader = {.input = input};
   int is_done = 0;
   input->continues_lines = 1;
-  conic_status status = conic_builder_begin(input->context, model, 0, &reader.builder);
+  conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   if (status == CONIC_OK && options->keeps_faces) {
     status = conic_faces_create(input->context, &model->faces);
     reader.faces = model->faces;

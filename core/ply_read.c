@@ -24,7 +24,7 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
     return status;
   conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, points->count, points);
   points->count += n;
-  return CONIC_OK;
+  return conic_builder_deliver(reader->builder, 0);
 }
 
 /* Binary rows of one size: column by column, straight from the window. */
@@ -137,7 +137,7 @@ static conic_status read_vertices(vertex_reader *reader) {
   const conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
   conic_status status = CONIC_OK;
-  if (source->input->has_size)
+  if (source->input->has_size && !reader->builder->delivery)
     status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
   if (status != CONIC_OK)
     return status;
@@ -158,7 +158,8 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
       break;
     if (element == vertices)
       status = read_vertices(reader);
-    else if ((strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0) && element->count > 0)
+    else if (!reader->builder->delivery && element->count > 0 &&
+             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
       status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
     else
       status = conic_ply_skip_element(source, header);
@@ -167,7 +168,7 @@ static conic_status read_elements(vertex_reader *reader, const conic_ply_header 
 }
 
 static conic_status read_body(conic_input *input, const conic_read_options *options, const conic_ply_header *header,
-                              conic_model *model) {
+                              const conic_delivery *delivery, conic_model *model) {
   conic_builder builder;
   conic_ply_source source = {.input = input, .format = header->format};
   const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
@@ -185,20 +186,23 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
   conic_status status = conic_ply_layout_find(input, header, vertices, options->cutoff, &reader->layout);
   if (status == CONIC_OK) {
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
-    status = conic_builder_begin(input->context, model, reader->layout.fields, &builder);
+    status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
   }
   if (status == CONIC_OK)
     status = read_elements(reader, header, vertices);
+  if (status == CONIC_OK)
+    status = conic_builder_deliver(&builder, 1);
   conic_memory_release(input->context, reader);
   return status;
 }
 
-conic_status conic_ply_read(conic_input *input, const conic_read_options *options, conic_model *model) {
+conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
   conic_ply_header header;
   conic_status status = conic_ply_header_read(input, &header);
   if (status != CONIC_OK)
     return status;
-  status = read_body(input, options, &header, model);
+  status = read_body(input, options, &header, delivery, model);
   conic_ply_header_release(input->context, &header);
   return status;
 }

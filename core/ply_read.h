@@ -7,9 +7,10 @@
 #include "core/input.h"
 #include "core/ply_source.h"
 
-/* Reads a model from the start of the file. On failure *model is for the caller to release. Errors: INPUT, MEMORY,
- * CANCELLED. */
-conic_status conic_ply_read(conic_input *input, const conic_read_options *options, conic_model *model);
+/* Reads a model from the start of the file; with a delivery the points go there, and faces are passed over. On failure
+ * *model is for the caller to release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
+conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
 
 /* Reads the elements `face` and `tristrips`: the source stands at the start of the element's rows. Errors: as above. */
 conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_header *header, uint64_t n_vertices,

@@ -1,5 +1,6 @@
 /* From a model to triangles. */
 #include <string.h>
+#include <unistd.h>
 
 #include "conic/triangles.h"
 #include "core/faces.h"
@@ -70,7 +71,7 @@ static conic_status take_coordinates(conic_context *context, conic_faces *faces,
   return split(context, faces->coordinates[0], faces->n_coordinates, 2, triangles->texture_coordinate);
 }
 
-/* A material file that is not there, or is spoiled, leaves what it has not said white. */
+/* What a material file that is not there would have said is white. */
 static conic_status take_materials(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
   size_t n = faces->material_names.count;
   if (n < 2)
@@ -86,10 +87,12 @@ static conic_status take_materials(conic_context *context, conic_faces *faces, c
       triangles->materials[i].color[channel] = 1.0f;
   for (size_t i = 0; i < faces->libraries.count; i++) {
     const char *path = conic_texts_at(&faces->libraries, i);
+    if (access(path, R_OK) != 0) {
+      conic_log(context, CONIC_LOG_WARNING, "%s: the material file is not there, and is left out", path);
+      continue;
+    }
     conic_status status = conic_material_file_read(context, path, &faces->material_names, triangles->materials);
-    if (status == CONIC_ERROR_INPUT)
-      conic_log(context, CONIC_LOG_WARNING, "%s: the material file is left out", path);
-    else if (status != CONIC_OK)
+    if (status != CONIC_OK)
       return status;
   }
   return CONIC_OK;

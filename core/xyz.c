@@ -150,9 +150,9 @@ static void store_row(const xyz_reader *reader, const double *values, size_t i, 
 static conic_status append_block(xyz_reader *reader, size_t n_rows) {
   conic_splats *points = &reader->builder.model->points;
   conic_status status = CONIC_OK;
-  if (points->count + n_rows > CONIC_MAX_POINTS)
+  if (conic_builder_points(&reader->builder) + n_rows > CONIC_MAX_POINTS)
     return wrong(reader, "too many points");
-  if (points->count == 0)
+  if (conic_builder_points(&reader->builder) == 0)
     status = choose_columns(reader, n_rows);
   if (status == CONIC_OK)
     status = conic_builder_reserve_points(&reader->builder, points->count + n_rows);
@@ -162,26 +162,26 @@ static conic_status append_block(xyz_reader *reader, size_t n_rows) {
   for (size_t i = 0; i < n_rows; i++)
     store_row(reader, reader->block[i], points->count + i, points);
   points->count += n_rows;
-  return CONIC_OK;
+  return conic_builder_deliver(&reader->builder, 0);
 }
 
 static conic_status check_count(const xyz_reader *reader) {
-  size_t count = reader->builder.model->points.count;
+  uint64_t count = conic_builder_points(&reader->builder);
   if (reader->has_count && count != reader->n_declared)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: %zu points, where line %llu declares %llu (line %llu)", reader->input->name, count,
-                      (unsigned long long)reader->count_line, (unsigned long long)reader->n_declared,
-                      (unsigned long long)reader->input->line);
+                      "%s: %llu points, where line %llu declares %llu (line %llu)", reader->input->name,
+                      (unsigned long long)count, (unsigned long long)reader->count_line,
+                      (unsigned long long)reader->n_declared, (unsigned long long)reader->input->line);
   if (count == 0 && !reader->has_count)
     return wrong(reader, "the file ends without a point");
   return CONIC_OK;
 }
 
-conic_status conic_xyz_read(conic_input *input, conic_model *model) {
+conic_status conic_xyz_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
   xyz_reader reader = {.input = input};
   int is_done = 0;
   input->has_commas = 1;
-  conic_status status = conic_builder_begin(input->context, model, 0, &reader.builder);
+  conic_status status = conic_builder_begin(input->context, model, 0, delivery, &reader.builder);
   while (status == CONIC_OK && !is_done) {
     size_t n_rows;
     status = read_block(&reader, &n_rows, &is_done);
@@ -190,9 +190,9 @@ conic_status conic_xyz_read(conic_input *input, conic_model *model) {
   }
   if (status == CONIC_OK)
     status = check_count(&reader);
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && !delivery)
     status = conic_raw_colors_decode(input->context, &model->points, 1);
-  return status;
+  return status == CONIC_OK ? conic_builder_deliver(&reader.builder, 1) : status;
 }
 
 static int is_separator(char c) {

@@ -18,13 +18,14 @@
 #define CORE_XYZ_H
 
 #include "conic/model.h"
+#include "core/builder.h"
 #include "core/input.h"
 
 /* Whether text begins like such a file: with numbers only, after comments. */
 int conic_xyz_is_likely(const char *bytes, size_t n);
 
-/* Reads a model from the start of the file. On failure *model is for the caller to release. Errors: INPUT, MEMORY,
- * CANCELLED. */
-conic_status conic_xyz_read(conic_input *input, conic_model *model);
+/* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
+ * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
+conic_status conic_xyz_read(conic_input *input, const conic_delivery *delivery, conic_model *model);
 
 #endif

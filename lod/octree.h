@@ -26,7 +26,7 @@ typedef struct conic_drawn_node {
 } conic_drawn_node;
 
 /* Measuring goes by groups of so many nodes; their arrays have room for a last one. */
-enum { CONIC_OCTREE_GROUP = 8 };
+enum { CONIC_OCTREE_GROUP = 16 };
 
 /* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
  * hang on it directly first, then those of each inner child in turn. */

@@ -5,11 +5,12 @@
 #include "core/trigonometry.h"
 
 void conic_disc_samples_init(conic_disc_samples *samples) {
-  /* Rings, turned against each other; found by search, the gap is held by a test. */
+  /* Rings, turned against each other; found by search, the gap is held by a test. The outermost, of which the most is
+   * to be found out, is whole lanes by itself. */
   static const struct {
     int n;
     double radius, turn;
-  } rings[] = {{18, 1.0, 0.0}, {10, 0.6109, 0.7037}, {4, 0.2457, 0.8348}};
+  } rings[] = {{16, 1.0, 0.0}, {12, 0.6131, 0.7384}, {4, 0.2478, 0.7273}};
   int n = 0;
   for (int ring = 0; ring < 3; ring++)
     for (int i = 0; i < rings[ring].n; i++) {

@@ -1,4 +1,5 @@
-/* What octree_cover.h says, in lanes: COVER is the function's name. */
+/* What octree_cover.h says, in lanes: COVER and FIND_NEAR are the functions' names. Whatever the lanes, discs are taken
+ * block by block in one order, so that all give the same. */
 #include <math.h>
 #include <string.h>
 
@@ -12,34 +13,45 @@ enum {
   AT_Z,
   AT_INVERSE, /* four */
   AT_UZ = AT_INVERSE + 4,
-  AT_VZ, /* how far its half axes rise over the plane */
+  AT_VZ,    /* how far its half axes rise over the plane */
   AT_MINOR, /* its shorter half axis, or less */
-  AT_LIFT, /* how much it rises over the gap, at most */
+  AT_LIFT,  /* how much it rises over the gap, at most */
   AT_ERROR, /* its own */
   N_NUMBERS
 };
 enum { CHUNK = CONIC_DISC_BLOCK * CONIC_DISC_BLOCK };
+_Static_assert((int)N_NUMBERS == (int)CONIC_FLAT_NUMBERS, "there is room for what discs are as a node sees them");
 _Static_assert(CONIC_DISC_BLOCK % CONIC_LANES == 0, "lanes are parts of blocks");
+_Static_assert(CONIC_DISC_SAMPLES % CONIC_LANES == 0, "samples are whole lanes");
 
-/* A block of discs, number by number, as many at a time as there are lanes. */
-typedef struct flat_block {
-  float numbers[CONIC_DISC_BLOCK / CONIC_LANES][N_NUMBERS][CONIC_LANES];
-} flat_block;
+/* Of a block in a node's list: that it was flattened. */
+static const uint32_t FLAT = UINT32_C(1) << 31;
 
-/* What the node's disc still lacks cover at. */
+/* The error that no disc has lowered: of no real distance, but a number, so that boxes of the padding stay out of it. */
+static const float unknown = 1e30f;
+
+typedef float flat_block[N_NUMBERS][CONIC_DISC_BLOCK];
+
+/* What of the node's disc is how far from the discs that were looked at. */
 typedef struct cover {
-  const conic_discs *discs;
   const conic_node_disc *node;
   float u[3], v[3]; /* unit */
   float gap;        /* between the samples */
   float enough;     /* no smaller error matters */
-  int n_samples;    /* those that are not near enough, and copies of the last to make up a whole block */
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES], nearest[CONIC_DISC_SAMPLES];
 } cover;
 
 typedef struct middle_box {
   float center[3], half[3];
 } middle_box;
+
+/* A sample, and the disc that is the nearest to it of those looked at. */
+typedef struct search {
+  float x, y, nearest;
+  middle_box box; /* outside of it no disc can lower the sample's error any more */
+  const flat_block *block;
+  unsigned lane;
+} search;
 
 static float dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -59,54 +71,62 @@ static void begin_cover(const conic_disc_samples *samples, cover *c) {
   for (int i = 0; i < CONIC_DISC_SAMPLES; i += CONIC_LANES) {
     lanes_store(c->x + i, lanes_load(samples->x + i) * major);
     lanes_store(c->y + i, lanes_load(samples->y + i) * minor);
-    lanes_store(c->nearest + i, lanes_of(HUGE_VALF));
+    lanes_store(c->nearest + i, lanes_of(unknown));
   }
-  c->n_samples = CONIC_DISC_SAMPLES;
 }
 
-static middle_box box_of_node(const conic_node_disc *node) {
-  middle_box box;
-  for (int axis = 0; axis < 3; axis++) {
-    box.center[axis] = node->center[axis];
-    box.half[axis] = sqrtf(node->u[axis] * node->u[axis] + node->v[axis] * node->v[axis]) +
-                     node->enough * (1.0f / CONIC_COVER_WEIGHT);
-  }
-  return box;
+/* The least of all lanes. */
+CONIC_INLINE float least_of(lanes values) {
+#if defined(__AVX512F__)
+  return _mm512_reduce_min_ps((__m512)values);
+#elif defined(__SSE2__)
+#if defined(__AVX2__)
+  __m128 four = _mm_min_ps(_mm256_castps256_ps128((__m256)values), _mm256_extractf128_ps((__m256)values, 1));
+#else
+  __m128 four = (__m128)values;
+#endif
+  __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
+#else
+  float first = values[0] < values[1] ? values[0] : values[1], last = values[2] < values[3] ? values[2] : values[3];
+  return first < last ? first : last;
+#endif
 }
 
-/* Outside of it no disc can lower the sample's error any more. */
-static middle_box box_of_sample(const cover *c, int i) {
-  middle_box box;
-  for (int axis = 0; axis < 3; axis++) {
-    box.center[axis] = c->node->center[axis] + (c->x[i] * c->u[axis] + c->y[i] * c->v[axis]);
-    box.half[axis] = c->nearest[i] * (1.0f / CONIC_COVER_WEIGHT);
-  }
-  return box;
+CONIC_INLINE float greatest_of(lanes values) {
+  return -least_of(-values);
+}
+
+static void shrink_box(search *s) {
+  for (int axis = 0; axis < 3; axis++)
+    s->box.half[axis] = s->nearest * (1.0f / CONIC_COVER_WEIGHT);
+}
+
+static void begin_search(const cover *c, int i, search *s) {
+  s->x = c->x[i];
+  s->y = c->y[i];
+  s->nearest = c->nearest[i];
+  s->block = NULL;
+  for (int axis = 0; axis < 3; axis++)
+    s->box.center[axis] = c->node->center[axis] + (s->x * c->u[axis] + s->y * c->v[axis]);
+  shrink_box(s);
 }
 
 /* Which of as many boxes as there are lanes reach into the box. */
-CONIC_INLINE unsigned find_in_box(float *const center[3], float *const half[3], size_t first, const middle_box *box) {
+CONIC_INLINE lanes_mask reach_into(float *const center[3], float *const half[3], size_t first, const middle_box *box) {
   lanes x = lanes_absolute(lanes_load(center[0] + first) - box->center[0]);
   lanes y = lanes_absolute(lanes_load(center[1] + first) - box->center[1]);
   lanes z = lanes_absolute(lanes_load(center[2] + first) - box->center[2]);
-  return lanes_bits(lanes_at_least(lanes_load(half[0] + first) + box->half[0], x) &
-                    lanes_at_least(lanes_load(half[1] + first) + box->half[1], y) &
-                    lanes_at_least(lanes_load(half[2] + first) + box->half[2], z));
+  return lanes_at_least(lanes_load(half[0] + first) + box->half[0], x) &
+         lanes_at_least(lanes_load(half[1] + first) + box->half[1], y) &
+         lanes_at_least(lanes_load(half[2] + first) + box->half[2], z);
 }
 
-/* Which discs of a block do. */
-static unsigned find_in_block(const conic_discs *discs, size_t block, const middle_box *box) {
+/* Which of a block's discs do, or, with blocks' boxes, which of a chunk's blocks. */
+static unsigned find_in_block(float *const center[3], float *const half[3], size_t block, const middle_box *box) {
   unsigned bits = 0;
   for (unsigned part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES)
-    bits |= find_in_box(discs->center, discs->half, block * CONIC_DISC_BLOCK + part, box) << part;
-  return bits;
-}
-
-/* Which blocks of a chunk do: of as many blocks as a block has discs. */
-static unsigned find_in_chunk(const conic_discs *discs, size_t chunk, const middle_box *box) {
-  unsigned bits = 0;
-  for (unsigned part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES)
-    bits |= find_in_box(discs->block_center, discs->block_half, chunk * CONIC_DISC_BLOCK + part, box) << part;
+    bits |= lanes_bits(reach_into(center, half, block * CONIC_DISC_BLOCK + part, box)) << part;
   return bits;
 }
 
@@ -115,8 +135,7 @@ CONIC_INLINE lanes dot_lanes(const lanes a[3], const float b[3]) {
 }
 
 /* Flattens as many discs as there are lanes. */
-static void flatten_lanes(const cover *c, size_t first, float flat[N_NUMBERS][CONIC_LANES]) {
-  const conic_discs *discs = c->discs;
+CONIC_INLINE void flatten_lanes(const cover *c, const conic_discs *discs, size_t first, float *flat) {
   const conic_node_disc *node = c->node;
   lanes apart[3], disc_u[3], disc_v[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -145,130 +164,221 @@ static void flatten_lanes(const cover *c, size_t first, float flat[N_NUMBERS][CO
       [AT_INVERSE + 3] = inverse[3],   [AT_UZ] = uz,                    [AT_VZ] = vz,
       [AT_MINOR] = minor,              [AT_LIFT] = lift,                [AT_ERROR] = lanes_load(discs->error + first)};
   for (int k = 0; k < N_NUMBERS; k++)
-    lanes_store(flat[k], numbers[k]);
+    lanes_store(flat + (ptrdiff_t)k * CONIC_DISC_BLOCK, numbers[k]);
 }
 
-/* Lowers each sample's error to what this disc gives. Along the line to its centre, from its outline; inside, where
- * that is below 0, it is known from how much larger the disc could be. */
-static void approach(float disc[N_NUMBERS][CONIC_LANES], unsigned lane, cover *c) {
+static void flatten(const cover *c, const conic_discs *discs, size_t block, flat_block flat) {
+  for (size_t part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES)
+    flatten_lanes(c, discs, block * CONIC_DISC_BLOCK + part, &flat[0][part]);
+}
+
+/* How far (dx, dy) from the middle of a disc, a sample counts as off it. Along the line to its centre, from its
+ * outline; inside, where that is below 0, it is known from how much larger the disc could be. */
+CONIC_INLINE lanes count_error(lanes dx, lanes dy, const lanes disc[N_NUMBERS], float gap) {
   const lanes one = lanes_of(1.0f), none = lanes_of(0.0f);
-  lanes minor = lanes_of(disc[AT_MINOR][lane]), lift = lanes_of(disc[AT_LIFT][lane]);
-  lanes error = lanes_of(disc[AT_ERROR][lane]), z_middle = lanes_of(disc[AT_Z][lane]);
-  lanes x = lanes_of(disc[AT_X][lane]), y = lanes_of(disc[AT_Y][lane]);
-  lanes uz = lanes_of(disc[AT_UZ][lane]), vz = lanes_of(disc[AT_VZ][lane]);
-  lanes ax = lanes_of(disc[AT_INVERSE][lane]), ay = lanes_of(disc[AT_INVERSE + 1][lane]);
-  lanes bx = lanes_of(disc[AT_INVERSE + 2][lane]), by = lanes_of(disc[AT_INVERSE + 3][lane]);
-  for (int i = 0; i < c->n_samples; i += CONIC_LANES) {
-    lanes dx = lanes_load(c->x + i) - x, dy = lanes_load(c->y + i) - y;
-    lanes a = dx * ax + dy * ay, b = dx * bx + dy * by;
-    lanes out = lanes_sqrt(a * a + b * b), inside = one / lanes_max(out, one), beyond = one - inside;
-    lanes outside2 = (dx * dx + dy * dy) * (beyond * beyond);
-    lanes z = inside * (a * uz + b * vz) + z_middle, distance = lanes_sqrt(outside2 + z * z);
-    lanes rest = lanes_max(c->gap - lanes_max(one - out, none) * minor, none);
-    lanes around = (distance + rest) + lanes_keep(lanes_less(out, one), lift);
-    lanes counted = lanes_max(distance * CONIC_COVER_WEIGHT, around) + error;
-    lanes_store(c->nearest + i, lanes_min(counted, lanes_load(c->nearest + i)));
+  lanes a = dx * disc[AT_INVERSE] + dy * disc[AT_INVERSE + 1], b = dx * disc[AT_INVERSE + 2] + dy * disc[AT_INVERSE + 3];
+  lanes out = lanes_sqrt(a * a + b * b), inside = one / lanes_max(out, one), beyond = one - inside;
+  lanes outside2 = (dx * dx + dy * dy) * (beyond * beyond);
+  lanes z = inside * (a * disc[AT_UZ] + b * disc[AT_VZ]) + disc[AT_Z], distance = lanes_sqrt(outside2 + z * z);
+  lanes rest = lanes_max(gap - lanes_max(one - out, none) * disc[AT_MINOR], none);
+  lanes around = (distance + rest) + lanes_keep(lanes_less(out, one), disc[AT_LIFT]);
+  return lanes_max(distance * CONIC_COVER_WEIGHT, around) + disc[AT_ERROR];
+}
+
+/* Lowers each sample's error to what this disc gives, but where all are near enough. */
+static void approach(const flat_block *block, unsigned lane, cover *c) {
+  const lanes enough = lanes_of(c->enough);
+  lanes disc[N_NUMBERS];
+  for (int k = 0; k < N_NUMBERS; k++)
+    disc[k] = lanes_of((*block)[k][lane]);
+  for (int i = 0; i < CONIC_DISC_SAMPLES; i += CONIC_LANES) {
+    lanes nearest = lanes_load(c->nearest + i);
+    if (!lanes_any(lanes_less(enough, nearest)))
+      continue;
+    lanes dx = lanes_load(c->x + i) - disc[AT_X], dy = lanes_load(c->y + i) - disc[AT_Y];
+    lanes_store(c->nearest + i, lanes_min(count_error(dx, dy, disc, c->gap), nearest));
   }
 }
 
-/* Drops the samples that are near enough. */
-static void compact(cover *c) {
-  const float enough = c->enough;
-  int n = 0;
-  for (int i = 0; i < c->n_samples; i++) {
-    c->x[n] = c->x[i];
-    c->y[n] = c->y[i];
-    c->nearest[n] = c->nearest[i];
-    n += c->nearest[i] > enough;
+/* Lowers one sample's error to what the discs of a block give that reach into its box. `flat` is where what the block
+ * looks like is kept; whether it is there yet is handed in and returned. */
+CONIC_INLINE int approach_block(const cover *c, const conic_discs *discs, size_t block, float (*flat)[CONIC_DISC_BLOCK],
+                                int is_flat, search *s) {
+  const middle_box box = s->box;
+  for (unsigned part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES) {
+    lanes_mask is_in = reach_into(discs->center, discs->half, block * CONIC_DISC_BLOCK + part, &box);
+    lanes disc[N_NUMBERS];
+    if (!lanes_any(is_in))
+      continue;
+    if (!is_flat)
+      flatten(c, discs, block, flat);
+    is_flat = 1;
+    for (int k = 0; k < N_NUMBERS; k++)
+      disc[k] = lanes_load(flat[k] + part);
+    lanes error = count_error(s->x - disc[AT_X], s->y - disc[AT_Y], disc, c->gap);
+    error = lanes_select(is_in, lanes_min(error, lanes_of(unknown)), lanes_of(unknown));
+    float least = least_of(error);
+    if (least < s->nearest) {
+      s->nearest = least;
+      s->block = (const flat_block *)flat;
+      s->lane = part + (unsigned)__builtin_ctz(lanes_bits(lanes_at_least(lanes_of(least), error)));
+    }
   }
-  for (; n % CONIC_DISC_BLOCK != 0; n++) {
-    c->x[n] = c->x[n - 1];
-    c->y[n] = c->y[n - 1];
-    c->nearest[n] = c->nearest[n - 1];
-  }
-  c->n_samples = n;
+  shrink_box(s);
+  return is_flat;
 }
 
-/* Takes of a block the discs that reach into the box and were not taken. */
-static void add_block(cover *c, const middle_box *box, size_t block) {
-  unsigned char *taken = &c->discs->taken[block];
-  unsigned bits = find_in_block(c->discs, block, box) & ~(unsigned)*taken;
+/* Searches the node's blocks. */
+static void search_near(const cover *c, const conic_discs *discs, conic_near_discs *near, search *s) {
+  conic_block_list *list = &near->of_node;
+  for (size_t first = 0; first < list->count && s->nearest > c->enough; first += CONIC_DISC_BLOCK) {
+    unsigned blocks = find_in_block(list->center, list->half, first / CONIC_DISC_BLOCK, &s->box);
+    for (; blocks && s->nearest > c->enough; blocks &= blocks - 1) {
+      size_t i = first + (size_t)__builtin_ctz(blocks);
+      uint32_t block = list->block[i] & ~FLAT;
+      if (approach_block(c, discs, block, near->flat[i], block != list->block[i], s))
+        list->block[i] |= FLAT;
+    }
+  }
+}
+
+/* Searches all discs; what they look like is soon forgotten. */
+static void search_all(const cover *c, const conic_discs *discs, search *s) {
   flat_block flat;
-  *taken = (unsigned char)(*taken | bits);
-  if (bits == 0)
-    return;
-  for (size_t part = 0; part < CONIC_DISC_BLOCK / CONIC_LANES; part++)
-    flatten_lanes(c, block * CONIC_DISC_BLOCK + part * CONIC_LANES, flat.numbers[part]);
-  for (; bits; bits &= bits - 1) {
-    unsigned i = (unsigned)__builtin_ctz(bits);
-    approach(flat.numbers[i / CONIC_LANES], i % CONIC_LANES, c);
+  for (size_t chunk = 0; chunk * CHUNK < discs->count; chunk++) {
+    unsigned blocks = find_in_block(discs->block_center, discs->block_half, chunk, &s->box);
+    for (; blocks && s->nearest > c->enough; blocks &= blocks - 1)
+      approach_block(c, discs, chunk * CONIC_DISC_BLOCK + (size_t)__builtin_ctz(blocks), flat, 0, s);
   }
+  s->block = NULL;
 }
 
-/* Takes the lane of the least value out of the bits. */
-CONIC_INLINE unsigned take_least(const float values[CONIC_DISC_BLOCK], unsigned *bits) {
-  unsigned least = (unsigned)__builtin_ctz(*bits);
-  for (unsigned rest = *bits & (*bits - 1); rest; rest &= rest - 1) {
-    unsigned i = (unsigned)__builtin_ctz(rest);
-    least = values[i] < values[least] ? i : least;
-  }
-  *bits &= ~(1u << least);
-  return least;
-}
-
-/* Takes of a chunk what may lower the error of sample i, the nearest first, while that is needed. */
-static void add_chunk(cover *c, size_t chunk, int i_sample) {
-  const size_t first = chunk * CONIC_DISC_BLOCK;
-  middle_box box = box_of_sample(c, i_sample);
-  unsigned bits = find_in_chunk(c->discs, chunk, &box);
-  float apart2[CONIC_DISC_BLOCK];
-  if (bits == 0)
-    return;
-  for (size_t i = 0; i < CONIC_DISC_BLOCK; i++) {
-    float x = c->discs->block_center[0][first + i] - box.center[0];
-    float y = c->discs->block_center[1][first + i] - box.center[1];
-    float z = c->discs->block_center[2][first + i] - box.center[2];
-    apart2[i] = x * x + y * y + z * z;
-  }
-  while (bits && c->nearest[i_sample] > c->enough) {
-    add_block(c, &box, first + take_least(apart2, &bits));
-    box = box_of_sample(c, i_sample);
-  }
-}
-
-/* The same of all chunks, the nearest in the order of the hierarchy first. */
-static void find_nearest(cover *c, size_t chunk, int i_sample) {
-  size_t n = (c->discs->count + CHUNK - 1) / CHUNK, low = chunk, high = chunk;
-  while ((low > 0 || high < n) && c->nearest[i_sample] > c->enough) {
-    if (high < n)
-      add_chunk(c, high++, i_sample);
-    if (low > 0)
-      add_chunk(c, --low, i_sample);
-  }
+/* Whether all that matters to the sample is among the near discs. */
+static int is_all_near(const conic_near_discs *near, const search *s) {
+  int is_near = 1;
+  for (int axis = 0; axis < 3; axis++)
+    is_near &= fabsf(s->box.center[axis] - near->center[axis]) + s->box.half[axis] <= near->half[axis];
+  return is_near;
 }
 
 /* The sample that is farthest off as far as is known. */
 static int find_worst(const cover *c) {
-  int worst = 0;
-  for (int i = 1; i < c->n_samples; i++)
-    worst = c->nearest[i] > c->nearest[worst] ? i : worst;
-  return worst;
+  lanes greatest = lanes_load(c->nearest);
+  for (int i = CONIC_LANES; i < CONIC_DISC_SAMPLES; i += CONIC_LANES)
+    greatest = lanes_max(lanes_load(c->nearest + i), greatest);
+  lanes worst = lanes_of(greatest_of(greatest));
+  for (int i = 0; i < CONIC_DISC_SAMPLES; i += CONIC_LANES) {
+    unsigned bits = lanes_bits(lanes_at_least(lanes_load(c->nearest + i), worst));
+    if (bits)
+      return i + __builtin_ctz(bits);
+  }
+  return 0;
+}
+
+static middle_box box_of_node(const conic_node_disc *node, float error) {
+  middle_box box;
+  for (int axis = 0; axis < 3; axis++) {
+    box.center[axis] = node->center[axis];
+    box.half[axis] = sqrtf(node->u[axis] * node->u[axis] + node->v[axis] * node->v[axis]) +
+                     error * (1.0f / CONIC_COVER_WEIGHT);
+  }
+  return box;
+}
+
+/* Which places of a block are among begin … end, which reaches into it. */
+static unsigned bits_of_own(size_t block, size_t begin, size_t end) {
+  size_t first = block * CONIC_DISC_BLOCK, last = first + CONIC_DISC_BLOCK;
+  unsigned bits = (1u << CONIC_DISC_BLOCK) - 1, before = begin > first ? (1u << (begin - first)) - 1 : 0;
+  return (last > end ? bits >> (last - end) : bits) & ~before;
+}
+
+static void approach_all(const flat_block *block, unsigned bits, cover *c) {
+  for (; bits; bits &= bits - 1)
+    approach(block, (unsigned)__builtin_ctz(bits), c);
+}
+
+/* Lowers the errors by the node's own discs, and then by what is near in their blocks. */
+static void approach_own(const conic_discs *discs, size_t begin, size_t end, cover *c) {
+  middle_box box = box_of_node(c->node, c->enough);
+  for (size_t block = begin / CONIC_DISC_BLOCK; block * CONIC_DISC_BLOCK < end; block++) {
+    unsigned own = bits_of_own(block, begin, end);
+    flat_block flat;
+    flatten(c, discs, block, flat);
+    approach_all((const flat_block *)&flat, own, c);
+    approach_all((const flat_block *)&flat, find_in_block(discs->center, discs->half, block, &box) & ~own, c);
+  }
+}
+
+static void begin_list(conic_block_list *list) {
+  list->count = 0;
+}
+
+static void add_to_list(float *const center[3], float *const half[3], size_t i, uint32_t block, conic_block_list *list) {
+  for (int axis = 0; axis < 3; axis++) {
+    list->center[axis][list->count] = center[axis][i];
+    list->half[axis][list->count] = half[axis][i];
+  }
+  list->block[list->count++] = block;
+}
+
+/* Boxes in which nothing is, to make whole blocks. */
+static void end_list(conic_block_list *list) {
+  for (size_t i = list->count; i % CONIC_DISC_BLOCK != 0; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      list->center[axis][i] = HUGE_VALF;
+      list->half[axis][i] = 0.0f;
+    }
+}
+
+/* Those of the blocks nearby that may matter to a sample that counts as `farthest` off, or less. */
+static void list_blocks(const conic_node_disc *node, float farthest, conic_near_discs *near) {
+  const conic_block_list *from = &near->blocks;
+  middle_box box = box_of_node(node, farthest);
+  begin_list(&near->of_node);
+  for (size_t first = 0; first < from->count; first += CONIC_DISC_BLOCK)
+    for (unsigned bits = find_in_block(from->center, from->half, first / CONIC_DISC_BLOCK, &box); bits; bits &= bits - 1) {
+      size_t i = first + (size_t)__builtin_ctz(bits);
+      add_to_list(from->center, from->half, i, from->block[i], &near->of_node);
+    }
+  end_list(&near->of_node);
 }
 
 float COVER(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
-            const conic_node_disc *node) {
-  cover c = {.discs = discs, .node = node, .enough = node->enough};
-  middle_box box = box_of_node(node);
+            conic_near_discs *near, const conic_node_disc *node) {
+  cover c = {.node = node, .enough = node->enough};
+  int is_listed = 0;
   begin_cover(samples, &c);
-  memset(discs->taken, 0, (discs->count + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK);
-  for (size_t block = begin / CONIC_DISC_BLOCK; block * CONIC_DISC_BLOCK < end; block++)
-    add_block(&c, &box, block);
-  compact(&c);
-  while (c.n_samples > 0) { /* once one is known for sure, others that are no worse need not be */
+  approach_own(discs, begin, end, &c);
+  for (;;) { /* once one is known for sure, others that are no worse need not be */
     int worst = find_worst(&c);
-    find_nearest(&c, begin / CHUNK, worst);
-    c.enough = c.nearest[worst] > c.enough ? c.nearest[worst] : c.enough;
-    compact(&c);
+    search s;
+    if (!(c.nearest[worst] > c.enough))
+      return c.enough;
+    if (!is_listed)
+      list_blocks(node, c.nearest[worst], near);
+    is_listed = 1;
+    begin_search(&c, worst, &s);
+    search_near(&c, discs, near, &s);
+    if (s.nearest > c.enough && !is_all_near(near, &s))
+      search_all(&c, discs, &s);
+    c.nearest[worst] = s.nearest;
+    c.enough = s.nearest > c.enough ? s.nearest : c.enough;
+    if (s.block)
+      approach(s.block, s.lane, &c);
   }
-  return c.enough;
+}
+
+void FIND_NEAR(const conic_discs *discs, conic_near_discs *near) {
+  middle_box box;
+  memcpy(box.center, near->center, sizeof box.center);
+  memcpy(box.half, near->half, sizeof box.half);
+  begin_list(&near->blocks);
+  for (size_t chunk = 0; chunk * CHUNK < discs->count; chunk++) {
+    unsigned bits = find_in_block(discs->block_center, discs->block_half, chunk, &box);
+    for (; bits; bits &= bits - 1) {
+      size_t block = chunk * CONIC_DISC_BLOCK + (size_t)__builtin_ctz(bits);
+      add_to_list(discs->block_center, discs->block_half, block, (uint32_t)block, &near->blocks);
+    }
+  }
+  end_list(&near->blocks);
 }

@@ -21,7 +21,7 @@ typedef struct size_class {
 typedef struct error_pass {
   conic_octree *octree;
   conic_disc_samples samples;
-  conic_cover_function *find;
+  conic_octree_kernels kernels;
   size_class sizes;
   uint32_t *tasks; /* roots */
   conic_status *statuses;
@@ -44,6 +44,9 @@ typedef struct neighbourhood {
   const error_pass *pass;
   conic_discs discs; /* of the surface: first those of the subtree, in the order of the hierarchy, then some around */
   float *numbers;    /* where they lie */
+  conic_near_discs near;
+  float *near_numbers;
+  uint32_t *near_blocks;
   uint32_t *first_leaf; /* of each of the subtree's */
   member *members;
   size_t n_members;
@@ -210,6 +213,25 @@ static void list_members(neighbourhood *around, size_t root) {
   }
 }
 
+/* Finds what the members begin … end look at: what is within the way that the least error that matters lets a point be
+ * off the surface. */
+static void find_near(neighbourhood *around, size_t begin, size_t end) {
+  conic_near_discs *near = &around->near;
+  for (int axis = 0; axis < 3; axis++) {
+    box b = {{0}, {0}};
+    b.low[axis] = HUGE_VALF;
+    b.high[axis] = -HUGE_VALF;
+    for (size_t k = begin; k < end; k++) {
+      const conic_node_disc *disc = &around->members[k].disc;
+      float extent = sqrtf(disc->u[axis] * disc->u[axis] + disc->v[axis] * disc->v[axis]);
+      add_to_box(disc->center[axis], extent + disc->enough * (1.1f / CONIC_COVER_WEIGHT), axis, &b);
+    }
+    near->center[axis] = 0.5f * b.low[axis] + 0.5f * b.high[axis];
+    near->half[axis] = 0.5f * b.high[axis] - 0.5f * b.low[axis];
+  }
+  around->pass->kernels.find_near(&around->discs, near);
+}
+
 /* The first of the subtree's discs whose leaves begin at `leaf` or later. */
 static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
   size_t begin = 0, end = around->n_own, guess = leaf - around->first_leaf[0]; /* right where all discs are leaves */
@@ -225,15 +247,27 @@ static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
   return begin;
 }
 
-static void find_error(const neighbourhood *around, const member *m) {
+static void find_error(neighbourhood *around, const member *m) {
   const error_pass *pass = around->pass;
   const conic_octree *octree = pass->octree;
   size_t begin = find_disc(around, octree->first_leaf[m->i_node]);
   size_t end = find_disc(around, octree->first_leaf[octree->end[m->i_node]]);
-  float error = pass->find(&pass->samples, &around->discs, begin, end, &m->disc);
+  float error = pass->kernels.cover(&pass->samples, &around->discs, begin, end, &around->near, &m->disc);
   if (error > m->disc.enough) /* a hair more for the floats */
     conic_code_error(&octree->scale, (double)error * (1.0 + 1e-5), (double)m->radius,
                      octree->codes + m->i_node * CONIC_NODE_BYTES);
+}
+
+/* The errors of a member and of those in its subtree. Returns the member after them. */
+static size_t find_errors(neighbourhood *around, size_t begin) {
+  const conic_octree *octree = around->pass->octree;
+  size_t end = begin;
+  while (end < around->n_members && around->members[end].i_node < octree->end[around->members[begin].i_node])
+    end++;
+  find_near(around, begin, end);
+  for (size_t k = begin; k < end; k++)
+    find_error(around, &around->members[k]);
+  return end;
 }
 
 /* How many discs a subtree has itself; and nodes of the class, no more than those and the others. */
@@ -255,10 +289,12 @@ static void release(const neighbourhood *around) {
   conic_memory_release(context, around->numbers);
   conic_memory_release(context, around->first_leaf);
   conic_memory_release(context, around->members);
-  conic_memory_release(context, around->discs.taken);
+  conic_memory_release(context, around->near_numbers);
+  conic_memory_release(context, around->near_blocks);
+  conic_memory_release(context, around->near.flat);
 }
 
-/* Lays out the arrays of discs: `stride` of each number. */
+/* Lays out the arrays of discs: `stride` of each number, and a block's. */
 static void lay_out(float *next, size_t stride, conic_discs *discs) {
   float **arrays[] = {discs->center, discs->u, discs->v, discs->half};
   for (int k = 0; k < 4; k++)
@@ -272,11 +308,20 @@ static void lay_out(float *next, size_t stride, conic_discs *discs) {
   }
 }
 
+static void lay_out_list(float *next, uint32_t *blocks, size_t room, conic_block_list *list) {
+  for (int axis = 0; axis < 3; axis++, next += 2 * room) {
+    list->center[axis] = next;
+    list->half[axis] = next + room;
+  }
+  list->block = blocks;
+}
+
 /* Makes room for a subtree with so many discs. A node of the class has two parts at least. */
 static conic_status make_room(neighbourhood *around, size_t n_own) {
   enum { NUMBERS = 14, WHOLE = CONIC_DISC_BLOCK * CONIC_DISC_BLOCK }; /* 13, and a block's 6 make less than one */
   conic_context *context = around->pass->octree->context;
   conic_discs *discs = &around->discs;
+  conic_near_discs *near = &around->near;
   size_t room = 8 * n_own + 512;
   if (room <= around->room)
     return CONIC_OK;
@@ -286,10 +331,16 @@ static conic_status make_room(neighbourhood *around, size_t n_own) {
   around->numbers = conic_memory_allocate(context, stride, NUMBERS * sizeof *around->numbers);
   around->first_leaf = conic_memory_allocate(context, n_own, sizeof *around->first_leaf);
   around->members = conic_memory_allocate(context, n_own, sizeof *around->members);
-  discs->taken = conic_memory_allocate(context, stride / CONIC_DISC_BLOCK, 1);
-  if (!around->numbers || !around->first_leaf || !around->members || !discs->taken)
+  size_t n_blocks = stride / CONIC_DISC_BLOCK;
+  around->near_numbers = conic_memory_allocate(context, n_blocks, 12 * sizeof *around->near_numbers);
+  around->near_blocks = conic_memory_allocate(context, n_blocks, 2 * sizeof *around->near_blocks);
+  near->flat = conic_memory_allocate(context, n_blocks, sizeof *near->flat);
+  if (!around->numbers || !around->first_leaf || !around->members || !around->near_numbers || !around->near_blocks ||
+      !near->flat)
     return CONIC_ERROR_MEMORY;
   lay_out(around->numbers, stride, discs);
+  lay_out_list(around->near_numbers, around->near_blocks, n_blocks, &near->blocks);
+  lay_out_list(around->near_numbers + 6 * n_blocks, around->near_blocks + n_blocks, n_blocks, &near->of_node);
   return CONIC_OK;
 }
 
@@ -305,8 +356,8 @@ static conic_status run_group(neighbourhood *around, size_t root) {
   gather(around, octree->end[root], octree->n_nodes, &b, around->room);
   conic_discs_set_half(&around->discs, around->n_own);
   conic_discs_close(&around->discs);
-  for (size_t k = 0; k < around->n_members; k++)
-    find_error(around, &around->members[k]);
+  for (size_t k = 0; k < around->n_members;)
+    k = find_errors(around, k);
   return CONIC_OK;
 }
 
@@ -366,7 +417,7 @@ static conic_status run_pass(error_pass *pass) {
 }
 
 conic_status conic_octree_find_errors(conic_octree *octree) {
-  error_pass pass = {.octree = octree, .find = conic_octree_kernels_choose().cover, .sizes = {1, 64, 1, 2048}};
+  error_pass pass = {.octree = octree, .kernels = conic_octree_kernels_choose(), .sizes = {1, 64, 1, 8192}};
   conic_status status = CONIC_OK;
   conic_disc_samples_init(&pass.samples);
   while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {

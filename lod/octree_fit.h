@@ -2,6 +2,7 @@
 #ifndef LOD_OCTREE_FIT_H
 #define LOD_OCTREE_FIT_H
 
+#include "core/ellipse.h"
 #include "lod/moments.h"
 #include "lod/octree.h"
 
@@ -18,8 +19,15 @@ typedef struct conic_leaf_reach {
 } conic_leaf_reach;
 
 /* Widens *reach by the leaves begin … end. */
-void conic_leaf_reach_add(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
-                          const conic_node_frame *frame, conic_leaf_reach *reach);
+typedef void conic_add_reach_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                                      const conic_node_frame *frame, conic_leaf_reach *reach);
+
+/* The ratio whose ellipse around the outlines of a few leaves is the smallest: those near the shape's are tried, which
+ * has its major direction in u, v. */
+enum { CONIC_FEW_LEAVES = 16 }; /* the more there are, the better the covariance's fits */
+typedef double conic_choose_ratio_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                                           const double place[3], const double u[3], const double v[3],
+                                           const conic_ellipse *shape, double least_ratio);
 
 /* Raises the errors that conic_octree_fit has left, which tell of the leaves' heights and the node's size alone, to how
  * far its disc reaches past the surface. Errors: MEMORY, CANCELLED. */

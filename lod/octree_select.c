@@ -4,7 +4,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "lod/octree_view.h"
+#include "lod/octree_kernels.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
 typedef struct piece {
@@ -17,14 +17,12 @@ typedef struct piece {
 typedef struct scratch {
   piece *pieces;
   size_t n_pieces, pieces_room;
-  uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or node_bit and a node */
+  uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or CONIC_NODE_BIT and a node */
   size_t sources_room;
   float *arrays; /* the selection's */
   conic_clip *clips;
   size_t clips_room;
 } scratch;
-
-static const uint32_t node_bit = UINT32_C(1) << 31;
 
 enum { PIECES_A_TASK = 2 };
 
@@ -34,6 +32,7 @@ typedef struct selecting {
   float error_px;
   conic_selection *selection;
   scratch *scratch;
+  conic_put_function *put;
 } selecting;
 
 void conic_selection_options_init(conic_selection_options *options) {
@@ -107,7 +106,7 @@ static void walk_block(const selecting *s, piece *block) {
     float pixels = conic_octree_look_up(octree, &s->view, i, &measured);
     if (pixels <= s->error_px) {
       int is_culled = pixels < 0.0f;
-      *next = node_bit | i;
+      *next = CONIC_NODE_BIT | i;
       next += !is_culled;
       block->n_inner += (size_t)!is_culled;
       block->n_culled += (size_t)is_culled;
@@ -132,45 +131,10 @@ static void count_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
-static inline void put(const conic_drawn_node *from, conic_splats *to, size_t k) {
-  for (int axis = 0; axis < 3; axis++) {
-    to->position[axis][k] = from->position[axis];
-    to->tangent_u[axis][k] = from->tangent_u[axis];
-    to->tangent_v[axis][k] = from->tangent_v[axis];
-  }
-  for (int channel = 0; channel < 3 && to->color[0]; channel++)
-    to->color[channel][k] = from->color[channel];
-  to->opacity[k] = from->opacity;
-}
-
-/* A node that faces away stands for leaves that may not, else it were not chosen: it is turned, so as not to be culled
- * as one. */
-static inline void turn(const float eye[3], conic_splats *to, size_t k) {
-  float along = 0.0f;
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    float normal = to->tangent_u[next][k] * to->tangent_v[last][k] - to->tangent_u[last][k] * to->tangent_v[next][k];
-    along += (to->position[axis][k] - eye[axis]) * normal;
-  }
-  for (int axis = 0; axis < 3 && along > 0.0f; axis++)
-    to->tangent_v[axis][k] = -to->tangent_v[axis][k];
-}
-
 /* Puts n splats at `begin` of the selection. */
 static void put_splats(const selecting *s, const uint32_t *sources, size_t begin, size_t n) {
-  enum { AHEAD = 16 }; /* single leaves lie far apart */
-  const conic_drawn_node *const kinds[2] = {s->octree->drawn_leaves, s->octree->drawn};
-  conic_splats to = s->selection->splats;
-  uint32_t *ids = s->selection->ids + begin;
-  for (size_t k = 0; k < n; k++) {
-    uint32_t ahead = sources[k + AHEAD < n ? k + AHEAD : k];
-    __builtin_prefetch(kinds[ahead >> 31] + (ahead & ~node_bit));
-    const conic_drawn_node *from = kinds[sources[k] >> 31] + (sources[k] & ~node_bit);
-    put(from, &to, begin + k);
-    ids[k] = from->id;
-    if (s->view.cull_back && sources[k] >> 31)
-      turn(s->view.eye, &to, begin + k);
-  }
+  s->put(s->octree, sources, n, s->view.cull_back ? s->view.eye : NULL, &s->selection->splats, s->selection->ids,
+         begin);
 }
 
 static void fill_task(void *data, size_t i_task, int i_thread) {
@@ -183,7 +147,7 @@ static void fill_task(void *data, size_t i_task, int i_thread) {
     if (p->kind == PIECE_BLOCK)
       put_splats(s, kept->sources + s->octree->first_leaf[p->begin], p->place, p->count);
     for (uint32_t k = p->begin; k < p->end && p->kind != PIECE_BLOCK; k++) {
-      uint32_t source = p->kind == PIECE_NODE ? node_bit | k : k;
+      uint32_t source = p->kind == PIECE_NODE ? CONIC_NODE_BIT | k : k;
       put_splats(s, &source, p->place + k - p->begin, 1);
     }
   }
@@ -314,6 +278,7 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
+  s.put = conic_octree_kernels_choose().put;
   conic_status status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)
     status = keep_scratch(octree, selection);

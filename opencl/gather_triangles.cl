@@ -7,11 +7,6 @@ static void gather_count(__global uint *sum, uint n) {
     atomic_add(sum + 1, 1u);
 }
 
-/* The inverse depth that hides what is behind: conic_triangles_hide. */
-static float gather_hides(const conic_device_frame *frame, float iz, float dx, float dy) {
-  return iz * (1.0f / (1.0f + frame->triangle_epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
-}
-
 /* The nearest triangle of every pixel, and where splats are to be blended what it hides: the splats' thresholds begin
  * with that. */
 __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __global float *nearest_iz,
@@ -34,7 +29,7 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
       conic_triangle_edges edges;
       float iz;
       conic_triangle_edges_of(&record, &edges);
-      if (!conic_triangle_covers(&record, &edges, p.x, p.y, &iz))
+      if (!conic_triangle_sample(&record, &edges, p.x, p.y, &iz))
         continue;
       n_covered++;
       if (!(iz_of_nearest < iz))
@@ -46,7 +41,7 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
   nearest_iz[at] = iz_of_nearest;
   nearest[at] = i_nearest;
   if (!frame.is_single_pass)
-    thresholds[at] = n_covered ? gather_hides(&frame, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
+    thresholds[at] = n_covered ? conic_triangle_hides(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
   if (n_covered)
     gather_count(n_fragments + 2 * p.tile, n_covered);
 }
@@ -67,8 +62,8 @@ static void gather_add_triangle(const conic_device_frame *frame, const conic_tri
   int column = p->x % CONIC_BLOCK_EDGE, row = p->y % CONIC_BLOCK_EDGE;
   conic_triangle_look_at(triangles, &record, p->x - column, p->y - row, &look);
   conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
-  conic_triangle_color_at(&look, &weights, color);
-  conic_triangle_normal_at(&look, &weights, frame->world_from_cam, dx, dy, normal);
+  conic_triangle_look_color(&look, &weights, color);
+  conic_triangle_look_normal(&look, &weights, frame->world_from_cam, dx, dy, normal);
   if (1.0f > s->heaviest_weight)
     s->z = 1.0f / iz;
   if (iz > s->nearest_iz)

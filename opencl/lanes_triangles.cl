@@ -91,7 +91,7 @@ static uint lanes_draw_samples(const lanes_drawing *d, uint i_record, const lane
       lanes_nearest_triangles *nearest = &of_blocks[(y - t->y) / 4 * CONIC_DEVICE_TILE_BLOCKS + (x - t->x) / 4];
       int lane = x % 4 * 4 + y % 4;
       float iz;
-      if (!conic_triangle_covers(&d->record, &edges, x, y, &iz))
+      if (!conic_triangle_sample(&d->record, &edges, x, y, &iz))
         continue;
       n_covered++;
       if (!(((const float *)&nearest->iz)[lane] < iz))

@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "raster/scene_scale.h"
+#include "raster/tile_kernels.h"
 
 /* Splats that a thread projects at a time. */
 enum { CHUNK = 1 << 14 };
@@ -87,22 +87,48 @@ static conic_status list_bands(conic_contributions *c) {
   return CONIC_OK;
 }
 
+static conic_status prepare_triangles(conic_contributions *c, const conic_camera *camera) {
+  const conic_triangles *triangles = c->drawing.triangles;
+  if (!triangles)
+    return CONIC_OK;
+  conic_status status = conic_triangles_check(c->context, triangles, "contributions");
+  if (status != CONIC_OK)
+    return status;
+  conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
+  conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
+  return conic_triangle_frame_prepare(&c->triangles, conic_tile_kernels_of(CONIC_ISA_AUTO));
+}
+
 conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                         const conic_render_options *options, conic_contributions **contributions) {
+  const conic_drawing alone = {splats, NULL};
   *contributions = NULL;
-  if (!splats || !camera || !options || options->size != sizeof *options)
+  if (!splats)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "contributions: an argument is null, or the options were not initialised");
+  return conic_contributions_create_drawing(context, &alone, camera, options, contributions);
+}
+
+conic_status conic_contributions_create_drawing(conic_context *context, const conic_drawing *drawing,
+                                                const conic_camera *camera, const conic_render_options *options,
+                                                conic_contributions **contributions) {
+  *contributions = NULL;
+  if (!drawing || !camera || !options || options->size != sizeof *options)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "contributions: an argument is null, or the options were not initialised");
   conic_contributions *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
   if (!c)
     return CONIC_ERROR_MEMORY;
   c->context = context;
-  c->splats = splats;
+  conic_whole_drawing_of(drawing, &c->drawing);
+  c->splats = c->drawing.splats;
   c->options = *options;
-  conic_status status = conic_scene_scale(context, splats, &c->options);
+  conic_status status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
   if (status == CONIC_OK)
     status =
-        conic_view_init(context, splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
+        conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
+  if (status == CONIC_OK)
+    status = prepare_triangles(c, camera);
   if (status == CONIC_OK)
     status = project(c);
   if (status == CONIC_OK)
@@ -119,9 +145,11 @@ void conic_contributions_destroy(conic_contributions *c) {
     return;
   void *all[] = {c->projected.chunks,   c->projected.footprints, c->projected.boxes,
                  c->projected.surfaces, c->projected.rays,       c->projected.clips,
-                 c->band_begin,         c->references,           c->list};
+                 c->band_begin,         c->references,           c->list,
+                 c->triangle_list};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(c->context, all[i]);
+  conic_triangle_frame_release(c->context, &c->triangles);
   conic_memory_release(c->context, c);
 }
 
@@ -217,8 +245,8 @@ static int begin_contribution(const conic_contributions *c, uint32_t i_footprint
   return 1;
 }
 
-static void judge(conic_contribution *list, size_t n, int passes) {
-  float threshold = 0.0f, nearest_iz = 0.0f;
+static void judge(conic_contribution *list, size_t n, int passes, const conic_triangle_contribution *triangle) {
+  float threshold = triangle ? triangle->hides : 0.0f, nearest_iz = 0.0f;
   size_t nearest = n;
   for (size_t i = 0; i < n; i++) {
     if (list[i].verdict > CONIC_CONTRIBUTION_HIDDEN)
@@ -229,6 +257,8 @@ static void judge(conic_contribution *list, size_t n, int passes) {
       nearest = i;
     }
   }
+  if (triangle && triangle->inverse_depth > nearest_iz)
+    nearest = n;
   for (size_t i = 0; i < n; i++) {
     conic_fragment f = {.iz = list[i].inverse_depth, .plane_iz = list[i].plane_inverse_depth};
     if (list[i].verdict <= CONIC_CONTRIBUTION_HIDDEN && !(passes == 1 ? i == nearest : conic_seen_iz(&f) >= threshold))
@@ -252,7 +282,10 @@ conic_status conic_contributions_at(conic_contributions *c, int x, int y, const 
   *n = 0;
   for (size_t i = first; i < end; i++)
     *n += (size_t)begin_contribution(c, c->references[i], x, y, &c->list[*n]);
-  judge(c->list, *n, c->options.passes);
+  const conic_triangle_contribution *triangle;
+  size_t n_triangles;
+  conic_status status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
+  judge(c->list, *n, c->options.passes, triangle);
   *list = c->list;
-  return CONIC_OK;
+  return status;
 }

@@ -4,6 +4,8 @@
 
 #include "conic/contributions.h"
 #include "raster/coverage.h"
+#include "raster/drawing.h"
+#include "raster/triangle_frame.h"
 
 /* Rows of the picture whose splats are listed together. */
 enum { CONIC_CONTRIBUTION_BAND = 8 };
@@ -18,7 +20,15 @@ struct conic_contributions {
   uint32_t *references;     /* indices of footprints */
   conic_contribution *list; /* of the last pixel that was asked for */
   size_t list_room;
+  conic_whole_drawing drawing;
+  conic_triangle_frame triangles; /* where the drawing has some */
+  conic_triangle_contribution *triangle_list;
+  size_t triangle_list_room;
 };
+
+/* The triangles at a pixel before it is known what splats hide them: the nearest alone is visible. Errors: MEMORY. */
+conic_status conic_contribution_triangles(conic_contributions *contributions, int x, int y,
+                                          const conic_triangle_contribution **nearest, size_t *n);
 
 /* The footprint at a pixel, which it covers: everything but the verdict. */
 conic_contribution conic_contribution_of(const conic_contributions *contributions, uint32_t i_footprint, int x, int y,

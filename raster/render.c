@@ -351,14 +351,16 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = seconds_now();
   conic_status status = project_and_sort(f);
+  double sorted = seconds_now();
   if (status == CONIC_OK && f->triangles)
     status = conic_triangle_frame_prepare(f->triangles, f->kernels);
   if (status != CONIC_OK)
     return status;
-  double sorted = seconds_now();
+  double prepared = seconds_now();
   conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
   double done = seconds_now();
-  share_out(f, 1e3 * (sorted - start), 1e3 * (done - sorted), ms);
+  share_out(f, 1e3 * (sorted - start), 1e3 * (done - prepared), ms);
+  ms->setup += 1e3 * (prepared - sorted);
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
 }
 

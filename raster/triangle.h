@@ -5,8 +5,10 @@
 #ifndef RASTER_TRIANGLE_H
 #define RASTER_TRIANGLE_H
 
+#include <math.h>
 #include <stdint.h>
 
+#include "raster/band.h"
 #include "raster/projected.h"
 
 /* Before the type of what a frame or a set of triangles holds: a device has a memory of its own for that, and names it
@@ -145,6 +147,29 @@ static inline float conic_triangle_far(const conic_triangle_record *record) {
 static inline float conic_triangle_near(const conic_triangle_record *record) {
   float greatest = record->iz[0] > record->iz[1] ? record->iz[0] : record->iz[1];
   return greatest > record->iz[2] ? greatest : record->iz[2];
+}
+
+/* A pixel's sample: whether the triangle covers it, and then its inverse depth there. */
+static inline int conic_triangle_sample(const conic_triangle_record *record, const conic_triangle_edges *edges, int x,
+                                        int y, float *iz) {
+  int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
+  int64_t e[3];
+  for (int k = 0; k < 3; k++) {
+    e[k] = conic_triangle_edge_at(edges, k, x - column, y - row);
+    if (e[k] + (edges->a[k] * column + edges->b[k] * row) * CONIC_SUBPIXELS + edges->bias[k] < 0)
+      return 0;
+  }
+  const conic_affine depth = conic_triangle_depth(record, edges, e[1], e[2]);
+  float iz_far = conic_triangle_far(record), iz_near = conic_triangle_near(record);
+  float at = conic_affine_at(&depth, (float)column, (float)row);
+  at = at > iz_far ? at : iz_far;
+  *iz = at < iz_near ? at : iz_near;
+  return 1;
+}
+
+/* The inverse depth that hides what lies farther behind a triangle than ε, along the ray (dx, dy, 1). */
+static inline float conic_triangle_hides(float epsilon, float iz, float dx, float dy) {
+  return iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
 }
 
 #endif

@@ -309,12 +309,29 @@ CONIC_INLINE void add_part(const conic_triangle_look *look, const conic_finish *
     lanes_replace(sums->normal[axis] + at, mask, lanes_select(has_size, sum[axis], normal[axis] * CONIC_LEAST_WEIGHT));
 }
 
+/* Whether the first of the pixels is the only one of them that sees the record. */
+CONIC_INLINE int is_alone(const conic_triangle_block *block, uint32_t i_record, uint32_t pixels) {
+  uint32_t same = 0;
+  for (int part = 0; part < CONIC_PARTS; part++) {
+    index_lanes other = lanes_load_indices(block->record + part * CONIC_LANES) ^ i_record;
+    same |= (~lanes_bits(lanes_has_bits(other, ~0u)) & ((1u << CONIC_LANES) - 1)) << (part * CONIC_LANES);
+  }
+  same &= pixels;
+  return (same & (same - 1)) == 0;
+}
+
 /* All pixels of the block that see a triangle, one triangle after the other. */
 CONIC_INLINE void add_block(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int i_block) {
   const conic_triangle_block *block = &band->triangles->blocks[i_block];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
   for (uint32_t left = band->triangles->visible[i_block]; left;) {
     uint32_t i_record = block->record[__builtin_ctz(left)], done = 0;
+    /* In a fine mesh, hardly two pixels see the same triangle. */
+    if (is_alone(block, i_record, left)) {
+      conic_triangle_add_pixel(band, finish, rays, i_block, __builtin_ctz(left));
+      left &= left - 1;
+      continue;
+    }
     conic_triangle_look look;
     conic_triangle_look_at(band->triangle_frame, &band->triangle_frame->records[i_record],
                            band->x + i_block * CONIC_BLOCK_EDGE, band->y, &look);
@@ -336,6 +353,7 @@ CONIC_INLINE void add_block(conic_band *band, const conic_finish *finish, const 
 
 static void triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays) {
   conic_triangle_row *row = band->triangles;
+  conic_triangle_fetch_row(band);
   for (int block = 0; block < band->n_blocks; block++) {
     if (!row->visible[block])
       continue;

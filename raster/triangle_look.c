@@ -57,8 +57,9 @@ static void find_face(const conic_triangle_frame *frame, const uint32_t corners[
     normal[axis] = side[0][b] * side[1][c] - side[0][c] * side[1][b];
   }
   double length = sqrt((normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2]);
+  double scale = 1.0 / length;
   for (int axis = 0; axis < 3; axis++)
-    face[axis] = length > 0.0 ? (float)(normal[axis] / length) : -frame->view->rotation_float[2][axis];
+    face[axis] = length > 0.0 ? (float)(normal[axis] * scale) : -frame->view->rotation_float[2][axis];
 }
 
 /* A piece's attributes are the triangle's; the others' corners may have changed places. */

@@ -1,30 +1,11 @@
-/* A triangle at one pixel: whether it covers it, how deep it lies there, and what it looks like. Shared by plain C and
- * by a device's programs (opencl/triangles.cl); triangle_body.h does the same in lanes. */
+/* What a triangle looks like at one pixel. Shared by plain C and by a device's programs (opencl/triangles.cl);
+ * triangle_body.h does the same in lanes. */
 #ifndef RASTER_TRIANGLE_PIXEL_H
 #define RASTER_TRIANGLE_PIXEL_H
 
 #include <math.h>
 
 #include "raster/triangle_look.h"
-
-/* Whether the record covers the pixel's centre; if so, its inverse depth there. */
-static inline int conic_triangle_covers(const conic_triangle_record *record, const conic_triangle_edges *edges, int x,
-                                        int y, float *inverse_depth) {
-  int is_inside = 1, column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
-  const float iz_far = conic_triangle_far(record), iz_near = conic_triangle_near(record);
-  int64_t e[3];
-  for (int k = 0; k < 3; k++) {
-    e[k] = conic_triangle_edge_at(edges, k, x - column, y - row);
-    is_inside &= e[k] + (edges->a[k] * column + edges->b[k] * row) * CONIC_SUBPIXELS + edges->bias[k] >= 0;
-  }
-  if (!is_inside)
-    return 0;
-  conic_affine depth = conic_triangle_depth(record, edges, e[1], e[2]);
-  float iz = conic_affine_at(&depth, (float)column, (float)row);
-  iz = iz > iz_far ? iz : iz_far;
-  *inverse_depth = iz < iz_near ? iz : iz_near;
-  return 1;
-}
 
 /* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
  * pixel. */
@@ -53,8 +34,8 @@ static inline void conic_triangle_weights_at(const conic_triangle_look *look, fl
   }
 }
 
-static inline void conic_triangle_color_at(const conic_triangle_look *look, const conic_triangle_weights *w,
-                                           float color[3]) {
+static inline void conic_triangle_look_color(const conic_triangle_look *look, const conic_triangle_weights *w,
+                                             float color[3]) {
   float uv[2], along[2], across[2], texel[3];
   for (int channel = 0; channel < 3; channel++)
     color[channel] =
@@ -72,8 +53,8 @@ static inline void conic_triangle_color_at(const conic_triangle_look *look, cons
 }
 
 /* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
-static inline void conic_triangle_normal_at(const conic_triangle_look *look, const conic_triangle_weights *w,
-                                            const float world_from_cam[3][3], float dx, float dy, float normal[3]) {
+static inline void conic_triangle_look_normal(const conic_triangle_look *look, const conic_triangle_weights *w,
+                                              const float world_from_cam[3][3], float dx, float dy, float normal[3]) {
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = look->face[axis];
   if (look->has_normals) {

@@ -34,7 +34,7 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
   for (int j = y_begin; j < y_end; j++)
     for (int i = x_begin; i < x_end; i++) {
       float iz;
-      if (!conic_triangle_covers(record, &edges, i, j, &iz))
+      if (!conic_triangle_sample(record, &edges, i, j, &iz))
         continue;
       conic_triangle_block *block = &tile->blocks[(j - y) / CONIC_BLOCK_EDGE][(i - x) / CONIC_BLOCK_EDGE];
       int l = i % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + j % CONIC_BLOCK_EDGE;
@@ -77,7 +77,7 @@ void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays) {
       if (!(row->covered[block] >> l & 1))
         continue;
       float iz = row->blocks[block].iz[l], dx = rays->block_x[block][l], dy = rays->block_y[i_row][l];
-      float hides = iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
+      float hides = conic_triangle_hides(epsilon, iz, dx, dy);
       if (!(iz >= threshold[l]))
         row->visible[block] &= ~(1u << l);
       threshold[l] = hides > threshold[l] ? hides : threshold[l];
@@ -136,18 +136,64 @@ void conic_triangle_rank_block(const conic_band *band, int block) {
   }
 }
 
-static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
+void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
+                             float normal[3]) {
+  int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
+  conic_triangle_look look;
+  conic_triangle_weights weights;
+  conic_triangle_look_at(frame, record, x - column, y - row, &look);
+  conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
+  conic_triangle_look_color(&look, &weights, color);
+  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], normal);
+}
+
+/* Lists the records that a row sees, each once or little more often. */
+static int list_records(const conic_band *band, uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS]) {
+  int n = 0;
+  uint32_t last = UINT32_MAX;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (uint32_t left = band->triangles->visible[block]; left; left &= left - 1) {
+      uint32_t i_record = band->triangles->blocks[block].record[__builtin_ctz(left)];
+      records[n] = i_record;
+      n += i_record != last;
+      last = i_record;
+    }
+  return n;
+}
+
+void conic_triangle_fetch_row(const conic_band *band) {
+  const conic_triangle_frame *frame = band->triangle_frame;
+  const conic_triangles *t = frame->triangles;
+  uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS + 1];
+  int n = list_records(band, records);
+  if (n <= 2 * CONIC_BAND_BLOCKS)
+    return;
+  for (int i = 0; i < n; i++)
+    __builtin_prefetch(t->corners[frame->records[records[i]].index]);
+  for (int i = 0; i < n; i++) {
+    const uint32_t *corners = t->corners[frame->records[records[i]].index];
+    for (int k = 0; k < 3; k++)
+      for (int axis = 0; axis < 3; axis++) {
+        __builtin_prefetch(&t->position[axis][corners[k]]);
+        if (t->normal[0] && !t->normal_corners)
+          __builtin_prefetch(&t->normal[axis][corners[k]]);
+        if (t->color[0])
+          __builtin_prefetch(&t->color[axis][corners[k]]);
+      }
+  }
+}
+
+void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
+                              int l) {
   conic_block_sums *sums = &band->sums[block];
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
-  conic_triangle_look look;
-  conic_triangle_weights weights;
+  const float ray[2] = {rays->block_x[block][l], rays->block_y[i_row][l]};
   float color[3], normal[3];
-  conic_triangle_look_at(band->triangle_frame, record, band->x + block * CONIC_BLOCK_EDGE, band->y, &look);
-  conic_triangle_weights_at(&look, (float)(l / CONIC_BLOCK_EDGE), (float)(l % CONIC_BLOCK_EDGE), &weights);
-  conic_triangle_color_at(&look, &weights, color);
-  conic_triangle_normal_at(&look, &weights, finish->world_from_cam, rays->block_x[block][l], rays->block_y[i_row][l],
-                           normal);
+  conic_triangle_color_at(band->triangle_frame, record, finish->world_from_cam,
+                          band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, band->y + l % CONIC_BLOCK_EDGE,
+                          ray, color, normal);
   sums->weight[l] += 1.0f;
   sums->count[l]++;
   float size = 0.0f;
@@ -172,6 +218,6 @@ void conic_triangles_add(conic_band *band, const conic_finish *finish, const con
     conic_triangle_rank_block(band, block);
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
       if (row->visible[block] >> l & 1)
-        add_pixel(band, finish, rays, block, l);
+        conic_triangle_add_pixel(band, finish, rays, block, l);
   }
 }

@@ -17,6 +17,18 @@ unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t
  * added to its sums. */
 void conic_triangle_rank_block(const conic_band *band, int block);
 
+/* A covered pixel's colour, and its unit normal towards the viewer, who looks along the ray (x, y, 1). */
+void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
+                             float normal[3]);
+
+/* Fetches what the look of a row's visible triangles is read from, where they are many. */
+void conic_triangle_fetch_row(const conic_band *band);
+
+/* Adds the triangle that pixel l of the block sees to its sums. */
+void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
+                              int l);
+
 /* The plain C references of the slots. */
 void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);
 void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays);

@@ -12,7 +12,7 @@ enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 typedef struct cleaning {
   const conic_surface *surface;
   conic_own_points *own;
-  size_t first;
+  size_t n_wanted, first;
   conic_workspace *workspaces;
 } cleaning;
 
@@ -41,16 +41,10 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
   const conic_surface *surface = work->surface;
   const conic_neighbours *tree = &surface->tree;
   size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
-  const float *bounds = tree->boxes[tree->n_leaves - 1 + i_leaf];
-  double box[6], margin = 0.0;
-  for (int i = 0; i < 6; i++)
-    box[i] = (double)bounds[i];
+  conic_surface_share_leaf(surface, i_leaf, workspace);
   for (size_t slot = begin; slot < end; slot++) {
-    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
-    margin = own > margin ? own : margin;
-  }
-  conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
-  for (size_t slot = begin; slot < end; slot++) {
+    if (tree->point_of_slot[slot] >= work->n_wanted)
+      continue;
     conic_landing projection;
     const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                          (double)tree->position[2][slot]};
@@ -83,9 +77,10 @@ static int allocate_own(const conic_surface *surface, conic_own_points *own) {
   return is_whole && own->moved2 && own->n_neighbours && own->outcomes;
 }
 
-conic_status conic_own_points_project(const conic_surface *surface, conic_own_points *own) {
+conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
+                                      conic_own_points *own) {
   conic_context *context = surface->context;
-  cleaning work = {surface, own, 0, NULL};
+  cleaning work = {surface, own, n_wanted, 0, NULL};
   memset(own, 0, sizeof *own);
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK && !allocate_own(surface, own))
@@ -93,7 +88,7 @@ conic_status conic_own_points_project(const conic_surface *surface, conic_own_po
   size_t n_chunks = (surface->tree.n_leaves + CHUNK - 1) / CHUNK;
   for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
     work.first = i * CHUNK;
-    status = conic_progress(context, "project", (double)i / (double)n_chunks);
+    status = conic_progress(context, "project", begin + (end - begin) * (double)i / (double)n_chunks);
     if (status == CONIC_OK)
       conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, clean_chunk, &work);
     if (status == CONIC_OK)
@@ -174,7 +169,7 @@ conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected
   conic_own_points own;
   conic_surface_report counted;
   memset(projected, 0, sizeof *projected);
-  conic_status status = conic_own_points_project(surface, &own);
+  conic_status status = conic_own_points_project(surface, SIZE_MAX, 0.0, 1.0, &own);
   if (status != CONIC_OK)
     return status;
   report_points(surface, &own, &counted);

@@ -1,4 +1,6 @@
 /* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns and never by normal equations. */
+#include <string.h>
+
 #include "surface/surface.h"
 
 /* What must be left of a monomial, as a share of its square, when the ones before it are taken out. */
@@ -8,37 +10,53 @@ static const double LEAST_SHARE = 1e-9;
  * polynomial is led by what it was not told. */
 static const double MOST_GAIN = 4.0;
 
-/* The variance of the value at the origin when every sample has a variance of 1 / weight. */
-static double gain_at_origin(int n_coefficients, double upper[CONIC_MAX_COLUMNS][CONIC_MAX_COLUMNS],
-                             const double norms2[CONIC_MAX_COLUMNS]) {
-  double z[CONIC_MAX_COLUMNS] = {1.0}, gain = 1.0 / norms2[0];
-  for (int k = 1; k < n_coefficients; k++) {
-    z[k] = 0.0;
-    for (int j = 0; j < k; j++)
-      z[k] -= z[j] * upper[j][k];
-    gain += z[k] * z[k] / norms2[k];
+double conic_fit_gain(const conic_fit *fit, int degree, double x, double y) {
+  double z[CONIC_MAX_COLUMNS], gain = 0.0;
+  int n = conic_n_coefficients(degree);
+  z[0] = 1.0;
+  for (int power = 1, first = 1; power <= degree; first += ++power) {
+    for (int k = 0; k < power; k++)
+      z[first + k] = z[first - power + k] * x;
+    z[first + power] = z[first - 1] * y;
+  }
+  for (int j = 0; j < n; j++) {
+    gain += z[j] * z[j] / fit->norms2[j];
+    for (int k = j + 1; k < n; k++)
+      z[k] -= z[j] * fit->upper[j][k];
   }
   return gain;
 }
 
+void conic_fit_solve(conic_fit *fit, int degree) {
+  double *c = fit->coefficients;
+  int n = conic_n_coefficients(degree);
+  for (int j = 0; j < CONIC_MAX_COLUMNS; j++)
+    c[j] = 0.0;
+  for (int j = n; j-- > 0;) {
+    c[j] = fit->upper[j][fit->n_columns];
+    for (int k = j + 1; k < n; k++)
+      c[j] -= fit->upper[j][k] * c[k];
+  }
+}
+
 conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, conic_workspace *workspace,
                                         double frame[3][3], double t, conic_fit *fit) {
-  double upper[CONIC_MAX_COLUMNS][CONIC_MAX_COLUMNS], norms2[CONIC_MAX_COLUMNS], before2[CONIC_MAX_COLUMNS];
-  double coefficients[CONIC_MAX_COLUMNS] = {0.0};
+  double before2[CONIC_MAX_COLUMNS];
   int n = conic_n_coefficients(surface->options.degree);
-  surface->kernels->factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, upper, norms2, before2);
+  surface->kernels->factor(&workspace->near, frame, t, 1.0 / h, surface->options.degree, fit->upper, fit->norms2,
+                           before2);
   for (int k = 0; k < n; k++)
-    if (!(norms2[k] > LEAST_SHARE * before2[k]))
+    if (!(fit->norms2[k] > LEAST_SHARE * before2[k]))
       return CONIC_SURFACE_ILL_CONDITIONED;
-  if (!(gain_at_origin(n, upper, norms2) <= MOST_GAIN))
+  if (!(conic_fit_gain(fit, surface->options.degree, 0.0, 0.0) <= MOST_GAIN))
     return CONIC_SURFACE_ILL_CONDITIONED;
-  for (int j = n; j-- > 0;) {
-    coefficients[j] = upper[j][n];
-    for (int k = j + 1; k < n; k++)
-      coefficients[j] -= upper[j][k] * coefficients[k];
-  }
-  fit->value = coefficients[0] * h;
-  fit->slope[0] = coefficients[1];
-  fit->slope[1] = coefficients[2];
+  fit->n_columns = n;
+  conic_fit_solve(fit, surface->options.degree);
+  fit->value = fit->coefficients[0] * h;
+  fit->slope[0] = fit->coefficients[1];
+  fit->slope[1] = fit->coefficients[2];
+  for (int axis = 0; axis < 3; axis++)
+    fit->foot[axis] = t * frame[2][axis];
+  memcpy(fit->frame, frame, sizeof fit->frame);
   return CONIC_SURFACE_DONE;
 }

@@ -144,6 +144,19 @@ void conic_surface_gather(const conic_surface *surface, const double box[6], dou
   }
 }
 
+void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic_workspace *workspace) {
+  const conic_neighbours *tree = &surface->tree;
+  size_t end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
+  double box[6], margin = 0.0;
+  for (int i = 0; i < 6; i++)
+    box[i] = (double)tree->boxes[tree->n_leaves - 1 + i_leaf][i];
+  for (size_t slot = conic_neighbours_leaf_begin(tree, i_leaf); slot < end; slot++) {
+    double own = 2.0 * conic_surface_margin(surface, (double)surface->h[slot]);
+    margin = own > margin ? own : margin;
+  }
+  conic_surface_gather(surface, box, margin, workspace, &workspace->shared);
+}
+
 /* Where a candidate is, its scale and mass. */
 static inline void look_up(const conic_surface *surface, uint32_t source, double place[3], double *h, double *mass) {
   if (source & CONIC_CLUSTER_BIT) {
@@ -178,6 +191,26 @@ static void fetch_normals(const conic_surface *surface, conic_near *near) {
   }
 }
 
+/* Normals that are turned away by more than this (107°) are of the other side of something thin. */
+static const double LEAST_COSINE = -0.3;
+
+static void drop_backs(const conic_surface *surface, const float side[3], conic_near *near) {
+  size_t n = 0;
+  for (size_t i = 0; i < near->n; i++) {
+    uint32_t source = near->sources[i];
+    double along = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      along += (double)side[axis] * (double)surface->normal[axis][source];
+      near->offset[axis][n] = near->offset[axis][i];
+    }
+    near->mass[n] = near->mass[i];
+    near->inverse_h2[n] = near->inverse_h2[i];
+    near->sources[n] = source;
+    n += along < LEAST_COSINE ? 0 : 1;
+  }
+  near->n = n;
+}
+
 void conic_surface_select(const conic_surface *surface, const conic_candidates *candidates, const double r[3],
                           double margin, uint32_t except, conic_workspace *workspace) {
   conic_near *near = &workspace->near;
@@ -200,7 +233,9 @@ void conic_surface_select(const conic_surface *surface, const conic_candidates *
     n += (x * x + y * y) + z * z < reach * reach && source != except; /* never for a scale that is NaN */
   }
   near->n = n;
-  for (size_t i = 0; i < n; i++)
+  if (workspace->side)
+    drop_backs(surface, workspace->side, near);
+  for (size_t i = 0; i < near->n; i++)
     near->inverse_h2[i] = near->inverse_h2[i] > 0.0 ? 1.0 / (near->inverse_h2[i] * near->inverse_h2[i]) : 0.0;
   pad(near);
   if (surface->options.type == CONIC_SURFACE_APSS)

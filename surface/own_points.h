@@ -15,8 +15,10 @@ typedef struct conic_own_points {
   size_t n_evaluations;
 } conic_own_points;
 
-/* Errors: MEMORY, CANCELLED; *own is then empty. */
-conic_status conic_own_points_project(const conic_surface *surface, conic_own_points *own);
+/* Projects the slots of the first n_wanted points; the others' entries mean nothing. The progress of "project" goes
+ * from `begin` to `end`. Errors: MEMORY, CANCELLED; *own is then empty. */
+conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
+                                      conic_own_points *own);
 void conic_own_points_release(conic_context *context, conic_own_points *own);
 
 #endif

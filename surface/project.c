@@ -30,22 +30,22 @@ static void slope_normal(double frame[3][3], const double slope[2], double norma
 static conic_surface_outcome climb(const conic_surface *surface, double h, conic_workspace *workspace,
                                    double frame[3][3], double t, conic_landing *projection) {
   double sums[CONIC_N_MOMENTS], q[3];
-  conic_fit fit;
+  conic_fit *fit = &workspace->fit;
   for (int axis = 0; axis < 3; axis++)
     q[axis] = t * frame[2][axis];
   surface->kernels->moments(&workspace->near, &surface->weighing, q, sums);
   projection->n_neighbours = (int)sums[CONIC_MOMENT_COUNT];
   if (projection->n_neighbours < conic_n_coefficients(surface->options.degree))
     return CONIC_SURFACE_TOO_FEW;
-  conic_surface_outcome outcome = conic_surface_fit(surface, h, workspace, frame, t, &fit);
+  conic_surface_outcome outcome = conic_surface_fit(surface, h, workspace, frame, t, fit);
   if (outcome != CONIC_SURFACE_DONE)
     return outcome;
   for (int axis = 0; axis < 3; axis++) {
-    projection->offset[axis] = (t + fit.value) * frame[2][axis];
+    projection->offset[axis] = (t + fit->value) * frame[2][axis];
     projection->foot[axis] = q[axis];
     projection->plane_normal[axis] = frame[2][axis];
   }
-  slope_normal(frame, fit.slope, projection->normal);
+  slope_normal(frame, fit->slope, projection->normal);
   return CONIC_SURFACE_DONE;
 }
 

@@ -43,8 +43,7 @@ static conic_status check_options(conic_context *context, const conic_surface_op
   return CONIC_OK;
 }
 
-/* A point's unit normal: of its axes where it has some, else the given one; zero where that is none. */
-static void unit_normal(const conic_splats *points, size_t i, double normal[3]) {
+void conic_surface_unit_normal(const conic_splats *points, size_t i, double normal[3]) {
   double n[3];
   for (int axis = 0; axis < 3; axis++) {
     int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -73,7 +72,7 @@ static conic_status copy_points(conic_context *context, const conic_splats *from
   }
   for (size_t i = 0; i < from->count && (kept & CONIC_SPLATS_NORMALS); i++) {
     double normal[3];
-    unit_normal(from, i, normal);
+    conic_surface_unit_normal(from, i, normal);
     for (int axis = 0; axis < 3; axis++)
       to->normal[axis][i] = (float)normal[axis];
   }

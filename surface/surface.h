@@ -32,6 +32,9 @@ struct conic_surface {
   conic_surface_clusters clusters;
 };
 
+/* A point's unit normal: of its axes where it has some, else the given one; zero where that is none. */
+void conic_surface_unit_normal(const conic_splats *points, size_t i, double normal[3]);
+
 /* The samples about a box, in the tree's order, for the points in it to choose their neighbours from. */
 typedef struct conic_candidates {
   size_t n, capacity;
@@ -40,6 +43,17 @@ typedef struct conic_candidates {
 
 #define CONIC_CLUSTER_BIT UINT32_C(0x80000000)
 
+/* The polynomial over a plane, in coordinates about its origin q = r + t·n in units of h along the frame's first two
+ * rows: the height over q is h · Σ c_k · x^i y^j, k counting 1, x, y, x², xy, y², x³ … The factor of the samples'
+ * columns is what its error grows by (conic_fit_gain). */
+typedef struct conic_fit {
+  double value, slope[2];      /* at q */
+  double frame[3][3], foot[3]; /* q - r */
+  double coefficients[CONIC_MAX_COLUMNS];
+  int n_columns; /* without the heights, which come last */
+  double upper[CONIC_MAX_COLUMNS][CONIC_MAX_COLUMNS], norms2[CONIC_MAX_COLUMNS];
+} conic_fit;
+
 /* What one thread works in. */
 typedef struct conic_workspace {
   conic_context *context;
@@ -47,6 +61,8 @@ typedef struct conic_workspace {
   conic_candidates single; /* for one point */
   conic_near near;
   conic_near other_near; /* of a second point, while those of the first are still wanted */
+  conic_fit fit;         /* of the last point projected; valid where that was DONE by a polynomial */
+  const float *side;     /* where not null, samples whose normals point away from this are none */
   size_t n_evaluations;
   int is_trusting;      /* points found are not looked for again: for measures, not for results */
   int is_out_of_memory; /* set by whoever could not get some; what was asked for is then not there */
@@ -62,6 +78,9 @@ conic_status conic_workspaces_check(const conic_context *context, const conic_wo
  * `candidates` is one of the workspace's. */
 void conic_surface_gather(const conic_surface *surface, const double box[6], double margin, conic_workspace *workspace,
                           conic_candidates *candidates);
+
+/* The same for the points of a leaf of the tree, into the workspace's shared candidates. */
+void conic_surface_share_leaf(const conic_surface *surface, size_t i_leaf, conic_workspace *workspace);
 
 /* Makes those of the candidates that reach, plus the margin, to r the workspace's neighbours, without the slot
  * `except` (CONIC_NO_SLOT: none). */
@@ -105,13 +124,16 @@ conic_surface_outcome conic_surface_find_plane(const conic_surface *surface, dou
 conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, size_t n_least,
                                                 conic_workspace *workspace, double frame[3][3], double *height);
 
-/* The polynomial over a plane at its origin q = r + t·n: value and slopes. Uses the workspace's weights, which are
- * about q. TOO_FEW, ILL_CONDITIONED or DONE. */
-typedef struct conic_fit {
-  double value, slope[2];
-} conic_fit;
+/* Fits the polynomial over a plane at its origin q = r + t·n. Uses the workspace's weights, which are about q. TOO_FEW,
+ * ILL_CONDITIONED or DONE. */
 conic_surface_outcome conic_surface_fit(const conic_surface *surface, double h, conic_workspace *workspace,
                                         double frame[3][3], double t, conic_fit *fit);
+
+/* The coefficients of the best polynomial of a degree no higher than the one that was fitted. */
+void conic_fit_solve(conic_fit *fit, int degree);
+
+/* The variance of the polynomial's value at (x, y), in units of h, when every sample has a variance of 1 / weight. */
+double conic_fit_gain(const conic_fit *fit, int degree, double x, double y);
 
 /* The algebraic sphere's point for r. */
 conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, double h, double margin,

@@ -57,7 +57,10 @@ wanted["mls project"]="${wanted[make]} type plane weight h degree outcomes.done 
 wanted["mls thin"]="${wanted[make]} error hausdorff to_thinned.max from_thinned.max"
 wanted["mls densify"]=${wanted[make]}
 wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
+wanted["render of a mesh"]="${wanted[render]/methods.conic /} primitives.triangles triangles_in triangles_culled triangles_skipped
+  triangles_drawn triangle_fragments mtriangles_per_s"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
+wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"

@@ -30,6 +30,21 @@ for options in "--threads 1" "--isa scalar" "--isa sse2"; do
   cmp -s again.ply all.ply || fail "mls project $options: other bytes"
 done
 
+# One h for all: cell by cell, with the same bytes whatever memory there is.
+run 0 mls project torus.ply -o all-h.ply --h 0.06 --json all.json
+for options in "--memory 14" "--memory 100 --threads 1 --isa scalar"; do
+  # shellcheck disable=SC2086
+  run 0 mls project torus.ply -o again.ply --h 0.06 $options --json again.json
+  cmp -s again.ply all-h.ply || fail "mls project $options: other bytes"
+  [[ $(value points_out again.json) == "$(value points_out all.json)" ]] || fail "mls project $options: other counts"
+done
+run 4 mls project torus.ply -o x.ply --h 0.06 --memory 1
+run 2 mls project torus.ply -o x.ply --memory 100
+run 2 mls project torus.ply -o x.ply --h 2x --memory 100
+run 2 mls project - -o x.ply --h 0.06 --memory 100
+run 2 mls thin torus.ply -o x.ply --h 0.06 --memory 100 --count 10
+[[ ! -e x.ply && -z $(compgen -G '*.cells-*') ]] || fail "something was left of what failed"
+
 # Raw points get sides, meshes are sets of vertices, and pipes work.
 printf '%s %s %s\n' $(for ((i = 0; i < 400; i++)); do echo $((i % 20)) $((i / 20)) $((i * 37 % 5)).0e-1; done) > raw.xyz
 run 0 mls project raw.xyz -o raw.ply --degree 1

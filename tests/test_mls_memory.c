@@ -34,7 +34,7 @@ static conic_context *open_context(void) {
   return context;
 }
 
-static conic_status run(conic_context *context, const conic_splats *samples, double cluster) {
+static conic_status work_on(conic_context *context, const conic_splats *samples, double cluster) {
   conic_surface_options options;
   conic_thin_options thin;
   conic_densify_options densify;
@@ -64,18 +64,42 @@ static conic_status run(conic_context *context, const conic_splats *samples, dou
   return status;
 }
 
+static conic_status draw(conic_context *context, const conic_splats *splats) {
+  conic_patches *patches;
+  conic_patch_selection selection;
+  conic_render_options render;
+  conic_camera camera = {.width = 40, .height = 30, .fx = 300.0, .fy = 300.0, .cx = 20.0, .cy = 15.0};
+  conic_render_options_init(&render);
+  for (int i = 0; i < 3; i++)
+    camera.cam_from_world[i][i] = 1.0;
+  conic_status status = conic_patches_create(context, splats, NULL, &patches);
+  for (int i = 0; i < 3 && status == CONIC_OK; i++) {
+    camera.cam_from_world[2][3] = 5.0 - i; /* each picture takes more */
+    status = conic_patches_select(patches, &camera, &render, &selection);
+    CHECK(status != CONIC_OK || selection.n_patches > 0);
+  }
+  conic_patches_destroy(patches);
+  return status;
+}
+
+static conic_status run(conic_context *context, const conic_splats *samples, double cluster) {
+  return conic_splats_fields(samples) & CONIC_SPLATS_TANGENTS ? draw(context, samples)
+                                                              : work_on(context, samples, cluster);
+}
+
 int main(void) {
   conic_context *plain = check_context(1);
   conic_splats samples = shape_sample(plain, SHAPE_TORUS, 150, 0.1, 3);
+  conic_splats splats = shape_places(plain, SHAPE_TORUS, 400, 3);
   long n_failures = 0;
-  for (double cluster = 0.0; cluster < 0.4; cluster += 0.3) {
+  for (int what = 0; what < 3; what++) {
     for (long i = 1;; i++) {
       failing_call = 0;
       conic_context *context = open_context();
       long n_before = atomic_load(&n_alive);
       atomic_store(&n_calls, 0);
       failing_call = i;
-      conic_status status = run(context, &samples, cluster);
+      conic_status status = run(context, what < 2 ? &samples : &splats, what == 1 ? 0.3 : 0.0);
       CHECK(atomic_load(&n_alive) == n_before);
       long n_asked = atomic_load(&n_calls);
       conic_context_destroy(context);
@@ -91,6 +115,7 @@ int main(void) {
   printf("%ld clean failures\n", n_failures);
   CHECK(n_failures > 100);
   conic_splats_release(plain, &samples);
+  conic_splats_release(plain, &splats);
   conic_context_destroy(plain);
   return check_result();
 }

@@ -1,15 +1,16 @@
 /* The loops of building give the same on every instruction set, and what they leave out would change nothing. */
 #include "core/memory.h"
 #include "lod/octree_kernels.h"
-#include "tests/check.h"
-#include "tests/fixture.h"
+#include "tests/octree_fixture.h"
 
-enum { N_DISCS = 1000, ROOM = 1024, N_ARRAYS = 13, N_NODES = 300 };
+enum { N_DISCS = 1000, ROOM = 1024, N_ARRAYS = 13, N_NODES = 300, N_BLOCKS = ROOM / CONIC_DISC_BLOCK };
 
 typedef struct surface {
-  float numbers[N_ARRAYS][ROOM], block_numbers[6][ROOM / CONIC_DISC_BLOCK];
-  unsigned char taken[ROOM / CONIC_DISC_BLOCK];
+  float numbers[N_ARRAYS][ROOM], block_numbers[6][N_BLOCKS], list_numbers[12][N_BLOCKS];
+  uint32_t blocks[2][N_BLOCKS];
+  float flat[N_BLOCKS][CONIC_FLAT_NUMBERS][CONIC_DISC_BLOCK];
   conic_discs discs;
+  conic_near_discs near;
 } surface;
 
 /* A wavy sheet of discs about (-1 … 1)², row by row, with a hole in the middle. */
@@ -22,9 +23,15 @@ static void lay_sheet(surface *s) {
     discs->half[axis] = s->numbers[9 + axis];
     discs->block_center[axis] = s->block_numbers[axis];
     discs->block_half[axis] = s->block_numbers[3 + axis];
+    s->near.blocks.center[axis] = s->list_numbers[axis];
+    s->near.blocks.half[axis] = s->list_numbers[3 + axis];
+    s->near.of_node.center[axis] = s->list_numbers[6 + axis];
+    s->near.of_node.half[axis] = s->list_numbers[9 + axis];
   }
+  s->near.blocks.block = s->blocks[0];
+  s->near.of_node.block = s->blocks[1];
+  s->near.flat = s->flat;
   discs->error = s->numbers[12];
-  discs->taken = s->taken;
   discs->count = N_DISCS;
   for (size_t k = 0; k < N_DISCS; k++) {
     float x = (float)(k % 32) / 16.0f - 1.0f, y = (float)(k / 32) / 16.0f - 1.0f;
@@ -53,58 +60,135 @@ static conic_node_disc node_over(const conic_discs *discs, size_t begin, int i) 
   return node;
 }
 
+/* What is near a node, up to `reach` about its centre. */
+static void set_near(surface *s, const conic_node_disc *node, float reach) {
+  for (int axis = 0; axis < 3; axis++) {
+    s->near.center[axis] = node->center[axis];
+    s->near.half[axis] = reach;
+  }
+}
+
 static void test_cover(void) {
   static surface s;
   conic_disc_samples samples;
   conic_disc_samples_init(&samples);
   lay_sheet(&s);
-  conic_cover_function *chosen = conic_octree_kernels_choose().cover;
+  const conic_octree_kernels chosen = conic_octree_kernels_choose();
   int n_enough = 0, n_moved = 0;
   for (int i = 0; i < N_NODES; i++) {
     size_t begin = (size_t)(i * 37) % (N_DISCS - 8), end = begin + 2 + (size_t)(i % 6);
     conic_node_disc node = node_over(&s.discs, begin, i);
-    float error = conic_cover_baseline(&samples, &s.discs, begin, end, &node);
+    set_near(&s, &node, 3.0f); /* everything */
+    conic_find_near_baseline(&s.discs, &s.near);
+    CHECK(s.near.blocks.count == (N_DISCS + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK);
+    float error = conic_cover_baseline(&samples, &s.discs, begin, end, &s.near, &node);
     CHECK(error >= node.enough && error < HUGE_VALF);
-    CHECK(error == chosen(&samples, &s.discs, begin, end, &node));
+    CHECK(error == chosen.cover(&samples, &s.discs, begin, end, &s.near, &node));
     n_enough += error == node.enough;
-    /* Whatever of the discs is looked at first. */
-    n_moved += error != chosen(&samples, &s.discs, 0, N_DISCS, &node);
+    /* Whatever of the discs is looked at first, and however few are thought to be near. */
+    n_moved += error != chosen.cover(&samples, &s.discs, 0, N_DISCS, &s.near, &node);
+    set_near(&s, &node, 0.06f * (float)(i % 5));
+    chosen.find_near(&s.discs, &s.near);
+    n_moved += error != chosen.cover(&samples, &s.discs, begin, end, &s.near, &node);
   }
   CHECK(n_enough > N_NODES / 10 && n_enough < N_NODES);
   CHECK(n_moved == 0);
 }
 
-static void test_inside(void) {
+static const conic_node_frame tilted = {
+    .position = {0.01, 0.02, 0.0}, .u = {0.8, 0.6, 0.0}, .v = {-0.6, 0.8, 0.0}, .n = {0.0, 0.0, 1.0}, .ratio = 0.5};
+
+/* All at once and one by one, up to the set's last: what is left out would change nothing. */
+static void test_reach(void) {
   fixture f = fixture_open(1);
-  fixture_scene(&f, CONIC_SCENE_TERRAIN, 4000);
-  const conic_node_frame frame = {
-      .position = {0.01, 0.02, 0.0}, .u = {0.8, 0.6, 0.0}, .v = {-0.6, 0.8, 0.0}, .n = {0.0, 0.0, 1.0}, .ratio = 0.5};
-  conic_inside_function *chosen = conic_octree_kernels_choose().find_inside;
-  conic_leaf_reach all = {.cosine = 1.0}, half = {.cosine = 1.0};
-  conic_leaf_reach_add(&f.splats, 0, f.splats.count, 1.5, &frame, &all);
-  conic_leaf_reach_add(&f.splats, 0, f.splats.count / 2, 1.5, &frame, &half);
-  int n_inside = 0, n_wrong = 0;
-  for (size_t i = 0; i + CONIC_INSIDE_BATCH <= f.splats.count; i += CONIC_INSIDE_BATCH) {
-    unsigned bits = conic_find_inside_baseline(&f.splats, i, 1.5, &frame, &half);
-    CHECK(bits == chosen(&f.splats, i, 1.5, &frame, &half));
-    n_inside += __builtin_popcount(bits);
-    for (size_t k = 0; k < CONIC_INSIDE_BATCH; k++) {
-      conic_leaf_reach one = half;
-      conic_leaf_reach_add(&f.splats, i + k, i + k + 1, 1.5, &frame, &one);
-      n_wrong += (bits >> k & 1u) && memcmp(&one, &half, sizeof one) != 0;
-    }
+  fixture_scene(&f, CONIC_SCENE_TERRAIN, 4003);
+  conic_add_reach_function *chosen = conic_octree_kernels_choose().add_reach;
+  for (size_t n = 1; n <= f.splats.count; n += n < 40 ? 1 : 991) {
+    size_t begin = f.splats.count - n;
+    conic_leaf_reach all = {.cosine = 1.0}, again = all, slow = all;
+    conic_add_reach_baseline(&f.splats, begin, f.splats.count, 1.5, &tilted, &all);
+    chosen(&f.splats, begin, f.splats.count, 1.5, &tilted, &again);
+    for (size_t i = begin; i < f.splats.count; i++)
+      chosen(&f.splats, i, i + 1, 1.5, &tilted, &slow);
+    CHECK(memcmp(&all, &again, sizeof all) == 0);
+    CHECK(memcmp(&all, &slow, sizeof all) == 0);
+    CHECK(all.reach > 0.0 && all.radius > 0.0 && all.height > 0.0 && all.cosine < 1.0);
   }
-  CHECK(n_inside > 500 && n_inside < 4000);
-  CHECK(n_wrong == 0);
-  conic_leaf_reach slow = {.cosine = 1.0};
-  for (size_t i = 0; i < f.splats.count; i++)
-    conic_leaf_reach_add(&f.splats, i, i + 1, 1.5, &frame, &slow);
-  CHECK(memcmp(&slow, &all, sizeof slow) == 0);
+  fixture_close(&f);
+}
+
+/* The ratio chosen is one of those tried, and the instruction sets agree about it. */
+static void test_ratio(void) {
+  fixture f = fixture_open(1);
+  fixture_scene(&f, CONIC_SCENE_TERRAIN, 2000);
+  const conic_ellipse shape = {.major = {0.6, 0.8}, .ratio = 0.4};
+  conic_choose_ratio_function *chosen = conic_octree_kernels_choose().choose_ratio;
+  int n_changed = 0;
+  for (size_t begin = 0; begin + CONIC_FEW_LEAVES <= f.splats.count; begin += 7) {
+    size_t end = begin + 2 + begin % (CONIC_FEW_LEAVES - 1);
+    double ratio =
+        conic_choose_ratio_baseline(&f.splats, begin, end, 1.5, tilted.position, tilted.u, tilted.v, &shape, 0.1);
+    CHECK(ratio == chosen(&f.splats, begin, end, 1.5, tilted.position, tilted.u, tilted.v, &shape, 0.1));
+    CHECK(ratio >= 0.5 * 0.4 && ratio <= 1.5 * 0.4);
+    n_changed += ratio != shape.ratio;
+  }
+  CHECK(n_changed > 20);
+  fixture_close(&f);
+}
+
+/* Measured and taken apart, nodes are the same on every instruction set; what is put are the nodes' own numbers. */
+static void test_choosing(void) {
+  enum { N = 3000, N_PUT = 77 };
+  static float pixels[2][N + CONIC_OCTREE_GROUP];
+  static uint32_t ids[2][N_PUT], sources[N_PUT];
+  fixture f = fixture_open(1);
+  conic_splats put[2];
+  const conic_octree_kernels chosen = conic_octree_kernels_choose();
+  fixture_scene(&f, CONIC_SCENE_KNOT, N);
+  octree_frame(&f, 200, 10, 30, 3.0);
+  f.options.cull_back = 1;
+  conic_octree *octree = octree_build(f.context, &f.splats, 0);
+  CHECK_OK(conic_octree_decode_all(octree));
+  conic_octree_view view;
+  conic_octree_view_init(octree, &f.camera, &f.options, conic_octree_near(octree), &view);
+  conic_measure_baseline(octree, &view, 0, octree->n_nodes, pixels[0]);
+  chosen.measure(octree, &view, 0, octree->n_nodes, pixels[1]);
+  CHECK(memcmp(pixels[0], pixels[1], octree->n_nodes * sizeof(float)) == 0);
+  for (uint32_t k = 0; k < N_PUT; k++)
+    sources[k] = k % 3 ? k * 31 : CONIC_NODE_BIT | (k * 11);
+  for (int i = 0; i < 2; i++) {
+    unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES;
+    CHECK_OK(conic_splats_allocate(f.context, N_PUT + 5, fields, &put[i]));
+    (i ? chosen.put : conic_put_baseline)(octree, sources, N_PUT, view.eye, &put[i], ids[i], 0);
+  }
+  int n_turned = 0, n_other = 0;
+  for (size_t k = 0; k < N_PUT; k++) {
+    int is_node = sources[k] >> 31 != 0;
+    const conic_drawn_node *from = &(is_node ? octree->drawn : octree->drawn_leaves)[sources[k] & ~CONIC_NODE_BIT];
+    n_turned += put[0].tangent_v[0][k] != from->tangent_v[0];
+    n_other += ids[0][k] != from->id || ids[1][k] != from->id || put[0].opacity[k] != from->opacity;
+    for (int axis = 0; axis < 3; axis++) {
+      n_other += put[0].position[axis][k] != from->position[axis] || put[0].color[axis][k] != from->color[axis] ||
+                 put[0].tangent_u[axis][k] != from->tangent_u[axis] ||
+                 fabsf(put[0].tangent_v[axis][k]) != fabsf(from->tangent_v[axis]);
+      n_other += put[1].position[axis][k] != from->position[axis] || put[1].color[axis][k] != from->color[axis] ||
+                 put[1].tangent_u[axis][k] != from->tangent_u[axis] ||
+                 put[1].tangent_v[axis][k] != put[0].tangent_v[axis][k];
+    }
+    CHECK(is_node || put[0].tangent_v[0][k] == from->tangent_v[0]);
+  }
+  CHECK(n_other == 0);
+  CHECK(n_turned > 0 && n_turned < N_PUT / 3);
+  conic_splats_release(f.context, &put[0]);
+  conic_splats_release(f.context, &put[1]);
+  conic_octree_destroy(octree);
   fixture_close(&f);
 }
 
 int main(void) {
+  test_choosing();
   test_cover();
-  test_inside();
+  test_reach();
+  test_ratio();
   return check_result();
 }

@@ -3,7 +3,9 @@
  *
  * A hole is a pixel that shows nothing, or what lies far behind, in the middle of a surface: all pixels around it up to
  * the error and the pixel's own size show one surface in the picture of everything, also without the prefilter, which
- * closes gaps of up to three pixels in a scan, and more of them the smaller the splats are. */
+ * closes gaps of up to three pixels in a scan, and more of them the smaller the splats are. Where pixels side by side
+ * are farther apart than four pixels' sizes one sheet ends before another, and two borders may each move by the error:
+ * what opens between them is no hole in either. */
 #include "core/memory.h"
 #include "tests/octree_fixture.h"
 
@@ -42,22 +44,34 @@ static double distance(const picture *a, const picture *b) {
   return farthest;
 }
 
-/* Holes of `b` in what is one surface in `a` up to `reach` pixels around; a depth may lie `deep` behind. */
-static int count_holes(const picture *a, const picture *b, int reach, float deep) {
+/* Whether the picture is covered from -reach to reach around the pixel and nowhere steps by more than `step`; the range
+ * of its depths. */
+static int is_one_surface(const picture *p, int x, int y, int reach, float step, float *low, float *high) {
+  *low = HUGE_VALF;
+  *high = 0.0f;
+  for (int dy = -reach; dy <= reach; dy++)
+    for (int dx = -reach; dx <= reach; dx++) {
+      const float *z = &p->z[(y + dy) * SIZE + x + dx];
+      if (!is_covered(p, x + dx, y + dy) || (dx < reach && fabsf(z[1] - z[0]) > step) ||
+          (dy < reach && fabsf(z[SIZE] - z[0]) > step))
+        return 0;
+      *low = *z < *low ? *z : *low;
+      *high = *z > *high ? *z : *high;
+    }
+  return 1;
+}
+
+/* Holes of `b` in what is one surface in `a` up to `reach` pixels around; a depth may lie `deep` behind. Counts the
+ * pixels that were looked at, too. */
+static int count_holes(const picture *a, const picture *b, int reach, float deep, float step, int *n_seen) {
   int n = 0;
   for (int y = reach; y < SIZE - reach; y++)
     for (int x = reach; x < SIZE - reach; x++) {
-      float low = HUGE_VALF, high = 0.0f;
-      int is_whole = 1;
-      for (int dy = -reach; dy <= reach && is_whole; dy++)
-        for (int dx = -reach; dx <= reach; dx++) {
-          float z = a->z[(y + dy) * SIZE + x + dx];
-          is_whole &= is_covered(a, x + dx, y + dy);
-          low = z < low ? z : low;
-          high = z > high ? z : high;
-        }
-      if (is_whole && high - low < deep)
+      float low, high;
+      if (is_one_surface(a, x, y, reach, step, &low, &high) && high - low < deep) {
         n += !is_covered(b, x, y) || b->z[y * SIZE + x] > high + deep;
+        ++*n_seen;
+      }
     }
   return n;
 }
@@ -84,15 +98,13 @@ static void side_direction(int i, double *azimuth, double *elevation) {
 
 typedef struct tally {
   double apart_px, squares; /* the greatest distance of coverage, the sum of squared differences */
-  int n_holes;
+  int n_holes, n_seen;      /* of so many pixels inside of surfaces */
   size_t n_splats;
 } tally;
 
-/* At most `most_holes` over all sides and errors. */
-static void test_sides(fixture *f, const char *what, int most_holes) {
+static void test_sides(fixture *f, const char *what) {
   static picture whole, bare, chosen;
   tally tallies[N_ERRORS] = {{0}};
-  int n_holes = 0;
   conic_selection selection = {0};
   conic_octree *octree = octree_build(f->context, &f->splats, 0);
   f->options.near_z = conic_octree_near(octree);
@@ -114,16 +126,17 @@ static void test_sides(fixture *f, const char *what, int most_holes) {
       double pixel = (double)f->camera.cam_from_world[2][3] / f->camera.fx; /* in world units, at the middle */
       double apart = fmax(distance(&whole, &chosen), distance(&chosen, &whole));
       tallies[i].apart_px = fmax(tallies[i].apart_px, apart);
-      tallies[i].n_holes += count_holes(&bare, &chosen, reach, (float)(fabs(pixel) * (8.0 + 4.0 * errors_px[i])));
+      tallies[i].n_holes += count_holes(&bare, &chosen, reach, (float)(fabs(pixel) * (8.0 + 4.0 * errors_px[i])),
+                                        (float)(fabs(pixel) * 4.0), &tallies[i].n_seen);
       tallies[i].squares += squared_difference(&whole, &chosen) / N_SIDES;
       tallies[i].n_splats += selection.splats.count / N_SIDES;
     }
   }
   for (int i = 0; i < N_ERRORS; i++) {
-    fprintf(stderr, "%s, error %g px: %zu of %zu splats, coverage %.2f px apart, %.1f dB, %d holes\n", what,
+    fprintf(stderr, "%s, error %g px: %zu of %zu splats, coverage %.2f px apart, %.1f dB, %d holes in %d\n", what,
             errors_px[i], tallies[i].n_splats, f->splats.count, tallies[i].apart_px, -10.0 * log10(tallies[i].squares),
-            tallies[i].n_holes);
-    n_holes += tallies[i].n_holes;
+            tallies[i].n_holes, tallies[i].n_seen);
+    CHECK(tallies[i].n_holes == 0 && tallies[i].n_seen > 2000);
     /* Pixels are told by their centres: what moves by less than the error may so be a pixel's diagonal more. */
     CHECK(tallies[i].apart_px <= errors_px[i] + 1.4143);
     if (i > 0) {
@@ -131,7 +144,6 @@ static void test_sides(fixture *f, const char *what, int most_holes) {
       CHECK(tallies[i].apart_px <= tallies[i - 1].apart_px);
     }
   }
-  CHECK(n_holes <= most_holes);
   conic_selection_release(f->context, &selection);
   conic_octree_destroy(octree);
 }
@@ -212,7 +224,7 @@ static void test_share(fixture *f) {
     }
     fprintf(stderr, "lion, 512², 1 px, cull %d: %.1f %% of the splats drawn, %.2f dB\n", cull_back,
             100.0 * n_chosen / n_whole, -10.0 * log10(squares));
-    CHECK(n_chosen <= (cull_back ? 0.42 : 0.4) * n_whole);
+    CHECK(n_chosen <= (cull_back ? 0.415 : 0.38) * n_whole);
     CHECK(squares <= 1e-4);
   }
   f->options.cull_back = 0;
@@ -224,15 +236,14 @@ int main(int argc, char **argv) {
   const char *source_folder = argc > 1 ? argv[1] : ".";
   fixture f = fixture_open(0);
   fixture_scene(&f, CONIC_SCENE_KNOT, 150000);
-  test_sides(&f, "knot", 0);
+  test_sides(&f, "knot");
   test_zoom(&f, "knot");
   fixture_scene(&f, CONIC_SCENE_SPHERE, 100000);
-  test_sides(&f, "sphere", 0);
+  test_sides(&f, "sphere");
   if (octree_read_scan(&f, source_folder, "bunny.obj"))
-    test_sides(&f, "bunny", 0);
+    test_sides(&f, "bunny");
   if (octree_read_scan(&f, source_folder, "lion.ply")) {
-    test_sides(&f, "lion",
-               1); /* in a fold of its foliage, all of whose splats are seen from their edges; 130 pictures */
+    test_sides(&f, "lion");
     test_share(&f);
     test_zoom(&f, "lion");
   }

@@ -56,12 +56,27 @@ static void add_step(const conic_image *a, const conic_image *b, double most, ru
   r->flips = fmax(r->flips, (double)n_flips / n_covered);
 }
 
+/* Where not null, splats are drawn as patches: the samples of each frame. */
+static conic_patches *patches;
+
+static conic_image draw_frame(fixture *f) {
+  conic_patch_selection selection;
+  conic_splats own = f->splats;
+  if (!patches)
+    return stability_draw(f);
+  CHECK_OK(conic_patches_select(patches, &f->camera, &f->options, &selection));
+  f->splats = selection.splats;
+  conic_image image = stability_draw(f);
+  f->splats = own;
+  return image;
+}
+
 static run play(fixture *f, set_frame *set, int n_frames, double step, double most) {
   run r = {0};
   conic_image last = {0};
   for (int i = 0; i < n_frames; i++) {
     set(f, i * step);
-    conic_image image = stability_draw(f);
+    conic_image image = draw_frame(f);
     if (i)
       add_step(&last, &image, most, &r);
     conic_image_release(f->context, &last);
@@ -71,19 +86,24 @@ static run play(fixture *f, set_frame *set, int n_frames, double step, double mo
   return r;
 }
 
+static void check_frames(fixture *f, const char *name, const char *method, set_frame *set, int n_frames, double step,
+                         run most) {
+  run r = play(f, set, n_frames, step, most.surface);
+  printf("%-34s %-7s step %-8.3g surfaces change by %.4f, more so %.3f %% at edges, coverage %.3f %%\n", name, method,
+         step, r.surface, 100.0 * r.edges, 100.0 * r.flips);
+  CHECK(r.surface <= most.surface);
+  CHECK(r.edges <= most.edges);
+  CHECK(r.flips <= most.flips);
+  CHECK(r.surface > 0.0);
+}
+
 /* No frame may do more than `most` says, whatever the method. */
 static void check_run(fixture *f, const char *name, set_frame *set, int n_frames, double step, run most) {
   for (int method = 0; method < CONIC_N_METHODS; method++) {
     if (!stability_fills(method))
       continue;
     f->options.method = (conic_method)method;
-    run r = play(f, set, n_frames, step, most.surface);
-    printf("%-34s %-7s step %-8.3g surfaces change by %.4f, more so %.3f %% at edges, coverage %.3f %%\n", name,
-           conic_method_name((conic_method)method), step, r.surface, 100.0 * r.edges, 100.0 * r.flips);
-    CHECK(r.surface <= most.surface);
-    CHECK(r.edges <= most.edges);
-    CHECK(r.flips <= most.flips);
-    CHECK(r.surface > 0.0);
+    check_frames(f, name, conic_method_name((conic_method)method), set, n_frames, step, most);
   }
 }
 
@@ -164,11 +184,46 @@ static void test_hand_over(fixture *f) {
   check_run(f, "a zoom through the hand-over", sink, 81, 1e-3, (run){0.15, 0.001, 0.004});
 }
 
+/* Patches of a torus: panned, and moved towards while its points turn from splats into patches, grid by grid. */
+static void approach(fixture *f, double t) {
+  const double at = 5.2 * (1.0 - t), eye[3] = {0.3 * at, 0.5 * at, at}, forward[3] = {-0.3, -0.5, -1.0};
+  stability_look(f, eye, forward, 0.0);
+}
+
+static void test_patches(fixture *f) {
+  const double eye[3] = {1.2, 1.5, 2.0}, forward[3] = {-1.2, -1.5, -2.0};
+  double length;
+  options_of(f, 128, 96, 110.0);
+  fixture_scene(f, CONIC_SCENE_TORUS, 1500);
+  CHECK_OK(conic_splats_length(f->context, &f->splats, &length));
+  CHECK_OK(conic_patches_create(f->context, &f->splats, NULL, &patches));
+  f->options.method = CONIC_METHOD_CONIC;
+  f->options.epsilon = (double)f->options.kernel.cutoff * length;
+  stability_look(f, eye, forward, 0.0);
+  check_frames(f, "a torus, panned", "patch", pan, 17, 1.0 / 16, (run){0.07, 0.001, 0.005});
+  check_frames(f, "a torus, panned", "patch", pan, 17, 1.0 / 256, (run){0.04, 0.0005, 0.001});
+  conic_patch_selection selection;
+  size_t n_first, n_last;
+  approach(f, 0.0);
+  CHECK_OK(conic_patches_select(patches, &f->camera, &f->options, &selection));
+  n_first = selection.n_patches;
+  approach(f, 0.4);
+  CHECK_OK(conic_patches_select(patches, &f->camera, &f->options, &selection));
+  n_last = selection.n_patches;
+  printf("%-42s %zu, then %zu of 1500\n", "from splats to patches", n_first, n_last);
+  CHECK(n_first < 100 && n_last > n_first + 700);
+  check_frames(f, "from splats to patches", "patch", approach, 61, 5e-3, (run){0.11, 0.004, 0.03});
+  check_frames(f, "from splats to patches", "patch", approach, 121, 1e-3, (run){0.07, 0.004, 0.01});
+  conic_patches_destroy(patches);
+  patches = NULL;
+}
+
 int main(void) {
   fixture f = fixture_open(2);
   test_pans(&f);
   test_zooms(&f);
   test_hand_over(&f);
+  test_patches(&f);
   fixture_close(&f);
   return check_result();
 }

@@ -132,43 +132,6 @@ static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_PLANES + 1]) {
   hashes[CONIC_N_PLANES] = f->statistics.triangle_fragments * 1000003u + f->statistics.pixels_covered;
 }
 
-static conic_texture *make_texture(fixture *f) {
-  conic_image image;
-  conic_texture *texture;
-  CHECK_OK(conic_image_allocate(f->context, 37, 20, 1u << CONIC_PLANE_RGBA, &image));
-  float *rgba = image.planes[CONIC_PLANE_RGBA];
-  for (int i = 0; i < 37 * 20; i++)
-    for (int channel = 0; channel < 4; channel++)
-      rgba[4 * i + channel] = channel == 3 ? 1.0f : (float)((i * 7 + channel * 5) % 11) / 11.0f;
-  CHECK_OK(conic_texture_create(f->context, &image, CONIC_WRAP_REPEAT, &texture));
-  conic_image_release(f->context, &image);
-  return texture;
-}
-
-/* Triangles of all sizes around and behind the camera, with colours, normals and a texture. */
-static conic_triangles fill_wild(fixture *f, size_t count) {
-  conic_triangles t = triangles_make(f, count, 3 * count, 7);
-  uint64_t state = 3;
-  for (size_t i = 0; i < count; i++) {
-    double size = pow(10.0, -3.0 * fixture_random(&state)), center[3];
-    for (int axis = 0; axis < 3; axis++)
-      center[axis] = 4.0 * (fixture_random(&state) - 0.5) + (axis == 2 ? 1.5 : 0.0);
-    for (size_t k = 3 * i; k < 3 * i + 3; k++) {
-      for (int axis = 0; axis < 3; axis++) {
-        t.position[axis][k] = (float)(center[axis] + size * (fixture_random(&state) - 0.5));
-        t.color[axis][k] = (float)fixture_random(&state);
-        t.normal[axis][k] = (float)(fixture_random(&state) - 0.5);
-      }
-      for (int axis = 0; axis < 2; axis++)
-        t.texture_coordinate[axis][k] = (float)(8.0 * fixture_random(&state) - 4.0);
-    }
-    triangles_corner(&t, i, (uint32_t)(3 * i), (uint32_t)(3 * i + 1), (uint32_t)(3 * i + 2));
-  }
-  t.position[0][5] = NAN;
-  CHECK_OK(conic_triangles_texture(f->context, &t, make_texture(f)));
-  return t;
-}
-
 /* Threads, tiles and instruction sets change nothing; with splats and without, blended and not. */
 static void check_identity(void) {
   static const int thread_counts[] = {1, 3};
@@ -177,12 +140,12 @@ static void check_identity(void) {
     fixture f = fixture_open(thread_counts[i_threads]);
     for (int has_splats = 0; has_splats < 2; has_splats++) {
       if (has_splats)
-        fixture_scene(&f, CONIC_SCENE_TORUS, 3000);
+        triangles_torus_of_splats(&f, 3000);
       fixture_camera(&f, 211, 149, 120.0);
       f.camera.cam_from_world[2][3] = has_splats ? 3.0 : 0.0;
       f.options.near_z = 0.05;
       f.options.shading = CONIC_SHADE_PHONG;
-      conic_triangles t = fill_wild(&f, 2500);
+      conic_triangles t = triangles_wild(&f, 2500);
       for (int variant = 0; variant < 2 * CONIC_N_ISAS * 4; variant++) {
         int isa = variant / 2 % CONIC_N_ISAS, samples = variant / 2 / CONIC_N_ISAS == 3 ? 2 : 1;
         uint64_t hashes[CONIC_N_PLANES + 1], *of_first = expected[has_splats][variant % 2][samples - 1];
@@ -207,10 +170,10 @@ static void check_identity(void) {
 /* Every plane is defined on every pixel, whatever is in it. */
 static void check_defined(void) {
   fixture f = fixture_open(1);
-  fixture_scene(&f, CONIC_SCENE_TORUS, 2000);
+  triangles_torus_of_splats(&f, 2000);
   fixture_camera(&f, 120, 90, 80.0);
   f.camera.cam_from_world[2][3] = 3.0;
-  conic_triangles t = fill_wild(&f, 800);
+  conic_triangles t = triangles_wild(&f, 800);
   size_t n_triangles = 0, n_splats = 0;
   CHECK_OK(triangles_render(&f, &t, 1));
   for (int y = 0; y < 90; y++)
@@ -228,6 +191,56 @@ static void check_defined(void) {
     }
   printf("defined: %zu triangles, %zu splats\n", n_triangles, n_splats);
   CHECK(n_triangles > 500 && n_splats > 500);
+  conic_triangles_release(f.context, &t);
+  fixture_close(&f);
+}
+
+/* What is said of a pixel adds up to it. */
+static void check_explained(int passes) {
+  fixture f = fixture_open(1);
+  conic_contributions *c;
+  size_t n_hidden = 0, n_mixed = 0;
+  triangles_torus_of_splats(&f, 2000);
+  fixture_camera(&f, 120, 90, 80.0);
+  f.camera.cam_from_world[2][3] = 3.0;
+  f.options.passes = passes;
+  f.options.epsilon = 0.2;
+  conic_triangles t = triangles_wild(&f, 800);
+  const conic_drawing drawing = {&f.splats, &t};
+  CHECK_OK(triangles_render(&f, &t, 1));
+  CHECK_OK(conic_contributions_create_drawing(f.context, &drawing, &f.camera, &f.options, &c));
+  for (int y = 0; y < 90; y++)
+    for (int x = 0; x < 120; x++) {
+      const conic_contribution *splats;
+      const conic_triangle_contribution *triangles;
+      size_t n_splats, n_triangles;
+      float weight = 0.0f, nearest = 0.0f;
+      uint32_t count = 0, id = CONIC_NO_ID;
+      CHECK_OK(conic_contributions_at(c, x, y, &splats, &n_splats));
+      CHECK_OK(conic_contributions_triangles_at(c, x, y, &triangles, &n_triangles));
+      for (size_t i = 0; i < n_splats; i++)
+        if (splats[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
+          weight += splats[i].weight;
+          count++;
+          id = splats[i].inverse_depth > nearest ? splats[i].splat : id;
+          nearest = splats[i].inverse_depth > nearest ? splats[i].inverse_depth : nearest;
+        }
+      for (size_t i = 0; i < n_triangles; i++) {
+        n_hidden += triangles[i].verdict == CONIC_CONTRIBUTION_HIDDEN;
+        if (triangles[i].verdict != CONIC_CONTRIBUTION_VISIBLE)
+          continue;
+        n_mixed += count > 0;
+        weight += 1.0f;
+        count++;
+        id = triangles[i].inverse_depth > nearest ? 2000 + triangles[i].triangle : id;
+      }
+      CHECK(weight == *fixture_pixel(&f, CONIC_PLANE_WEIGHT, x, y));
+      CHECK(count == fixture_index(&f, CONIC_PLANE_COUNT, x, y));
+      CHECK(id == fixture_index(&f, CONIC_PLANE_ID, x, y));
+    }
+  printf("explained: %zu hidden triangles, %zu among splats\n", n_hidden, n_mixed);
+  CHECK(n_hidden > 50 && (n_mixed > 10 || passes == 1));
+  conic_contributions_destroy(c);
   conic_triangles_release(f.context, &t);
   fixture_close(&f);
 }
@@ -254,6 +267,8 @@ int main(void) {
   check_order();
   check_identity();
   check_defined();
+  check_explained(3);
+  check_explained(1);
   check_splats_alone();
   return check_result();
 }

@@ -65,4 +65,47 @@ static inline void triangles_camera(fixture *f, int i, int size) {
   CHECK_OK(conic_camera_frame(f->context, &framing, low, high, &f->camera));
 }
 
+static inline conic_texture *triangles_make_texture(fixture *f) {
+  conic_image image;
+  conic_texture *texture;
+  CHECK_OK(conic_image_allocate(f->context, 37, 20, 1u << CONIC_PLANE_RGBA, &image));
+  float *rgba = image.planes[CONIC_PLANE_RGBA];
+  for (int i = 0; i < 37 * 20; i++)
+    for (int channel = 0; channel < 4; channel++)
+      rgba[4 * i + channel] = channel == 3 ? 1.0f : (float)((i * 7 + channel * 5) % 11) / 11.0f;
+  CHECK_OK(conic_texture_create(f->context, &image, CONIC_WRAP_REPEAT, &texture));
+  conic_image_release(f->context, &image);
+  return texture;
+}
+
+/* Triangles of all sizes around and behind the camera, with colours, normals and a texture. */
+static inline conic_triangles triangles_wild(fixture *f, size_t count) {
+  conic_triangles t = triangles_make(f, count, 3 * count, 7);
+  uint64_t state = 3;
+  for (size_t i = 0; i < count; i++) {
+    double size = pow(10.0, -3.0 * fixture_random(&state)), center[3];
+    for (int axis = 0; axis < 3; axis++)
+      center[axis] = 4.0 * (fixture_random(&state) - 0.5) + (axis == 2 ? 1.5 : 0.0);
+    for (size_t k = 3 * i; k < 3 * i + 3; k++) {
+      for (int axis = 0; axis < 3; axis++) {
+        t.position[axis][k] = (float)(center[axis] + size * (fixture_random(&state) - 0.5));
+        t.color[axis][k] = (float)fixture_random(&state);
+        t.normal[axis][k] = (float)(fixture_random(&state) - 0.5);
+      }
+      for (int axis = 0; axis < 2; axis++)
+        t.texture_coordinate[axis][k] = (float)(8.0 * fixture_random(&state) - 4.0);
+    }
+    triangles_corner(&t, i, (uint32_t)(3 * i), (uint32_t)(3 * i + 1), (uint32_t)(3 * i + 2));
+  }
+  t.position[0][5] = NAN;
+  CHECK_OK(conic_triangles_texture(f->context, &t, triangles_make_texture(f)));
+  return t;
+}
+
+/* A torus of splats in the midst of the wild triangles. */
+static inline void triangles_torus_of_splats(fixture *f, size_t count) {
+  fixture_scene(f, CONIC_SCENE_TORUS, count);
+  f->splats.origin[2] = 1.5;
+}
+
 #endif

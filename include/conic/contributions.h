@@ -12,6 +12,7 @@
 #include "conic/image.h"
 #include "conic/render.h"
 #include "conic/splats.h"
+#include "conic/triangles.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,6 +67,15 @@ typedef struct conic_contribution {
   float hides;                              /* s·min(iz, iz_plane): what lies below is hidden */
 } conic_contribution;
 
+/* A triangle that covers a pixel. */
+typedef struct conic_triangle_contribution {
+  uint32_t triangle;
+  conic_contribution_verdict verdict; /* visible, or hidden: behind another triangle, or behind splats */
+  float depth, inverse_depth;
+  float hides; /* iz / (1 + ε·iz/|d|): splats below that are hidden, if the triangle is the nearest */
+  float color[3], normal[3];
+} conic_triangle_contribution;
+
 /* A frame's splats, projected. One thread at a time. */
 typedef struct conic_contributions conic_contributions;
 
@@ -75,6 +85,11 @@ typedef struct conic_contributions conic_contributions;
 CONIC_API conic_status conic_contributions_create(conic_context *context, const conic_splats *splats,
                                                   const conic_camera *camera, const conic_render_options *options,
                                                   conic_contributions **contributions);
+/* The same of splats and triangles: what a triangle hides is hidden. Errors also: INPUT (conic_triangles_check). */
+CONIC_API conic_status conic_contributions_create_drawing(conic_context *context, const conic_drawing *drawing,
+                                                          const conic_camera *camera,
+                                                          const conic_render_options *options,
+                                                          conic_contributions **contributions);
 /* Null is allowed. */
 CONIC_API void conic_contributions_destroy(conic_contributions *contributions);
 
@@ -86,6 +101,11 @@ CONIC_API conic_status conic_contributions_project(const conic_contributions *co
  * Errors: ARGUMENT (outside the picture), MEMORY. */
 CONIC_API conic_status conic_contributions_at(conic_contributions *contributions, int x, int y,
                                               const conic_contribution **list, size_t *n);
+
+/* Every triangle that covers the pixel, in the order of the set, likewise; the pixel's splats stay as they were listed.
+ */
+CONIC_API conic_status conic_contributions_triangles_at(conic_contributions *contributions, int x, int y,
+                                                        const conic_triangle_contribution **list, size_t *n);
 
 /* Writes the visible splats of every pixel, in the order of the set, as a deep scanline EXR: channels Z (the depth), id
  * (UINT) and weight. `header` gives the attributes; its planes are not looked at; may be null. The file appears under

@@ -52,6 +52,17 @@ CONIC_API void conic_read_options_init(conic_read_options *options);
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
+/* Takes a batch of a file's points, which is valid during the call only. An answer other than CONIC_OK ends the reading
+ * with it. */
+typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batch);
+
+/* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
+ * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ,
+ * and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All batches have the
+ * same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
+CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
+                                          conic_batch_receiver *receive, void *cookie);
+
 CONIC_API void conic_model_release(conic_context *context, conic_model *model);
 
 /* Points that could not be used as they stood, by reason. */

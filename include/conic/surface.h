@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "conic/model.h"
 #include "conic/render.h"
 #include "conic/splats.h"
 
@@ -116,6 +117,36 @@ typedef struct conic_surface_report {
  * CANCELLED; *projected is then empty. */
 CONIC_API conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected,
                                            conic_surface_report *report);
+
+/* Where the points of a large set come from, over and over in the same order: hands all of them to `receive`, batch by
+ * batch, with the same optional arrays and origin each time. */
+typedef conic_status conic_points_source(void *cookie, conic_batch_receiver *receive, void *to);
+
+/* Where those that are DONE go: `begin` first, told how many there will be and what arrays they have, then they, in
+ * their old order and in batches. */
+typedef struct conic_points_sink {
+  conic_status (*begin)(void *cookie, const conic_surface_report *report, unsigned fields);
+  conic_batch_receiver *receive;
+  void *cookie;
+} conic_points_sink;
+
+typedef struct conic_clean_options {
+  size_t size;                   /* sizeof(conic_clean_options), set by the init function */
+  conic_surface_options surface; /* with h, and without clusters */
+  size_t memory_bytes;           /* what may be taken at a time; 0: whatever it takes */
+  const char *scratch;           /* beside this path what does not fit is put, in files without a name; null: nowhere */
+} conic_clean_options;
+
+/* The surface's defaults, for which h is still to be set. */
+CONIC_API void conic_clean_options_init(conic_clean_options *options);
+
+/* conic_surface_clean for sets of any size: cell by cell of a lattice with sides of 64 h, each with what lies within
+ * (neglect + 1.5) h about it. The memory that there is changes no bit. Normals of algebraic spheres must come with the
+ * points. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED, MEMORY (a cell that does not fit), IO, CANCELLED, the
+ * source's and the sink's. */
+CONIC_API conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
+                                                 conic_points_source *source, void *source_cookie,
+                                                 const conic_points_sink *sink, conic_surface_report *report);
 
 typedef struct conic_thin_options {
   size_t size;      /* sizeof(conic_thin_options), set by the init function */

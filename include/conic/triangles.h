@@ -79,8 +79,9 @@ CONIC_API conic_status conic_triangles_check(conic_context *context, const conic
                                              const char *name);
 
 /* Makes triangles of a model that was read with keeps_faces: the arrays move, and the model keeps nothing but what it
- * was besides (its points become an empty set). Material files are read from the model's folder; a texture that cannot
- * be had is a warning, and left out. Errors: INPUT (the model has no faces), MEMORY. */
+ * was besides (its points become an empty set). Material files are read from the model's folder; one that is not there
+ * is a warning, as is a texture. Errors: INPUT (the model has no faces; a file is spoiled), UNSUPPORTED (a picture that
+ * this build cannot read), MEMORY. */
 CONIC_API conic_status conic_triangles_take(conic_context *context, conic_model *model, conic_triangles *triangles);
 
 /* conic_model_read with keeps_faces, and conic_triangles_take. Errors: as both. */

@@ -1,0 +1,180 @@
+/* conic layer: samples in, of any number; a layered point cloud out. */
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/json.h"
+#include "conic/layers.h"
+
+typedef struct layer_job {
+  cli_session *session;
+  const char *const *inputs;
+  int n_inputs;
+  const char *output;
+  conic_layers_options options;
+  conic_estimate_options estimate;
+  int cloud_size;
+  double memory_mib, cutoff;
+  cli_length quantum;
+
+  conic_layers_builder *builder;
+  conic_layers_statistics statistics;
+  const char *input; /* that is being read */
+  int has_begun, is_raw;
+  conic_repairs repairs;
+} layer_job;
+
+/* Points that have not got a normal each need their neighbours, and so to be read whole. */
+static conic_status take_batch(void *cookie, const conic_splats *batch) {
+  layer_job *job = cookie;
+  job->is_raw = !job->has_begun && !batch->tangent_u[0] && !batch->normal[0];
+  job->has_begun = 1;
+  return job->is_raw ? CONIC_ERROR_CANCELLED : conic_layers_builder_append(job->builder, batch);
+}
+
+static conic_status read_raw(layer_job *job, const conic_read_options *options) {
+  conic_context *context = job->session->context;
+  conic_repairs repairs;
+  conic_model model;
+  conic_status status = conic_model_read(context, job->input, options, &model);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_append(job->builder, &model.points);
+  conic_model_release(context, &model);
+  return status;
+}
+
+static conic_status read_inputs(layer_job *job) {
+  conic_status status = CONIC_OK;
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.cutoff = job->options.cutoff;
+  for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
+    job->input = job->inputs[i];
+    job->has_begun = job->is_raw = 0;
+    status = conic_model_stream(job->session->context, job->input, &options, take_batch, job);
+    if (job->is_raw)
+      status = read_raw(job, &options);
+  }
+  return status;
+}
+
+static int write_statistics(layer_job *job, double total_seconds) {
+  int exit_code = CLI_DONE;
+  const conic_layers_statistics *s = &job->statistics;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_count(json, "points_in", s->n_in);
+  cli_json_count(json, "points_out", s->n_samples);
+  cli_json_count(json, "clouds", s->n_clouds);
+  cli_json_count(json, "levels", (uint64_t)s->n_levels);
+  cli_json_count(json, "bytes", s->n_bytes);
+  cli_json_number(json, "bits_per_sample", 8.0 * (double)s->n_bytes / (double)s->n_samples);
+  cli_json_number(json, "spacing", s->spacing);
+  cli_json_number(json, "quantum", s->quantum);
+  cli_json_object(json, "seconds");
+  cli_json_number(json, "read", s->read_seconds);
+  cli_json_number(json, "work", s->work_seconds);
+  cli_json_number(json, "write", s->write_seconds);
+  cli_json_number(json, "total", total_seconds);
+  cli_json_close(json);
+  cli_json_number(json, "points_per_s", (double)s->n_in / total_seconds);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  job->repairs.nan = (size_t)s->n_nan;
+  job->repairs.zero = (size_t)s->n_zero;
+  cli_json_skipped(json, &job->repairs);
+  return cli_json_finish(file);
+}
+
+static int run_job(layer_job *job) {
+  double start = cli_seconds();
+  int exit_code = cli_session_open(job->session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = conic_layers_builder_open(job->session->context, job->output, &job->options, &job->builder);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
+  status = read_inputs(job);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_finish(job->builder, &job->statistics);
+  else
+    conic_layers_builder_abandon(job->builder);
+  return status == CONIC_OK ? write_statistics(job, cli_seconds() - start) : cli_exit_of(status);
+}
+
+static int check_arguments(layer_job *job) {
+  if (job->n_inputs == 0)
+    return cli_usage("layer: no input given; see conic help layer");
+  if (!job->output)
+    return cli_usage("layer: no output given (-o OUT.lpc)");
+  if (!(job->quantum.value > 0.0))
+    return cli_usage("layer: --quantum must be above 0");
+  job->options.cloud_size = (uint32_t)job->cloud_size;
+  job->options.memory_bytes = (uint64_t)(job->memory_mib * 1048576.0);
+  job->options.quantum = job->quantum.value;
+  job->options.quantum_in_spacings = job->quantum.is_in_spacings;
+  job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
+  return cli_check_outputs(job->session, &job->output, 1);
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  layer_job job = {.session = session, .cloud_size = 2048, .memory_mib = 1024.0, .cutoff = 1.5, .quantum = {0.5, 1}};
+  const char *positional[argc];
+  conic_estimate_options_init(&job.estimate);
+  conic_layers_options_init(&job.options);
+  const cli_option options[] = {
+      {.name = "o", .type = CLI_TEXT, .value = &job.output, .argument = "OUT.lpc", .help = "the file to write"},
+      {.name = "cloud-size",
+       .type = CLI_INT,
+       .value = &job.cloud_size,
+       .argument = "M",
+       .help = "samples that a cloud has about, 64 to 32768 [2048]",
+       .minimum = 64,
+       .maximum = 32768},
+      {.name = "memory",
+       .type = CLI_NUMBER,
+       .value = &job.memory_mib,
+       .argument = "MIB",
+       .help = "what building may take; what does not fit goes to files beside the output [1024]",
+       .minimum = 64,
+       .maximum = 1e9},
+      {.name = "quantum",
+       .type = CLI_PARSED,
+       .value = &job.quantum,
+       .parse = cli_parse_length,
+       .argument = "Q",
+       .help = "steps that positions are rounded to, world units or, with x, sampling distances [0.5x]"},
+      {.name = "cutoff",
+       .type = CLI_NUMBER,
+       .value = &job.cutoff,
+       .argument = "F",
+       .help = "standard deviations at which a splat ends; that of the pictures [1.5]",
+       .minimum = 0.25,
+       .maximum = 5},
+      {.name = "k",
+       .type = CLI_INT,
+       .value = &job.estimate.n_neighbours,
+       .argument = "K",
+       .help = "neighbours that raw points' normals are estimated from, 6 to 64 [20]",
+       .minimum = 6,
+       .maximum = 64},
+  };
+  int exit_code =
+      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
+  if (exit_code != CLI_DONE)
+    return exit_code < 0 ? CLI_DONE : exit_code;
+  job.inputs = positional;
+  exit_code = check_arguments(&job);
+  return exit_code == CLI_DONE ? run_job(&job) : exit_code;
+}
+
+const cli_command cli_layer = {
+    .name = "layer",
+    .summary = "builds a layered point cloud: samples of any number, for pictures in bounded memory",
+    .usage = "conic layer IN… -o OUT.lpc [--cloud-size M] [--memory MIB] [--quantum Q]",
+    .run = run,
+};

@@ -1,0 +1,91 @@
+/* Layered point clouds: samples of any number in a file (.lpc) that is built once in bounded memory, and of which a
+ * picture needs only the clouds that it can show (docs/layers.md, docs/format-lpc.md). */
+#ifndef CONIC_LAYERS_H
+#define CONIC_LAYERS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+#include "conic/splats.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_layers_options {
+  size_t size;           /* sizeof(conic_layers_options), set by the init function */
+  uint32_t cloud_size;   /* M: samples that most clouds have about, 64 to 32768 */
+  uint64_t memory_bytes; /* what building may take, temporary files aside; the file does not depend on it */
+  double quantum;        /* step of the positions; a length, or with the next flag in sampling distances */
+  int quantum_in_spacings;
+  float cutoff; /* F_g of the kernel that will draw */
+} conic_layers_options;
+
+CONIC_API void conic_layers_options_init(conic_layers_options *options);
+
+/* A file that is being built. */
+typedef struct conic_layers_builder conic_layers_builder;
+
+typedef struct conic_layers_statistics {
+  uint64_t n_in, n_samples;   /* samples handed in, and kept */
+  uint64_t n_nan;             /* of the others: positions that are not finite */
+  uint64_t n_zero;            /* kept, with a normal or size from the neighbours, for they had none */
+  uint64_t n_clouds, n_bytes; /* of the file */
+  int n_levels;
+  double spacing, quantum; /* the sampling distance, and the step of the positions */
+  double read_seconds, work_seconds, write_seconds;
+} conic_layers_statistics;
+
+/* Starts to build PATH, which appears under its name only when it is whole. Temporary files have no name, lie in the
+ * folder of PATH and take up to 50 bytes a sample. On success the caller owns *builder and ends it with finish or
+ * abandon. Null `options` are the defaults. Errors: ARGUMENT, MEMORY, IO, UNSUPPORTED (built without zstd). */
+CONIC_API conic_status conic_layers_builder_open(conic_context *context, const char *path,
+                                                 const conic_layers_options *options, conic_layers_builder **builder);
+/* Hands over a batch, of any size; it is copied. All batches have colours or none has. A sample is a position, a normal
+ * (the batch's, or t_u × t_v) and a size, the outline's, of which those without axes get one from their neighbours.
+ * Opacities and clip lines are not kept. Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
+CONIC_API conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch);
+/* Builds and writes the file, and releases the builder, on failure too. The file depends on the samples in their order
+ * and on cloud_size and quantum alone: not on threads or memory. `statistics` may be null. Errors: INPUT (nothing to
+ * draw), MEMORY, IO, CANCELLED. */
+CONIC_API conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_layers_statistics *statistics);
+/* Drops all of it; null is allowed. */
+CONIC_API void conic_layers_builder_abandon(conic_layers_builder *builder);
+
+/* Whether a file that can be read begins like a .lpc. */
+CONIC_API int conic_layers_is_file(const char *path);
+
+typedef struct conic_layers_info {
+  uint64_t n_samples, n_clouds, n_bytes;
+  int n_levels;
+  uint32_t cloud_size, most_samples; /* asked for, and of the largest cloud */
+  int has_colors, is_unoriented;
+  double minimum[3], maximum[3]; /* of the finite centres that it was built from */
+  double spacing, quantum;       /* the sampling distance, and the step of the positions */
+  double position_error;         /* no sample was moved farther */
+  double splat_radius;           /* median outline of the samples at full resolution */
+  double near_z;                 /* as conic_default_near of what it was built from */
+  /* Bits a sample. */
+  double bits_position, bits_normal, bits_color, bits_index;
+} conic_layers_info;
+
+/* Reads and checks header and index. Errors: INPUT, MEMORY. */
+CONIC_API conic_status conic_layers_describe(conic_context *context, const char *path, conic_layers_info *info);
+
+/* What of a file is not as it must be: how many clouds are not within their bounds. */
+typedef struct conic_layers_defects {
+  uint64_t clouds;   /* bytes that are not those that were written, or no cloud */
+  uint64_t coverage; /* a sample of its place is farther from those drawn than its covering radius */
+  uint64_t spheres;  /* a sample reaches out of the sphere */
+  uint64_t cones;    /* a normal is outside the cone */
+} conic_layers_defects;
+
+/* Decodes every cloud and looks at every sample of every node. Errors: INPUT (header or index are damaged), MEMORY,
+ * UNSUPPORTED, CANCELLED. */
+CONIC_API conic_status conic_layers_check(conic_context *context, const char *path, conic_layers_defects *defects);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

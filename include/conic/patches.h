@@ -1,0 +1,79 @@
+/* Point-set surfaces, drawn: a polynomial a point, and the samples of it that a picture needs.
+ *
+ * Every point of a set gets the polynomial that moving least squares fits about it, over a disc of its plane. For a
+ * picture, those in sight are sampled on grids as fine as the screen asks for; the samples are splats like any others,
+ * weighed so that neighbouring polynomials blend into one smooth surface (docs/surfaces.md). What a selection holds
+ * depends on the set, the options, the camera and nothing else: neither threads nor instruction sets nor the frames
+ * before. */
+#ifndef CONIC_PATCHES_H
+#define CONIC_PATCHES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+#include "conic/surface.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_patches_options {
+  size_t size;                   /* sizeof(conic_patches_options), set by the init function */
+  conic_surface_options surface; /* of type MLS */
+  float cutoff;                  /* F_g of the kernel that will draw; 0.25 to 5 */
+  double step_px; /* samples of a patch facing the camera are no farther apart on the screen; 0.25 to 16 */
+} conic_patches_options;
+
+/* The surface's defaults, cutoff 1.5, steps of 2 px. */
+CONIC_API void conic_patches_options_init(conic_patches_options *options);
+
+typedef struct conic_patches conic_patches;
+
+/* What came of a set's points. */
+typedef struct conic_patches_report {
+  size_t n_points;
+  size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points' projections */
+  size_t n_patches;                          /* points with a patch: DONE, and the polynomial is sound all over it */
+  size_t n_bytes;                            /* what the patches and their hierarchy take */
+} conic_patches_report;
+
+/* Lays a patch about every point of `splats` (with tangent axes) that has one. The set must outlive the patches, which
+ * draw its splats where there is no patch or none is needed; splats with clip lines stay splats. `options` may be null
+ * for the defaults. On success the caller owns *patches. Errors: ARGUMENT, INPUT (no finite point), UNSUPPORTED (the
+ * instruction set), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_patches_create(conic_context *context, const conic_splats *splats,
+                                            const conic_patches_options *options, conic_patches **patches);
+CONIC_API void conic_patches_destroy(conic_patches *patches);
+
+CONIC_API void conic_patches_describe(const conic_patches *patches, conic_patches_report *report);
+
+/* A picture's splats, in the order of the points. Its memory is the patches' own, and its contents stay until the next
+ * picture is selected. */
+typedef struct conic_patch_selection {
+  conic_splats splats;
+  const uint32_t *points; /* of every splat: the point that it stands for */
+  size_t n_patches;       /* patches that were sampled */
+  size_t n_samples;       /* and into how many splats */
+  size_t n_splats;        /* points that are drawn as their own splats */
+  size_t n_culled;        /* points out of sight */
+  size_t n_kept;          /* of the samples: taken over from the last picture */
+} conic_patch_selection;
+
+/* Chooses and samples what a camera sees: of `render`, the near distance, prefilter and culling count. A point whose
+ * patch would take few pixels is its own splat. Grids that the last picture had
+ * are not made again. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera,
+                                            const conic_render_options *render, conic_patch_selection *selection);
+
+/* Replaces the numbers of an image's id plane, indices in the selection, by those of the points. */
+CONIC_API void conic_patch_selection_name(const conic_patch_selection *selection, conic_image *image);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,113 @@
+#include "surface/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+enum { FIRST_ROOM = 256 };
+
+conic_status conic_cells_begin(conic_context *context, double side, conic_cells *cells) {
+  memset(cells, 0, sizeof *cells);
+  cells->context = context;
+  cells->side = side;
+  cells->room = FIRST_ROOM;
+  cells->table_size = 4 * FIRST_ROOM;
+  cells->cells = conic_memory_allocate(context, cells->room, sizeof *cells->cells);
+  cells->table = conic_memory_allocate_zeroed(context, cells->table_size, sizeof *cells->table);
+  return cells->cells && cells->table ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+void conic_cells_end(conic_cells *cells) {
+  if (!cells->context)
+    return;
+  conic_memory_release(cells->context, cells->cells);
+  conic_memory_release(cells->context, cells->table);
+  memset(cells, 0, sizeof *cells);
+}
+
+int conic_cells_locate(const conic_cells *cells, const float place[3], int32_t at[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    double number = floor((double)place[axis] / cells->side);
+    if (!(fabs(number) < 0x1p30))
+      return 0;
+    at[axis] = (int32_t)number;
+  }
+  return 1;
+}
+
+/* Where the table has the cell, or its first free place for it. */
+static size_t look_up(const conic_cells *cells, const int32_t at[3]) {
+  uint64_t hash = (uint32_t)at[0];
+  for (int axis = 1; axis < 3; axis++)
+    hash = (hash ^ (hash >> 29)) * UINT64_C(0xbf58476d1ce4e5b9) + (uint32_t)at[axis];
+  hash = (hash ^ (hash >> 32)) * UINT64_C(0x94d049bb133111eb);
+  size_t i = (size_t)(hash >> 20) & (cells->table_size - 1);
+  while (cells->table[i] && memcmp(cells->cells[cells->table[i] - 1].at, at, 3 * sizeof at[0]) != 0)
+    i = (i + 1) & (cells->table_size - 1);
+  return i;
+}
+
+conic_cell *conic_cells_find(const conic_cells *cells, const int32_t at[3]) {
+  uint32_t entry = cells->table[look_up(cells, at)];
+  return entry ? &cells->cells[entry - 1] : NULL;
+}
+
+static void fill_table(conic_cells *cells) {
+  memset(cells->table, 0, cells->table_size * sizeof *cells->table);
+  for (size_t i = 0; i < cells->n; i++)
+    cells->table[look_up(cells, cells->cells[i].at)] = (uint32_t)(i + 1);
+}
+
+static conic_status grow(conic_cells *cells) {
+  uint32_t *table = conic_memory_allocate(cells->context, 2 * cells->table_size, sizeof *table);
+  conic_status status =
+      table ? conic_memory_grow(cells->context, (void **)&cells->cells, cells->n, 2 * cells->room, sizeof *cells->cells)
+            : CONIC_ERROR_MEMORY;
+  if (status != CONIC_OK) {
+    conic_memory_release(cells->context, table);
+    return status;
+  }
+  conic_memory_release(cells->context, cells->table);
+  cells->table = table;
+  cells->table_size *= 2;
+  cells->room *= 2;
+  fill_table(cells);
+  return CONIC_OK;
+}
+
+conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]) {
+  conic_cell *cell = conic_cells_find(cells, at);
+  if (!cell) {
+    if (cells->n == cells->room) {
+      conic_status status = grow(cells);
+      if (status != CONIC_OK)
+        return status;
+    }
+    cell = &cells->cells[cells->n++];
+    memset(cell, 0, sizeof *cell);
+    memcpy(cell->at, at, sizeof cell->at);
+    cells->table[look_up(cells, at)] = (uint32_t)cells->n;
+  }
+  cell->count++;
+  return CONIC_OK;
+}
+
+static int compare_cells(const void *a, const void *b) {
+  const conic_cell *first = a, *second = b;
+  for (int axis = 0; axis < 3; axis++)
+    if (first->at[axis] != second->at[axis])
+      return first->at[axis] < second->at[axis] ? -1 : 1;
+  return 0;
+}
+
+void conic_cells_sort(conic_cells *cells) {
+  uint64_t start = 0;
+  qsort(cells->cells, cells->n, sizeof *cells->cells, compare_cells);
+  for (size_t i = 0; i < cells->n; i++) {
+    cells->cells[i].start = start;
+    start += cells->cells[i].count;
+  }
+  fill_table(cells);
+}

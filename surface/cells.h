@@ -1,0 +1,42 @@
+/* The cells of a lattice that hold something, and how much. */
+#ifndef SURFACE_CELLS_H
+#define SURFACE_CELLS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+typedef struct conic_cell {
+  int32_t at[3];
+  uint64_t count;  /* points in it */
+  uint64_t start;  /* of its points among all, cell by cell */
+  uint64_t filled; /* of them so far */
+} conic_cell;
+
+typedef struct conic_cells {
+  conic_context *context;
+  double side;
+  conic_cell *cells; /* in the order of x, y, z once they are sorted */
+  size_t n, room;
+  uint32_t *table; /* a hash table: 1 + number of a cell, 0 where there is none */
+  size_t table_size;
+} conic_cells;
+
+/* Errors: MEMORY. */
+conic_status conic_cells_begin(conic_context *context, double side, conic_cells *cells);
+void conic_cells_end(conic_cells *cells);
+
+/* The cell of a place; 0 where that is not finite, or its number does not fit. */
+int conic_cells_locate(const conic_cells *cells, const float place[3], int32_t at[3]);
+
+/* The cell there; null: none. */
+conic_cell *conic_cells_find(const conic_cells *cells, const int32_t at[3]);
+
+/* Counts a point. Errors: MEMORY. */
+conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]);
+
+/* Orders them, and gives each its place among all points. */
+void conic_cells_sort(conic_cells *cells);
+
+#endif

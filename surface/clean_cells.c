@@ -1,0 +1,416 @@
+/* Projecting sets larger than memory: points are put in order of the cells of a lattice, each cell is projected as a
+ * set of its own together with what reaches into it, and the results are put back into the points' old order. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "surface/cells.h"
+#include "surface/own_points.h"
+#include "surface/store.h"
+
+/* A side in h: what lies about a cell and is looked at with it then is little beside it. */
+static const double CELL_SIDE = 64.0;
+
+/* Feet are looked for within half of h, and found again from the point, which hardly ever is farther off than h. */
+static const double HALO = 1.5;
+
+/* What a point of a cell takes while that is projected, and what everything else takes. */
+enum { BYTES_A_POINT = 192, OTHER_BYTES = 12 << 20 };
+
+/* Records that are handled at a time. */
+enum { BATCH = 1 << 16, PAGE = 4096 };
+
+typedef struct record {
+  float position[3], normal[3], color[3];
+  uint32_t unused;
+  uint64_t index; /* in the set */
+} record;
+
+typedef struct result {
+  float position[3], normal[3], color[3];
+  uint32_t outcome;
+} result;
+
+typedef struct cleaning {
+  conic_context *context;
+  const conic_clean_options *options;
+  conic_cells cells;
+  conic_store records, results; /* by cell; by index */
+  uint64_t n_points, n_finite, n_placed;
+  double origin[3];
+  unsigned fields; /* of the points: normals (also those of axes) and colours */
+  record *page;    /* BATCH of them */
+  uint64_t *keys;  /* likewise: cell and number in a batch */
+  conic_splats subset;
+  size_t subset_room;
+  double moved2_sum, moved2_most, neighbours;
+  conic_surface_report report;
+} cleaning;
+
+/* --- the points, put in the order of the cells --- */
+
+static conic_status count_batch(void *cookie, const conic_splats *batch) {
+  cleaning *work = cookie;
+  unsigned fields = conic_splats_fields(batch);
+  work->fields = fields & CONIC_SPLATS_COLORS;
+  if (fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))
+    work->fields |= CONIC_SPLATS_NORMALS;
+  memcpy(work->origin, batch->origin, sizeof work->origin);
+  for (size_t i = 0; i < batch->count; i++) {
+    const float place[3] = {batch->position[0][i], batch->position[1][i], batch->position[2][i]};
+    int32_t at[3];
+    work->n_points++;
+    if (!(place[0] - place[0] == 0.0f && place[1] - place[1] == 0.0f && place[2] - place[2] == 0.0f))
+      continue;
+    if (!conic_cells_locate(&work->cells, place, at))
+      return conic_fail(work->context, CONIC_ERROR_ARGUMENT, "surface: h %g is too small for where the points are",
+                        work->options->surface.h);
+    conic_status status = conic_cells_count(&work->cells, at);
+    if (status != CONIC_OK)
+      return status;
+    work->n_finite++;
+  }
+  return conic_progress(work->context, "sort", 0.0);
+}
+
+static void fill_record(const conic_splats *batch, size_t i, uint64_t index, unsigned fields, record *r) {
+  double normal[3];
+  memset(r, 0, sizeof *r);
+  r->index = index;
+  if (fields & CONIC_SPLATS_NORMALS)
+    conic_surface_unit_normal(batch, i, normal);
+  for (int axis = 0; axis < 3; axis++) {
+    r->position[axis] = batch->position[axis][i];
+    if (fields & CONIC_SPLATS_NORMALS)
+      r->normal[axis] = (float)normal[axis];
+    if (fields & CONIC_SPLATS_COLORS)
+      r->color[axis] = batch->color[axis][i];
+  }
+}
+
+static int compare_keys(const void *a, const void *b) {
+  uint64_t first = *(const uint64_t *)a, second = *(const uint64_t *)b;
+  return (first > second) - (first < second);
+}
+
+/* Points first … first + n - 1 of a batch; those that are not finite go straight to the results. */
+static conic_status place_points(cleaning *work, const conic_splats *batch, size_t first, size_t n) {
+  size_t n_keys = 0;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    const float place[3] = {batch->position[0][first + i], batch->position[1][first + i],
+                            batch->position[2][first + i]};
+    int32_t at[3];
+    const conic_cell *cell = conic_cells_locate(&work->cells, place, at) ? conic_cells_find(&work->cells, at) : NULL;
+    if (cell)
+      work->keys[n_keys++] = (uint64_t)(cell - work->cells.cells) << 32 | i;
+    else {
+      const result none = {.outcome = CONIC_SURFACE_NOT_FINITE};
+      status = conic_store_write(&work->results, work->n_placed + i, 1, &none);
+    }
+  }
+  qsort(work->keys, n_keys, sizeof *work->keys, compare_keys);
+  for (size_t i = 0; i < n_keys; i++) {
+    size_t at = (size_t)(work->keys[i] & UINT32_MAX);
+    fill_record(batch, first + at, work->n_placed + at, work->fields, &work->page[i]);
+  }
+  for (size_t i = 0, end; i < n_keys && status == CONIC_OK; i = end) {
+    conic_cell *cell = &work->cells.cells[work->keys[i] >> 32];
+    for (end = i + 1; end < n_keys && work->keys[end] >> 32 == work->keys[i] >> 32;)
+      end++;
+    if (cell->filled + (end - i) > cell->count)
+      return conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+    status = conic_store_write(&work->records, cell->start + cell->filled, end - i, work->page + i);
+    cell->filled += end - i;
+  }
+  work->n_placed += n;
+  return status;
+}
+
+static conic_status place_batch(void *cookie, const conic_splats *batch) {
+  cleaning *work = cookie;
+  conic_status status = CONIC_OK;
+  if (work->n_placed + batch->count > work->n_points)
+    return conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+  for (size_t i = 0; i < batch->count && status == CONIC_OK; i += BATCH)
+    status = place_points(work, batch, i, batch->count - i < BATCH ? batch->count - i : BATCH);
+  return status == CONIC_OK ? conic_progress(work->context, "sort", (double)work->n_placed / (double)work->n_points)
+                            : status;
+}
+
+/* --- a cell --- */
+
+/* Its neighbours, itself first. */
+static const conic_cell *neighbour_of(const conic_cells *cells, const conic_cell *cell, int i) {
+  int32_t at[3], step = i;
+  if (i == 0)
+    return cell;
+  step = i <= 13 ? i - 1 : i; /* the middle one of 27 is the cell */
+  for (int axis = 2; axis >= 0; axis--, step /= 3)
+    at[axis] = cell->at[axis] + step % 3 - 1;
+  return conic_cells_find(cells, at);
+}
+
+/* Whether so many points may be in memory with what they take. */
+static conic_status check_room(const cleaning *work, uint64_t n) {
+  uint64_t bytes = n * BYTES_A_POINT + OTHER_BYTES;
+  if (work->options->memory_bytes && bytes > work->options->memory_bytes)
+    return conic_fail(work->context, CONIC_ERROR_MEMORY,
+                      "surface: a cell of %g h and what is about it hold %llu points or more, which takes %llu MiB",
+                      CELL_SIDE, (unsigned long long)n, (unsigned long long)(bytes >> 20) + 1);
+  if (n > UINT32_MAX - 1)
+    return conic_fail(work->context, CONIC_ERROR_ARGUMENT, "surface: h %g is too large for so many points",
+                      work->options->surface.h);
+  return CONIC_OK;
+}
+
+/* Room for n more points in the subset. */
+static conic_status reserve_subset(cleaning *work, size_t n) {
+  conic_splats *old = &work->subset, grown;
+  size_t room = old->count + n;
+  if (room <= work->subset_room)
+    return CONIC_OK;
+  conic_status status = check_room(work, room);
+  if (status == CONIC_OK)
+    status = conic_splats_allocate(work->context, room + room / 4, work->fields, &grown);
+  if (status != CONIC_OK)
+    return status;
+  for (int axis = 0; axis < 3 && old->count; axis++) {
+    memcpy(grown.position[axis], old->position[axis], old->count * sizeof(float));
+    if (grown.normal[0])
+      memcpy(grown.normal[axis], old->normal[axis], old->count * sizeof(float));
+    if (grown.color[0])
+      memcpy(grown.color[axis], old->color[axis], old->count * sizeof(float));
+  }
+  grown.count = old->count;
+  conic_splats_release(work->context, old);
+  *old = grown;
+  work->subset_room = room + room / 4;
+  return CONIC_OK;
+}
+
+static void append_record(cleaning *work, const record *r) {
+  conic_splats *to = &work->subset;
+  size_t i = to->count++;
+  for (int axis = 0; axis < 3; axis++) {
+    to->position[axis][i] = r->position[axis];
+    if (to->normal[0])
+      to->normal[axis][i] = r->normal[axis];
+    if (to->color[0])
+      to->color[axis][i] = r->color[axis];
+  }
+}
+
+static int is_within(const record *r, const double low[3], const double high[3]) {
+  int is_inside = 1;
+  for (int axis = 0; axis < 3; axis++)
+    is_inside &= (double)r->position[axis] >= low[axis] && (double)r->position[axis] <= high[axis];
+  return is_inside;
+}
+
+/* The cell's points, and behind them those about it. */
+static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
+  const conic_surface_options *surface = &work->options->surface;
+  double halo = (surface->neglect + HALO) * surface->h, low[3], high[3];
+  conic_status status = CONIC_OK;
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = (double)cell->at[axis] * work->cells.side - halo;
+    high[axis] = ((double)cell->at[axis] + 1.0) * work->cells.side + halo;
+  }
+  work->subset.count = 0;
+  for (int i = 0; i < 27 && status == CONIC_OK; i++) {
+    const conic_cell *from = neighbour_of(&work->cells, cell, i);
+    for (uint64_t at = 0; from && at < from->count && status == CONIC_OK; at += PAGE) {
+      size_t n = from->count - at < PAGE ? (size_t)(from->count - at) : PAGE;
+      status = conic_store_read(&work->records, from->start + at, n, work->page);
+      if (status == CONIC_OK)
+        status = reserve_subset(work, n);
+      for (size_t k = 0; k < n && status == CONIC_OK; k++)
+        if (i == 0 || is_within(&work->page[k], low, high))
+          append_record(work, &work->page[k]);
+    }
+  }
+  return status;
+}
+
+static void fill_result(cleaning *work, const conic_own_points *own, uint32_t slot, result *to) {
+  memset(to, 0, sizeof *to);
+  to->outcome = own->outcomes[slot];
+  work->report.outcomes[to->outcome]++;
+  if (to->outcome != CONIC_SURFACE_DONE)
+    return;
+  for (int axis = 0; axis < 3; axis++) {
+    to->position[axis] = own->position[axis][slot];
+    to->normal[axis] = own->normal[0] ? own->normal[axis][slot] : 0.0f;
+    to->color[axis] = own->color[0] ? own->color[axis][slot] : 0.0f;
+  }
+  work->moved2_sum += own->moved2[slot];
+  work->moved2_most = own->moved2[slot] > work->moved2_most ? own->moved2[slot] : work->moved2_most;
+  work->neighbours += (double)own->n_neighbours[slot];
+}
+
+/* Puts the cell's results where the points stood. */
+static conic_status keep_cell(cleaning *work, const conic_cell *cell, const conic_surface *surface,
+                              const conic_own_points *own) {
+  result run[64];
+  conic_status status = CONIC_OK;
+  for (uint64_t at = 0; at < cell->count && status == CONIC_OK; at += PAGE) {
+    size_t n = cell->count - at < PAGE ? (size_t)(cell->count - at) : PAGE, n_run = 0;
+    status = conic_store_read(&work->records, cell->start + at, n, work->page);
+    for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+      fill_result(work, own, surface->tree.slot_of_point[at + i], &run[n_run++]);
+      int is_last = i + 1 == n || work->page[i + 1].index != work->page[i].index + 1;
+      if (!is_last && n_run < sizeof run / sizeof run[0])
+        continue;
+      status = conic_store_write(&work->results, work->page[i].index + 1 - n_run, n_run, run);
+      n_run = 0;
+    }
+  }
+  return status;
+}
+
+static conic_status clean_cell(cleaning *work, const conic_cell *cell) {
+  conic_surface *surface;
+  conic_own_points own;
+  double begin = (double)cell->start / (double)work->n_finite;
+  double end = (double)(cell->start + cell->count) / (double)work->n_finite;
+  conic_status status = gather_cell(work, cell);
+  if (status == CONIC_OK)
+    status = conic_surface_create(work->context, &work->subset, &work->options->surface, &surface);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_own_points_project(surface, (size_t)cell->count, begin, end, &own);
+  if (status == CONIC_OK) {
+    status = keep_cell(work, cell, surface, &own);
+    work->report.n_evaluations += own.n_evaluations;
+    conic_own_points_release(work->context, &own);
+  }
+  conic_surface_destroy(surface);
+  return status;
+}
+
+/* --- the whole --- */
+
+/* The most points that any cell has. */
+static uint64_t most_in(const cleaning *work) {
+  uint64_t most = 0;
+  for (size_t i = 0; i < work->cells.n; i++)
+    most = work->cells.cells[i].count > most ? work->cells.cells[i].count : most;
+  return most;
+}
+
+/* Once it is known how many there are: room for one cell, and where the others are put. */
+static conic_status reserve(cleaning *work) {
+  const conic_clean_options *o = work->options;
+  uint64_t most = most_in(work), kept_bytes = work->n_points * (sizeof(record) + sizeof(result));
+  conic_status status = check_room(work, most);
+  if (status != CONIC_OK)
+    return status;
+  const char *path =
+      o->memory_bytes && 2 * most * BYTES_A_POINT + OTHER_BYTES + kept_bytes > o->memory_bytes ? o->scratch : NULL;
+  status = conic_store_begin(work->context, path, work->n_finite, sizeof(record), &work->records);
+  if (status == CONIC_OK)
+    status = conic_store_begin(work->context, path, work->n_points, sizeof(result), &work->results);
+  work->page = conic_memory_allocate(work->context, BATCH, sizeof *work->page);
+  work->keys = conic_memory_allocate(work->context, BATCH, sizeof *work->keys);
+  if (status == CONIC_OK && !(work->page && work->keys))
+    status = CONIC_ERROR_MEMORY;
+  return status;
+}
+
+static void sum_up(cleaning *work) {
+  conic_surface_report *report = &work->report;
+  report->n_in = (size_t)work->n_points;
+  report->n_out = report->outcomes[CONIC_SURFACE_DONE];
+  report->outcomes[CONIC_SURFACE_NOT_FINITE] += (size_t)(work->n_points - work->n_finite);
+  report->h = work->options->surface.h;
+  if (report->n_out) {
+    report->moved_rms = sqrt(work->moved2_sum / (double)report->n_out);
+    report->moved_max = sqrt(work->moved2_most);
+    report->mean_neighbours = work->neighbours / (double)report->n_out;
+  }
+}
+
+static conic_status clean_all(cleaning *work, conic_points_source *source, void *source_cookie) {
+  conic_status status = conic_cells_begin(work->context, CELL_SIDE * work->options->surface.h, &work->cells);
+  if (status == CONIC_OK)
+    status = source(source_cookie, count_batch, work);
+  if (status == CONIC_OK && work->n_finite == 0)
+    status = conic_fail(work->context, CONIC_ERROR_INPUT, "surface: no point is finite");
+  if (status != CONIC_OK)
+    return status;
+  conic_cells_sort(&work->cells);
+  status = reserve(work);
+  if (status == CONIC_OK)
+    status = source(source_cookie, place_batch, work);
+  if (status == CONIC_OK && work->n_placed != work->n_points)
+    status = conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+  for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++)
+    status = clean_cell(work, &work->cells.cells[i]);
+  if (status == CONIC_OK)
+    sum_up(work);
+  return status;
+}
+
+/* Hands over what is DONE, in the old order. */
+static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
+  conic_splats batch;
+  conic_status status = conic_splats_allocate(work->context, PAGE, work->fields, &batch);
+  result *page = conic_memory_allocate(work->context, PAGE, sizeof *page);
+  memcpy(batch.origin, work->origin, sizeof batch.origin);
+  if (status == CONIC_OK)
+    status = page ? sink->begin(sink->cookie, &work->report, work->fields) : CONIC_ERROR_MEMORY;
+  for (uint64_t at = 0; at < work->n_points && status == CONIC_OK; at += PAGE) {
+    size_t n = work->n_points - at < PAGE ? (size_t)(work->n_points - at) : PAGE, k = 0;
+    status = conic_store_read(&work->results, at, n, page);
+    for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+      if (page[i].outcome != CONIC_SURFACE_DONE)
+        continue;
+      for (int axis = 0; axis < 3; axis++) {
+        batch.position[axis][k] = page[i].position[axis];
+        if (batch.normal[0])
+          batch.normal[axis][k] = page[i].normal[axis];
+        if (batch.color[0])
+          batch.color[axis][k] = page[i].color[axis];
+      }
+      k++;
+    }
+    batch.count = k;
+    if (status == CONIC_OK && k > 0)
+      status = sink->receive(sink->cookie, &batch);
+  }
+  batch.count = PAGE;
+  conic_memory_release(work->context, page);
+  conic_splats_release(work->context, &batch);
+  return status;
+}
+
+void conic_clean_options_init(conic_clean_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  conic_surface_options_init(&options->surface);
+}
+
+conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
+                                       conic_points_source *source, void *source_cookie, const conic_points_sink *sink,
+                                       conic_surface_report *report) {
+  cleaning work = {
+      .context = context, .options = options, .records = {.descriptor = -1}, .results = {.descriptor = -1}};
+  if (options->size != sizeof *options || !(options->surface.h > 0.0 && options->surface.h < 1e30) ||
+      options->surface.cluster != 0.0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: cells need an h for all points, and no clusters");
+  conic_status status = clean_all(&work, source, source_cookie);
+  if (status == CONIC_OK)
+    status = deliver(&work, sink);
+  if (status == CONIC_OK && report)
+    *report = work.report;
+  conic_splats_release(context, &work.subset);
+  conic_memory_release(context, work.page);
+  conic_memory_release(context, work.keys);
+  conic_store_end(&work.results);
+  conic_store_end(&work.records);
+  conic_cells_end(&work.cells);
+  return status;
+}

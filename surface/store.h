@@ -1,0 +1,28 @@
+/* Records of one size, in memory or in a file without a name. */
+#ifndef SURFACE_STORE_H
+#define SURFACE_STORE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+typedef struct conic_store {
+  conic_context *context;
+  const char *path; /* beside which the file lies */
+  size_t record_bytes;
+  unsigned char *memory; /* null: in the file */
+  int descriptor;        /* -1: none */
+} conic_store;
+
+/* Room for `count` records, contents undefined; `path` null: in memory. On failure the store is empty. Errors: MEMORY,
+ * IO. */
+conic_status conic_store_begin(conic_context *context, const char *path, uint64_t count, size_t record_bytes,
+                               conic_store *store);
+void conic_store_end(conic_store *store);
+
+/* Writes or reads the records from number `first` on. Errors: IO. */
+conic_status conic_store_write(conic_store *store, uint64_t first, size_t n, const void *records);
+conic_status conic_store_read(const conic_store *store, uint64_t first, size_t n, void *records);
+
+#endif
