@@ -153,6 +153,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
                      command);
   if (job->texture_path && job->as != CLI_AS_MESH)
     return cli_usage("%s: --texture lies on triangles; give --as mesh, too", command);
+  if (job->is_smooth && job->as != CLI_AS_MESH)
+    return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
@@ -265,6 +267,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"as", CLI_CHOICE, &job->as, "WHAT",
        "what a mesh is drawn as: points (a splat a vertex) or mesh (triangles) [points]", .choices = as_words},
       {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
+      {"smooth", CLI_FLAG, &job->is_smooth, NULL,
+       "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
        "surface [conic]",

@@ -33,6 +33,7 @@ typedef struct cli_render_job {
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws */
   int as;                       /* what meshes are drawn as, a cli_representation */
+  int is_smooth;                /* meshes get vertex normals from their faces */
   const char *texture_path;     /* of meshes that are drawn as such, in place of their own; null: none */
   double error_px;              /* 0: every splat */
   unsigned long long budget;    /* 0: no limit */

@@ -107,6 +107,14 @@ static conic_status lay_texture(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* What the options say of triangles. */
+static conic_status dress_triangles(cli_session *session, cli_render_job *job) {
+  conic_status status = CONIC_OK;
+  if (job->is_smooth && job->triangles.count)
+    status = conic_triangles_smooth(session->context, &job->triangles);
+  return status == CONIC_OK && job->texture_path && job->triangles.count ? lay_texture(session, job) : status;
+}
+
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats) {
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
@@ -120,11 +128,9 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
       return status;
     n_las += kind == CONIC_MODEL_LAS;
   }
-  if (job->texture_path && job->triangles.count) {
-    conic_status status = lay_texture(session, job);
-    if (status != CONIC_OK)
-      return status;
-  }
+  conic_status dressed = dress_triangles(session, job);
+  if (dressed != CONIC_OK)
+    return dressed;
   if (n_las == job->n_inputs && !job->is_up_given) { /* surveys have heights in z */
     job->framing.up[0] = job->framing.up[1] = 0.0;
     job->framing.up[2] = 1.0;
