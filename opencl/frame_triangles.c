@@ -194,7 +194,7 @@ static conic_status measure(conic_frame *f, const host_array arrays[N_ARRAYS]) {
 static void set_constants(conic_frame *f) {
   const conic_triangle_frame *t = f->triangles;
   f->constants.has_triangles = 1;
-  f->constants.has_sums = f->splats->count > 0;
+  f->constants.has_splats = f->splats->count > 0;
   f->constants.keeps_sums = 1;
   f->constants.n_triangle_chunks = (uint32_t)t->n_chunks;
   f->constants.n_materials = (uint32_t)t->triangles->n_materials;

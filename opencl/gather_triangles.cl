@@ -40,7 +40,7 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
   }
   nearest_iz[at] = iz_of_nearest;
   nearest[at] = i_nearest;
-  if (!frame.is_single_pass)
+  if (frame.has_splats && !frame.is_single_pass)
     thresholds[at] = n_covered ? conic_triangle_hides(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
   if (n_covered)
     gather_count(n_fragments + 2 * p.tile, n_covered);
@@ -49,7 +49,7 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
 /* What the pixel's triangle is to the splats: conic_triangles_hide, conic_triangles_win and conic_triangle_rank_block. */
 static int gather_triangle_is_visible(const conic_device_frame *frame, float iz, float threshold,
                                       const gather_sums *s) {
-  return iz > 0.0f && (frame->is_single_pass ? iz > s->nearest_iz : iz >= threshold);
+  return frame->is_single_pass ? iz > s->nearest_iz : iz > 0.0f && iz >= threshold;
 }
 
 /* Adds the triangle to the sums: add_pixel. */
@@ -87,11 +87,11 @@ __kernel void gather_add_triangles(TRIANGLE_SET, __global const float *nearest_i
   gather_sums none = {0}, s = none;
   if (!p.is_inside)
     return;
-  if (frame.has_sums)
+  if (frame.has_splats)
     s = gather_load(sums, &p);
   uint at = p.block * 16 + p.lane;
   float iz = nearest_iz[at];
-  if (gather_triangle_is_visible(&frame, iz, frame.is_single_pass ? 0.0f : thresholds[at], &s)) {
+  if (gather_triangle_is_visible(&frame, iz, frame.is_single_pass || !frame.has_splats ? 0.0f : thresholds[at], &s)) {
     if (frame.is_single_pass)
       s = none;
     gather_add_triangle(&frame, &triangles, nearest[at], iz, &p, columns[p.x], rows[p.y], &s);

@@ -149,7 +149,7 @@ lanes_triangles(TRIANGLE_LISTS, __global lanes *thresholds, __global lanes *near
     lanes iz = of_blocks[block].iz, dx, dy;
     nearest_iz[at] = iz;
     nearest[at] = of_blocks[block].record;
-    if (frame.is_single_pass)
+    if (frame.is_single_pass || !frame.has_splats)
       continue;
     lanes_directions(columns, rows, lanes_block_x(&t, block), lanes_block_y(&t, block), &dx, &dy);
     lanes hides = iz * (1.0f / (1.0f + frame.triangle_epsilon * iz / sqrt((dx * dx + dy * dy) + 1.0f)));
@@ -302,7 +302,7 @@ static void lanes_add_look(const conic_device_frame *frame, int16 visible, lanes
 /* The sums of a block's splats. */
 static void lanes_load_sums(const conic_device_frame *frame, __global const lanes *sums, ulong at, lanes_sums *s) {
   for (int i = 0; i < CONIC_N_SUMS; i++)
-    s->values[i] = frame->has_sums ? sums[at * CONIC_N_SUMS + i] : (lanes)0.0f;
+    s->values[i] = frame->has_splats ? sums[at * CONIC_N_SUMS + i] : (lanes)0.0f;
 }
 
 /* The triangles that are seen to the sums of the splats, and pass 3. */
@@ -320,8 +320,9 @@ lanes_add_triangles(TRIANGLE_SET, __global const lanes *nearest_iz, __global con
     lanes iz = nearest_iz[at], dx, dy;
     lanes_sums s;
     lanes_load_sums(&frame, sums, at, &s);
-    int16 visible =
-        (iz > 0.0f) & (frame.is_single_pass ? iz > s.values[CONIC_SUM_NEAREST_IZ] : iz >= thresholds[at]);
+    int16 visible = iz > 0.0f;
+    if (frame.has_splats)
+      visible &= frame.is_single_pass ? iz > s.values[CONIC_SUM_NEAREST_IZ] : iz >= thresholds[at];
     if (lanes_any(visible)) {
       lanes_look look = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0};
       for (int i = 0; i < CONIC_N_SUMS && frame.is_single_pass; i++)

@@ -86,7 +86,7 @@ typedef struct conic_device_frame {
   /* Where triangles are drawn, too: they are there before the splats' first part, and the picture is theirs to finish.
    */
   int32_t has_triangles;
-  int32_t has_sums; /* of splats */
+  int32_t has_splats; /* besides */
   uint32_t n_triangle_chunks, n_materials;
   uint32_t first_triangle_id;
   float triangle_epsilon;
