@@ -129,3 +129,8 @@ void conic_output_abandon(conic_output *output) {
     unlink(output->temporary_path);
   release(output);
 }
+
+int conic_file_is_there(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}

@@ -24,4 +24,8 @@ conic_status conic_output_commit(conic_output *output);
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
 
+/* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
+ * lead to. */
+int conic_file_is_there(const char *path);
+
 #endif

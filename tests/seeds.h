@@ -6,7 +6,7 @@
 #include "tests/las_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, las, xyz, camera, pfm, exr, cot */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -124,6 +124,12 @@ static inline void seeds_all_text(seed_set *set) {
              "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 \\\n 0\nv 0 1 0 1\nvt 0.5 0.5\nvn 0 0 1\n"
              "f 1/1/1 2/1/1 3/1/1\nf -4//-1 3//1 4//1\nf 1 2 3 4\no thing\ns off\n");
   seeds_text(set, "obj", "obj", "v 589500.5 231300.25 1e7\nv 589501 231300 1e7\nv 589501 231301 1e7\nf 1 2 3\n");
+  seeds_text(
+      set, "obj", "obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0.5\nusemtl red\nf 1/1 2/2 3/-1\nusemtl plain\nf 1 2 3\nf 3/2 2 1\n");
+  seeds_text(set, "mtl", "mtl",
+             "# by hand\nnewmtl red\nKd 0.5 0.25 1e-3\nmap_Kd -clamp on -s 1 1 1 gone.png\nnewmtl other\nKd 1\n");
+  seeds_text(set, "mtl", "mtl", "newmtl plain\nKd .7\nNs 3\nillum 2\nmap_Kd /proc/self/gone\n");
   seeds_text(set, "xyz", "xyz", "# by hand\n0 0 0\n1 2 3\n-1e3 .5 +7\n");
   seeds_text(set, "xyz", "xyz", "// X,Y,Z,R,G,B\n0,0,0,255,0,10\n1,2,3,0,1,2\n");
   seeds_text(set, "xyz", "pts", "3\n0 0 0 -100 255 0 10\n1 2 3 50 0 1 2\n5 6 7 0 1 2 3\n");
