@@ -17,7 +17,8 @@ conic_status conic_frame_room(const conic_frame *f, int buffer, size_t count, si
 
 conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
-  const size_t items[2] = {n_items, 1}, group[2] = {f->opencl->device.is_cpu ? 1 : 64, 1};
+  int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;
+  const size_t items[2] = {n_items, 1}, group[2] = {is_alone ? 1 : 64, 1};
   return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items, group);
 }
 
@@ -275,7 +276,9 @@ static void report(const conic_frame *f, conic_render_statistics *s) {
 static conic_status draw_all(conic_frame *f) {
   size_t part = part_of(f), count = f->splats->count;
   int draws_splats = count || !f->triangles, is_single = f->constants.is_single_pass;
-  conic_status status = conic_frame_begin(f);
+  conic_status status = conic_progress(f->opencl->context, "render", 0.0);
+  if (status == CONIC_OK)
+    status = conic_frame_begin(f);
   if (status == CONIC_OK && f->triangles)
     status = conic_frame_draw_triangles(f);
   if (status == CONIC_OK && draws_splats && !is_single)

@@ -286,18 +286,23 @@ static void check_planes(fixture *f) {
   conic_triangles_release(f->context, &t);
 }
 
-/* A device that cannot hold the triangles says so, and so does one that has no double precision; splats it draws. */
-static void check_refusals(fixture *f) {
-  conic_triangles t = triangles_torus(f, 60, 40, 0.3);
-  const conic_drawing drawing = {NULL, &t};
+/* A device that has no double precision says so, and so does one that cannot hold the triangles. One that is no CPU
+ * gets copies of them. */
+static void check_devices(fixture *f, conic_opencl_work work) {
+  conic_triangles t =
+      fill_wild(f, 2000, CONIC_TRIANGLES_COLORS | CONIC_TRIANGLES_NORMALS | CONIC_TRIANGLES_TEXTURE_COORDINATES);
+  const conic_drawing drawing = {&f->splats, &t};
   conic_opencl_options options;
   conic_opencl *opencl;
   conic_renderer *renderer;
+  conic_image image;
   conic_opencl_options_init(&options);
+  options.work = work;
   CHECK_OK(conic_opencl_open(f->context, &options, &opencl));
   CHECK_OK(conic_renderer_create(f->context, &renderer));
   conic_renderer_take(renderer, &opencl->backend);
   triangles_camera(f, 3, 40);
+  conic_render_options_init(&f->options);
   CHECK_OK(triangles_render(f, &t, 1));
   uint64_t memory_bytes = opencl->device.memory_bytes;
   opencl->device.has_double = 0;
@@ -308,7 +313,12 @@ static void check_refusals(fixture *f) {
   CHECK(conic_render_drawing(f->context, renderer, &drawing, &f->camera, &f->options, 1, &f->image, NULL) ==
         CONIC_ERROR_MEMORY);
   opencl->device.memory_bytes = memory_bytes;
-  CHECK_OK(conic_render_drawing(f->context, renderer, &drawing, &f->camera, &f->options, 1, &f->image, NULL));
+  opencl->device.is_cpu = 0;
+  CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &image));
+  spoil(&image);
+  CHECK_OK(conic_render_drawing(f->context, renderer, &drawing, &f->camera, &f->options, 1, &image, NULL));
+  CHECK(opencl_same(&f->image, &image, "no CPU"));
+  conic_image_release(f->context, &image);
   conic_renderer_destroy(renderer);
   conic_triangles_release(f->context, &t);
 }
@@ -329,7 +339,8 @@ int main(int argc, char **argv) {
     check_floor(&f);
     check_corners(&f);
     check_planes(&f);
-    check_refusals(&f);
+    check_devices(&f, CONIC_OPENCL_WORK_TILES);
+    check_devices(&f, CONIC_OPENCL_WORK_PIXELS);
   }
   for (int i = 0; i < N_RENDERERS; i++)
     conic_renderer_destroy(renderers[i]);
