@@ -86,6 +86,10 @@ struct conic_triangle_frame {
 
 typedef struct conic_triangle_frame conic_triangle_frame;
 
+static inline const conic_texture *conic_material_texture(const conic_material *material) {
+  return material->texture;
+}
+
 /* Sets what is drawn; `memory` must be of zero bytes or from the frame before. */
 void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *context, const conic_triangles *triangles,
                                 const conic_view *view, const conic_camera *camera);
