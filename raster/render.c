@@ -175,7 +175,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
-  f->bins.by_pixels = f->finish.options->passes == 1;
+  f->bins.by_pixels = f->finish.options->passes == 1 && !f->hiding;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
