@@ -137,6 +137,8 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
+  if (job->layers.file)
+    return cli_layers_draw(session, job, camera, renderer, image, statistics);
   conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
                         : job->patches ? cli_patch_select(job, camera, &lod_ms)
                                        : CONIC_OK;
@@ -214,6 +216,7 @@ static int run(cli_session *session, int argc, char **argv) {
   conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
+  job.layers.start_seconds = start;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
@@ -223,6 +226,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
+    cli_layers_close(&job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

@@ -44,6 +44,23 @@ static conic_status read_octree(cli_session *session, const char *path, conic_sp
   return status;
 }
 
+/* So is a layered point cloud, beside other inputs or where every splat is to be known. */
+static conic_status read_layers(cli_session *session, const cli_render_job *job, const char *path,
+                                conic_splats *splats) {
+  conic_layers *layers;
+  conic_splats samples;
+  conic_status status = conic_layers_open(session->context, path, NULL, &layers);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_layers_splats(layers, job->options.kernel.cutoff, &samples);
+  conic_layers_close(layers);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_splats_append(session->context, splats, &samples);
+  conic_splats_release(session->context, &samples);
+  return status;
+}
+
 /* A model's faces become triangles. */
 static conic_status take_triangles(cli_session *session, cli_render_job *job, conic_model *model) {
   conic_triangles triangles;
@@ -63,6 +80,9 @@ static conic_status read_input(cli_session *session, cli_render_job *job, const 
   conic_repairs repairs;
   if (conic_octree_is_file(path))
     return read_octree(session, path, splats, kind);
+  *kind = CONIC_MODEL_PLY;
+  if (cli_layers_is_input(path))
+    return read_layers(session, job, path, splats);
   conic_read_options_init(&read_options);
   conic_estimate_options_init(&estimate_options);
   read_options.cutoff = estimate_options.cutoff = job->options.kernel.cutoff;
@@ -119,6 +139,8 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
   memset(splats, 0, sizeof *splats);
+  if (cli_layers_is_wanted(job) && job->draws_layers)
+    return cli_layers_open(session, job);
   if (cli_lod_is_wanted(job))
     return cli_lod_open(session, job);
   for (int i = 0; i < job->n_inputs; i++) {
@@ -155,11 +177,13 @@ void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *
 static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double spacing = 1.0;
   conic_status status = CONIC_OK;
+  if (job->layers.file)
+    spacing = job->layers.scale.spacing;
   if (job->octree && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
     cli_error(CLI_USAGE, "render: lengths in spacings need every splat; give world units with --error or --budget");
     return CONIC_ERROR_ARGUMENT;
   }
-  if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
+  if (!job->layers.file && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings))
     status = conic_splats_spacing(session->context, splats, &spacing);
   if (job->epsilon.value >= 0.0)
     job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
@@ -178,11 +202,14 @@ static void measure_octree(cli_render_job *job) {
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
   conic_status status = resolve_lengths(session, job, splats);
-  if (job->octree)
+  if (job->layers.file) {
+    job->options.splat_length = job->layers.scale.splat_length;
+    job->options.near_z = job->options.near_z > 0.0 ? job->options.near_z : job->layers.scale.near_z;
+  } else if (job->octree)
     measure_octree(job);
   else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0) {
+  if (status == CONIC_OK && !job->octree && !job->layers.file && job->options.near_z == 0.0) {
     const conic_drawing drawing = cli_scene_drawing(job, splats);
     job->options.near_z = conic_drawing_near(&drawing);
   }
@@ -198,7 +225,10 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   conic_framing framing = job->framing;
   if (job->camera_path)
     return conic_camera_read(session->context, job->camera_path, camera);
-  if (job->octree) {
+  if (job->layers.file) {
+    memcpy(low, job->layers.scale.minimum, sizeof low);
+    memcpy(high, job->layers.scale.maximum, sizeof high);
+  } else if (job->octree) {
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);
   } else {

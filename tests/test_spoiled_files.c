@@ -87,6 +87,10 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "lpc") == 0) {
+    conic_layers_info info;
+    return conic_layers_describe(context, path, &info);
+  }
   if (strcmp(target, "mtl") == 0)
     return read_materials(context, path);
   if (is_picture(target)) {
