@@ -198,6 +198,10 @@ static void print_summary(const cli_session *session, const cli_render_job *job)
   const conic_render_statistics *s = &job->statistics;
   if (!session->is_verbose)
     return;
+  if (s->triangles_in)
+    fprintf(stderr, "conic: %llu triangles: %llu drawn, %llu culled, %llu skipped\n",
+            (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+            (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
   fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
           (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
           (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);

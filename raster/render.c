@@ -381,8 +381,6 @@ static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing
   conic_context *context = f->renderer->context;
   if (!drawing->triangles)
     return CONIC_OK;
-  if (f->renderer->backend)
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this device draws no triangles");
   if (drawing->triangles->count > UINT32_MAX - 1 - f->splats->count)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: there are more than 4,294,967,294 splats and triangles");
   f->triangles = &f->renderer->triangles;
@@ -430,7 +428,8 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   if (status == CONIC_OK)
     status = begin_triangles(f, drawing, camera, options);
   if (status == CONIC_OK && renderer->backend)
-    status = renderer->backend->draw(renderer->backend, &f->view, f->splats, &f->finish, f->image, &counted);
+    status =
+        renderer->backend->draw(renderer->backend, &f->view, f->splats, f->triangles, &f->finish, f->image, &counted);
   else if (status == CONIC_OK)
     status = draw_here(f, options, &counted);
   if (status != CONIC_OK)
