@@ -149,6 +149,8 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
+  if (job->layers.file)
+    return cli_layers_draw(session, job, camera, renderer, image, statistics);
   conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
                         : job->patches ? cli_patch_select(job, camera, &lod_ms)
                         : job->hybrid  ? cli_hybrid_select(job, camera, &lod_ms)
@@ -196,6 +198,10 @@ static void print_summary(const cli_session *session, const cli_render_job *job)
   const conic_render_statistics *s = &job->statistics;
   if (!session->is_verbose)
     return;
+  if (s->triangles_in)
+    fprintf(stderr, "conic: %llu triangles: %llu drawn, %llu culled, %llu skipped\n",
+            (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+            (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
   fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
           (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
           (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);
@@ -227,6 +233,7 @@ static int run(cli_session *session, int argc, char **argv) {
   conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
+  job.layers.start_seconds = start;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
@@ -236,6 +243,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
+    cli_layers_close(&job);
     cli_hybrid_close(session, &job);
   }
   free(job.inputs);

@@ -1,4 +1,3 @@
-#include "cli/json.h"
 #include "cli/render_job.h"
 
 static double per_second_in_millions(double count, double ms) {
@@ -47,7 +46,10 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
   }
   cli_json_close(json);
-  cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
+  if (job->layers.file)
+    cli_render_layers_report(json, job);
+  else
+    cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
   if (job->octree)
     cli_json_number(json, "error_px", job->selection.error_px);
 }

@@ -2,8 +2,8 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "core/file.h"
 #include "core/input.h"
 #include "core/message.h"
 #include "core/number.h"
@@ -79,7 +79,7 @@ static conic_status read_map(material_reader *reader) {
   if (n < 0 || (size_t)n >= sizeof path)
     return conic_fail(reader->input.context, CONIC_ERROR_INPUT, "%s: a picture's name is too long (line %llu)",
                       reader->input.name, (unsigned long long)reader->input.line);
-  if (access(path, R_OK) != 0) {
+  if (!conic_file_is_there(path)) {
     conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
               reader->input.name, path, (unsigned long long)reader->input.line);
     return CONIC_OK;

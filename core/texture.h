@@ -7,11 +7,18 @@
 /* Enough for pictures of 65535 pixels. */
 enum { CONIC_TEXTURE_LEVELS = 17 };
 
+/* A part of a texel. A device's text has a memory of its own for them (opencl/triangle_set.cl). */
+typedef float conic_texel;
+
 /* One picture of the pyramid: linear RGB and a float of no matter, row by row from the top. */
 typedef struct conic_texture_level {
   int width, height;
-  float *texels;
+  conic_texel *texels;
 } conic_texture_level;
+
+static inline const conic_texel *conic_texels_of(const conic_texture_level *level) {
+  return level->texels;
+}
 
 struct conic_texture {
   conic_context *context;

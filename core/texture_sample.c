@@ -13,6 +13,10 @@
 /* A footprint is no more than so many times as long as wide: a narrower one is widened. */
 #define GREATEST_RATIO 8.0f
 
+/* In texels of a level, the least half width of a footprint that is filtered on it, but for the first. The more, the
+ * less the filter of a texel blurs, and the more texels a pixel reads. */
+#define LEAST_WIDTH 1.5f
+
 /* No sum of what is farther out than this has any digits left. */
 #define FARTHEST 1e6f
 
@@ -74,7 +78,7 @@ static void filter(const conic_texture *texture, int i_level, const float place[
   const conic_texture_level *level = &texture->levels[i_level];
   if (i_level == texture->n_levels - 1) {
     for (int channel = 0; channel < 3; channel++)
-      color[channel] = level->texels[channel];
+      color[channel] = conic_texels_of(level)[channel];
     return;
   }
   float shrunk = 1.0f / (float)(1 << i_level), scale = shrunk * shrunk;
@@ -87,7 +91,8 @@ static void filter(const conic_texture *texture, int i_level, const float place[
   int x_begin = (int)floorf(x - reach_x) + 1, x_end = (int)floorf(x + reach_x) + 1;
   int y_begin = (int)floorf(y - reach_y) + 1, y_end = (int)floorf(y + reach_y) + 1;
   for (int j = y_begin; j < y_end; j++) {
-    const float *row = level->texels + 4 * (size_t)wrapped(j, level->height, texture->wrap) * (size_t)level->width;
+    const conic_texel *row =
+        conic_texels_of(level) + 4 * (size_t)wrapped(j, level->height, texture->wrap) * (size_t)level->width;
     float dy = (float)j - y;
     for (int i = x_begin; i < x_end; i++) {
       float dx = (float)i - x;
@@ -95,7 +100,7 @@ static void filter(const conic_texture *texture, int i_level, const float place[
       if (!(q < FILTER_SUPPORT))
         continue;
       float weight = conic_exp_negative(-0.5f * q) - FILTER_END;
-      const float *texel = row + 4 * (size_t)wrapped(i, level->width, texture->wrap);
+      const conic_texel *texel = row + 4 * (size_t)wrapped(i, level->width, texture->wrap);
       for (int channel = 0; channel < 3; channel++)
         sum[channel] += weight * texel[channel];
       sum[3] += weight;
@@ -105,15 +110,15 @@ static void filter(const conic_texture *texture, int i_level, const float place[
     color[channel] = sum[channel] / sum[3];
 }
 
-/* The level whose texels are next smaller than the footprint's width, and how far it is to the one after. */
+/* The level on which the footprint is as wide as it should be, and how far it is to the one after. */
 static int level_of(const conic_texture *texture, const footprint *v, float *beyond) {
   float greater, smaller;
   extents_of(v, &greater, &smaller);
   float width = 2.0f * sqrtf(smaller); /* the ellipse's half width, at two standard deviations */
   int i = 0;
-  for (; width >= 2.0f && i < texture->n_levels - 1; i++)
+  for (; width >= 2.0f * LEAST_WIDTH && i < texture->n_levels - 1; i++)
     width *= 0.5f;
-  *beyond = i == texture->n_levels - 1 || width < 1.0f ? 0.0f : width - 1.0f;
+  *beyond = i == texture->n_levels - 1 || width < LEAST_WIDTH ? 0.0f : (width - LEAST_WIDTH) / LEAST_WIDTH;
   return i;
 }
 

@@ -1,9 +1,9 @@
 /* From a model to triangles. */
 #include <string.h>
-#include <unistd.h>
 
 #include "conic/triangles.h"
 #include "core/faces.h"
+#include "core/file.h"
 #include "core/material_file.h"
 #include "core/memory.h"
 #include "core/message.h"
@@ -87,7 +87,7 @@ static conic_status take_materials(conic_context *context, conic_faces *faces, c
       triangles->materials[i].color[channel] = 1.0f;
   for (size_t i = 0; i < faces->libraries.count; i++) {
     const char *path = conic_texts_at(&faces->libraries, i);
-    if (access(path, R_OK) != 0) {
+    if (!conic_file_is_there(path)) {
       conic_log(context, CONIC_LOG_WARNING, "%s: the material file is not there, and is left out", path);
       continue;
     }

@@ -11,16 +11,14 @@
 /* A tile's fragments are counted in 32 bits: no more splats than this are on a device at a time. */
 #define MOST_PART_SPLATS (((size_t)1 << 24) - 1)
 
-/* Of a device's memory, what a frame may take. */
-#define SHARE_OF_MEMORY 0.75
-
 conic_status conic_frame_room(const conic_frame *f, int buffer, size_t count, size_t size) {
   return conic_queue_room(&f->opencl->queue, &f->opencl->buffers[buffer], count * size);
 }
 
 conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
-  const size_t items[2] = {n_items, 1}, group[2] = {f->opencl->device.is_cpu ? 1 : 64, 1};
+  int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;
+  const size_t items[2] = {n_items, 1}, group[2] = {is_alone ? 1 : 64, 1};
   return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments, items, group);
 }
 
@@ -179,12 +177,13 @@ conic_status conic_frame_close(conic_frame *f) {
 /* How many splats the device holds at a time, with all that becomes of them. */
 static size_t part_of(const conic_frame *f) {
   const conic_opencl *opencl = f->opencl;
-  double pixel_bytes = 4.0 * (1 + CONIC_N_SUMS) + 56.0, image = (double)f->view->width * (double)f->view->height;
+  double pixel_bytes = 4.0 * (1 + CONIC_N_SUMS) + 64.0, image = (double)f->view->width * (double)f->view->height;
   size_t splat_bytes = sizeof(conic_footprint) + sizeof(conic_box) + sizeof(conic_surface) + sizeof(conic_ray) +
                        (f->splats->n_clips ? sizeof(conic_clip_record) : 0) + 4 +
                        4 * (sizeof(conic_device_reference) + sizeof(uint64_t)) +
                        (opencl->device.is_cpu ? 0 : 13 * sizeof(float));
-  double n = (SHARE_OF_MEMORY * (double)opencl->device.memory_bytes - image * pixel_bytes) / (double)splat_bytes;
+  double memory = CONIC_SHARE_OF_MEMORY * (double)opencl->device.memory_bytes - f->triangle_bytes;
+  double n = (memory - image * pixel_bytes) / (double)splat_bytes;
   double most = (double)opencl->device.greatest_buffer_bytes / (double)sizeof(conic_footprint);
   n = n < most ? n : most;
   size_t part = n > 1.0 ? n < (double)MOST_PART_SPLATS ? (size_t)n : MOST_PART_SPLATS : 1;
@@ -273,20 +272,36 @@ static void report(const conic_frame *f, conic_render_statistics *s) {
   s->ms.resolve = ms[CONIC_STAGE_RESOLVE];
 }
 
+/* The splats part by part, between the triangles' two stages. */
+static conic_status draw_all(conic_frame *f) {
+  size_t part = part_of(f), count = f->splats->count;
+  int draws_splats = count || !f->triangles, is_single = f->constants.is_single_pass;
+  conic_status status = conic_progress(f->opencl->context, "render", 0.0);
+  if (status == CONIC_OK)
+    status = conic_frame_begin(f);
+  if (status == CONIC_OK && f->triangles)
+    status = conic_frame_draw_triangles(f);
+  if (status == CONIC_OK && draws_splats && !is_single)
+    status = walk_parts(f, WALK_VISIBILITY, &part);
+  if (status == CONIC_OK && draws_splats && (is_single || f->n < count))
+    status = walk_parts(f, WALK_ACCUMULATE, &part);
+  return status == CONIC_OK && f->triangles ? conic_frame_add_triangles(f) : status;
+}
+
 conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
-                              const conic_finish *finish, conic_image *image, conic_render_statistics *statistics) {
+                              struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
+                              conic_render_statistics *statistics) {
   conic_opencl *opencl = (conic_opencl *)backend;
-  conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .image = image};
+  conic_frame f = {.opencl = opencl, .view = view, .splats = splats, .triangles = triangles, .image = image};
   memset(opencl->queue.ms, 0, sizeof opencl->queue.ms);
   set_finish(finish, &f.constants);
-  size_t part = part_of(&f);
-  conic_status status = conic_frame_begin(&f);
-  if (status == CONIC_OK && !f.constants.is_single_pass)
-    status = walk_parts(&f, WALK_VISIBILITY, &part);
-  if (status == CONIC_OK && (f.constants.is_single_pass || f.n < splats->count))
-    status = walk_parts(&f, WALK_ACCUMULATE, &part);
+  conic_status status = triangles ? conic_frame_set_up_triangles(&f, finish->options->isa) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = draw_all(&f);
   if (status == CONIC_OK)
     status = conic_frame_end(&f, &statistics->pixels_covered);
+  if (status == CONIC_OK && triangles)
+    status = conic_frame_count_triangles(&f, statistics);
   conic_status closed = conic_frame_close(&f);
   status = status == CONIC_OK ? closed : status;
   if (status != CONIC_OK)

@@ -10,6 +10,7 @@ typedef struct conic_frame {
   conic_opencl *opencl;
   const conic_view *view;
   const conic_splats *splats;
+  struct conic_triangle_frame *triangles; /* null: none */
   conic_image *image;
   conic_device_frame constants;
   uint32_t n_tiles;
@@ -19,6 +20,7 @@ typedef struct conic_frame {
   uint64_t n_references;
   uint64_t counts[CONIC_DEVICE_N_COUNTS]; /* of all parts of the first walk over them */
   uint64_t n_fragments, n_drawn_in_all;
+  double triangle_bytes; /* of the device's memory */
 } conic_frame;
 
 /* Makes ready what all parts share. */
@@ -35,6 +37,18 @@ conic_status conic_frame_end(conic_frame *frame, uint64_t *n_covered);
 /* Waits for all; after that, also after a failure, the device knows nothing more of the image and the splats. */
 conic_status conic_frame_close(conic_frame *frame);
 
+/* Triangles (opencl/frame_triangles.c). Their host's part, before everything else: they are set up by plain C on the
+ * host's threads. Errors: UNSUPPORTED (no double precision), MEMORY (the device cannot hold them). */
+conic_status conic_frame_set_up_triangles(conic_frame *frame, conic_isa isa);
+/* Before the splats: the nearest triangle of every pixel, and the thresholds that the splats begin with. */
+conic_status conic_frame_draw_triangles(conic_frame *frame);
+/* After them: the triangles that are seen to the sums, and the picture. */
+conic_status conic_frame_add_triangles(conic_frame *frame);
+conic_status conic_frame_count_triangles(const conic_frame *frame, conic_render_statistics *statistics);
+
+/* Of a device's memory, what a frame may take. */
+#define CONIC_SHARE_OF_MEMORY 0.75
+
 /* What the stages share: */
 
 static inline conic_argument conic_frame_argument(const conic_frame *frame, int buffer) {
@@ -43,12 +57,21 @@ static inline conic_argument conic_frame_argument(const conic_frame *frame, int 
 
 /* Room in a buffer for count × size bytes. */
 conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count, size_t size);
-/* Runs a kernel over a row of work-items; one is a group on a CPU, where each has much to do. */
+/* Runs a kernel over a row of work-items; one is a group on a CPU and by tiles, where each has much to do. */
 conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items);
 /* places[i] = the sum of numbers[0 … i - 1], by the buffers' names; places[n] is the total, which comes back. */
 conic_status conic_frame_scan(const conic_frame *frame, conic_stage stage, uint32_t n, int numbers, int places,
                               uint64_t *total);
+/* Runs a kernel of the raster: a tile or a pixel a work-item. */
+conic_status conic_frame_run_raster(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
+                                    const conic_argument *arguments, int n_arguments);
+/* Tells the raster's kernels about the frame and the part of its splats that is on the device. */
+conic_status conic_frame_write_constants(conic_frame *frame);
+/* The arguments for the image's planes, and how many they are. */
+enum { CONIC_FRAME_PLANE_ARGUMENTS = 3 + CONIC_N_DRAWN_PLANES };
+int conic_frame_planes(const conic_frame *frame, conic_argument *to);
+conic_status conic_frame_clear_tiles(const conic_frame *frame, int buffer);
 /* Adds what the tiles have counted in a buffer to the sum. */
 conic_status conic_frame_add_tiles(const conic_frame *frame, int buffer, uint64_t *sum);
 
@@ -57,6 +80,7 @@ conic_status conic_frame_project_on_host(conic_frame *frame);
 
 /* The slot of the backend. */
 conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, const conic_splats *splats,
-                              const conic_finish *finish, conic_image *image, conic_render_statistics *statistics);
+                              struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
+                              conic_render_statistics *statistics);
 
 #endif

@@ -1,7 +1,7 @@
 /* From records to pixels: the tiles' lists, and the passes over them. */
 #include "opencl/frame.h"
 
-enum { ARGUMENTS_OF_RECORDS = 8, ARGUMENTS_OF_PLANES = 10 };
+enum { ARGUMENTS_OF_RECORDS = 8 };
 
 /* Chunks that are counted and filled at the same time: enough of them for all units, few enough for their counts. */
 static uint32_t chunks_of(const conic_frame *f) {
@@ -70,13 +70,13 @@ static int records(const conic_frame *f, conic_argument *to) {
   return ARGUMENTS_OF_RECORDS;
 }
 
-static int planes(const conic_frame *f, conic_argument *to) {
+int conic_frame_planes(const conic_frame *f, conic_argument *to) {
   to[0] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_X);
   to[1] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_Y);
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     to[2 + plane] = conic_frame_argument(f, CONIC_BUFFER_PLANES + plane);
   to[2 + CONIC_N_DRAWN_PLANES] = conic_frame_argument(f, CONIC_BUFFER_N_COVERED);
-  return ARGUMENTS_OF_PLANES;
+  return CONIC_FRAME_PLANE_ARGUMENTS;
 }
 
 /* What pass 1 tells pass 2 where a tile is a work-item. */
@@ -88,8 +88,8 @@ static int masks(const conic_frame *f, conic_argument *to) {
 }
 
 /* A tile or a pixel a work-item. */
-static conic_status run_raster(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
-                               const conic_argument *arguments, int n_arguments) {
+conic_status conic_frame_run_raster(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
+                                    const conic_argument *arguments, int n_arguments) {
   if (f->opencl->work == CONIC_OPENCL_WORK_TILES)
     return conic_queue_run(&f->opencl->queue, stage, f->opencl->kernels[kernel], arguments, n_arguments,
                            (const size_t[2]){f->n_tiles, 1}, (const size_t[2]){1, 1});
@@ -99,14 +99,14 @@ static conic_status run_raster(const conic_frame *f, conic_stage stage, conic_ke
                          (const size_t[2]){CONIC_DEVICE_GROUP, CONIC_DEVICE_GROUP});
 }
 
-static conic_status write_constants(conic_frame *f) {
+conic_status conic_frame_write_constants(conic_frame *f) {
   f->constants.is_first = f->first == 0;
   f->constants.is_last = f->first + f->n == f->splats->count;
   return conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_FRAME], &f->constants,
                            sizeof f->constants);
 }
 
-static conic_status clear_tiles(const conic_frame *f, int buffer) {
+conic_status conic_frame_clear_tiles(const conic_frame *f, int buffer) {
   return conic_queue_fill_zero(&f->opencl->queue, &f->opencl->buffers[buffer], f->n_tiles * sizeof(uint32_t));
 }
 
@@ -116,33 +116,33 @@ conic_status conic_frame_visibility(conic_frame *f) {
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_N_FRAGMENTS);
   n += masks(f, arguments + n);
-  conic_status status = write_constants(f);
+  conic_status status = conic_frame_write_constants(f);
   if (status == CONIC_OK)
-    status = clear_tiles(f, CONIC_BUFFER_N_FRAGMENTS);
+    status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_FRAGMENTS);
   if (status == CONIC_OK)
-    status = run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_KERNEL_VISIBILITY, arguments, n);
+    status = conic_frame_run_raster(f, CONIC_STAGE_VISIBILITY, CONIC_KERNEL_VISIBILITY, arguments, n);
   return status == CONIC_OK ? conic_frame_add_tiles(f, CONIC_BUFFER_N_FRAGMENTS, &f->n_fragments) : status;
 }
 
 conic_status conic_frame_accumulate(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + ARGUMENTS_OF_PLANES + 1];
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 2 + CONIC_FRAME_PLANE_ARGUMENTS + 1];
   int n = records(f, arguments), is_single = f->constants.is_single_pass, counts = CONIC_BUFFER_N_FRAGMENTS;
   arguments[n++] = conic_frame_argument(f, is_single ? counts : CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
-  n += planes(f, arguments + n);
+  n += conic_frame_planes(f, arguments + n);
   n += is_single ? 0 : masks(f, arguments + n);
-  conic_status status = write_constants(f);
+  conic_status status = conic_frame_write_constants(f);
   if (status == CONIC_OK && (!f->constants.is_first || !f->constants.is_last || f->constants.keeps_sums)) {
     status = conic_frame_room(f, CONIC_BUFFER_SUMS, f->n_tiles,
                               (size_t)f->opencl->tile * (size_t)f->opencl->tile * CONIC_N_SUMS * sizeof(float));
     arguments[ARGUMENTS_OF_RECORDS + 1] = conic_frame_argument(f, CONIC_BUFFER_SUMS);
   }
   if (status == CONIC_OK && is_single)
-    status = clear_tiles(f, counts);
+    status = conic_frame_clear_tiles(f, counts);
   if (status == CONIC_OK)
-    status = clear_tiles(f, CONIC_BUFFER_N_COVERED);
+    status = conic_frame_clear_tiles(f, CONIC_BUFFER_N_COVERED);
   if (status == CONIC_OK)
-    status =
-        run_raster(f, CONIC_STAGE_ACCUMULATE, is_single ? CONIC_KERNEL_NEAREST : CONIC_KERNEL_ACCUMULATE, arguments, n);
+    status = conic_frame_run_raster(f, CONIC_STAGE_ACCUMULATE,
+                                    is_single ? CONIC_KERNEL_NEAREST : CONIC_KERNEL_ACCUMULATE, arguments, n);
   return status == CONIC_OK && is_single ? conic_frame_add_tiles(f, counts, &f->n_fragments) : status;
 }

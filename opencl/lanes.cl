@@ -1,57 +1,10 @@
-/* The raster a tile a work-item, a block's 16 pixels a vector: for CPUs. */
+/* The splats' passes a tile a work-item, a block's 16 pixels a vector: for CPUs. */
+#include "opencl/lanes_tile.cl"
+
 #include "opencl/lanes_coverage.cl"
 
 /* So many references ahead records are called for. */
 #define LANES_AHEAD 12
-
-#define CONIC_DEVICE_TILE_BLOCKS (CONIC_DEVICE_TILE / 4)
-#define N_TILE_BLOCKS (CONIC_DEVICE_TILE_BLOCKS * CONIC_DEVICE_TILE_BLOCKS)
-
-typedef struct lanes_tile {
-  uint index;
-  int x, y; /* its first pixel */
-  uint first_block;
-  int is_at_border; /* pixels of it are outside of the image */
-  int width, height;
-} lanes_tile;
-
-static lanes_tile lanes_tile_of(const conic_device_frame *frame) {
-  lanes_tile t;
-  t.index = (uint)get_global_id(0);
-  t.x = (int)(t.index % (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
-  t.y = (int)(t.index / (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
-  t.first_block = (uint)(t.y / 4) * (uint)frame->n_blocks_x + (uint)(t.x / 4);
-  t.is_at_border = t.x + CONIC_DEVICE_TILE > frame->width || t.y + CONIC_DEVICE_TILE > frame->height;
-  t.width = frame->width;
-  t.height = frame->height;
-  return t;
-}
-
-/* Where block (column, row) of the tile lies in memory that is [block] of the whole image. */
-static ulong lanes_block(const lanes_tile *t, const conic_device_frame *frame, uint block) {
-  return t->first_block + (ulong)(block / CONIC_DEVICE_TILE_BLOCKS) * (ulong)frame->n_blocks_x +
-         block % CONIC_DEVICE_TILE_BLOCKS;
-}
-
-/* Its first pixel. */
-static int lanes_block_x(const lanes_tile *t, uint block) {
-  return t->x + 4 * (int)(block % CONIC_DEVICE_TILE_BLOCKS);
-}
-
-static int lanes_block_y(const lanes_tile *t, uint block) {
-  return t->y + 4 * (int)(block / CONIC_DEVICE_TILE_BLOCKS);
-}
-
-static int16 lanes_inside(const lanes_tile *t, int x, int y) {
-  return ((float)x + LANE_COLUMNS < (float)t->width) & ((float)y + LANE_ROWS < (float)t->height);
-}
-
-static uint lanes_sum(int16 ones) {
-  int8 a = ones.lo + ones.hi;
-  int4 b = a.lo + a.hi;
-  int2 c = b.lo + b.hi;
-  return (uint)(c.x + c.y);
-}
 
 /* A reference's splat. */
 typedef struct lanes_splat {
@@ -73,14 +26,6 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
   splat->column_last = blocks >> 4 & 15;
   splat->row_begin = blocks >> 8 & 15;
   splat->row_last = blocks >> 12;
-}
-
-/* Whether any lane is -1. */
-static int lanes_any(int16 mask) {
-  int8 a = mask.lo | mask.hi;
-  int4 b = a.lo | a.hi;
-  long2 c = as_long2(b);
-  return (c.x | c.y) != 0;
 }
 
 /* Its fragments in block (column, row) of the tile; 0 where it covers none of its pixels. */
@@ -131,7 +76,8 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
   lanes threshold[N_TILE_BLOCKS];
   int16 found = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
-    threshold[block] = frame.is_first ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
+    threshold[block] =
+        frame.is_first && !frame.has_triangles ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
   LANES_FOR_FRAGMENTS(
       ulong mask = 0;,
                      {
@@ -147,12 +93,6 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
     thresholds[lanes_block(&t, &frame, block)] = threshold[block];
   n_fragments[t.index] = lanes_sum(found);
 }
-
-/* The sums of a block, by CONIC_SUM_WEIGHT …; and whose fragment was the heaviest or nearest of this part. */
-typedef struct lanes_sums {
-  lanes values[CONIC_N_SUMS];
-  int16 taken; /* -1: none */
-} lanes_sums;
 
 static void lanes_blend(const conic_view *view, __global const conic_footprint *footprint,
                         __global const conic_surface *surface, uint i_footprint, const lanes_fragment *fragment,
@@ -175,14 +115,6 @@ static void lanes_count(__global const conic_surface *surface, const lanes_fragm
   s->values[CONIC_SUM_COUNT] = as_float16(as_int16(s->values[CONIC_SUM_COUNT]) - is_visible);
   s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment->iz : s->values[CONIC_SUM_NEAREST_IZ];
   s->values[CONIC_SUM_ID] = as_float16(is_nearest ? (int16)(int)surface->index : as_int16(s->values[CONIC_SUM_ID]));
-}
-
-/* The mean of a block's normals, and its length. */
-static lanes lanes_mean_normal(const lanes_sums *s, lanes mean[3]) {
-  lanes part = 1.0f / s->values[CONIC_SUM_WEIGHT];
-  for (int axis = 0; axis < 3; axis++)
-    mean[axis] = s->values[CONIC_SUM_NORMAL + axis] * part;
-  return sqrt((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
 }
 
 /* conic_plane_z of the splats taken, in the lanes that have one. */

@@ -1,12 +1,6 @@
 /* Whether a splat covers a block's 16 pixels, with what weight, and how deep: in every lane the same operations in the
  * same order as raster/coverage.h and core/kernel.h have. What does not concern a lane is masked by selection. */
 
-typedef float16 lanes;
-
-/* A lane's column and row in its block. */
-#define LANE_COLUMNS ((lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
-#define LANE_ROWS ((lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
-
 typedef struct lanes_fragment {
   lanes q, iz, plane_iz, scale;
   int16 is_covered;

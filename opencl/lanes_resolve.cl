@@ -145,7 +145,7 @@ static uint lanes_resolve(const conic_device_frame *frame, const lanes_sums *s, 
   return lanes_sum(-is_covered);
 }
 
-/* Of a part of the splats: on with the sums, or the picture where it is the last. */
+/* Of a part of the splats: on with the sums, or the picture where it is the last and no triangles follow. */
 static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, const lanes_sums *of_blocks,
                          __global lanes *sums, PIXEL_PLANES) {
   uint covered = 0;
@@ -157,7 +157,7 @@ static void lanes_finish(const conic_device_frame *frame, const lanes_tile *t, c
       for (int i = 0; i < CONIC_N_SUMS; i++)
         to[i] = s->values[i];
     }
-    if (!frame->is_last || x >= frame->width || y >= frame->height)
+    if (!frame->is_last || frame->has_triangles || x >= frame->width || y >= frame->height)
       continue;
     covered += lanes_resolve(frame, s, x, y, PIXEL_PLANES_PASSED);
   }

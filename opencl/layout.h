@@ -45,6 +45,30 @@ enum {
   CONIC_N_SUMS
 };
 
+/* A chunk of the frame's triangles: where its records and its entries in the tiles' lists begin. */
+typedef struct conic_device_triangle_chunk {
+  uint64_t first_record, first_entry;
+} conic_device_triangle_chunk;
+
+/* A texture: its levels' texels, and its materials' way to it, are told by how many bytes on from here they are. */
+#define CONIC_DEVICE_TEXTURE_LEVELS 17
+
+typedef struct conic_device_texture_level {
+  int32_t width, height;
+  uint64_t texels;
+} conic_device_texture_level;
+
+typedef struct conic_device_texture {
+  int32_t wrap, n_levels;
+  conic_device_texture_level levels[CONIC_DEVICE_TEXTURE_LEVELS];
+} conic_device_texture;
+
+typedef struct conic_device_material {
+  float color[3];
+  int32_t has_texture;
+  uint64_t texture;
+} conic_device_material;
+
 /* The frame as the raster's kernels want it. */
 typedef struct conic_device_frame {
   int32_t width, height;
@@ -59,6 +83,13 @@ typedef struct conic_device_frame {
   float light[3];
   float exposure;
   float background[4];
+  /* Where triangles are drawn, too: they are there before the splats' first part, and the picture is theirs to finish.
+   */
+  int32_t has_triangles;
+  int32_t has_splats; /* besides */
+  uint32_t n_triangle_chunks, n_materials;
+  uint32_t first_triangle_id;
+  float triangle_epsilon;
 } conic_device_frame;
 
 #endif

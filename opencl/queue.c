@@ -45,11 +45,16 @@ void conic_queue_release(conic_buffer *buffer) {
   buffer->bytes = 0;
 }
 
-conic_status conic_queue_write(conic_queue *queue, const conic_buffer *buffer, const void *from, size_t bytes) {
+conic_status conic_queue_write_at(conic_queue *queue, const conic_buffer *buffer, size_t at, const void *from,
+                                  size_t bytes) {
   if (bytes == 0)
     return CONIC_OK;
-  cl_int answer = clEnqueueWriteBuffer(queue->queue, buffer->memory, CL_TRUE, 0, bytes, from, 0, NULL, NULL);
+  cl_int answer = clEnqueueWriteBuffer(queue->queue, buffer->memory, CL_TRUE, at, bytes, from, 0, NULL, NULL);
   return conic_opencl_check(queue->context, answer, "clEnqueueWriteBuffer");
+}
+
+conic_status conic_queue_write(conic_queue *queue, const conic_buffer *buffer, const void *from, size_t bytes) {
+  return conic_queue_write_at(queue, buffer, 0, from, bytes);
 }
 
 conic_status conic_queue_read(conic_queue *queue, const conic_buffer *buffer, size_t at, void *to, size_t bytes) {

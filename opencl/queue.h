@@ -51,6 +51,9 @@ void conic_queue_release(conic_buffer *buffer);
 
 /* Both return when it is done. */
 conic_status conic_queue_write(conic_queue *queue, const conic_buffer *buffer, const void *from, size_t bytes);
+/* Likewise from byte `at` of the buffer on. */
+conic_status conic_queue_write_at(conic_queue *queue, const conic_buffer *buffer, size_t at, const void *from,
+                                  size_t bytes);
 conic_status conic_queue_read(conic_queue *queue, const conic_buffer *buffer, size_t at, void *to, size_t bytes);
 conic_status conic_queue_fill_zero(conic_queue *queue, const conic_buffer *buffer, size_t bytes);
 

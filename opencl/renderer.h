@@ -5,7 +5,8 @@
 #include "opencl/queue.h"
 #include "raster/backend.h"
 
-/* Those of setup.cl and of raster.cl; of the last three, the kind that suits the device. */
+/* Those of setup.cl, of raster.cl and of triangles.cl; of VISIBILITY and what follows, the kind that suits the device.
+ */
 typedef enum conic_kernel_name {
   CONIC_KERNEL_PROJECT,
   CONIC_KERNEL_PROJECT_LANES,
@@ -19,6 +20,8 @@ typedef enum conic_kernel_name {
   CONIC_KERNEL_VISIBILITY,
   CONIC_KERNEL_ACCUMULATE,
   CONIC_KERNEL_NEAREST,
+  CONIC_KERNEL_TRIANGLES,
+  CONIC_KERNEL_ADD_TRIANGLES,
   CONIC_N_KERNEL_NAMES
 } conic_kernel_name;
 
@@ -48,8 +51,26 @@ typedef enum conic_buffer_name {
   CONIC_BUFFER_N_COVERED,   /* a tile */
   CONIC_BUFFER_DIRECTIONS_X,
   CONIC_BUFFER_DIRECTIONS_Y,
+  CONIC_BUFFER_TRIANGLE_IZ,        /* [block][pixel]: of the nearest triangle; 0: there is none */
+  CONIC_BUFFER_TRIANGLE_NEAREST,   /* likewise: its record */
+  CONIC_BUFFER_TRIANGLE_FRAGMENTS, /* a tile: in two words */
+  CONIC_BUFFER_TRIANGLE_CHUNKS,
+  CONIC_BUFFER_TRIANGLE_MATERIALS, /* and textures */
   CONIC_BUFFER_PLANES,
-  CONIC_N_BUFFER_NAMES = CONIC_BUFFER_PLANES + CONIC_N_DRAWN_PLANES
+  /* Of the frame's triangles and their set: */
+  CONIC_BUFFER_TRIANGLE_RECORDS = CONIC_BUFFER_PLANES + CONIC_N_DRAWN_PLANES,
+  CONIC_BUFFER_TRIANGLE_ENTRIES,
+  CONIC_BUFFER_TRIANGLE_TILES,
+  CONIC_BUFFER_TRIANGLE_PIECES,
+  CONIC_BUFFER_TRIANGLE_CORNERS,
+  CONIC_BUFFER_TRIANGLE_NORMAL_CORNERS,
+  CONIC_BUFFER_TRIANGLE_TEXTURE_CORNERS,
+  CONIC_BUFFER_TRIANGLE_MATERIAL,
+  CONIC_BUFFER_TRIANGLE_POSITIONS,
+  CONIC_BUFFER_TRIANGLE_COLORS = CONIC_BUFFER_TRIANGLE_POSITIONS + 3,
+  CONIC_BUFFER_TRIANGLE_NORMALS = CONIC_BUFFER_TRIANGLE_COLORS + 3,
+  CONIC_BUFFER_TRIANGLE_COORDINATES = CONIC_BUFFER_TRIANGLE_NORMALS + 3,
+  CONIC_N_BUFFER_NAMES = CONIC_BUFFER_TRIANGLE_COORDINATES + 2
 } conic_buffer_name;
 
 typedef struct conic_opencl {
@@ -62,7 +83,9 @@ typedef struct conic_opencl {
   size_t part_splats; /* 0: by the device's memory */
   int keeps_sums;     /* for who wants to look at them */
   conic_queue queue;
-  cl_program setup, raster;
+  cl_device_id id;
+  char *cache_folder; /* null: built programs are kept nowhere */
+  cl_program setup, raster, triangles;
   cl_kernel kernels[CONIC_N_KERNEL_NAMES];
   conic_buffer buffers[CONIC_N_BUFFER_NAMES];
 } conic_opencl;
@@ -71,5 +94,9 @@ typedef struct conic_opencl {
  * conic_opencl_close. Errors: as conic_opencl_renderer_create. */
 conic_status conic_opencl_open(conic_context *context, const conic_opencl_options *options, conic_opencl **opened);
 void conic_opencl_close(conic_opencl *opencl);
+
+/* Builds what triangles need, if nobody needed it before. Errors: UNSUPPORTED (also where the device has no double
+ * precision), MEMORY. */
+conic_status conic_opencl_need_triangles(conic_opencl *opencl);
 
 #endif

@@ -8,6 +8,7 @@
 /* Words of OpenCL C: */
 #define kernel reconstruction
 #define constant constant_part
+#define half half_part
 /* and functions that it has already: */
 #define rotate conic_rotate
 #define dot conic_dot

@@ -9,9 +9,11 @@ typedef struct conic_backend conic_backend;
 
 struct conic_backend {
   /* Draws the frame and fills in what it has counted and timed: of the statistics all but near, epsilon and the
-   * frame's time. Errors: MEMORY, UNSUPPORTED, CANCELLED. */
+   * frame's time. `triangles` (null: none) are begun, and kept from frame to frame; the backend cuts them into tiles of
+   * its own and prepares them. Errors: MEMORY, UNSUPPORTED, CANCELLED. */
   conic_status (*draw)(conic_backend *backend, const conic_view *view, const conic_splats *splats,
-                       const conic_finish *finish, conic_image *image, conic_render_statistics *statistics);
+                       struct conic_triangle_frame *triangles, const conic_finish *finish, conic_image *image,
+                       conic_render_statistics *statistics);
   void (*destroy)(conic_backend *backend);
 };
 

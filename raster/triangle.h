@@ -11,6 +11,12 @@
 #include "raster/band.h"
 #include "raster/projected.h"
 
+/* Before the type of what a frame or a set of triangles holds: a device has a memory of its own for that, and names it
+ * here (opencl/triangle_set.cl). */
+#ifndef CONIC_STORED
+#define CONIC_STORED
+#endif
+
 #define CONIC_SUBPIXELS 256
 #define CONIC_SUBPIXEL_BITS 8
 

@@ -78,6 +78,7 @@ struct conic_triangle_frame {
   uint32_t *entries; /* records, counted from the chunk's first */
   size_t n_record_room, n_piece_room, n_entry_room;
   atomic_size_t n_records, n_pieces, n_entries; /* used, or needed where there is no room */
+  atomic_int is_uncountable;                    /* a chunk has more entries than 32 bits count */
   char *sorters;
   size_t sorter_bytes;
   conic_triangle_tile *tiles; /* a thread */
@@ -85,6 +86,10 @@ struct conic_triangle_frame {
 };
 
 typedef struct conic_triangle_frame conic_triangle_frame;
+
+static inline const conic_texture *conic_material_texture(const conic_material *material) {
+  return material->texture;
+}
 
 /* Sets what is drawn; `memory` must be of zero bytes or from the frame before. */
 void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *context, const conic_triangles *triangles,

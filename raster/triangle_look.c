@@ -15,7 +15,7 @@ static void take_piece(const conic_triangle_frame *frame, const conic_triangle_r
   look->is_piece = record->piece != CONIC_NO_PIECE;
   if (!look->is_piece)
     return;
-  const conic_triangle_piece *piece = &frame->pieces[record->piece];
+  const CONIC_STORED conic_triangle_piece *piece = &frame->pieces[record->piece];
   int second = record->is_swapped ? 2 : 1, third = 3 - second;
   for (int i = 0; i < 2; i++) {
     look->at[0][i] = piece->at[0][i];
@@ -29,7 +29,8 @@ static float usable(float value) {
   return value >= -CONIC_GREATEST_COLOR && value <= CONIC_GREATEST_COLOR ? value : 0.0f;
 }
 
-static void take_color(const float *values, const uint32_t corners[3], int channel, conic_triangle_look *look) {
+static void take_color(const CONIC_STORED float *values, const uint32_t corners[3], int channel,
+                       conic_triangle_look *look) {
   float first = usable(values[corners[0]]);
   look->color[0][channel] = first;
   look->color[1][channel] = usable(values[corners[1]]) - first;
@@ -37,7 +38,8 @@ static void take_color(const float *values, const uint32_t corners[3], int chann
 }
 
 /* The attribute's component at three corners, as the first and differences from it. */
-static void take(const float *values, const uint32_t corners[3], float *first, float *second, float *third) {
+static void take(const CONIC_STORED float *values, const uint32_t corners[3], float *first, float *second,
+                 float *third) {
   *first = values[corners[0]];
   *second = values[corners[1]] - *first;
   *third = values[corners[2]] - *first;
@@ -61,7 +63,7 @@ static void find_face(const conic_triangle_frame *frame, const uint32_t corners[
 }
 
 /* A piece's attributes are the triangle's; the others' corners may have changed places. */
-static void in_record_order(const conic_triangle_record *record, const uint32_t from[3], uint32_t to[3]) {
+static void in_record_order(const conic_triangle_record *record, const CONIC_STORED uint32_t *from, uint32_t to[3]) {
   int is_swapped = record->is_swapped && record->piece == CONIC_NO_PIECE;
   to[0] = from[0];
   to[1] = from[is_swapped ? 2 : 1];
@@ -70,12 +72,12 @@ static void in_record_order(const conic_triangle_record *record, const uint32_t 
 
 static void take_material(const conic_triangles *t, const conic_triangle_record *record, conic_triangle_look *look) {
   uint32_t index = record->index, corners[3];
-  const conic_material *material = &t->materials[t->material ? t->material[index] : 0];
+  const CONIC_STORED conic_material *material = &t->materials[t->material ? t->material[index] : 0];
   in_record_order(record, t->texture_corners ? t->texture_corners[index] : t->corners[index], corners);
   for (int k = 0; k < 3; k++)
     for (int channel = 0; channel < 3; channel++)
       look->color[k][channel] *= material->color[channel];
-  look->texture = t->texture_coordinate[0] ? material->texture : NULL;
+  look->texture = t->texture_coordinate[0] ? conic_material_texture(material) : NULL;
   for (int axis = 0; axis < 2 && look->texture; axis++)
     take(t->texture_coordinate[axis], corners, &look->uv[0][axis], &look->uv[1][axis], &look->uv[2][axis]);
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "raster/coverage.h"
-#include "raster/triangle_look.h"
+#include "raster/triangle_pixel.h"
 
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,
                              conic_band *band) {
@@ -136,85 +136,16 @@ void conic_triangle_rank_block(const conic_band *band, int block) {
   }
 }
 
-/* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
- * pixel, where that is asked for. */
-typedef struct place {
-  float at[2], by_x[2], by_y[2];
-} place;
-
-static float at_least_zero(float x) {
-  return x > 0.0f ? x : 0.0f;
-}
-
-static void find_place(const conic_triangle_look *look, float column, float row, place *p) {
-  float iz = conic_affine_at(&look->iz, column, row), at[2], by_x[2], by_y[2];
-  iz = iz > look->iz_far ? iz : look->iz_far;
-  iz = iz < look->iz_near ? iz : look->iz_near;
-  float z = 1.0f / iz;
-  const conic_affine *weights[2] = {&look->first, &look->second};
-  for (int i = 0; i < 2; i++) {
-    at[i] = at_least_zero(conic_affine_at(weights[i], column, row) * z);
-    at[i] = at[i] < 1.0f ? at[i] : 1.0f;
-    by_x[i] = (weights[i]->by_x - at[i] * look->iz.by_x) * z;
-    by_y[i] = (weights[i]->by_y - at[i] * look->iz.by_y) * z;
-  }
-  for (int i = 0; i < 2; i++) {
-    p->at[i] = look->is_piece ? look->at[0][i] + (at[0] * look->at[1][i] + at[1] * look->at[2][i]) : at[i];
-    p->by_x[i] = look->is_piece ? by_x[0] * look->at[1][i] + by_x[1] * look->at[2][i] : by_x[i];
-    p->by_y[i] = look->is_piece ? by_y[0] * look->at[1][i] + by_y[1] * look->at[2][i] : by_y[i];
-  }
-}
-
-static void find_color(const conic_triangle_look *look, const place *p, float color[3]) {
-  float uv[2], along[2], across[2], texel[3];
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] =
-        look->color[0][channel] + (p->at[0] * look->color[1][channel] + p->at[1] * look->color[2][channel]);
-  if (!look->texture)
-    return;
-  for (int i = 0; i < 2; i++) {
-    uv[i] = look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]);
-    along[i] = p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i];
-    across[i] = p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i];
-  }
-  conic_texture_sample(look->texture, uv, along, across, texel);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] *= texel[channel];
-}
-
-/* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
-static void find_normal(const conic_triangle_look *look, const place *p, const float world_from_cam[3][3], float dx,
-                        float dy, float normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = look->face[axis];
-  if (look->has_normals) {
-    float mean[3], scale;
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] = look->normal[0][axis] + (p->at[0] * look->normal[1][axis] + p->at[1] * look->normal[2][axis]);
-    float squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2];
-    scale = 1.0f / sqrtf(squared);
-    for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
-      normal[axis] = mean[axis] * scale;
-  }
-  float away = 0.0f;
-  for (int i = 0; i < 3; i++) {
-    const float *m = world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
-}
-
 void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
                              const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
                              float normal[3]) {
   int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
   conic_triangle_look look;
-  place p;
+  conic_triangle_weights weights;
   conic_triangle_look_at(frame, record, x - column, y - row, &look);
-  find_place(&look, (float)column, (float)row, &p);
-  find_color(&look, &p, color);
-  find_normal(&look, &p, world_from_cam, ray[0], ray[1], normal);
+  conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
+  conic_triangle_look_color(&look, &weights, color);
+  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], normal);
 }
 
 /* Lists the records that a row sees, each once or little more often. */

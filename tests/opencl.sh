@@ -45,7 +45,8 @@ same() { # WHAT, RENDER'S ARGUMENTS …: the CPU's picture and the device's
   for file in cpu*.pfm; do
     cmp -s "$file" "${file/cpu/device}" || fail "$what: $file differs"
   done
-  for key in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered near epsilon; do
+  for key in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered near epsilon \
+    triangles_culled triangles_skipped triangles_drawn triangle_fragments; do
     [[ $(grep "\"$key\"" cpu.json) == "$(grep "\"$key\"" device.json)" ]] || fail "$what: $key differs"
   done
   diff <(sed -n '/"hash"/,/}/p' cpu.json) <(sed -n '/"hash"/,/}/p' device.json) > /dev/null || fail "$what: a hash differs"
@@ -68,6 +69,14 @@ if [[ -f $data/lion.ply ]]; then
 else
   echo "lion is left out: $data/lion.ply is not there"
 fi
+
+# Meshes as triangles, whose program nobody needed before.
+[[ -z $(ls cache/conic/triangles-*.bin 2> /dev/null) ]] || fail "the triangles' program was built for splats"
+printf 'v %s 0 2\nv 0.9 %s 0\nv -1 1 0.3\nv 0.1 -1 0.2\nf 1 2 3\nf 1 2 4\nf 4 3 1\nf 2 3 4\n' 0.2 0.4 > tetrahedron.obj
+same "mesh" tetrahedron.obj --as mesh --size 120x90
+same "mesh, samples" tetrahedron.obj --as mesh --size 50x40 --samples 2 --passes 1 --cull back
+[[ ! -f $data/spot.obj ]] || same "spot" "$data/spot.obj" --as mesh --size 200x150
+ls cache/conic/triangles-*.bin > /dev/null || fail "the triangles' program was not kept"
 
 # What was built is kept, whole; what is not whole is built anew.
 ls cache/conic/setup-*.bin cache/conic/raster-*.bin > /dev/null || fail "no program was kept"

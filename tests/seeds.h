@@ -6,7 +6,8 @@
 #include "tests/las_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, las, xyz, camera, pfm, exr, cot, chy */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,
+                         chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -124,6 +125,12 @@ static inline void seeds_all_text(seed_set *set) {
              "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 \\\n 0\nv 0 1 0 1\nvt 0.5 0.5\nvn 0 0 1\n"
              "f 1/1/1 2/1/1 3/1/1\nf -4//-1 3//1 4//1\nf 1 2 3 4\no thing\ns off\n");
   seeds_text(set, "obj", "obj", "v 589500.5 231300.25 1e7\nv 589501 231300 1e7\nv 589501 231301 1e7\nf 1 2 3\n");
+  seeds_text(
+      set, "obj", "obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0.5\nusemtl red\nf 1/1 2/2 3/-1\nusemtl plain\nf 1 2 3\nf 3/2 2 1\n");
+  seeds_text(set, "mtl", "mtl",
+             "# by hand\nnewmtl red\nKd 0.5 0.25 1e-3\nmap_Kd -clamp on -s 1 1 1 gone.png\nnewmtl other\nKd 1\n");
+  seeds_text(set, "mtl", "mtl", "newmtl plain\nKd .7\nNs 3\nillum 2\nmap_Kd /proc/self/gone\n");
   seeds_text(set, "xyz", "xyz", "# by hand\n0 0 0\n1 2 3\n-1e3 .5 +7\n");
   seeds_text(set, "xyz", "xyz", "// X,Y,Z,R,G,B\n0,0,0,255,0,10\n1,2,3,0,1,2\n");
   seeds_text(set, "xyz", "pts", "3\n0 0 0 -100 255 0 10\n1 2 3 50 0 1 2\n5 6 7 0 1 2 3\n");
@@ -249,6 +256,39 @@ static inline void seeds_hybrid(seed_set *set, conic_context *context, int is_ga
   seeds_add(set, "chy", "chy", 0, bytes, n_bytes);
 }
 
+/* Layered point clouds, likewise; none where this build cannot write them. */
+static inline void seeds_layers(seed_set *set, conic_context *context, size_t n, unsigned fields) {
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.lpc");
+  conic_layers_options options;
+  conic_layers_builder *builder;
+  conic_splats splats;
+  conic_layers_options_init(&options);
+  options.cloud_size = 64;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_NORMALS | fields, &splats) != CONIC_OK)
+    exit(1);
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)((i * (size_t)(7 + 4 * axis)) % 31);
+      splats.normal[axis][i] = axis == (int)(i % 3) ? 1.0f : 0.25f;
+      if (splats.color[0])
+        splats.color[axis][i] = (float)(i % 7) / 6.0f;
+    }
+  conic_status status = conic_layers_builder_open(context, path, &options, &builder);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_append(builder, &splats);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_finish(builder, NULL);
+  conic_splats_release(context, &splats);
+  if (status == CONIC_ERROR_UNSUPPORTED)
+    return;
+  FILE *file = status == CONIC_OK ? fopen(path, "rb") : NULL;
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -260,6 +300,8 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);
   seeds_hybrid(set, context, 1);
+  seeds_layers(set, context, 1, 0);
+  seeds_layers(set, context, 300, CONIC_SPLATS_COLORS);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
   seeds_picture(set, context, "exr", 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);

@@ -1,6 +1,7 @@
 /* Every reader against sound files that were spoiled: cut at every byte, and every byte replaced. Whatever it is, it is
  * read, or refused with one line that names the file and a place; memory stays in proportion to the file, and all of it
  * comes back. The program's side of bad input is bad_input.sh. */
+#include "core/material_file.h"
 #include "tests/random.h"
 #include "tests/seeds.h"
 
@@ -61,6 +62,18 @@ static int is_picture(const char *target) {
   return 0;
 }
 
+/* A file of the materials that the seeds name. */
+static conic_status read_materials(conic_context *context, const char *path) {
+  static char names[] = "\0red\0plain";
+  const conic_texts texts = {names, sizeof names, sizeof names, 3};
+  conic_material materials[3];
+  memset(materials, 0, sizeof materials);
+  conic_status status = conic_material_file_read(context, path, &texts, materials);
+  for (int i = 0; i < 3; i++)
+    conic_texture_destroy(materials[i].texture);
+  return status;
+}
+
 static conic_status read_target(conic_context *context, const char *target, const char *path) {
   conic_model model;
   conic_camera camera;
@@ -74,6 +87,12 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "lpc") == 0) {
+    conic_layers_info info;
+    return conic_layers_describe(context, path, &info);
+  }
+  if (strcmp(target, "mtl") == 0)
+    return read_materials(context, path);
   if (strcmp(target, "chy") == 0) {
     conic_hybrid *hybrid;
     status = conic_hybrid_read(context, path, &hybrid);
@@ -86,7 +105,10 @@ static conic_status read_target(conic_context *context, const char *target, cons
       conic_image_release(context, &image);
     return status;
   }
-  status = conic_model_read(context, path, NULL, &model);
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.keeps_faces = strcmp(target, "obj") == 0;
+  status = conic_model_read(context, path, &options, &model);
   for (size_t i = 0; i < model.n_triangles; i++)
     for (int corner = 0; corner < 3; corner++)
       CHECK(model.triangles[i][corner] < model.points.count);

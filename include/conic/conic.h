@@ -9,6 +9,7 @@
 #include "conic/hybrid.h"
 #include "conic/image.h"
 #include "conic/layers.h"
+#include "conic/layers_draw.h"
 #include "conic/model.h"
 #include "conic/octree.h"
 #include "conic/opencl.h"

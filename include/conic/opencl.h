@@ -16,7 +16,7 @@ typedef struct conic_opencl_device {
   int i_platform, i_device; /* its name is opencl:P.D */
   char name[128], platform[128], version[128], driver[128];
   int is_cpu;
-  int has_double;       /* else the host projects the splats for it */
+  int has_double;       /* else the host projects the splats for it, and it draws no triangles */
   int rounds_correctly; /* division and square root; else its pictures may be others */
   int n_compute_units;
   uint64_t memory_bytes, greatest_buffer_bytes;
@@ -46,9 +46,9 @@ typedef struct conic_opencl_options {
 
 CONIC_API void conic_opencl_options_init(conic_opencl_options *options);
 
-/* A renderer that draws on the device. On success the caller owns *renderer, and *device (which may be null) says what
- * draws. Errors: ARGUMENT (a name that is none), UNSUPPORTED (no such device, it does not round correctly, it cannot
- * build the programs, this build has no OpenCL), MEMORY. */
+/* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, and *device (which
+ * may be null) says what draws. Errors: ARGUMENT (a name that is none), UNSUPPORTED (no such device, it does not round
+ * correctly, it cannot build the programs, this build has no OpenCL), MEMORY. */
 CONIC_API conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
                                                     conic_opencl_device *device, conic_renderer **renderer);
 

@@ -120,7 +120,7 @@ CONIC_API double conic_drawing_near(const conic_drawing *drawing);
  * the number of splats + j. Triangles with a vertex that is not finite are skipped and counted. With splats alone the
  * picture is conic_render_samples' own, bit for bit. Errors: as there; INPUT where triangles have arrays
  * missing or indices out of range (conic_triangles_check), UNSUPPORTED where the renderer draws by a device that knows
- * no triangles. */
+ * no triangles, MEMORY where the device cannot hold them. */
 CONIC_API conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer,
                                             const conic_drawing *drawing, const conic_camera *camera,
                                             const conic_render_options *options, int samples, conic_image *image,

@@ -4,5 +4,6 @@
 
 #define sqrtf(x) sqrt((float)(x))
 #define fabsf(x) fabs((float)(x))
+#define floorf(x) floor((float)(x))
 
 #endif

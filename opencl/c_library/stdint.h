@@ -10,6 +10,7 @@ typedef int int32_t;
 typedef long int64_t;
 
 #define UINT32_C(n) n##u
+#define INT64_C(n) n##l
 #define UINT32_MAX 0xffffffffu
 
 #endif

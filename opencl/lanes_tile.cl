@@ -1,0 +1,78 @@
+/* Where a tile is a work-item: its blocks of 16 pixels, each a vector, and what they add up. */
+
+typedef float16 lanes;
+
+/* A lane's column and row in its block. */
+#define LANE_COLUMNS ((lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
+#define LANE_ROWS ((lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+
+#define CONIC_DEVICE_TILE_BLOCKS (CONIC_DEVICE_TILE / 4)
+#define N_TILE_BLOCKS (CONIC_DEVICE_TILE_BLOCKS * CONIC_DEVICE_TILE_BLOCKS)
+
+typedef struct lanes_tile {
+  uint index;
+  int x, y; /* its first pixel */
+  uint first_block;
+  int is_at_border; /* pixels of it are outside of the image */
+  int width, height;
+} lanes_tile;
+
+static lanes_tile lanes_tile_of(const conic_device_frame *frame) {
+  lanes_tile t;
+  t.index = (uint)get_global_id(0);
+  t.x = (int)(t.index % (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
+  t.y = (int)(t.index / (uint)frame->n_tiles_x) * CONIC_DEVICE_TILE;
+  t.first_block = (uint)(t.y / 4) * (uint)frame->n_blocks_x + (uint)(t.x / 4);
+  t.is_at_border = t.x + CONIC_DEVICE_TILE > frame->width || t.y + CONIC_DEVICE_TILE > frame->height;
+  t.width = frame->width;
+  t.height = frame->height;
+  return t;
+}
+
+/* Where block (column, row) of the tile lies in memory that is [block] of the whole image. */
+static ulong lanes_block(const lanes_tile *t, const conic_device_frame *frame, uint block) {
+  return t->first_block + (ulong)(block / CONIC_DEVICE_TILE_BLOCKS) * (ulong)frame->n_blocks_x +
+         block % CONIC_DEVICE_TILE_BLOCKS;
+}
+
+/* Its first pixel. */
+static int lanes_block_x(const lanes_tile *t, uint block) {
+  return t->x + 4 * (int)(block % CONIC_DEVICE_TILE_BLOCKS);
+}
+
+static int lanes_block_y(const lanes_tile *t, uint block) {
+  return t->y + 4 * (int)(block / CONIC_DEVICE_TILE_BLOCKS);
+}
+
+static int16 lanes_inside(const lanes_tile *t, int x, int y) {
+  return ((float)x + LANE_COLUMNS < (float)t->width) & ((float)y + LANE_ROWS < (float)t->height);
+}
+
+static uint lanes_sum(int16 ones) {
+  int8 a = ones.lo + ones.hi;
+  int4 b = a.lo + a.hi;
+  int2 c = b.lo + b.hi;
+  return (uint)(c.x + c.y);
+}
+
+/* Whether any lane is -1. */
+static int lanes_any(int16 mask) {
+  int8 a = mask.lo | mask.hi;
+  int4 b = a.lo | a.hi;
+  long2 c = as_long2(b);
+  return (c.x | c.y) != 0;
+}
+
+/* The sums of a block, by CONIC_SUM_WEIGHT …; and whose fragment was the heaviest or nearest of this part. */
+typedef struct lanes_sums {
+  lanes values[CONIC_N_SUMS];
+  int16 taken; /* -1: none */
+} lanes_sums;
+
+/* The mean of a block's normals, and its length. */
+static lanes lanes_mean_normal(const lanes_sums *s, lanes mean[3]) {
+  lanes part = 1.0f / s->values[CONIC_SUM_WEIGHT];
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] = s->values[CONIC_SUM_NORMAL + axis] * part;
+  return sqrt((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
+}
