@@ -173,7 +173,7 @@ static inline void open_turned(desk *d, size_t n) {
 static inline void open_image(desk *d, unsigned planes) {
   d->image.width = d->view.width;
   d->image.height = d->view.height;
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     if (planes & 1u << plane)
       d->image.planes[plane] = room(d, (size_t)d->view.width * (size_t)d->view.height * sizeof(float) *
                                            (size_t)conic_plane_describe((conic_plane)plane)->n_channels);

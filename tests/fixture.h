@@ -4,7 +4,7 @@
 
 #include "tests/check.h"
 
-#define ALL_PLANES ((1u << CONIC_N_PLANES) - 1u)
+#define ALL_PLANES CONIC_DRAWN_PLANES
 
 typedef struct fixture {
   conic_context *context;

@@ -41,7 +41,7 @@ static inline void opencl_drop_clips(fixture *f) {
 
 /* Whether the pictures are the same in every bit; says where they first differ. */
 static inline int opencl_same(const conic_image *a, const conic_image *b, const char *what) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
     const conic_plane_description *about = conic_plane_describe((conic_plane)plane);
     size_t n = (size_t)a->width * (size_t)a->height * (size_t)about->n_channels, at = 0;
     const uint32_t *of_a = a->planes[plane], *of_b = b->planes[plane];

@@ -102,7 +102,7 @@ static inline void stability_agree_but(fixture *f, const char *name, double unst
     printf("%-44s %-7s rgba %.1e  Z %.1e  unstable %.3f %% of %zu\n", name, conic_method_name((conic_method)method),
            verdict.planes[CONIC_PLANE_RGBA].max_abs, verdict.planes[CONIC_PLANE_Z].max_abs, 100.0 * share,
            verdict.covered_pixels);
-    for (int i = 0; i < CONIC_N_PLANES; i++)
+    for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++)
       if (!(verdict.planes[i].is_compared && verdict.planes[i].max_abs <= verdict.planes[i].bound)) {
         fprintf(stderr, "%s, %s: plane %s is off by %g\n", name, conic_method_name((conic_method)method),
                 conic_plane_describe((conic_plane)i)->name, verdict.planes[i].max_abs);

@@ -56,7 +56,7 @@ static conic_status draw(conic_context *context, const conic_splats *splats, con
   conic_render_options_init(&options);
   conic_status status = conic_renderer_create(context, &renderer);
   if (status == CONIC_OK)
-    status = conic_image_allocate(context, camera->width, camera->height, (1u << CONIC_N_PLANES) - 1u, image);
+    status = conic_image_allocate(context, camera->width, camera->height, CONIC_DRAWN_PLANES, image);
   for (int frame = 0; frame < 2 && status == CONIC_OK; frame++) /* the second reuses the first one's memory */
     status = conic_render(renderer, splats, camera, &options, image, NULL);
   conic_renderer_destroy(renderer);

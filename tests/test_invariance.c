@@ -29,8 +29,8 @@ static void fill_hostile(fixture *f, size_t count) {
   }
 }
 
-static void hash_all(fixture *f, uint64_t hashes[CONIC_N_PLANES]) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+static void hash_all(fixture *f, uint64_t hashes[CONIC_N_DRAWN_PLANES]) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     hashes[plane] = conic_image_hash(&f->image, (conic_plane)plane);
 }
 
@@ -46,10 +46,10 @@ static void fill(fixture *f, int scene) {
 }
 
 /* Every instruction set that this machine has draws the same picture, and counts the same. */
-static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_PLANES]) {
+static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_DRAWN_PLANES]) {
   conic_render_statistics counted = f->statistics;
   for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
-    uint64_t hashes[CONIC_N_PLANES];
+    uint64_t hashes[CONIC_N_DRAWN_PLANES];
     if (!conic_tile_kernels_of((conic_isa)isa))
       continue;
     f->options.isa = (conic_isa)isa;
@@ -65,8 +65,8 @@ static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_P
 }
 
 /* A plane is the same whatever other planes are asked for beside it. */
-static void check_planes_alone(fixture *f, const uint64_t expected[CONIC_N_PLANES]) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+static void check_planes_alone(fixture *f, const uint64_t expected[CONIC_N_DRAWN_PLANES]) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
     conic_image image;
     CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, 1u << plane, &image));
     CHECK_OK(conic_render(f->renderer, &f->splats, &f->camera, &f->options, &image, NULL));
@@ -92,14 +92,14 @@ static void check_defined(const fixture *f) {
 
 int main(void) {
   static const int thread_counts[] = {1, 2, 7}, tiles[] = {64, 16, 32, 8};
-  uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_PLANES];
+  uint64_t reference[3][2][CONIC_N_METHODS][CONIC_N_DRAWN_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
     for (int scene = 0; scene < 3; scene++) {
       fill(&f, scene);
       for (int variant = 0; variant < 2 * CONIC_N_METHODS; variant++)
         for (int i_tile = 0; i_tile < (t == 0 ? 4 : 2); i_tile++) {
-          uint64_t hashes[CONIC_N_PLANES],
+          uint64_t hashes[CONIC_N_DRAWN_PLANES],
               *expected = reference[scene][variant / CONIC_N_METHODS][variant % CONIC_N_METHODS];
           f.options.tile = tiles[i_tile];
           f.options.passes = variant / CONIC_N_METHODS ? 1 : 3;

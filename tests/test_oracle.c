@@ -177,7 +177,7 @@ static outcome examine(fixture *f) {
 
 static void print_outcome(const char *name, const outcome *o) {
   printf("%s:", name);
-  for (int i = 0; i < CONIC_N_PLANES; i++)
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++)
     printf(" %s %.2g", conic_plane_describe((conic_plane)i)->name, o->verdict.planes[i].max_abs);
   printf("; unstable %zu of %zu:", o->verdict.unstable_pixels, o->verdict.covered_pixels);
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
@@ -190,7 +190,7 @@ static void check_method(fixture *f, const char *name, double unstable_share, co
   f->options.method = method;
   outcome o = examine(f);
   print_outcome(name, &o);
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) {
     CHECK(o.verdict.planes[i].is_compared);
     CHECK_NEAR(o.verdict.planes[i].max_abs, 0.0, o.verdict.planes[i].bound);
   }
@@ -333,7 +333,7 @@ static void test_frontal_wall(fixture *f) {
 
 /* What the comparison must see: a weight, a depth, a colour, an id, a count that is a little wrong; and NaN. */
 static void test_planted(fixture *f) {
-  static const double tilts[CONIC_N_PLANES] = {3e-4, 3e-5, 3e-4, 3e-4, 1e-3, 0.0, 0.0};
+  static const double tilts[CONIC_N_DRAWN_PLANES] = {3e-4, 3e-5, 3e-4, 3e-4, 1e-3, 0.0, 0.0};
   fixture_camera(f, 160, 120, 110.0);
   f->camera.cam_from_world[2][3] = 2.6;
   fixture_scene(f, CONIC_SCENE_SPHERE, 3000);
@@ -343,7 +343,7 @@ static void test_planted(fixture *f) {
   size_t at = 0;
   while (o.reference.unstable[at] || !(o.reference.planes[CONIC_PLANE_COUNT][at] > 2.0))
     at++;
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) {
     const conic_plane_description *about = conic_plane_describe((conic_plane)i);
     size_t where = at * (size_t)about->n_channels;
     uint32_t kept;
@@ -403,7 +403,7 @@ static void test_contract(fixture *f) {
     f->camera.cam_from_world[2][3] = 2.6;
     CHECK_OK(conic_oracle_render(alone, &f->splats, &f->camera, &f->options, (conic_oracle_question)question, &a));
     CHECK_OK(conic_oracle_render(f->context, &f->splats, &f->camera, &f->options, (conic_oracle_question)question, &b));
-    for (int i = 0; i < CONIC_N_PLANES; i++)
+    for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++)
       CHECK(memcmp(a.planes[i], b.planes[i],
                    1200 * sizeof(double) * (size_t)conic_plane_describe((conic_plane)i)->n_channels) == 0);
     CHECK(memcmp(a.unstable, b.unstable, 1200) == 0);

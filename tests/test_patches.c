@@ -281,15 +281,15 @@ static void test_near(fixture *f) {
 
 /* --- bits --- */
 
-static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_PLANES]) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_DRAWN_PLANES]) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     hashes[plane] = conic_image_hash(&f->image, (conic_plane)plane);
 }
 
 /* From afar all are splats, and the picture is theirs. */
 static void test_far(fixture *f) {
   static const double center[3] = {0, 0, 0}, direction[3] = {0.3, -0.5, -1.0};
-  uint64_t as_splats[CONIC_N_PLANES], as_patches[CONIC_N_PLANES];
+  uint64_t as_splats[CONIC_N_DRAWN_PLANES], as_patches[CONIC_N_DRAWN_PLANES];
   fill_torus(f, 4000);
   conic_patches *patches = lay(f, &f->splats, CONIC_ISA_AUTO);
   look_at(f, center, direction, 8.0, 160.0);
@@ -307,7 +307,7 @@ static void test_far(fixture *f) {
 static void test_bits(void) {
   static const int thread_counts[] = {1, 2, 7};
   static const double center[3] = {1.0, 0.2, 0.5}, direction[3] = {0.3, -0.5, -1.0}, other[3] = {-0.2, -0.5, -1.0};
-  uint64_t expected[CONIC_N_PLANES], hashes[CONIC_N_PLANES];
+  uint64_t expected[CONIC_N_DRAWN_PLANES], hashes[CONIC_N_DRAWN_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
     fill_torus(&f, 1500);
@@ -350,7 +350,7 @@ static void test_culling(fixture *f) {
   f->options.cull_back = 1;
   conic_patch_selection culled = draw(f, patches);
   size_t n_culled = culled.n_culled;
-  uint64_t hashes[CONIC_N_PLANES], all[CONIC_N_PLANES];
+  uint64_t hashes[CONIC_N_DRAWN_PLANES], all[CONIC_N_DRAWN_PLANES];
   hash_all(f, hashes);
   f->options.cull_back = 0;
   conic_patch_selection selection;

@@ -102,7 +102,7 @@ static void test_rolled(fixture *f) {
     stability_look(f, eye, forward, 0.5 * stability_pi);
     fixture_render(f);
     CHECK_OK(conic_image_allocate(f->context, 96, 96, ALL_PLANES, &turned));
-    for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+    for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
       size_t bytes = 4 * (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
       for (size_t y = 0; y < 96; y++)
         for (size_t x = 0; x < 96; x++)

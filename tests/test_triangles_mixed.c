@@ -126,16 +126,16 @@ static void check_order(void) {
   fixture_close(&f);
 }
 
-static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_PLANES + 1]) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+static void hash_all(const fixture *f, uint64_t hashes[CONIC_N_DRAWN_PLANES + 1]) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     hashes[plane] = conic_image_hash(&f->image, (conic_plane)plane);
-  hashes[CONIC_N_PLANES] = f->statistics.triangle_fragments * 1000003u + f->statistics.pixels_covered;
+  hashes[CONIC_N_DRAWN_PLANES] = f->statistics.triangle_fragments * 1000003u + f->statistics.pixels_covered;
 }
 
 /* Threads, tiles and instruction sets change nothing; with splats and without, blended and not. */
 static void check_identity(void) {
   static const int thread_counts[] = {1, 3};
-  uint64_t expected[2][2][2][CONIC_N_PLANES + 1];
+  uint64_t expected[2][2][2][CONIC_N_DRAWN_PLANES + 1];
   for (int i_threads = 0; i_threads < 2; i_threads++) {
     fixture f = fixture_open(thread_counts[i_threads]);
     for (int has_splats = 0; has_splats < 2; has_splats++) {
@@ -148,7 +148,7 @@ static void check_identity(void) {
       conic_triangles t = triangles_wild(&f, 2500);
       for (int variant = 0; variant < 2 * CONIC_N_ISAS * 4; variant++) {
         int isa = variant / 2 % CONIC_N_ISAS, samples = variant / 2 / CONIC_N_ISAS == 3 ? 2 : 1;
-        uint64_t hashes[CONIC_N_PLANES + 1], *of_first = expected[has_splats][variant % 2][samples - 1];
+        uint64_t hashes[CONIC_N_DRAWN_PLANES + 1], *of_first = expected[has_splats][variant % 2][samples - 1];
         if (!conic_tile_kernels_of((conic_isa)isa) || (samples > 1 && isa > 2))
           continue;
         f.options.passes = variant % 2 ? 1 : 3;
@@ -248,7 +248,7 @@ static void check_explained(int passes) {
 /* A drawing without triangles is conic_render's picture. */
 static void check_splats_alone(void) {
   fixture f = fixture_open(1);
-  uint64_t alone[CONIC_N_PLANES + 1], drawn[CONIC_N_PLANES + 1];
+  uint64_t alone[CONIC_N_DRAWN_PLANES + 1], drawn[CONIC_N_DRAWN_PLANES + 1];
   conic_triangles none;
   memset(&none, 0, sizeof none);
   fixture_scene(&f, CONIC_SCENE_KNOT, 5000);
