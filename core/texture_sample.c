@@ -13,8 +13,8 @@
 /* A footprint is no more than so many times as long as wide: a narrower one is widened. */
 #define GREATEST_RATIO 8.0f
 
-/* In texels of a level, the least half width of a footprint that is filtered on it, but for the first. The more, the less
- * the filter of a texel blurs, and the more texels a pixel reads. */
+/* In texels of a level, the least half width of a footprint that is filtered on it, but for the first. The more, the
+ * less the filter of a texel blurs, and the more texels a pixel reads. */
 #define LEAST_WIDTH 1.5f
 
 /* No sum of what is farther out than this has any digits left. */

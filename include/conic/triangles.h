@@ -88,8 +88,8 @@ CONIC_API conic_status conic_triangles_take(conic_context *context, conic_model 
 CONIC_API conic_status conic_triangles_read(conic_context *context, const char *path, conic_triangles *triangles);
 
 /* Appends `more` to `triangles`, rebased to its origin; arrays that only one of the two has are filled for the other
- * with what absence means. The textures of `more` move, and all of it where `triangles` is empty. Errors: MEMORY; `triangles` is then as it
- * was, and so is `more`. */
+ * with what absence means. The textures of `more` move, and all of it where `triangles` is empty. Errors: MEMORY;
+ * `triangles` is then as it was, and so is `more`. */
 CONIC_API conic_status conic_triangles_append(conic_context *context, conic_triangles *triangles,
                                               conic_triangles *more);
 
