@@ -47,7 +47,7 @@ static void close_pictures(bench_run *r) {
 /* A curve goes to pictures of gigabytes: it has the timed planes only. */
 static conic_status open_pictures(bench_run *r, const cli_bench_line *line) {
   unsigned timed = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_WEIGHT;
-  unsigned planes = r->job->is_curve ? timed : (1u << CONIC_N_PLANES) - 1u;
+  unsigned planes = r->job->is_curve ? timed : CONIC_DRAWN_PLANES;
   close_pictures(r);
   r->pictures.timed_planes = timed;
   conic_context *context = r->session->context;

@@ -48,13 +48,13 @@ void cli_bench_work_of(const conic_render_statistics *s, const conic_splats *spl
 
   /* Set-up: centres and axes of all, colours of what is drawn. Its records stay in the core's cache until they are
    * sorted. */
-  work[0] = (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats->opacity ? drawn : 0.0)),
-                             sizeof(conic_ray) * rays,
-                             FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
-                                 DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
+  work[0] =
+      (cli_bench_work){floats * (9.0 * n + 3.0 * drawn + (splats->opacity ? drawn : 0.0)), sizeof(conic_ray) * rays,
+                       FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
+                           DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
   /* Bins: the records in the order of their tiles; at least one entry a splat. */
-  work[1] = (cli_bench_work){
-      0.0, (sizeof(conic_footprint) + sizeof(conic_surface) + sizeof(conic_tile_entry)) * drawn, 2.0 * 8.0 * drawn};
+  work[1] = (cli_bench_work){0.0, (sizeof(conic_footprint) + sizeof(conic_surface) + sizeof(conic_tile_entry)) * drawn,
+                             2.0 * 8.0 * drawn};
   /* The passes: each record once, what was evaluated for the first is kept for the second, and sums stay at hand. */
   work[2] = (cli_bench_work){sizeof(conic_tile_entry) * drawn + footprints, 0.0,
                              (coverage + (passes == 1 ? KEEP_NEAREST : RAISE_THRESHOLD)) * fragments};

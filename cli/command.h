@@ -12,8 +12,8 @@ typedef struct cli_command {
   int (*run)(cli_session *session, int argc, char **argv);
 } cli_command;
 
-extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_mls, cli_render, cli_diff, cli_info,
-    cli_verify, cli_explain, cli_chart, cli_bench, cli_devices;
+extern const cli_command cli_make, cli_prepare, cli_octree, cli_layer, cli_mls, cli_hybrid, cli_render, cli_diff,
+    cli_info, cli_verify, cli_explain, cli_chart, cli_bench, cli_devices;
 
 /* The command of that name, or null. */
 const cli_command *cli_find_command(const char *name);

@@ -22,7 +22,7 @@ typedef struct diff_job {
 /* Whether both images have a plane that max_abs looks at. */
 static int has_common_values(const diff_job *job) {
   for (int i = 0; i < CONIC_N_PLANES; i++)
-    if (job->difference.planes[i].compared && i != CONIC_PLANE_ID && i != CONIC_PLANE_COUNT)
+    if (job->difference.planes[i].compared && !conic_plane_describe((conic_plane)i)->is_uint)
       return 1;
   return 0;
 }

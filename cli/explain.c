@@ -119,7 +119,7 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
 static void write_planes(cli_json *json, const explain_job *job) {
   size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
   cli_json_object(json, "planes");
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     size_t n = (size_t)plane->n_channels;
     double values[4];
@@ -243,8 +243,8 @@ static conic_status draw(cli_session *session, explain_job *job, const conic_spl
   conic_renderer *renderer;
   if (!job->is_pixel_given)
     return CONIC_OK;
-  conic_status status = conic_image_allocate(session->context, job->camera.width, job->camera.height,
-                                             (1u << CONIC_N_PLANES) - 1, &job->image);
+  conic_status status =
+      conic_image_allocate(session->context, job->camera.width, job->camera.height, CONIC_DRAWN_PLANES, &job->image);
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status != CONIC_OK)

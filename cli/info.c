@@ -6,6 +6,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/hybrid_info.h"
 #include "cli/json.h"
 #include "cli/layers_info.h"
 #include "cli/octree_info.h"
@@ -31,6 +32,10 @@ typedef struct info_job {
   conic_octree *octree;
   conic_octree_info info;
   conic_octree_defects broken;
+  /* of hybrid models */
+  conic_hybrid *hybrid;
+  conic_hybrid_info hybrid_info;
+  conic_hybrid_defects hybrid_broken;
   /* of layered point clouds */
   int is_layered;
   conic_layers_info layers;
@@ -141,6 +146,18 @@ static int read_octree(cli_session *session, info_job *job) {
   return cli_exit_of(status);
 }
 
+static int read_hybrid(cli_session *session, info_job *job) {
+  conic_status status = conic_hybrid_read(session->context, job->path, &job->hybrid);
+  if (status == CONIC_OK)
+    status = conic_hybrid_describe(job->hybrid, &job->hybrid_info);
+  if (status == CONIC_OK && job->is_check)
+    status = conic_hybrid_check(job->hybrid, &job->hybrid_broken);
+  const conic_hybrid_defects *broken = &job->hybrid_broken;
+  job->kind = "chy";
+  job->is_sound = broken->values + broken->spheres + broken->cones + broken->levels == 0;
+  return cli_exit_of(status);
+}
+
 static int read_layers(cli_session *session, info_job *job) {
   conic_status status = conic_layers_describe(session->context, job->path, &job->layers);
   if (status == CONIC_OK && job->is_check)
@@ -160,6 +177,8 @@ static int read_file(cli_session *session, info_job *job) {
   find_size(job);
   if (conic_octree_is_file(job->path))
     return read_octree(session, job);
+  if (conic_hybrid_is_file(job->path))
+    return read_hybrid(session, job);
   if (conic_layers_is_file(job->path))
     return read_layers(session, job);
   conic_status status = is_image ? conic_image_read(session->context, job->path, &job->image)
@@ -249,6 +268,8 @@ static int print_text(const info_job *job) {
     putchar('\n');
   if (job->octree)
     cli_octree_print(&job->info, job->is_check ? &job->broken : NULL);
+  else if (job->hybrid)
+    cli_hybrid_print(&job->hybrid_info, job->is_check ? &job->hybrid_broken : NULL);
   else if (job->is_layered)
     cli_layers_print(&job->layers, job->is_check ? &job->layer_defects : NULL);
   else if (has_image(job))
@@ -319,6 +340,8 @@ static int report(cli_session *session, const info_job *job) {
     cli_json_count(json, "bytes", job->bytes);
   if (job->octree)
     cli_octree_report(json, &job->info, job->is_check ? &job->broken : NULL);
+  else if (job->hybrid)
+    cli_hybrid_report(json, &job->hybrid_info, job->is_check ? &job->hybrid_broken : NULL);
   else if (job->is_layered)
     cli_layers_report(json, &job->layers, job->is_check ? &job->layer_defects : NULL);
   else if (has_image(job))
@@ -347,6 +370,7 @@ static int run(cli_session *session, int argc, char **argv) {
     conic_model_release(session->context, &job.model);
     conic_image_release(session->context, &job.image);
     conic_octree_destroy(job.octree);
+    conic_hybrid_destroy(job.hybrid);
   }
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

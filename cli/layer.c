@@ -1,5 +1,6 @@
 /* conic layer: samples in, of any number; a layered point cloud out. */
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -20,19 +21,31 @@ typedef struct layer_job {
   conic_layers_builder *builder;
   conic_layers_statistics statistics;
   const char *input; /* that is being read */
-  int has_begun, is_raw;
+  int may_read_again, has_begun, is_raw, is_counting;
+  uint64_t n_points;
   conic_repairs repairs;
 } layer_job;
 
-/* Points that have not got a normal each need their neighbours, and so to be read whole. */
+/* Estimating from the whole file takes about so much. */
+static const double estimate_bytes_a_point = 250.0;
+
+/* Points without normals and axes: where the whole file fits into memory, they are estimated from it, as elsewhere; the
+ * others get their normals while the cloud is built. */
 static conic_status take_batch(void *cookie, const conic_splats *batch) {
   layer_job *job = cookie;
-  job->is_raw = !job->has_begun && !batch->tangent_u[0] && !batch->normal[0];
+  int is_raw = !batch->tangent_u[0] && !batch->normal[0];
+  job->n_points += batch->count;
+  if (job->is_counting)
+    return CONIC_OK;
+  if (is_raw && !job->has_begun && job->may_read_again) {
+    job->is_raw = 1;
+    return CONIC_ERROR_CANCELLED;
+  }
   job->has_begun = 1;
-  return job->is_raw ? CONIC_ERROR_CANCELLED : conic_layers_builder_append(job->builder, batch);
+  return conic_layers_builder_append(job->builder, batch);
 }
 
-static conic_status read_raw(layer_job *job, const conic_read_options *options) {
+static conic_status read_whole(layer_job *job, const conic_read_options *options) {
   conic_context *context = job->session->context;
   conic_repairs repairs;
   conic_model model;
@@ -46,14 +59,29 @@ static conic_status read_raw(layer_job *job, const conic_read_options *options) 
   return status;
 }
 
+static conic_status read_raw(layer_job *job, const conic_read_options *options) {
+  conic_context *context = job->session->context;
+  job->n_points = 0;
+  job->is_counting = 1;
+  conic_status status = conic_model_stream(context, job->input, options, take_batch, job);
+  job->is_counting = job->may_read_again = 0;
+  if (status != CONIC_OK)
+    return status;
+  if ((double)job->n_points * estimate_bytes_a_point <= (double)job->options.memory_bytes)
+    return read_whole(job, options);
+  return conic_model_stream(context, job->input, options, take_batch, job);
+}
+
 static conic_status read_inputs(layer_job *job) {
   conic_status status = CONIC_OK;
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->options.cutoff;
   for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
+    struct stat found;
     job->input = job->inputs[i];
     job->has_begun = job->is_raw = 0;
+    job->may_read_again = strcmp(job->input, "-") != 0 && stat(job->input, &found) == 0 && S_ISREG(found.st_mode);
     status = conic_model_stream(job->session->context, job->input, &options, take_batch, job);
     if (job->is_raw)
       status = read_raw(job, &options);

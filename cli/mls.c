@@ -11,7 +11,7 @@ typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } ml
 static const char *const action_names[N_MLS_ACTIONS + 1] = {"project", "thin", "densify", NULL};
 static const char *const type_names[] = {"mls", "apss", NULL};
 static const char *const plane_names[] = {"full", "fast", NULL};
-static const char *const weight_names[] = {"gauss", "compact", NULL};
+static const char *const weight_names[] = {"gauss", "compact", "flat", NULL};
 static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 typedef struct mls_job {
@@ -290,7 +290,7 @@ static int run(cli_session *session, int argc, char **argv) {
        .type = CLI_CHOICE,
        .value = &job.weight,
        .argument = "W",
-       .help = "of a sample by its distance: gauss or compact [gauss]",
+       .help = "of a sample by its distance: gauss, compact or flat [gauss]",
        .choices = weight_names},
       {.name = "h",
        .type = CLI_PARSED,

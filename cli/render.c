@@ -112,6 +112,18 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   return status;
 }
 
+/* --clusters: the patches of a hybrid in false colours. */
+static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  double start = cli_seconds();
+  if (!job->clusters_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->clusters_path, i_frame);
+  conic_status status = path ? cli_hybrid_write_clusters(session, path, image) : CONIC_ERROR_MEMORY;
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 /* --deep: the splats behind the picture's pixels. */
 static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                const conic_camera *camera, const conic_image *image, int i_frame) {
@@ -137,8 +149,11 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
   double lod_ms = 0.0;
+  if (job->layers.file)
+    return cli_layers_draw(session, job, camera, renderer, image, statistics);
   conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
                         : job->patches ? cli_patch_select(job, camera, &lod_ms)
+                        : job->hybrid  ? cli_hybrid_select(job, camera, &lod_ms)
                                        : CONIC_OK;
   const conic_splats *chosen = job->octree    ? &job->selection.splats
                                : job->patches ? &job->patch_selection.splats
@@ -149,6 +164,8 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
                                   statistics);
   if (status == CONIC_OK && job->octree)
     conic_selection_name(&job->selection, image);
+  if (status == CONIC_OK && image->planes[CONIC_PLANE_CLUSTER])
+    conic_hybrid_name(&job->hybrid_selection, image);
   if (status == CONIC_OK && job->patches)
     conic_patch_selection_name(&job->patch_selection, image);
   statistics->ms.lod = lod_ms;
@@ -172,6 +189,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_clusters(session, job, image, i_frame);
   return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
@@ -179,6 +198,10 @@ static void print_summary(const cli_session *session, const cli_render_job *job)
   const conic_render_statistics *s = &job->statistics;
   if (!session->is_verbose)
     return;
+  if (s->triangles_in)
+    fprintf(stderr, "conic: %llu triangles: %llu drawn, %llu culled, %llu skipped\n",
+            (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+            (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
   fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
           (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
           (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);
@@ -210,6 +233,7 @@ static int run(cli_session *session, int argc, char **argv) {
   conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
+  job.layers.start_seconds = start;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
@@ -219,6 +243,8 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     cli_scene_release(session, &job, &splats);
     cli_lod_close(session, &job);
+    cli_layers_close(&job);
+    cli_hybrid_close(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

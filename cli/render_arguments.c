@@ -6,9 +6,11 @@
 #include "cli/render_job.h"
 
 static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", "patch", NULL};
+static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
-static const char *const as_words[] = {"points", "mesh", NULL};
+static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
+static const char *const only_words[] = {"triangles", "surfels", NULL};
 static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 /* Options whose words are checked after all have been read. */
@@ -125,7 +127,7 @@ static int parse_planes(const char *text, void *value) {
   unsigned *planes = value;
   *planes = 0;
   if (strcmp(text, "all") == 0) {
-    *planes = (1u << CONIC_N_PLANES) - 1;
+    *planes = CONIC_DRAWN_PLANES;
     return 1;
   }
   while (*text) {
@@ -151,8 +153,12 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
   if (job->camera_path && (raw->is_framing_given || job->is_up_given))
     return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
                      command);
-  if (job->texture_path && job->as != CLI_AS_MESH)
-    return cli_usage("%s: --texture lies on triangles; give --as mesh, too", command);
+  if (job->texture_path && job->as == CLI_AS_POINTS)
+    return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
+  if (job->as == CLI_AS_HYBRID && job->n_inputs != 1)
+    return cli_usage("%s: a hybrid is made of one mesh", command);
+  if (job->is_patch && (job->as != CLI_AS_POINTS || cli_hybrid_is_wanted(job)))
+    return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
   if (job->is_smooth && job->as != CLI_AS_MESH)
     return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
   if (raw->passes != 1 && raw->passes != 3)
@@ -181,20 +187,49 @@ static int check_deep(const cli_render_job *job) {
   return CLI_DONE;
 }
 
+static int check_layers(const cli_render_job *job) {
+  const cli_render_layers *layers = &job->layers;
+  if ((layers->progressive_path || layers->deadline > 0.0 || layers->is_given) && !cli_layers_is_wanted(job))
+    return cli_usage("render: --progressive, --deadline, --memory, --timeout and --occlusion are for a single .lpc, or "
+                     "the URL of one");
+  if (!cli_layers_is_wanted(job))
+    return CLI_DONE;
+  if (job->deep_path)
+    return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
+  if (layers->progressive_path && (job->is_turntable || job->repeat > 1))
+    return cli_usage("render: --progressive writes the pictures of one frame, not of a turntable or of --repeat");
+  return CLI_DONE;
+}
+
+/* What goes with a hybrid model. */
+static int check_hybrid(const cli_render_job *job) {
+  if (job->n_inputs != 1)
+    return cli_usage("render: a hybrid is drawn by itself");
+  if (job->budget)
+    return cli_usage("render: --budget needs a .cot; of a hybrid --error chooses");
+  if (job->deep_path)
+    return cli_usage("render: --deep lists splats, not triangles; a hybrid has both");
+  return CLI_DONE;
+}
+
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
-  const char *paths[CLI_MAX_OUTPUTS + 2];
+  const char *paths[CLI_MAX_OUTPUTS + 3];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path)
+  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
+      !job->layers.progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(paths[i] = job->outputs[i]);
   paths[job->n_outputs] = job->deep_path;
   paths[job->n_outputs + 1] = job->overdraw_path;
+  paths[job->n_outputs + 2] = job->clusters_path;
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
   if (answer == CLI_DONE && job->overdraw_path)
     answer = check_output(job->overdraw_path);
+  if (answer == CLI_DONE && job->clusters_path)
+    answer = check_output(job->clusters_path);
   if (answer != CLI_DONE)
     return answer;
   if (cli_lod_is_wanted(job) && job->deep_path)
@@ -203,15 +238,23 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return cli_usage("render: --deep lists splats, not triangles; give --as points");
   if (job->is_patch && (cli_lod_is_wanted(job) || job->deep_path))
     return cli_usage("render: --method patch draws samples of its own: not with --error, --budget or --deep");
-  if (job->is_patch && job->as == CLI_AS_MESH)
-    return cli_usage("render: --method patch draws points; not with --as mesh");
   if (job->error_px > 0.0 && job->budget)
     return cli_usage("render: --error and --budget are two ways to choose; give one of both");
-  if (cli_lod_is_wanted(job) && (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
-    return cli_usage("render: --error and --budget need a single .cot as input (conic octree makes one)");
+  if (cli_hybrid_is_wanted(job))
+    answer = check_hybrid(job);
+  else if (job->only_kind >= 0 || job->planes & 1u << CONIC_PLANE_CLUSTER)
+    return cli_usage("render: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid");
+  else if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) &&
+           (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
+    return cli_usage("render: --error and --budget need a single .cot or .lpc as input (conic octree and conic layer "
+                     "make them), and --error a .chy");
+  if (answer == CLI_DONE)
+    answer = check_layers(job);
+  if (answer != CLI_DONE)
+    return answer;
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  return cli_check_outputs(session, paths, job->n_outputs + 2);
+  return cli_check_outputs(session, paths, job->n_outputs + 3);
 }
 
 void cli_scene_defaults(cli_render_job *job) {
@@ -225,6 +268,9 @@ void cli_scene_defaults(cli_render_job *job) {
   job->degree = 3;
   job->n_frames = job->repeat = job->samples = 1;
   job->device.name = "cpu";
+  job->layers.memory_mib = 512;
+  job->layers.timeout = 15.0;
+  job->only_kind = -1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
 
@@ -265,7 +311,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &job->as, "WHAT",
-       "what a mesh is drawn as: points (a splat a vertex) or mesh (triangles) [points]", .choices = as_words},
+       "what a mesh is drawn as: points (a splat a vertex), mesh (triangles) or hybrid (both) [points]",
+       .choices = as_words},
       {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
@@ -292,8 +339,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
        .parse = parse_background},
       {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
-      {"aov", CLI_PARSED, &job->planes, "LIST", "planes: rgba,Z,N,albedo,weight,count,id or all [rgba,Z]",
-       .parse = parse_planes},
+      {"aov", CLI_PARSED, &job->planes, "LIST",
+       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = parse_planes},
       {"degree", CLI_INT, &job->degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE},
       {"h", CLI_PARSED, &job->h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
        .parse = cli_parse_length, .dashes = "--"},
@@ -325,6 +372,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
+  job->draws_layers = 1;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
@@ -333,13 +381,32 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"error", CLI_NUMBER, &job->error_px, "PX",
-       "of a .cot, no more splats than keep the error on the screen below this; 0: all [0]", 0, 65536},
-      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot, the N splats or fewer whose error is the least", 1,
+       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
+      {"only", CLI_CHOICE, &job->only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
+       .choices = only_words},
+      {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
+      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot or .lpc, the N splats or fewer whose error is the least", 1,
        4294967294.0},
+      {"progressive", CLI_TEXT, &job->layers.progressive_path, "DIR",
+       "of an .lpc, also a picture of each level: DIR/0001.exr …"},
+      {"deadline", CLI_NUMBER, &job->layers.deadline, "S",
+       "of an .lpc, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
+      {"memory", CLI_INT, &job->layers.memory_mib, "MiB", "of an .lpc, what clouds and splats may take [512]", 1,
+       1 << 20, .is_given = &job->layers.is_given},
+      {"occlusion", CLI_CHOICE, &job->layers.occlusion, "HOW",
+       "of an .lpc, leave out what is hidden: auto, on or off; changes no bit [auto]", .choices = occlusion_words,
+       .is_given = &job->layers.is_given},
+      {"timeout", CLI_NUMBER, &job->layers.timeout, "S",
+       "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
+       .is_given = &job->layers.is_given},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
   if (job->overdraw_path)
     job->planes |= 1u << CONIC_PLANE_COUNT;
+  if (job->clusters_path)
+    job->planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
+  if (job->planes & 1u << CONIC_PLANE_CLUSTER)
+    job->planes |= 1u << CONIC_PLANE_ID;
   return answer == CLI_DONE ? check_outputs(session, job) : answer;
 }

@@ -4,10 +4,29 @@
 
 #include "cli/arguments.h"
 #include "cli/device.h"
+#include "cli/json.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
-typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1 } cli_representation;
+typedef enum cli_representation { CLI_AS_POINTS = 0, CLI_AS_MESH = 1, CLI_AS_HYBRID = 2 } cli_representation;
+
+/* Where the only input is a layered point cloud. */
+typedef struct cli_render_layers {
+  /* What was asked for. */
+  const char *progressive_path; /* --progressive; null: none */
+  double deadline;              /* seconds; 0: none */
+  double timeout;               /* seconds */
+  int memory_mib, occlusion;    /* the latter a conic_occlusion */
+  int is_given;                 /* one of the options that are for layered clouds alone */
+  double start_seconds;         /* from which the deadline counts */
+
+  conic_layers *file; /* null: the input is something else */
+  conic_layers_scale scale;
+
+  /* What came of it. */
+  conic_layers_drawn drawn;
+  int n_pictures;
+} cli_render_layers;
 
 typedef struct cli_render_job {
   /* What was asked for. */
@@ -43,8 +62,17 @@ typedef struct cli_render_job {
   conic_octree_info info;
   conic_selection selection;
 
+  int draws_layers; /* a layered point cloud is drawn cloud by cloud, and not read whole */
+  cli_render_layers layers;
+
   conic_triangles triangles; /* read beside the splats, with --as mesh */
 
+  /* A .chy, or a mesh with --as hybrid: the only input, and what was chosen of it for the frame. */
+  conic_hybrid *hybrid;
+  conic_hybrid_info hybrid_info;
+  conic_hybrid_selection hybrid_selection;
+  const char *clusters_path; /* --clusters; null: none */
+  int only_kind;             /* --only: a conic_hybrid_kind, or -1 */
   /* Of --method patch: the points' polynomials, and the frame's samples. */
   conic_patches *patches;
   conic_patch_selection patch_selection;
@@ -73,6 +101,29 @@ conic_status cli_lod_select(cli_render_job *job, const conic_camera *camera, dou
 /* Ends both; fine where they never were. */
 void cli_lod_close(cli_session *session, cli_render_job *job);
 
+/* Whether a name is that of a layered point cloud: a URL, or such a file. */
+int cli_layers_is_input(const char *name);
+/* Whether the only input is one. */
+int cli_layers_is_wanted(const cli_render_job *job);
+/* Opens it into the job. */
+conic_status cli_layers_open(cli_session *session, cli_render_job *job);
+/* Draws a frame of it, with --progressive several, of which the last stays in `image`. */
+conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                             conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics);
+/* Fine where it never was open. */
+void cli_layers_close(cli_render_job *job);
+void cli_render_layers_report(cli_json *json, const cli_render_job *job);
+
+/* Whether the only input is a hybrid model, or is to be made one. */
+int cli_hybrid_is_wanted(const cli_render_job *job);
+/* Reads or builds it into the job. */
+conic_status cli_hybrid_open(cli_session *session, cli_render_job *job);
+/* Chooses for a frame; *ms is what it took. */
+conic_status cli_hybrid_select(cli_render_job *job, const conic_camera *camera, double *ms);
+/* --clusters: the patches in colours of their own, as they are shaded in `image`. */
+conic_status cli_hybrid_write_clusters(cli_session *session, const char *path, const conic_image *image);
+/* Ends it; fine where it never was. */
+void cli_hybrid_close(cli_session *session, cli_render_job *job);
 /* "patch", or the method by which splats are drawn. */
 const char *cli_method_name(const cli_render_job *job);
 /* Lays patches about the points of measured splats, which must outlive them; ε then goes with the points. */

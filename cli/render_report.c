@@ -1,4 +1,3 @@
-#include "cli/json.h"
 #include "cli/render_job.h"
 
 static double per_second_in_millions(double count, double ms) {
@@ -41,8 +40,16 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "leaves", job->selection.splats.count - job->selection.n_inner);
     cli_json_count(json, "inner_nodes", job->selection.n_inner);
   }
+  if (job->hybrid) {
+    cli_json_count(json, "triangle_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_TRIANGLES]);
+    cli_json_count(json, "surfel_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_SURFELS]);
+    cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
+  }
   cli_json_close(json);
-  cli_json_count(json, "clouds_culled", job->selection.n_culled);
+  if (job->layers.file)
+    cli_render_layers_report(json, job);
+  else
+    cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
   if (job->octree)
     cli_json_number(json, "error_px", job->selection.error_px);
 }

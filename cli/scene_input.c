@@ -44,6 +44,23 @@ static conic_status read_octree(cli_session *session, const char *path, conic_sp
   return status;
 }
 
+/* So is a layered point cloud, beside other inputs or where every splat is to be known. */
+static conic_status read_layers(cli_session *session, const cli_render_job *job, const char *path,
+                                conic_splats *splats) {
+  conic_layers *layers;
+  conic_splats samples;
+  conic_status status = conic_layers_open(session->context, path, NULL, &layers);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_layers_splats(layers, job->options.kernel.cutoff, &samples);
+  conic_layers_close(layers);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_splats_append(session->context, splats, &samples);
+  conic_splats_release(session->context, &samples);
+  return status;
+}
+
 /* A model's faces become triangles. */
 static conic_status take_triangles(cli_session *session, cli_render_job *job, conic_model *model) {
   conic_triangles triangles;
@@ -63,6 +80,9 @@ static conic_status read_input(cli_session *session, cli_render_job *job, const 
   conic_repairs repairs;
   if (conic_octree_is_file(path))
     return read_octree(session, path, splats, kind);
+  *kind = CONIC_MODEL_PLY;
+  if (cli_layers_is_input(path))
+    return read_layers(session, job, path, splats);
   conic_read_options_init(&read_options);
   conic_estimate_options_init(&estimate_options);
   read_options.cutoff = estimate_options.cutoff = job->options.kernel.cutoff;
@@ -119,6 +139,10 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
   memset(splats, 0, sizeof *splats);
+  if (cli_layers_is_wanted(job) && job->draws_layers)
+    return cli_layers_open(session, job);
+  if (cli_hybrid_is_wanted(job))
+    return cli_hybrid_open(session, job);
   if (cli_lod_is_wanted(job))
     return cli_lod_open(session, job);
   for (int i = 0; i < job->n_inputs; i++) {
@@ -142,6 +166,10 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats) {
   conic_drawing drawing = {splats, &job->triangles};
+  if (job->hybrid) {
+    drawing.splats = &job->hybrid_selection.splats;
+    drawing.triangles = &job->hybrid_selection.triangles;
+  }
   return drawing;
 }
 
@@ -155,11 +183,14 @@ void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *
 static conic_status resolve_lengths(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double spacing = 1.0;
   conic_status status = CONIC_OK;
-  if (job->octree && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
-    cli_error(CLI_USAGE, "render: lengths in spacings need every splat; give world units with --error or --budget");
+  if (job->layers.file)
+    spacing = job->layers.scale.spacing;
+  if ((job->octree || job->hybrid) && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
+    cli_error(CLI_USAGE,
+              "render: lengths in spacings need every splat; give world units with --error, --budget or a hybrid");
     return CONIC_ERROR_ARGUMENT;
   }
-  if (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)
+  if (!job->layers.file && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings))
     status = conic_splats_spacing(session->context, splats, &spacing);
   if (job->epsilon.value >= 0.0)
     job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
@@ -168,21 +199,24 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
   return status;
 }
 
-/* What an octree knows of the splats that it was built from. */
-static void measure_octree(cli_render_job *job) {
-  job->options.splat_length = job->info.splat_length;
+/* What an octree or a hybrid knows of what it was built from. */
+static void measure_built(cli_render_job *job) {
+  job->options.splat_length = job->hybrid ? job->hybrid_info.splat_length : job->info.splat_length;
   if (job->options.near_z == 0.0)
-    job->options.near_z = job->info.near_z;
+    job->options.near_z = job->hybrid ? job->hybrid_info.near_z : job->info.near_z;
 }
 
 conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const conic_splats *splats) {
   double start = cli_seconds();
   conic_status status = resolve_lengths(session, job, splats);
-  if (job->octree)
-    measure_octree(job);
+  if (job->layers.file) {
+    job->options.splat_length = job->layers.scale.splat_length;
+    job->options.near_z = job->options.near_z > 0.0 ? job->options.near_z : job->layers.scale.near_z;
+  } else if (job->octree || job->hybrid)
+    measure_built(job);
   else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
-  if (status == CONIC_OK && !job->octree && job->options.near_z == 0.0) {
+  if (status == CONIC_OK && !job->octree && !job->hybrid && !job->layers.file && job->options.near_z == 0.0) {
     const conic_drawing drawing = cli_scene_drawing(job, splats);
     job->options.near_z = conic_drawing_near(&drawing);
   }
@@ -198,7 +232,13 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
   conic_framing framing = job->framing;
   if (job->camera_path)
     return conic_camera_read(session->context, job->camera_path, camera);
-  if (job->octree) {
+  if (job->layers.file) {
+    memcpy(low, job->layers.scale.minimum, sizeof low);
+    memcpy(high, job->layers.scale.maximum, sizeof high);
+  } else if (job->hybrid) {
+    memcpy(low, job->hybrid_info.minimum, sizeof low);
+    memcpy(high, job->hybrid_info.maximum, sizeof high);
+  } else if (job->octree) {
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);
   } else {

@@ -206,7 +206,7 @@ static int run(cli_session *session, int argc, char **argv) {
   static const char *const questions[] = {"method", "exact", NULL};
   verify_job job = {.question = CONIC_ORACLE_METHOD};
   cli_scene_defaults(&job.scene);
-  job.scene.planes = (1u << CONIC_N_PLANES) - 1;
+  job.scene.planes = CONIC_DRAWN_PLANES;
   const cli_option own[] = {
       {"against", CLI_CHOICE, &job.question, "WHAT",
        "method: its own formula in double precision; exact: the kernel itself, projected and filtered [method]",

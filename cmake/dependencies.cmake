@@ -42,8 +42,11 @@ else()
   set(ZSTD_FOUND FALSE)
 endif()
 
-# Looked for, so that the report below is whole, but nothing is built on it yet.
-find_package(CURL QUIET)
+if(CONIC_WITH_CURL)
+  find_package(CURL 7.66 QUIET)
+else()
+  set(CURL_FOUND FALSE)
+endif()
 
 set(found_openexr ${OpenEXR_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
@@ -51,7 +54,7 @@ set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
-        "opencl:OpenCL (other devices)" "zstd:zstd (layered point clouds)" "curl:CURL (not used yet)")
+        "opencl:OpenCL (other devices)" "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

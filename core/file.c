@@ -1,9 +1,13 @@
 #include "core/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/memory.h"
@@ -128,6 +132,42 @@ void conic_output_abandon(conic_output *output) {
   if (output->temporary_path)
     unlink(output->temporary_path);
   release(output);
+}
+
+/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more. */
+static int is_left_over(const char *name, const char *stem, size_t n_stem, const char *ending) {
+  char *end;
+  if (name[0] != '.' || strncmp(name + 1, stem, n_stem) != 0 || name[1 + n_stem] != '.')
+    return 0;
+  long process = strtol(name + n_stem + 2, &end, 10);
+  if (process <= 0 || *end != '-')
+    return 0;
+  long attempt = strtol(end + 1, &end, 10);
+  return attempt >= 0 && strcmp(end, ending) == 0 && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+static void remove_if_old(int folder, const char *name) {
+  struct stat found;
+  time_t now = time(NULL);
+  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(found.st_mode) && now - found.st_mtime > 60)
+    unlinkat(folder, name, 0);
+}
+
+void conic_output_sweep(conic_context *context, const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+  size_t n_stem = dot && dot != name ? (size_t)(dot - name) : strlen(name);
+  char *folder = conic_memory_allocate(context, (size_t)(name - path) + 2, 1);
+  if (!folder)
+    return;
+  memcpy(folder, slash ? path : ".", slash ? (size_t)(name - path) : 1);
+  folder[slash ? name - path : 1] = '\0';
+  DIR *listing = opendir(folder);
+  for (struct dirent *entry; listing && (entry = readdir(listing));)
+    if (is_left_over(entry->d_name, name, n_stem, name + n_stem))
+      remove_if_old(dirfd(listing), entry->d_name);
+  if (listing)
+    closedir(listing);
+  conic_memory_release(context, folder);
 }
 
 int conic_file_is_there(const char *path) {

@@ -24,6 +24,11 @@ conic_status conic_output_commit(conic_output *output);
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
 
+/* Removes what programs that were killed have left beside PATH of their outputs to it: hidden files named after
+ * processes that are no more, untouched for a minute, since others may write to the same disk from elsewhere. For
+ * outputs that are too large to be left lying about. */
+void conic_output_sweep(conic_context *context, const char *path);
+
 /* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
  * lead to. */
 int conic_file_is_there(const char *path);

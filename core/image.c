@@ -15,6 +15,7 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_WEIGHT] = {"weight", 1, 0, {"weight"}},
     [CONIC_PLANE_COUNT] = {"count", 1, 1, {"count"}},
     [CONIC_PLANE_ID] = {"id", 1, 1, {"id"}},
+    [CONIC_PLANE_CLUSTER] = {"cluster", 1, 1, {"cluster"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

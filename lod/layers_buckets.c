@@ -116,13 +116,20 @@ typedef struct gridding {
   double origin[3], quantum, last;
 } gridding;
 
-static uint64_t key_of(const gridding *grid, const conic_layers_block *block, const float position[3]) {
+/* The sample's key, and, where it is bare, where in its steps it is. */
+static void place_sample(const gridding *grid, const conic_layers_block *block, const conic_layers_raw *raw,
+                         conic_layers_sample *sample) {
   uint32_t steps[3];
+  sample->bare = raw->is_bare ? 64 : 0;
   for (int axis = 0; axis < 3; axis++) {
-    double step = floor(((block->origin[axis] - grid->origin[axis]) + (double)position[axis]) / grid->quantum);
+    double place = ((block->origin[axis] - grid->origin[axis]) + (double)raw->position[axis]) / grid->quantum;
+    double step = floor(place);
     steps[axis] = (uint32_t)(step > 0.0 ? step < grid->last ? step : grid->last : 0.0);
+    int quarter = (int)(4.0 * (place - step));
+    if (raw->is_bare)
+      sample->bare = (uint8_t)(sample->bare | (quarter < 3 ? quarter : 3) << 2 * axis);
   }
-  return conic_layers_key(steps[0], steps[1], steps[2]);
+  sample->key = conic_layers_key(steps[0], steps[1], steps[2]);
 }
 
 static conic_status fill_first(const conic_layers_intake *intake, const gridding *grid, conic_layers_raw *raws,
@@ -134,11 +141,10 @@ static conic_status fill_first(const conic_layers_intake *intake, const gridding
   while (status == CONIC_OK && is_there) {
     for (size_t i = 0; i < block.count && status == CONIC_OK; i++) {
       const conic_layers_raw *raw = &raws[i];
-      conic_layers_sample sample = {.key = key_of(grid, &block, raw->position),
-                                    .normal = {raw->normal[0], raw->normal[1]},
+      conic_layers_sample sample = {.normal = {raw->normal[0], raw->normal[1]},
                                     .size = raw->size,
-                                    .color = {raw->color[0], raw->color[1], raw->color[2]},
-                                    .is_bare = raw->is_bare};
+                                    .color = {raw->color[0], raw->color[1], raw->color[2]}};
+      place_sample(grid, &block, raw, &sample);
       status = add_to_split(all, parts, &sample);
     }
     n_done += block.count;

@@ -5,10 +5,12 @@
 #include <time.h>
 
 #include "conic/layers.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "lod/layers_file.h"
 #include "lod/layers_intake.h"
+#include "lod/layers_normals.h"
 
 struct conic_layers_builder {
   conic_context *context;
@@ -58,6 +60,7 @@ static uint64_t most_in_chunk(const conic_layers_builder *builder) {
   uint64_t fitting = share(builder, 0.25) / (2 * sizeof(conic_layers_sample) * n_threads);
   uint64_t even = builder->intake.n_samples / (8 * n_threads); /* so that no thread is left with a large one */
   uint64_t least = conic_layers_most_in_leaf(&builder->plan), most = fitting < even ? fitting : even;
+  least *= builder->plan.is_unoriented ? CONIC_LAYERS_PATCH_LEAVES : 1;
   return most > least ? most : least;
 }
 
@@ -80,10 +83,12 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
     made->options = *options;
   else
     conic_layers_options_init(&made->options);
-  made->path = conic_memory_allocate(context, strlen(path) + 1, 1);
+  size_t n_path = strlen(path) + 1;
+  made->path = conic_memory_allocate(context, n_path, 1);
   status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
-    strcpy(made->path, path);
+    memcpy(made->path, path, n_path);
+    conic_output_sweep(context, path);
     status = conic_layers_intake_begin(context, made->path, share(made, 0.35), made->options.cutoff, &made->intake);
   }
   if (status == CONIC_OK)
@@ -158,7 +163,7 @@ static conic_status make_plan(conic_layers_builder *builder) {
   if (!(header->spacing > 0.0)) /* all coincide: something that can be seen */
     header->spacing = header->quantum;
   header->version = CONIC_LAYERS_VERSION;
-  header->flags = intake->has_colors ? CONIC_LAYERS_COLORS : 0;
+  header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (intake->n_bare ? CONIC_LAYERS_UNORIENTED : 0u);
   header->cloud_size = builder->options.cloud_size;
   header->near_z = near_of(header);
   builder->plan = (conic_layers_plan){.context = builder->context,
@@ -167,7 +172,8 @@ static conic_status make_plan(conic_layers_builder *builder) {
                                       .n_samples = intake->n_samples,
                                       .quantum = header->quantum,
                                       .spacing = header->spacing,
-                                      .has_colors = intake->has_colors};
+                                      .has_colors = intake->has_colors,
+                                      .is_unoriented = intake->n_bare > 0};
   return CONIC_OK;
 }
 
@@ -175,10 +181,6 @@ static conic_status check_samples(const conic_layers_builder *builder) {
   const conic_layers_intake *intake = &builder->intake;
   if (intake->n_samples == 0)
     return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: no sample that can be drawn", builder->path);
-  if (intake->n_bare > 0)
-    return conic_fail(builder->context, CONIC_ERROR_INPUT,
-                      "%s: %llu of %llu samples have no normal; conic prepare finds them", builder->path,
-                      (unsigned long long)intake->n_bare, (unsigned long long)intake->n_samples);
   if (intake->n_bright > 0)
     conic_log(builder->context, CONIC_LOG_WARNING, "%s: %llu colours are brighter than white, and are kept as white",
               builder->path, (unsigned long long)intake->n_bright);

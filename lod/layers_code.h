@@ -11,7 +11,7 @@ typedef struct conic_layers_sample {
   uint8_t normal[2]; /* octahedron */
   uint16_t size;     /* outline's radius: the upper half of a float's bits, rounded up; 0: not known */
   uint8_t color[3];  /* sRGB codes */
-  uint8_t is_bare;   /* it had no normal */
+  uint8_t bare;      /* it has no normal yet: 64, and where in its step it is, in quarters, 2 bits an axis; else 0 */
 } conic_layers_sample;
 
 /* Parts of a cloud's bytes, for the statistics. */

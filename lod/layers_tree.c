@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "lod/layers_branch.h"
+#include "lod/layers_normals.h"
 #include "lod/mapping.h"
 
 struct conic_layers_worker {
@@ -134,20 +135,32 @@ static size_t split_point(const conic_layers_sample *samples, size_t n) {
   return high;
 }
 
-conic_status conic_layers_grow(conic_layers_worker *worker, const conic_layers_sample *samples, size_t n,
-                               conic_layers_shelf *shelf, conic_layers_branch **branch) {
+static conic_status grow(conic_layers_worker *worker, conic_layers_sample *samples, size_t n, int is_bare,
+                         conic_layers_shelf *shelf, conic_layers_branch **branch) {
   conic_layers_branch *children[2] = {NULL, NULL};
+  conic_status status = CONIC_OK;
+  size_t most = conic_layers_most_in_leaf(&worker->plan);
   *branch = NULL;
-  if (n <= conic_layers_most_in_leaf(&worker->plan))
+  if (is_bare && n <= CONIC_LAYERS_PATCH_LEAVES * most) {
+    status = conic_layers_find_normals(&worker->plan, samples, n);
+    is_bare = 0;
+  }
+  if (status == CONIC_OK && n <= most)
     return grow_leaf(worker, samples, n, branch);
   size_t n_first = split_point(samples, n);
-  conic_status status = conic_layers_grow(worker, samples, n_first, shelf, &children[0]);
   if (status == CONIC_OK)
-    status = conic_layers_grow(worker, samples + n_first, n - n_first, shelf, &children[1]);
+    status = grow(worker, samples, n_first, is_bare, shelf, &children[0]);
+  if (status == CONIC_OK)
+    status = grow(worker, samples + n_first, n - n_first, is_bare, shelf, &children[1]);
   if (status == CONIC_OK)
     return conic_layers_join(worker, children, shelf, branch);
   conic_layers_branch_destroy(worker->plan.context, children[0]);
   return status;
+}
+
+conic_status conic_layers_grow(conic_layers_worker *worker, conic_layers_sample *samples, size_t n,
+                               conic_layers_shelf *shelf, conic_layers_branch **branch) {
+  return grow(worker, samples, n, worker->plan.is_unoriented, shelf, branch);
 }
 
 static conic_status reserve(conic_context *context, void **array, size_t used, size_t needed, size_t size,

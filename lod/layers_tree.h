@@ -12,8 +12,8 @@ typedef struct conic_layers_plan {
   uint32_t bits, cloud_size;
   uint64_t n_samples; /* of the whole tree */
   double quantum;
-  double spacing; /* sampling distance, where a leaf has too few samples to tell */
-  int has_colors, is_unoriented;
+  double spacing;                /* sampling distance, where a leaf has too few samples to tell */
+  int has_colors, is_unoriented; /* the latter: some samples come without a normal */
 } conic_layers_plan;
 
 /* A leaf holds up to three clouds' worth of samples, of which its ancestors take about half. */
@@ -51,8 +51,9 @@ typedef struct conic_layers_worker conic_layers_worker;
 conic_status conic_layers_worker_create(const conic_layers_plan *plan, conic_layers_worker **worker);
 void conic_layers_worker_destroy(conic_layers_worker *worker);
 
-/* The tree of n > 0 samples, ascending by key; all nodes but its root go to the shelf. Errors: MEMORY. */
-conic_status conic_layers_grow(conic_layers_worker *worker, const conic_layers_sample *samples, size_t n,
+/* The tree of n > 0 samples, ascending by key; all nodes but its root go to the shelf. Bare samples get their normals.
+ * Errors: MEMORY. */
+conic_status conic_layers_grow(conic_layers_worker *worker, conic_layers_sample *samples, size_t n,
                                conic_layers_shelf *shelf, conic_layers_branch **branch);
 
 /* The parent of two branches, which it takes over, on failure too: the first one's keys come first. Errors: MEMORY.

@@ -97,8 +97,10 @@ double conic_code_length_of(const conic_code_scale *scale, double longest, uint1
   return longest * power(scale, -(int)code, OCTAVE_STEPS);
 }
 
+/* Of what an int holds. */
 static int round_to_int(double value) {
-  return (int)floor(value + 0.5);
+  int whole = (int)(value + 0.5); /* towards 0 */
+  return whole - ((double)whole > value + 0.5);
 }
 
 static double sign_of(double value) {
@@ -210,17 +212,24 @@ void conic_code_basis(const uint8_t *code, double u[3], double v[3], double n[3]
   conic_tangent_basis(n, u, v);
 }
 
-void conic_code_frame(const conic_code_scale *scale, const double first[3], const uint8_t *code,
-                      conic_node_frame *frame) {
-  double u[3], v[3], direction[2];
+void conic_code_frame_in(const conic_code_scale *scale, const double first[3], const uint8_t *code, const double u[3],
+                         const double v[3], const double n[3], conic_node_frame *frame) {
+  double direction[2];
   decode_place(scale, first, code, frame->position);
-  conic_code_basis(code, u, v, frame->n);
   conic_code_direction_of(code[AT_DIRECTION], direction);
   for (int axis = 0; axis < 3; axis++) {
     frame->u[axis] = direction[0] * u[axis] + direction[1] * v[axis];
     frame->v[axis] = direction[0] * v[axis] - direction[1] * u[axis];
+    frame->n[axis] = n[axis];
   }
   frame->ratio = (double)(code[AT_RATIO] ? code[AT_RATIO] : 1) / 255.0;
+}
+
+void conic_code_frame(const conic_code_scale *scale, const double first[3], const uint8_t *code,
+                      conic_node_frame *frame) {
+  double u[3], v[3], n[3];
+  conic_code_basis(code, u, v, n);
+  conic_code_frame_in(scale, first, code, u, v, n, frame);
 }
 
 void conic_code_extent(const conic_code_scale *scale, double *reach, double *radius, uint8_t *code) {
@@ -239,8 +248,9 @@ void conic_code_extent(const conic_code_scale *scale, double *reach, double *rad
 
 double conic_code_error(const conic_code_scale *scale, double error, double radius, uint8_t *code) {
   int steps = 0;
-  while (steps < 255 && 2.0 * radius * scale->share[steps + 1] >= error)
-    steps++;
+  for (int bit = 128; bit; bit /= 2) /* the most that still give `error` or more */
+    if (2.0 * radius * scale->share[steps + bit] >= error)
+      steps += bit;
   code[AT_ERROR] = (uint8_t)steps;
   return 2.0 * radius * scale->share[steps];
 }

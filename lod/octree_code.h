@@ -51,6 +51,9 @@ void conic_code_axes(double x, double y, double ratio, uint8_t *code);
 /* The frame that those three give. */
 void conic_code_frame(const conic_code_scale *scale, const double first[3], const uint8_t *code,
                       conic_node_frame *frame);
+/* The same, where the facing's basis is known. */
+void conic_code_frame_in(const conic_code_scale *scale, const double first[3], const uint8_t *code, const double u[3],
+                         const double v[3], const double n[3], conic_node_frame *frame);
 /* The sphere alone, faster. */
 void conic_code_sphere(const conic_code_scale *scale, const double first[3], const uint8_t *code, float center[3],
                        float *radius);

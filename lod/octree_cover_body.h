@@ -47,8 +47,7 @@ typedef struct middle_box {
 
 /* A sample, and the disc that is the nearest to it of those looked at. */
 typedef struct search {
-  float x, y, nearest;
-  middle_box box; /* outside of it no disc can lower the sample's error any more */
+  float x, y, nearest, center[3];
   const flat_block *block;
   unsigned lane;
 } search;
@@ -97,19 +96,17 @@ CONIC_INLINE float greatest_of(lanes values) {
   return -least_of(-values);
 }
 
-static void shrink_box(search *s) {
+static search begin_search(const cover *c, int i) {
+  search s = {.x = c->x[i], .y = c->y[i], .nearest = c->nearest[i]};
   for (int axis = 0; axis < 3; axis++)
-    s->box.half[axis] = s->nearest * (1.0f / CONIC_COVER_WEIGHT);
+    s.center[axis] = c->node->center[axis] + (s.x * c->u[axis] + s.y * c->v[axis]);
+  return s;
 }
 
-static void begin_search(const cover *c, int i, search *s) {
-  s->x = c->x[i];
-  s->y = c->y[i];
-  s->nearest = c->nearest[i];
-  s->block = NULL;
-  for (int axis = 0; axis < 3; axis++)
-    s->box.center[axis] = c->node->center[axis] + (s->x * c->u[axis] + s->y * c->v[axis]);
-  shrink_box(s);
+/* Outside of it no disc can lower the sample's error any more. */
+CONIC_INLINE middle_box box_of_sample(const search *s) {
+  float half = s->nearest * (1.0f / CONIC_COVER_WEIGHT);
+  return (middle_box){{s->center[0], s->center[1], s->center[2]}, {half, half, half}};
 }
 
 /* Which of as many boxes as there are lanes reach into the box. */
@@ -123,7 +120,7 @@ CONIC_INLINE lanes_mask reach_into(float *const center[3], float *const half[3],
 }
 
 /* Which of a block's discs do, or, with blocks' boxes, which of a chunk's blocks. */
-static unsigned find_in_block(float *const center[3], float *const half[3], size_t block, const middle_box *box) {
+CONIC_INLINE unsigned find_in_block(float *const center[3], float *const half[3], size_t block, const middle_box *box) {
   unsigned bits = 0;
   for (unsigned part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES)
     bits |= lanes_bits(reach_into(center, half, block * CONIC_DISC_BLOCK + part, box)) << part;
@@ -204,7 +201,7 @@ static void approach(const flat_block *block, unsigned lane, cover *c) {
  * looks like is kept; whether it is there yet is handed in and returned. */
 CONIC_INLINE int approach_block(const cover *c, const conic_discs *discs, size_t block, float (*flat)[CONIC_DISC_BLOCK],
                                 int is_flat, search *s) {
-  const middle_box box = s->box;
+  const middle_box box = box_of_sample(s);
   for (unsigned part = 0; part < CONIC_DISC_BLOCK; part += CONIC_LANES) {
     lanes_mask is_in = reach_into(discs->center, discs->half, block * CONIC_DISC_BLOCK + part, &box);
     lanes disc[N_NUMBERS];
@@ -224,15 +221,15 @@ CONIC_INLINE int approach_block(const cover *c, const conic_discs *discs, size_t
       s->lane = part + (unsigned)__builtin_ctz(lanes_bits(lanes_at_least(lanes_of(least), error)));
     }
   }
-  shrink_box(s);
   return is_flat;
 }
 
 /* Searches the node's blocks. */
-static void search_near(const cover *c, const conic_discs *discs, conic_near_discs *near, search *s) {
+CONIC_INLINE void search_near(const cover *c, const conic_discs *discs, conic_near_discs *near, search *s) {
   conic_block_list *list = &near->of_node;
   for (size_t first = 0; first < list->count && s->nearest > c->enough; first += CONIC_DISC_BLOCK) {
-    unsigned blocks = find_in_block(list->center, list->half, first / CONIC_DISC_BLOCK, &s->box);
+    const middle_box box = box_of_sample(s);
+    unsigned blocks = find_in_block(list->center, list->half, first / CONIC_DISC_BLOCK, &box);
     for (; blocks && s->nearest > c->enough; blocks &= blocks - 1) {
       size_t i = first + (size_t)__builtin_ctz(blocks);
       uint32_t block = list->block[i] & ~FLAT;
@@ -246,7 +243,8 @@ static void search_near(const cover *c, const conic_discs *discs, conic_near_dis
 static void search_all(const cover *c, const conic_discs *discs, search *s) {
   flat_block flat;
   for (size_t chunk = 0; chunk * CHUNK < discs->count; chunk++) {
-    unsigned blocks = find_in_block(discs->block_center, discs->block_half, chunk, &s->box);
+    const middle_box box = box_of_sample(s);
+    unsigned blocks = find_in_block(discs->block_center, discs->block_half, chunk, &box);
     for (; blocks && s->nearest > c->enough; blocks &= blocks - 1)
       approach_block(c, discs, chunk * CONIC_DISC_BLOCK + (size_t)__builtin_ctz(blocks), flat, 0, s);
   }
@@ -255,9 +253,10 @@ static void search_all(const cover *c, const conic_discs *discs, search *s) {
 
 /* Whether all that matters to the sample is among the near discs. */
 static int is_all_near(const conic_near_discs *near, const search *s) {
+  const middle_box box = box_of_sample(s);
   int is_near = 1;
   for (int axis = 0; axis < 3; axis++)
-    is_near &= fabsf(s->box.center[axis] - near->center[axis]) + s->box.half[axis] <= near->half[axis];
+    is_near &= fabsf(box.center[axis] - near->center[axis]) + box.half[axis] <= near->half[axis];
   return is_near;
 }
 
@@ -351,13 +350,12 @@ float COVER(const conic_disc_samples *samples, const conic_discs *discs, size_t 
   approach_own(discs, begin, end, &c);
   for (;;) { /* once one is known for sure, others that are no worse need not be */
     int worst = find_worst(&c);
-    search s;
     if (!(c.nearest[worst] > c.enough))
       return c.enough;
     if (!is_listed)
       list_blocks(node, c.nearest[worst], near);
     is_listed = 1;
-    begin_search(&c, worst, &s);
+    search s = begin_search(&c, worst);
     search_near(&c, discs, near, &s);
     if (s.nearest > c.enough && !is_all_near(near, &s))
       search_all(&c, discs, &s);

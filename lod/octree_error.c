@@ -137,21 +137,48 @@ static int is_near(const conic_octree *octree, size_t i, const box *b) {
   return apart2 <= radius * radius;
 }
 
+/* The leaves begin … end, from disc n on. */
+static void set_discs_of_leaves(const neighbourhood *around, uint32_t begin, uint32_t end, size_t n) {
+  const conic_octree *octree = around->pass->octree;
+  const conic_discs *discs = &around->discs;
+  const float cutoff = (float)octree->scale.cutoff;
+  for (uint32_t k = begin; k < end; k++)
+    around->first_leaf[n + k - begin] = k;
+  if (octree->clip_of_point) {
+    for (uint32_t k = begin; k < end; k++)
+      set_disc_of_leaf(octree, k, discs, n + k - begin);
+    return;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    const float *u = octree->leaves.tangent_u[axis] + begin, *v = octree->leaves.tangent_v[axis] + begin;
+    float *disc_u = discs->u[axis] + n, *disc_v = discs->v[axis] + n;
+    memcpy(discs->center[axis] + n, octree->leaves.position[axis] + begin, (end - begin) * sizeof(float));
+    for (uint32_t k = 0; k < end - begin; k++) {
+      disc_u[k] = cutoff * u[k];
+      disc_v[k] = cutoff * v[k];
+    }
+  }
+  memset(discs->error + n, 0, (end - begin) * sizeof *discs->error);
+}
+
 /* The subtree's own discs. */
 static void gather_own(neighbourhood *around, size_t root) {
   const conic_octree *octree = around->pass->octree;
+  const size_t part = around->pass->sizes.part;
   size_t n = 0;
-  for (size_t i = root; i < octree->end[root];) {
-    if (count_leaves(octree, i) <= around->pass->sizes.part) {
+  if (part == 1) { /* all of them leaves */
+    n = count_leaves(octree, root);
+    set_discs_of_leaves(around, octree->first_leaf[root], octree->first_leaf[octree->end[root]], 0);
+  }
+  for (size_t i = root; i < octree->end[root] && part > 1;) {
+    if (count_leaves(octree, i) <= part) {
       around->first_leaf[n] = octree->first_leaf[i];
       set_disc_of_node(octree, i, &around->discs, n++);
       i = octree->end[i];
       continue;
     }
-    for (uint32_t k = octree->first_leaf[i]; k < octree->first_leaf[i + 1]; k++) {
-      around->first_leaf[n] = k;
-      set_disc_of_leaf(octree, k, &around->discs, n++);
-    }
+    set_discs_of_leaves(around, octree->first_leaf[i], octree->first_leaf[i + 1], n);
+    n += octree->first_leaf[i + 1] - octree->first_leaf[i];
     i++;
   }
   around->n_own = around->discs.count = n;

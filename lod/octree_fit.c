@@ -105,7 +105,7 @@ static void choose_frame(const fitter *f, const conic_moments *moments, size_t b
     shape.ratio = f->kernels.choose_ratio(&octree->leaves, begin, end, octree->scale.cutoff, moments->mean, u, v,
                                           &shape, least_ratio);
   conic_code_axes(shape.major[0], shape.major[1], shape.ratio, code);
-  conic_code_frame(&octree->scale, first, code, frame);
+  conic_code_frame_in(&octree->scale, first, code, u, v, n, frame);
 }
 
 static void choose_color(const conic_octree *octree, const conic_moments *moments, double reach, double ratio,

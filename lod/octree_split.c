@@ -38,27 +38,44 @@ typedef struct parts {
   size_t begin[FANOUT + 1];
 } parts;
 
+/* The axes together: their sums do not wait for each other. */
 static void find_mean(const splitter *s, size_t begin, size_t end, double mean[3]) {
-  for (int axis = 0; axis < 3; axis++) {
-    double sum = 0.0;
-    for (size_t i = begin; i < end; i++)
-      sum += (double)s->split->position[axis][i];
-    mean[axis] = sum / (double)(end - begin);
+  const float *x = s->split->position[0], *y = s->split->position[1], *z = s->split->position[2];
+  double sums[3] = {0.0, 0.0, 0.0};
+  for (size_t i = begin; i < end; i++) {
+    sums[0] += (double)x[i];
+    sums[1] += (double)y[i];
+    sums[2] += (double)z[i];
   }
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] = sums[axis] / (double)(end - begin);
+}
+
+/* The greatest float that is not above the value: what floats are above is the same of both. */
+static float round_down(double value) {
+  float rounded = (float)value;
+  if ((double)rounded > value) { /* the next one down */
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    bits = rounded > 0.0f ? bits - 1 : rounded < 0.0f ? bits + 1 : UINT32_C(0x80000001);
+    memcpy(&rounded, &bits, sizeof rounded);
+  }
+  return rounded;
 }
 
 /* Which octant about the mean each point is in; returns how many of them have any. */
 static int find_octants(const splitter *s, size_t begin, size_t end, size_t counts[FANOUT]) {
+  const float *x = s->split->position[0], *y = s->split->position[1], *z = s->split->position[2];
+  uint8_t *octants = s->octants;
   double mean[3];
   int n_used = 0;
   find_mean(s, begin, end, mean);
+  const float mean_x = round_down(mean[0]), mean_y = round_down(mean[1]), mean_z = round_down(mean[2]);
   memset(counts, 0, FANOUT * sizeof *counts);
-  for (size_t i = begin; i < end; i++) {
-    int octant = ((double)s->split->position[0][i] > mean[0]) | ((double)s->split->position[1][i] > mean[1]) << 1 |
-                 ((double)s->split->position[2][i] > mean[2]) << 2;
-    s->octants[i] = (uint8_t)octant;
-    counts[octant]++;
-  }
+  for (size_t i = begin; i < end; i++)
+    octants[i] = (uint8_t)((x[i] > mean_x) | (y[i] > mean_y) << 1 | (z[i] > mean_z) << 2);
+  for (size_t i = begin; i < end; i++)
+    counts[octants[i]]++;
   for (int octant = 0; octant < FANOUT; octant++)
     n_used += counts[octant] > 0;
   return n_used;

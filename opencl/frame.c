@@ -81,7 +81,7 @@ static size_t plane_bytes(const conic_image *image, int plane) {
 static conic_status open_planes(const conic_frame *f) {
   conic_opencl *opencl = f->opencl;
   conic_status status = CONIC_OK;
-  for (int plane = 0; plane < CONIC_N_PLANES && status == CONIC_OK; plane++) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++) {
     conic_buffer *buffer = &opencl->buffers[CONIC_BUFFER_PLANES + plane];
     size_t bytes = plane_bytes(f->image, plane);
     if (!f->image->planes[plane]) {
@@ -140,7 +140,7 @@ conic_status conic_frame_begin(conic_frame *f) {
 conic_status conic_frame_end(conic_frame *f, uint64_t *n_covered) {
   conic_opencl *opencl = f->opencl;
   conic_status status = CONIC_OK;
-  for (int plane = 0; plane < CONIC_N_PLANES && status == CONIC_OK; plane++) {
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES && status == CONIC_OK; plane++) {
     cl_mem memory = opencl->buffers[CONIC_BUFFER_PLANES + plane].memory;
     size_t bytes = plane_bytes(f->image, plane);
     if (!f->image->planes[plane])

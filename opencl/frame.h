@@ -69,7 +69,7 @@ conic_status conic_frame_run_raster(const conic_frame *frame, conic_stage stage,
 /* Tells the raster's kernels about the frame and the part of its splats that is on the device. */
 conic_status conic_frame_write_constants(conic_frame *frame);
 /* The arguments for the image's planes, and how many they are. */
-enum { CONIC_FRAME_PLANE_ARGUMENTS = 3 + CONIC_N_PLANES };
+enum { CONIC_FRAME_PLANE_ARGUMENTS = 3 + CONIC_N_DRAWN_PLANES };
 int conic_frame_planes(const conic_frame *frame, conic_argument *to);
 conic_status conic_frame_clear_tiles(const conic_frame *frame, int buffer);
 /* Adds what the tiles have counted in a buffer to the sum. */

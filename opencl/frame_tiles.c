@@ -73,9 +73,9 @@ static int records(const conic_frame *f, conic_argument *to) {
 int conic_frame_planes(const conic_frame *f, conic_argument *to) {
   to[0] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_X);
   to[1] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_Y);
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     to[2 + plane] = conic_frame_argument(f, CONIC_BUFFER_PLANES + plane);
-  to[2 + CONIC_N_PLANES] = conic_frame_argument(f, CONIC_BUFFER_N_COVERED);
+  to[2 + CONIC_N_DRAWN_PLANES] = conic_frame_argument(f, CONIC_BUFFER_N_COVERED);
   return CONIC_FRAME_PLANE_ARGUMENTS;
 }
 

@@ -14,6 +14,7 @@
 #include "raster/clip_lines.h"
 #include "raster/drawing.h"
 #include "raster/method.h"
+#include "raster/part.h"
 #include "raster/ticks.h"
 #include "raster/tile.h"
 
@@ -46,6 +47,8 @@ typedef struct frame {
   conic_finish finish;
   const conic_tile_kernels *kernels;
   conic_image *image;
+  conic_window window;     /* the pixels that are drawn: whole tiles */
+  float *hiding;           /* in the place of an image; else null */
   char *sorters, *scratch; /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
   conic_triangle_frame *triangles;   /* null: there are none */
@@ -172,7 +175,7 @@ static conic_status plan_tiles(frame *f, int tile) {
   size_t n_threads = (size_t)conic_context_threads(renderer->context);
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
-  f->bins.by_pixels = f->finish.options->passes == 1;
+  f->bins.by_pixels = f->finish.options->passes == 1 && !f->hiding;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
@@ -209,7 +212,8 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
   tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
   tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
-  tile->keeps_indices = f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID];
+  tile->keeps_indices = f->image && (f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID]);
+  tile->hiding = f->hiding;
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
   conic_bins_gather(bins, i_tile, tile->scratch.entries);
   tile->triangles = f->triangles;
@@ -224,9 +228,16 @@ static void report_progress(frame *f) {
     atomic_store(&f->is_cancelled, 1);
 }
 
+static int is_in_window(const frame *f, size_t i_tile) {
+  int x = (int)(i_tile % (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  int y = (int)(i_tile / (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  return x >= f->window.x_begin && x < f->window.x_end && y >= f->window.y_begin && y < f->window.y_end;
+}
+
 static void tile_task(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
-  if (atomic_load(&f->is_cancelled))
+  f->n_fragments[i_tile] = f->n_covered[i_tile] = 0;
+  if (!is_in_window(f, i_tile) || atomic_load(&f->is_cancelled))
     return;
   if (i_thread == 0)
     report_progress(f);
@@ -381,7 +392,7 @@ static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing
 
 /* By the loops of this machine's processor. */
 static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
-  int blends = options->passes != 1;
+  int blends = options->passes != 1 || f->hiding;
   f->view.needs_nearness = blends;
   f->view.needs_slope = blends || f->image->planes[CONIC_PLANE_Z];
   conic_status status = plan_tiles(f, options->tile);
@@ -396,42 +407,63 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   return status;
 }
 
-conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
-                                const conic_camera *camera, const conic_render_options *options, conic_image *image,
-                                conic_render_statistics *statistics) {
+/* All of conic_render, for the window and the plane that `f` names already. */
+static conic_status render(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
+                           const conic_render_options *options, conic_render_statistics *statistics) {
   double start = seconds_now();
   conic_render_statistics counted;
+  conic_renderer *renderer = f->renderer;
   conic_context *context = renderer->context;
-  const conic_splats *splats = drawing->splats;
   memset(&counted, 0, sizeof counted);
-  if (!splats || !camera || !options || !image || options->size != sizeof *options)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "render: an argument is null, or the options were not initialised");
-  if (image->width != camera->width || image->height != camera->height)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
-  frame f = {.renderer = renderer, .splats = splats, .image = image, .kernels = conic_tile_kernels_of(options->isa)};
-  if (!f.kernels)
+  f->kernels = conic_tile_kernels_of(options->isa);
+  if (!f->kernels)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
                       conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
   conic_render_options scaled = *options;
   conic_status status = conic_whole_drawing_scale(context, drawing, &scaled);
   if (status == CONIC_OK)
-    status = conic_view_init(context, splats, camera, options, scaled.near_z, scaled.splat_length, &f.view);
+    status = conic_view_init(context, f->splats, camera, options, scaled.near_z, scaled.splat_length, &f->view);
   if (status == CONIC_OK)
-    status = prepare_finish(&f, camera, options);
+    status = prepare_finish(f, camera, options);
   if (status == CONIC_OK)
-    status = begin_triangles(&f, drawing, camera, options);
+    status = begin_triangles(f, drawing, camera, options);
   if (status == CONIC_OK && renderer->backend)
-    status = renderer->backend->draw(renderer->backend, &f.view, splats, f.triangles, &f.finish, image, &counted);
+    status =
+        renderer->backend->draw(renderer->backend, &f->view, f->splats, f->triangles, &f->finish, f->image, &counted);
   else if (status == CONIC_OK)
-    status = draw_here(&f, options, &counted);
+    status = draw_here(f, options, &counted);
   if (status != CONIC_OK)
     return status;
-  note_settings(&f, options, &counted);
+  note_settings(f, options, &counted);
   counted.ms.frame = 1e3 * (seconds_now() - start);
   if (statistics)
     *statistics = counted;
   return CONIC_OK;
+}
+
+static conic_status check_arguments(const conic_renderer *renderer, const conic_splats *splats,
+                                    const conic_camera *camera, const conic_render_options *options,
+                                    const conic_image *image) {
+  if (!splats || !camera || !options || options->size != sizeof *options)
+    return conic_fail(renderer->context, CONIC_ERROR_ARGUMENT,
+                      "render: an argument is null, or the options were not initialised");
+  if (image && (image->width != camera->width || image->height != camera->height))
+    return conic_fail(renderer->context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
+  return CONIC_OK;
+}
+
+static conic_window whole_of(const conic_camera *camera) {
+  return (conic_window){0, camera->width, 0, camera->height};
+}
+
+conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
+                                const conic_camera *camera, const conic_render_options *options, conic_image *image,
+                                conic_render_statistics *statistics) {
+  conic_status status = check_arguments(renderer, image ? drawing->splats : NULL, camera, options, image);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = drawing->splats, .image = image, .window = whole_of(camera)};
+  return render(&f, drawing, camera, options, statistics);
 }
 
 conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
@@ -439,4 +471,40 @@ conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, 
                           conic_render_statistics *statistics) {
   const conic_whole_drawing alone = {.splats = splats};
   return conic_render_whole(renderer, &alone, camera, options, image, statistics);
+}
+
+int conic_renderer_has_parts(const conic_renderer *renderer) {
+  return !renderer->backend;
+}
+
+static conic_status check_part(const conic_renderer *renderer) {
+  if (!conic_renderer_has_parts(renderer))
+    return conic_fail(renderer->context, CONIC_ERROR_UNSUPPORTED,
+                      "render: only the processor draws a picture in parts; more memory makes it one");
+  return CONIC_OK;
+}
+
+conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, const conic_window *window, conic_image *image,
+                                 conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  conic_status status = check_arguments(renderer, image ? splats : NULL, camera, options, image);
+  if (status == CONIC_OK)
+    status = check_part(renderer);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .window = *window};
+  return render(&f, &alone, camera, options, statistics);
+}
+
+conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, float *hiding) {
+  const conic_whole_drawing alone = {.splats = splats};
+  conic_status status = check_arguments(renderer, hiding ? splats : NULL, camera, options, NULL);
+  if (status == CONIC_OK)
+    status = check_part(renderer);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = splats, .hiding = hiding, .window = whole_of(camera)};
+  return render(&f, &alone, camera, options, NULL);
 }

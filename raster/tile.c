@@ -36,6 +36,30 @@ static void select_band(const conic_tile *tile, const conic_tile_kernels *kernel
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
+/* Takes the band's thresholds over. */
+static void raise_hiding(const conic_tile *tile, const conic_band *band) {
+  size_t width = (size_t)tile->view->width;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+      if (x >= tile->x_end || y >= tile->y_end)
+        continue;
+      float *hides = &tile->hiding[(size_t)y * width + (size_t)x], threshold = band->kept[block].threshold[l];
+      *hides = *hides < threshold ? threshold : *hides;
+    }
+}
+
+static void hide(const conic_tile *tile, const conic_tile_kernels *kernels, conic_band *band,
+                 conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    select_band(tile, kernels, i_row, band);
+    kernels->visibility(band);
+    raise_hiding(tile, band);
+  }
+  report->visibility += conic_ticks() - start;
+}
+
 /* The triangles of a row, if there are any. */
 static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band) {
   band->triangles = NULL;
@@ -116,7 +140,9 @@ void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const 
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
   if (tile->triangles)
     draw_triangles(tile, kernels, report);
-  if (finish->options->passes == 1)
+  if (tile->hiding)
+    hide(tile, kernels, &band, report);
+  else if (finish->options->passes == 1)
     draw_nearest(tile, kernels, finish, &rays, &band, image, report);
   else
     draw_blended(tile, kernels, finish, &rays, &band, image, report);

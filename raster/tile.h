@@ -19,6 +19,7 @@ typedef struct conic_tile {
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */
+  float *hiding;                      /* not null: no picture is drawn, but this raised (raster/part.h) */
   conic_tile_scratch scratch;
   const conic_triangle_frame *triangles; /* null: there are none */
   conic_triangle_tile *triangle_tile;    /* what they are drawn in */

@@ -103,20 +103,22 @@ static tile_range tiles_of(const conic_triangle_frame *frame, const conic_box *b
   return range;
 }
 
-/* Turns the counts in `next` into places. Returns how many entries there are. */
-static uint32_t place(const conic_triangle_frame *frame, uint32_t *next, uint32_t *tile_begin) {
-  uint32_t n = 0;
+/* Turns the counts in `next` into places. Returns how many entries there are; no more than fit into 32 bits have a
+ * place.
+ */
+static size_t place(const conic_triangle_frame *frame, uint32_t *next, uint32_t *tile_begin) {
+  size_t n = 0;
   for (size_t i = 0; i < frame->n_tiles; i++) {
     uint32_t count = next[i];
-    next[i] = tile_begin[i] = n;
+    next[i] = tile_begin[i] = (uint32_t)n;
     n += count;
   }
-  tile_begin[frame->n_tiles] = n;
+  tile_begin[frame->n_tiles] = (uint32_t)n;
   return n;
 }
 
-static uint32_t count_entries(const conic_triangle_frame *frame, const conic_triangle_sorter *sorter,
-                              uint32_t *tile_begin) {
+static size_t count_entries(const conic_triangle_frame *frame, const conic_triangle_sorter *sorter,
+                            uint32_t *tile_begin) {
   memset(sorter->next, 0, frame->n_tiles * sizeof *sorter->next);
   for (size_t i = 0; i < sorter->n_records; i++) {
     tile_range range = tiles_of(frame, &sorter->records[i].box);
@@ -144,8 +146,10 @@ static void hand_over(conic_triangle_frame *frame, conic_triangle_sorter *sorter
   chunk->first_record = atomic_fetch_add(&frame->n_records, n_records);
   chunk->first_piece = atomic_fetch_add(&frame->n_pieces, n_pieces);
   chunk->first_entry = atomic_fetch_add(&frame->n_entries, n_entries);
-  if (chunk->first_record + n_records > frame->n_record_room || chunk->first_piece + n_pieces > frame->n_piece_room ||
-      chunk->first_entry + n_entries > frame->n_entry_room)
+  if (n_entries > UINT32_MAX)
+    atomic_store(&frame->is_uncountable, 1);
+  if (n_entries > UINT32_MAX || chunk->first_record + n_records > frame->n_record_room ||
+      chunk->first_piece + n_pieces > frame->n_piece_room || chunk->first_entry + n_entries > frame->n_entry_room)
     return;
   for (size_t i = 0; i < n_records && n_pieces; i++)
     if (sorter->records[i].piece != CONIC_NO_PIECE)
@@ -182,11 +186,12 @@ conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const con
     atomic_store(&frame->n_records, 0);
     atomic_store(&frame->n_pieces, 0);
     atomic_store(&frame->n_entries, 0);
+    atomic_store(&frame->is_uncountable, 0);
     conic_parallel_for(frame->context, frame->n_chunks, triangles_task, &p);
     size_t n_records = atomic_load(&frame->n_records), n_pieces = atomic_load(&frame->n_pieces);
     size_t n_entries = atomic_load(&frame->n_entries);
-    if (n_records > UINT32_MAX || n_pieces >= CONIC_NO_PIECE)
-      return conic_fail(frame->context, CONIC_ERROR_MEMORY, "too many triangles");
+    if (n_records > UINT32_MAX || n_pieces >= CONIC_NO_PIECE || atomic_load(&frame->is_uncountable))
+      return conic_fail(frame->context, CONIC_ERROR_MEMORY, "too many triangles in so many tiles");
     if (n_records <= frame->n_record_room && n_pieces <= frame->n_piece_room && n_entries <= frame->n_entry_room)
       return CONIC_OK;
     status = plan_results(frame, n_records, n_pieces, n_entries);

@@ -78,6 +78,7 @@ struct conic_triangle_frame {
   uint32_t *entries; /* records, counted from the chunk's first */
   size_t n_record_room, n_piece_room, n_entry_room;
   atomic_size_t n_records, n_pieces, n_entries; /* used, or needed where there is no room */
+  atomic_int is_uncountable;                    /* a chunk has more entries than 32 bits count */
   char *sorters;
   size_t sorter_bytes;
   conic_triangle_tile *tiles; /* a thread */

@@ -30,7 +30,7 @@ typedef struct conic_near {
 
 /* θ as a function of s = d² / h². */
 typedef struct conic_weighing {
-  int is_compact;
+  conic_surface_weight weight;
   double end;  /* neglect², where it becomes 0 */
   double edge; /* exp(-end) */
 } conic_weighing;

@@ -95,10 +95,22 @@ INLINE wide_theta wide_compact(const conic_weighing *weighing, wide s) {
   return theta;
 }
 
-INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, int is_compact) {
+INLINE wide_theta wide_flat(const conic_weighing *weighing, wide s) {
+  wide_theta theta;
+  double inverse = 1.0 / weighing->end;
+  wide z = s * inverse, z2 = z * z, u = 1.0 - z2;
+  theta.value = u * u;
+  theta.first = (z * u) * (-4.0 * inverse);
+  theta.second = (3.0 * z2 - 1.0) * ((4.0 * inverse) * inverse);
+  return theta;
+}
+
+INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, conic_surface_weight weight) {
   wide_bits inside = s < weighing->end;
   wide inner = wide_select(inside, s, wide_of(weighing->end));
-  wide_theta theta = is_compact ? wide_compact(weighing, inner) : wide_gauss(weighing, inner);
+  wide_theta theta = weight == CONIC_WEIGHT_COMPACT ? wide_compact(weighing, inner)
+                     : weight == CONIC_WEIGHT_FLAT  ? wide_flat(weighing, inner)
+                                                    : wide_gauss(weighing, inner);
   theta.value = wide_keep((theta.value > 0.0) & inside, theta.value);
   theta.first = wide_keep(inside, theta.first);
   theta.second = wide_keep(inside, theta.second);
@@ -119,14 +131,14 @@ INLINE void add_up(partial_sums *partials, int n, double *sums) {
 }
 
 INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
-                         size_t lane, int is_compact) {
+                         size_t lane, conic_surface_weight weight) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, count = {0};
   wide xx = {0}, xy = {0}, xz = {0}, yy = {0}, yz = {0}, zz = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
     wide x = wide_load(near->offset[0] + i) - q[0], y = wide_load(near->offset[1] + i) - q[1];
     wide z = wide_load(near->offset[2] + i) - q[2];
     wide s = ((x * x + y * y) + z * z) * wide_load(near->inverse_h2 + i);
-    wide w = wide_weight(weighing, s, is_compact).value * wide_load(near->mass + i);
+    wide w = wide_weight(weighing, s, weight).value * wide_load(near->mass + i);
     wide wx = w * x, wy = w * y, wz = w * z;
     wide_store(near->weights + i, w);
     w_sum += w;
@@ -148,15 +160,17 @@ INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const
 static void moments(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]) {
   partial_sums partials[CONIC_N_MOMENTS];
   for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
-    if (weighing->is_compact)
-      moments_part(near, weighing, q, partials, lane, 1);
+    if (weighing->weight == CONIC_WEIGHT_COMPACT)
+      moments_part(near, weighing, q, partials, lane, CONIC_WEIGHT_COMPACT);
+    else if (weighing->weight == CONIC_WEIGHT_FLAT)
+      moments_part(near, weighing, q, partials, lane, CONIC_WEIGHT_FLAT);
     else
-      moments_part(near, weighing, q, partials, lane, 0);
+      moments_part(near, weighing, q, partials, lane, CONIC_WEIGHT_GAUSS);
   add_up(partials, CONIC_N_MOMENTS, sums);
 }
 
 INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
-                       partial_sums *partials, size_t lane, int is_compact) {
+                       partial_sums *partials, size_t lane, conic_surface_weight weight) {
   wide g_a = {0}, g_b = {0}, k = {0}, aa = {0}, ab = {0}, bb = {0}, at = {0}, bt = {0}, ka = {0}, kb = {0}, kt = {0};
   wide energy = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
@@ -166,7 +180,7 @@ INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, d
     wide y = (dx * frame[1][0] + dy * frame[1][1]) + dz * frame[1][2];
     wide S = (dx * frame[2][0] + dy * frame[2][1]) + dz * frame[2][2];
     wide s = S - t, s2 = s * s, mass = wide_load(near->mass + i);
-    wide_theta theta = wide_weight(weighing, ((x * x + y * y) + s2) * h2, is_compact);
+    wide_theta theta = wide_weight(weighing, ((x * x + y * y) + s2) * h2, weight);
     wide value = theta.value * mass, first = theta.first * (mass * h2), second = theta.second * (mass * h2 * h2);
     wide sv = s * value, s2f = s2 * first, turn = value - 2.0 * (t * s) * first, lift = sv * S;
     wide slip = value + 2.0 * s2f;
@@ -194,10 +208,12 @@ static void plane(const conic_near *near, const conic_weighing *weighing, double
                   double sums[CONIC_N_PLANE_SUMS]) {
   partial_sums partials[CONIC_N_PLANE_SUMS];
   for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
-    if (weighing->is_compact)
-      plane_part(near, weighing, frame, t, partials, lane, 1);
+    if (weighing->weight == CONIC_WEIGHT_COMPACT)
+      plane_part(near, weighing, frame, t, partials, lane, CONIC_WEIGHT_COMPACT);
+    else if (weighing->weight == CONIC_WEIGHT_FLAT)
+      plane_part(near, weighing, frame, t, partials, lane, CONIC_WEIGHT_FLAT);
     else
-      plane_part(near, weighing, frame, t, partials, lane, 0);
+      plane_part(near, weighing, frame, t, partials, lane, CONIC_WEIGHT_GAUSS);
   add_up(partials, CONIC_N_PLANE_SUMS, sums);
 }
 
@@ -254,7 +270,7 @@ static void factor(conic_near *near, double frame[3][3], double t, double scale,
 }
 
 INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
-                        size_t lane, int is_compact) {
+                        size_t lane, conic_surface_weight weight) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, nx_sum = {0}, ny_sum = {0}, nz_sum = {0};
   wide d2_sum = {0}, dn_sum = {0}, count = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
@@ -262,7 +278,7 @@ INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const 
     wide z = wide_load(near->offset[2] + i) - q[2];
     wide nx = wide_load(near->normal[0] + i), ny = wide_load(near->normal[1] + i);
     wide nz = wide_load(near->normal[2] + i), d2 = (x * x + y * y) + z * z;
-    wide w = wide_weight(weighing, d2 * wide_load(near->inverse_h2 + i), is_compact).value * wide_load(near->mass + i);
+    wide w = wide_weight(weighing, d2 * wide_load(near->inverse_h2 + i), weight).value * wide_load(near->mass + i);
     wide_store(near->weights + i, w);
     w_sum += w;
     x_sum += w * x;
@@ -283,10 +299,12 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
                    double sums[CONIC_N_SPHERE_SUMS]) {
   partial_sums partials[CONIC_N_SPHERE_SUMS];
   for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
-    if (weighing->is_compact)
-      sphere_part(near, weighing, q, partials, lane, 1);
+    if (weighing->weight == CONIC_WEIGHT_COMPACT)
+      sphere_part(near, weighing, q, partials, lane, CONIC_WEIGHT_COMPACT);
+    else if (weighing->weight == CONIC_WEIGHT_FLAT)
+      sphere_part(near, weighing, q, partials, lane, CONIC_WEIGHT_FLAT);
     else
-      sphere_part(near, weighing, q, partials, lane, 0);
+      sphere_part(near, weighing, q, partials, lane, CONIC_WEIGHT_GAUSS);
   add_up(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 

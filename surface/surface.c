@@ -28,7 +28,7 @@ const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
 
 static conic_status check_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
   if (o->size != sizeof *o || (unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
-      (unsigned)o->weight > CONIC_WEIGHT_COMPACT)
+      (unsigned)o->weight > CONIC_WEIGHT_FLAT)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: options that were not initialised");
   if (o->degree < 1 || o->degree > CONIC_SURFACE_MAX_DEGREE)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: degree %d is not 1 to %d", o->degree,
@@ -226,7 +226,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   made->context = context;
   made->options = *options;
   made->kernels = kernels;
-  made->weighing.is_compact = options->weight == CONIC_WEIGHT_COMPACT;
+  made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);
   status = prepare(made, points);

@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "surface/heap.h"
+#include "core/heap.h"
 #include "surface/surface.h"
 
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */

@@ -68,11 +68,21 @@ static inline conic_theta conic_weight_compact(const conic_weighing *weighing, d
   return theta;
 }
 
+static inline conic_theta conic_weight_flat(const conic_weighing *weighing, double s) {
+  conic_theta theta;
+  double inverse = 1.0 / weighing->end, z = s * inverse, z2 = z * z, u = 1.0 - z2;
+  theta.value = u * u;
+  theta.first = (z * u) * (-4.0 * inverse);
+  theta.second = (3.0 * z2 - 1.0) * ((4.0 * inverse) * inverse);
+  return theta;
+}
+
 /* All zero from `end` on. */
 static inline conic_theta conic_weight_at(const conic_weighing *weighing, double s) {
   double inner = s < weighing->end ? s : weighing->end;
-  conic_theta theta =
-      weighing->is_compact ? conic_weight_compact(weighing, inner) : conic_weight_gauss(weighing, inner);
+  conic_theta theta = weighing->weight == CONIC_WEIGHT_COMPACT ? conic_weight_compact(weighing, inner)
+                      : weighing->weight == CONIC_WEIGHT_FLAT  ? conic_weight_flat(weighing, inner)
+                                                               : conic_weight_gauss(weighing, inner);
   theta.value = theta.value > 0.0 && s < weighing->end ? theta.value : 0.0;
   theta.first = s < weighing->end ? theta.first : 0.0;
   theta.second = s < weighing->end ? theta.second : 0.0;

@@ -59,8 +59,16 @@ wanted["mls densify"]=${wanted[make]}
 wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
 wanted["render of a mesh"]="${wanted[render]/methods.conic /} primitives.triangles triangles_in triangles_culled triangles_skipped
   triangles_drawn triangle_fragments mtriangles_per_s"
+wanted[layer]="${wanted[make]} clouds levels bytes bits_per_sample spacing quantum"
+wanted["info of a layered cloud"]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
+  bits.index bounds.min bounds.max sound"
 wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
+wanted["render of a layered cloud"]="${wanted[render]} error_px layers.clouds layers.places_coarser layers.clouds_missing"
 wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
+
+wanted[hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches"
+wanted["info of a hybrid"]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the samples are of EXR files, which this build has not"
@@ -69,6 +77,10 @@ fi
 for ((n = 1; ; n++)); do
   [[ -e $n.sh ]] || break
   name=$(cat $n.name)
+  if grep -q 'lpc' $n.sh && ! "$program" --version | grep -q '^In this build:.*zstd'; then
+    unset "wanted[$name]"
+    continue
+  fi
   # shellcheck disable=SC1090 # the command of the page
   source $n.sh > $n.out 2> err < /dev/null || [[ $? -eq 1 && $name == diff ]] || fail "$name: $(cat err)"
   keys < $n.json > $n.sample

@@ -12,7 +12,7 @@ hashes() { # FILE
   sed -n '/"hash": {/,/}/p' "$1"
 }
 
-run 0 make torus -n 2000 --jitter 0.5 -o torus.ply
+run 0 make torus -n 1000 --jitter 0.5 -o torus.ply
 
 # Near by, patches; the numbers add up, and the ids are those of points.
 run 0 render torus.ply -o near.pfm --method patch --zoom 3 --size 96x96 --aov all --json near.json
@@ -23,7 +23,7 @@ n_in=$(($(value splats near.json) + $(sed -n '/"primitives"/,/}/p' near.json | v
 # From afar, the very picture of the splats, given their tolerance.
 run 0 render torus.ply -o far.pfm --method patch --zoom 0.2 --size 96x96 --aov all --epsilon 0.1 --json far.json
 run 0 render torus.ply -o far.pfm --zoom 0.2 --size 96x96 --aov all --epsilon 0.1 --json splats.json
-[[ $(value patches far.json) -eq 0 && $(value splats far.json) -eq 2000 ]] || fail "patches from afar"
+[[ $(value patches far.json) -eq 0 && $(value splats far.json) -eq 1000 ]] || fail "patches from afar"
 [[ $(hashes far.json) == "$(hashes splats.json)" ]] || fail "the picture from afar is not that of the splats"
 
 # Threads, tiles and instruction sets change no bit, nor does drawing twice.
@@ -41,7 +41,7 @@ cmp -s turn.0005.pfm alone.pfm || fail "a frame of a turntable is not the pictur
 # The oracle, explanations and samples.
 run 0 verify torus.ply --method patch --zoom 3 --size 48x48
 run 0 explain torus.ply --method patch --zoom 3 --size 48x48 --pixel 24,30 --json pixel.json
-[[ $(value method pixel.json) == patch && $(value id pixel.json) -lt 2000 && $(value point pixel.json) -lt 2000 ]] ||
+[[ $(value method pixel.json) == patch && $(value id pixel.json) -lt 1000 && $(value point pixel.json) -lt 1000 ]] ||
   fail "explain: whose samples these are"
 run 0 render torus.ply -o samples.pfm --method patch --zoom 3 --size 48x48 --samples 2
 
@@ -58,6 +58,8 @@ run 0 render lone.xyz -o lone.pfm --method patch --size 16x16
 run 2 render torus.cot -o x.pfm --method patch --error 2
 run 2 render torus.ply -o x.pfm --method patch --deep x.exr
 run 2 render torus.ply -o x.pfm --method patch --degree 5
+run 2 render torus.ply -o x.pfm --method patch --as mesh
+run 2 verify torus.ply --method patch --as mesh
 run 2 bench --method patch
 [[ ! -e x.pfm && ! -e x.exr ]] || fail "something was left of what failed"
 

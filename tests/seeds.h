@@ -6,7 +6,8 @@
 #include "tests/las_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,
+                         chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -213,6 +214,81 @@ static inline void seeds_octree(seed_set *set, conic_context *context, size_t n,
   seeds_add(set, "cot", "cot", 0, bytes, n_bytes);
 }
 
+/* Two squares at an angle, one with a texture of 2 × 2; as triangles, or gathered to surfels. */
+static inline void seeds_hybrid(seed_set *set, conic_context *context, int is_gathered) {
+  static const float places[3][6] = {{0, 0, 1, 1, 1, 1}, {0, 1, 0, 1, 0, 1}, {0, 0, 0, 0, 1, 1}};
+  static const uint32_t corners[4][3] = {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}};
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.chy");
+  conic_triangles mesh;
+  conic_hybrid_options options;
+  conic_hybrid *hybrid;
+  conic_image image;
+  conic_texture *texture;
+  conic_hybrid_options_init(&options);
+  options.phase2 = is_gathered ? 1e6 : -2.0;
+  if (conic_triangles_allocate(context, 4, 6, CONIC_TRIANGLES_COLORS | CONIC_TRIANGLES_TEXTURE_COORDINATES, &mesh) !=
+          CONIC_OK ||
+      conic_image_allocate(context, 2, 2, 1u << CONIC_PLANE_RGBA, &image) != CONIC_OK)
+    exit(1);
+  memcpy(mesh.corners, corners, sizeof corners);
+  for (int i = 0; i < 6; i++) {
+    for (int axis = 0; axis < 3; axis++) {
+      mesh.position[axis][i] = places[axis][i];
+      mesh.color[axis][i] = 0.5f + 0.1f * (float)axis;
+    }
+    mesh.texture_coordinate[0][i] = 0.5f * (float)(i / 2);
+    mesh.texture_coordinate[1][i] = (float)(i % 2);
+  }
+  for (int i = 0; i < 16; i++)
+    ((float *)image.planes[CONIC_PLANE_RGBA])[i] = i % 4 == 3 ? 1.0f : (float)i / 16.0f;
+  if (conic_texture_create(context, &image, CONIC_WRAP_REPEAT, &texture) != CONIC_OK ||
+      conic_triangles_texture(context, &mesh, texture) != CONIC_OK ||
+      conic_hybrid_build(context, &mesh, &options, &hybrid, NULL) != CONIC_OK ||
+      conic_hybrid_write(hybrid, path) != CONIC_OK)
+    exit(1);
+  conic_image_release(context, &image);
+  conic_hybrid_destroy(hybrid);
+  FILE *file = fopen(path, "rb");
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "chy", "chy", 0, bytes, n_bytes);
+}
+
+/* Layered point clouds, likewise; none where this build cannot write them. */
+static inline void seeds_layers(seed_set *set, conic_context *context, size_t n, unsigned fields) {
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.lpc");
+  conic_layers_options options;
+  conic_layers_builder *builder;
+  conic_splats splats;
+  conic_layers_options_init(&options);
+  options.cloud_size = 64;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_NORMALS | fields, &splats) != CONIC_OK)
+    exit(1);
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)((i * (size_t)(7 + 4 * axis)) % 31);
+      splats.normal[axis][i] = axis == (int)(i % 3) ? 1.0f : 0.25f;
+      if (splats.color[0])
+        splats.color[axis][i] = (float)(i % 7) / 6.0f;
+    }
+  conic_status status = conic_layers_builder_open(context, path, &options, &builder);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_append(builder, &splats);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_finish(builder, NULL);
+  conic_splats_release(context, &splats);
+  if (status == CONIC_ERROR_UNSUPPORTED)
+    return;
+  FILE *file = status == CONIC_OK ? fopen(path, "rb") : NULL;
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -223,6 +299,9 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);
+  seeds_hybrid(set, context, 1);
+  seeds_layers(set, context, 1, 0);
+  seeds_layers(set, context, 300, CONIC_SPLATS_COLORS);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
   seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
   seeds_picture(set, context, "exr", 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);

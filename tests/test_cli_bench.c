@@ -51,12 +51,12 @@ static void test_planted(cli_session *session, const char *scene_name, int i_met
   cli_bench_scene scene;
   cli_bench_pictures pictures = {.timed_planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_WEIGHT};
   cli_bench_line line = line_of(i_method, 90);
-  const unsigned all = (1u << CONIC_N_PLANES) - 1u;
+  const unsigned all = CONIC_DRAWN_PLANES;
   CHECK(cli_bench_scene_open(session, scene_name, NULL, &scene) == CLI_DONE);
   CHECK_OK(conic_image_allocate(session->context, line.width, line.height, all, &pictures.reference));
   CHECK_OK(conic_image_allocate(session->context, line.width, line.height, all, &pictures.drawn));
   CHECK_OK(cli_bench_refer(session, &scene, &line, &pictures.reference));
-  for (int plane = -1; plane < CONIC_N_PLANES; plane++) {
+  for (int plane = -1; plane < CONIC_N_DRAWN_PLANES; plane++) {
     unsigned char *bytes = plane < 0 ? NULL : pictures.reference.planes[plane];
     if (bytes)
       bytes[4000] ^= 1;

@@ -176,7 +176,7 @@ static conic_image text_image(conic_context *context, conic_plane plane, const c
   conic_image image;
   CHECK_OK(conic_image_allocate(context, width, height, 1u << plane, &image));
   for (int i = 0; i < width * height; i++)
-    if (plane == CONIC_PLANE_ID)
+    if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#' ? 0 : CONIC_NO_ID;
     else if (plane == CONIC_PLANE_COUNT)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#';

@@ -303,7 +303,60 @@ static void test_shape(conic_context *context, place_samples *place, size_t n, s
   CHECK(unlink(path) == 0);
 }
 
-/* A discs' size that is one of many is not that of all. */
+/* Points alone: their normals are those of the surface, to what its curvature and the steps leave; memory and threads
+ * change nothing here either. */
+static void test_bare(void) {
+  static const struct {
+    int threads;
+    uint64_t memory_bytes;
+  } ways[] = {{1, UINT64_C(1) << 30}, {3, UINT64_C(1) << 30}, {2, 1 << 16}};
+  unsigned char *first = NULL;
+  size_t n_first = 0;
+  for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+    conic_context *context = check_context(ways[i].threads);
+    const char *path = files_path("bare.lpc");
+    conic_layers_options options = options_for(64, 0.5);
+    conic_layers_statistics statistics;
+    conic_splats splats, points;
+    layers_all all;
+    unsigned char *bytes;
+    options.memory_bytes = ways[i].memory_bytes;
+    layers_scene(context, CONIC_SCENE_SPHERE, 40000, 0.0, &splats);
+    points = (conic_splats){.count = splats.count};
+    memcpy(points.position, splats.position, sizeof points.position);
+    CHECK_OK(layers_build(context, &points, path, &options, &statistics));
+    CHECK(statistics.n_zero == points.count);
+    check_sound(context, path);
+    layers_read(context, path, &all);
+    CHECK(all.view.header.flags == CONIC_LAYERS_UNORIENTED);
+    double sum = 0.0, least = 1.0;
+    for (size_t k = 0; k < all.n; k++) {
+      double cosine = 0.0, length = 0.0;
+      for (int axis = 0; axis < 3; axis++) {
+        double at = all.view.header.origin[axis] + (double)all.samples[k].position[axis];
+        cosine += at * (double)all.samples[k].normal[axis];
+        length += at * at;
+      }
+      cosine = fabs(cosine) / sqrt(length);
+      sum += cosine;
+      least = cosine < least ? cosine : least;
+    }
+    CHECK(sum / (double)all.n > 0.9995 && least > 0.97);
+    layers_release(&all);
+    size_t n = read_file(path, &bytes);
+    if (first)
+      CHECK(n == n_first && memcmp(first, bytes, n) == 0);
+    free(first);
+    first = bytes;
+    n_first = n;
+    conic_splats_release(context, &splats);
+    CHECK(unlink(path) == 0);
+    conic_context_destroy(context);
+  }
+  free(first);
+}
+
+/* One disc that is much larger than the others does not make them as large. */
 static void test_sizes(conic_context *context) {
   const char *path = files_path("sizes.lpc");
   conic_layers_options options = options_for(64, 0.5);
@@ -364,6 +417,7 @@ int main(void) {
   test_shape(context, clumped, 5000, 5000);
   test_shape(context, in_a_volume, 5000, 5000);
   test_shape(context, half_unusable, 2000, 1000);
+  test_bare();
   test_sizes(context);
   test_refused(context);
   files_end(context);

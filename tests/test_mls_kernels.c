@@ -50,7 +50,7 @@ static void fill(conic_near *near, size_t n, uint64_t seed) {
 }
 
 static conic_weighing weighing_of(conic_surface_weight weight, double neglect) {
-  conic_weighing weighing = {weight == CONIC_WEIGHT_COMPACT, neglect * neglect, conic_weight_exp(neglect * neglect)};
+  conic_weighing weighing = {weight, neglect * neglect, conic_weight_exp(neglect * neglect)};
   return weighing;
 }
 
@@ -82,7 +82,7 @@ static void compare_tables(void) {
       fprintf(stderr, "skipped: %s is not on this machine\n", conic_isa_name((conic_isa)isa));
       continue;
     }
-    for (int weight = CONIC_WEIGHT_GAUSS; weight <= CONIC_WEIGHT_COMPACT; weight++)
+    for (int weight = CONIC_WEIGHT_GAUSS; weight <= CONIC_WEIGHT_FLAT; weight++)
       for (int degree = 1; degree <= 4; degree++)
         for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
           conic_weighing weighing = weighing_of((conic_surface_weight)weight, 1.5 + 0.5 * (double)i);
@@ -124,7 +124,7 @@ static void check_derivatives(void) {
   conic_near near = allocate();
   const double t = 0.15, d = 1e-5;
   fill(&near, 40, 5);
-  for (int weight = CONIC_WEIGHT_GAUSS; weight <= CONIC_WEIGHT_COMPACT; weight++) {
+  for (int weight = CONIC_WEIGHT_GAUSS; weight <= CONIC_WEIGHT_FLAT; weight++) {
     conic_weighing weighing = weighing_of((conic_surface_weight)weight, 2.0);
     double here[CONIC_N_PLANE_SUMS], low[3][CONIC_N_PLANE_SUMS], high[3][CONIC_N_PLANE_SUMS];
     sums_at(&near, &weighing, 0.0, 0.0, t, here);
@@ -142,14 +142,18 @@ static void check_derivatives(void) {
 }
 
 static void check_weights(void) {
-  conic_weighing gauss = weighing_of(CONIC_WEIGHT_GAUSS, 2.0), compact = weighing_of(CONIC_WEIGHT_COMPACT, 2.0);
+  conic_weighing gauss = weighing_of(CONIC_WEIGHT_GAUSS, 2.0), compact = weighing_of(CONIC_WEIGHT_COMPACT, 2.0),
+                 flat = weighing_of(CONIC_WEIGHT_FLAT, 2.0);
   for (double s = 0.0; s < 36.0; s += 0.01)
     CHECK_NEAR(conic_weight_exp(s) / conic_gaussian_exp(-s), 1.0, 1e-14);
   CHECK_NEAR(conic_weight_at(&gauss, 0.0).value, 1.0 - 5.0 * exp(-4.0), 1e-14); /* less the tangent at 4 */
-  CHECK(conic_weight_at(&compact, 0.0).value == 1.0);
+  CHECK(conic_weight_at(&compact, 0.0).value == 1.0 && conic_weight_at(&flat, 0.0).value == 1.0);
+  CHECK_NEAR(conic_weight_at(&flat, 1.0).value, 225.0 / 256.0, 1e-15); /* (1 - 2⁻⁴)² */
+  CHECK(conic_weight_at(&flat, 4.0).value == 0.0 && conic_weight_at(&flat, 1e300).value == 0.0);
+  CHECK_NEAR(conic_weight_at(&flat, 4.0 - 1e-9).first, 0.0, 1e-9);
   CHECK(conic_weight_at(&gauss, 4.0).value == 0.0 && conic_weight_at(&compact, 4.0).value == 0.0);
   CHECK(conic_weight_at(&gauss, 1e300).value == 0.0 && conic_weight_at(&compact, 1e300).value == 0.0);
-  /* Both end smoothly. */
+  /* They end smoothly. */
   CHECK_NEAR(conic_weight_at(&gauss, 4.0 - 1e-9).first, 0.0, 1e-10);
   CHECK_NEAR(conic_weight_at(&compact, 4.0 - 1e-9).first, 0.0, 1e-9);
   /* The stated bound of what the neglect distance changes: (1 + c²) e^(-c²) of the peak. */

@@ -90,7 +90,7 @@ static conic_status run(conic_context *context, const conic_splats *samples, dou
 int main(void) {
   conic_context *plain = check_context(1);
   conic_splats samples = shape_sample(plain, SHAPE_TORUS, 150, 0.1, 3);
-  conic_splats splats = shape_places(plain, SHAPE_TORUS, 400, 3);
+  conic_splats splats = shape_places(plain, SHAPE_TORUS, 150, 3);
   long n_failures = 0;
   for (int what = 0; what < 3; what++) {
     for (long i = 1;; i++) {

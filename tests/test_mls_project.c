@@ -295,6 +295,29 @@ static double offset_of(conic_context *context, const conic_splats *noisy, const
   return sqrt(sum2 / (double)n_done) / spacing;
 }
 
+/* PCL's own neighbourhood, of 4 spacings and 26 neighbours, with weights that are as even as they can be and yet end
+ * smoothly. */
+static void check_flat(conic_context *context, const conic_splats *noisy, const conic_splats *clean, double spacing) {
+  conic_surface_options options;
+  conic_surface_report report;
+  conic_splats moved;
+  conic_surface_options_init(&options);
+  options.weight = CONIC_WEIGHT_FLAT;
+  options.neglect = 1.0;
+  options.h = 4.0 * spacing;
+  options.degree = 2;
+  double offset = offset_of(context, noisy, clean, spacing, &options);
+  options.degree = 3;
+  conic_surface *surface = shape_surface(context, clean, &options);
+  CHECK_OK(conic_surface_clean(surface, &moved, &report));
+  printf("flat weights, %.1f neighbours: %.3f spacings off; as it is moved by %.3f, %zu of %zu failed\n",
+         report.mean_neighbours, offset, report.moved_rms / spacing, report.n_in - report.n_out, report.n_in);
+  CHECK(offset <= 0.30 && report.moved_rms <= 0.13 * spacing && report.mean_neighbours < 29.0);
+  CHECK(report.n_out > report.n_in - report.n_in / 14);
+  conic_surface_destroy(surface);
+  conic_splats_release(context, &moved);
+}
+
 static void check_scan(conic_context *context, const char *source_folder) {
   conic_surface_options options;
   conic_surface_report report;
@@ -332,6 +355,7 @@ static void check_scan(conic_context *context, const char *source_folder) {
   check_projection(context, &clean.points, options.h, "nefertiti");
   conic_surface_destroy(surface);
   conic_splats_release(context, &moved);
+  check_flat(context, &noisy.points, &clean.points, spacing);
   conic_model_release(context, &clean);
   conic_model_release(context, &noisy);
 }

@@ -60,6 +60,18 @@ static conic_node_disc node_over(const conic_discs *discs, size_t begin, int i) 
   return node;
 }
 
+/* All that this machine has besides the plain ones. Returns how many. */
+static int list_kernels(conic_octree_kernels kernels[2]) {
+  int n = 0;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2"))
+    kernels[n++] = (conic_octree_kernels){conic_cover_avx2,        conic_find_near_avx2, conic_add_reach_avx2,
+                                          conic_choose_ratio_avx2, conic_measure_avx2,   conic_put_avx2};
+#endif
+  kernels[n++] = conic_octree_kernels_choose();
+  return n;
+}
+
 /* What is near a node, up to `reach` about its centre. */
 static void set_near(surface *s, const conic_node_disc *node, float reach) {
   for (int axis = 0; axis < 3; axis++) {
@@ -73,8 +85,8 @@ static void test_cover(void) {
   conic_disc_samples samples;
   conic_disc_samples_init(&samples);
   lay_sheet(&s);
-  const conic_octree_kernels chosen = conic_octree_kernels_choose();
-  int n_enough = 0, n_moved = 0;
+  conic_octree_kernels kernels[2];
+  int n_kernels = list_kernels(kernels), n_enough = 0, n_moved = 0;
   for (int i = 0; i < N_NODES; i++) {
     size_t begin = (size_t)(i * 37) % (N_DISCS - 8), end = begin + 2 + (size_t)(i % 6);
     conic_node_disc node = node_over(&s.discs, begin, i);
@@ -83,13 +95,17 @@ static void test_cover(void) {
     CHECK(s.near.blocks.count == (N_DISCS + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK);
     float error = conic_cover_baseline(&samples, &s.discs, begin, end, &s.near, &node);
     CHECK(error >= node.enough && error < HUGE_VALF);
-    CHECK(error == chosen.cover(&samples, &s.discs, begin, end, &s.near, &node));
     n_enough += error == node.enough;
     /* Whatever of the discs is looked at first, and however few are thought to be near. */
-    n_moved += error != chosen.cover(&samples, &s.discs, 0, N_DISCS, &s.near, &node);
+    for (int k = 0; k < n_kernels; k++) {
+      n_moved += error != kernels[k].cover(&samples, &s.discs, begin, end, &s.near, &node);
+      n_moved += error != kernels[k].cover(&samples, &s.discs, 0, N_DISCS, &s.near, &node);
+    }
     set_near(&s, &node, 0.06f * (float)(i % 5));
-    chosen.find_near(&s.discs, &s.near);
-    n_moved += error != chosen.cover(&samples, &s.discs, begin, end, &s.near, &node);
+    for (int k = 0; k < n_kernels; k++) {
+      kernels[k].find_near(&s.discs, &s.near);
+      n_moved += error != kernels[k].cover(&samples, &s.discs, begin, end, &s.near, &node);
+    }
   }
   CHECK(n_enough > N_NODES / 10 && n_enough < N_NODES);
   CHECK(n_moved == 0);
@@ -102,16 +118,20 @@ static const conic_node_frame tilted = {
 static void test_reach(void) {
   fixture f = fixture_open(1);
   fixture_scene(&f, CONIC_SCENE_TERRAIN, 4003);
-  conic_add_reach_function *chosen = conic_octree_kernels_choose().add_reach;
+  conic_octree_kernels kernels[2];
+  int n_kernels = list_kernels(kernels);
   for (size_t n = 1; n <= f.splats.count; n += n < 40 ? 1 : 991) {
     size_t begin = f.splats.count - n;
-    conic_leaf_reach all = {.cosine = 1.0}, again = all, slow = all;
+    conic_leaf_reach all = {.cosine = 1.0};
     conic_add_reach_baseline(&f.splats, begin, f.splats.count, 1.5, &tilted, &all);
-    chosen(&f.splats, begin, f.splats.count, 1.5, &tilted, &again);
-    for (size_t i = begin; i < f.splats.count; i++)
-      chosen(&f.splats, i, i + 1, 1.5, &tilted, &slow);
-    CHECK(memcmp(&all, &again, sizeof all) == 0);
-    CHECK(memcmp(&all, &slow, sizeof all) == 0);
+    for (int k = 0; k < n_kernels; k++) {
+      conic_leaf_reach again = {.cosine = 1.0}, slow = again;
+      kernels[k].add_reach(&f.splats, begin, f.splats.count, 1.5, &tilted, &again);
+      for (size_t i = begin; i < f.splats.count; i++)
+        kernels[k].add_reach(&f.splats, i, i + 1, 1.5, &tilted, &slow);
+      CHECK(memcmp(&all, &again, sizeof all) == 0);
+      CHECK(memcmp(&all, &slow, sizeof all) == 0);
+    }
     CHECK(all.reach > 0.0 && all.radius > 0.0 && all.height > 0.0 && all.cosine < 1.0);
   }
   fixture_close(&f);
@@ -122,13 +142,15 @@ static void test_ratio(void) {
   fixture f = fixture_open(1);
   fixture_scene(&f, CONIC_SCENE_TERRAIN, 2000);
   const conic_ellipse shape = {.major = {0.6, 0.8}, .ratio = 0.4};
-  conic_choose_ratio_function *chosen = conic_octree_kernels_choose().choose_ratio;
-  int n_changed = 0;
+  conic_octree_kernels kernels[2];
+  int n_kernels = list_kernels(kernels), n_changed = 0;
   for (size_t begin = 0; begin + CONIC_FEW_LEAVES <= f.splats.count; begin += 7) {
     size_t end = begin + 2 + begin % (CONIC_FEW_LEAVES - 1);
     double ratio =
         conic_choose_ratio_baseline(&f.splats, begin, end, 1.5, tilted.position, tilted.u, tilted.v, &shape, 0.1);
-    CHECK(ratio == chosen(&f.splats, begin, end, 1.5, tilted.position, tilted.u, tilted.v, &shape, 0.1));
+    for (int k = 0; k < n_kernels; k++)
+      CHECK(ratio ==
+            kernels[k].choose_ratio(&f.splats, begin, end, 1.5, tilted.position, tilted.u, tilted.v, &shape, 0.1));
     CHECK(ratio >= 0.5 * 0.4 && ratio <= 1.5 * 0.4);
     n_changed += ratio != shape.ratio;
   }
@@ -139,11 +161,12 @@ static void test_ratio(void) {
 /* Measured and taken apart, nodes are the same on every instruction set; what is put are the nodes' own numbers. */
 static void test_choosing(void) {
   enum { N = 3000, N_PUT = 77 };
-  static float pixels[2][N + CONIC_OCTREE_GROUP];
-  static uint32_t ids[2][N_PUT], sources[N_PUT];
+  static float pixels[3][N + CONIC_OCTREE_GROUP];
+  static uint32_t ids[3][N_PUT], sources[N_PUT];
   fixture f = fixture_open(1);
-  conic_splats put[2];
-  const conic_octree_kernels chosen = conic_octree_kernels_choose();
+  conic_splats put[3];
+  conic_octree_kernels kernels[3] = {{.measure = conic_measure_baseline, .put = conic_put_baseline}};
+  int n_kernels = 1 + list_kernels(kernels + 1);
   fixture_scene(&f, CONIC_SCENE_KNOT, N);
   octree_frame(&f, 200, 10, 30, 3.0);
   f.options.cull_back = 1;
@@ -151,36 +174,33 @@ static void test_choosing(void) {
   CHECK_OK(conic_octree_decode_all(octree));
   conic_octree_view view;
   conic_octree_view_init(octree, &f.camera, &f.options, conic_octree_near(octree), &view);
-  conic_measure_baseline(octree, &view, 0, octree->n_nodes, pixels[0]);
-  chosen.measure(octree, &view, 0, octree->n_nodes, pixels[1]);
-  CHECK(memcmp(pixels[0], pixels[1], octree->n_nodes * sizeof(float)) == 0);
   for (uint32_t k = 0; k < N_PUT; k++)
     sources[k] = k % 3 ? k * 31 : CONIC_NODE_BIT | (k * 11);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < n_kernels; i++) {
     unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES;
+    kernels[i].measure(octree, &view, 0, octree->n_nodes, pixels[i]);
+    CHECK(memcmp(pixels[0], pixels[i], octree->n_nodes * sizeof(float)) == 0);
     CHECK_OK(conic_splats_allocate(f.context, N_PUT + 5, fields, &put[i]));
-    (i ? chosen.put : conic_put_baseline)(octree, sources, N_PUT, view.eye, &put[i], ids[i], 0);
+    kernels[i].put(octree, sources, N_PUT, view.eye, &put[i], ids[i], 0);
   }
   int n_turned = 0, n_other = 0;
-  for (size_t k = 0; k < N_PUT; k++) {
-    int is_node = sources[k] >> 31 != 0;
-    const conic_drawn_node *from = &(is_node ? octree->drawn : octree->drawn_leaves)[sources[k] & ~CONIC_NODE_BIT];
-    n_turned += put[0].tangent_v[0][k] != from->tangent_v[0];
-    n_other += ids[0][k] != from->id || ids[1][k] != from->id || put[0].opacity[k] != from->opacity;
-    for (int axis = 0; axis < 3; axis++) {
-      n_other += put[0].position[axis][k] != from->position[axis] || put[0].color[axis][k] != from->color[axis] ||
-                 put[0].tangent_u[axis][k] != from->tangent_u[axis] ||
-                 fabsf(put[0].tangent_v[axis][k]) != fabsf(from->tangent_v[axis]);
-      n_other += put[1].position[axis][k] != from->position[axis] || put[1].color[axis][k] != from->color[axis] ||
-                 put[1].tangent_u[axis][k] != from->tangent_u[axis] ||
-                 put[1].tangent_v[axis][k] != put[0].tangent_v[axis][k];
+  for (int i = 0; i < n_kernels; i++)
+    for (size_t k = 0; k < N_PUT; k++) {
+      int is_node = sources[k] >> 31 != 0;
+      const conic_drawn_node *from = &(is_node ? octree->drawn : octree->drawn_leaves)[sources[k] & ~CONIC_NODE_BIT];
+      int is_turned = put[i].tangent_v[0][k] != from->tangent_v[0];
+      n_turned += is_turned;
+      n_other += ids[i][k] != from->id || put[i].opacity[k] != from->opacity || (is_turned && !is_node);
+      for (int axis = 0; axis < 3; axis++)
+        n_other += put[i].position[axis][k] != from->position[axis] || put[i].color[axis][k] != from->color[axis] ||
+                   put[i].tangent_u[axis][k] != from->tangent_u[axis] ||
+                   put[i].tangent_v[axis][k] != (is_turned ? -from->tangent_v[axis] : from->tangent_v[axis]) ||
+                   put[i].tangent_v[axis][k] != put[0].tangent_v[axis][k];
     }
-    CHECK(is_node || put[0].tangent_v[0][k] == from->tangent_v[0]);
-  }
   CHECK(n_other == 0);
-  CHECK(n_turned > 0 && n_turned < N_PUT / 3);
-  conic_splats_release(f.context, &put[0]);
-  conic_splats_release(f.context, &put[1]);
+  CHECK(n_turned > 0 && n_turned < n_kernels * N_PUT / 3);
+  for (int i = 0; i < n_kernels; i++)
+    conic_splats_release(f.context, &put[i]);
   conic_octree_destroy(octree);
   fixture_close(&f);
 }

@@ -129,7 +129,7 @@ static double ray_distance_px(const fixture *f, int x, int y) {
     to_world(f, cam, world);
     double distance = shape_distance(SHAPE_TORUS, world, normal);
     least = fmin(least, distance * f->camera.fx / z);
-    z += fmax(0.5 * fabs(distance), 1e-3);
+    z += fmax(0.7 * fabs(distance), 1e-3);
   }
   return least;
 }
@@ -147,13 +147,22 @@ static int compare_doubles(const void *a, const void *b) {
   return (first > second) - (first < second);
 }
 
+static double off_by_pixel[160 * 160]; /* what judge goes by: ray_distance_px */
+
+static void trace_rays(const fixture *f) {
+  for (int y = 0; y < f->camera.height; y++)
+    for (int x = 0; x < f->camera.width; x++)
+      off_by_pixel[y * f->camera.width + x] = ray_distance_px(f, x, y);
+}
+
 static picture_error judge(const fixture *f) {
   static double angles[160 * 160];
   picture_error e = {0};
   size_t n = 0;
   for (int y = 0; y < f->image.height; y++)
     for (int x = 0; x < f->image.width; x++) {
-      double off_px = ray_distance_px(f, x, y), z = (double)*fixture_pixel(f, CONIC_PLANE_Z, x, y), world[3], normal[3];
+      double off_px = off_by_pixel[y * f->image.width + x], z = (double)*fixture_pixel(f, CONIC_PLANE_Z, x, y),
+             world[3], normal[3];
       int is_covered = fixture_index(f, CONIC_PLANE_ID, x, y) != CONIC_NO_ID;
       e.n_holes += !is_covered && off_px <= -0.5;
       if (!is_covered)
@@ -224,6 +233,7 @@ static void test_smoothness(fixture *f) {
   conic_patches *patches = lay(f, &f->splats, CONIC_ISA_AUTO);
   for (int i = 0; i < 2; i++) {
     look_at(f, targets[i], direction, 3.0, 900.0); /* the torus is 840 pixels wide, a spacing 25 */
+    trace_rays(f);
     f->options.epsilon = -1.0;
     fixture_render(f);
     picture_error splats = judge(f);
@@ -244,10 +254,11 @@ static void test_smoothness(fixture *f) {
   conic_patches_destroy(patches);
 }
 
-/* Inside of a patch, and a hundred times nearer than its size. */
+/* A hundred times nearer than a patch is large. */
 static void test_near(fixture *f) {
-  double distances[] = {0.3, 0.03, 0.003, 0.0003}, target[3] = {0.4, 0.0, 1.0}, normal[3], direction[3];
-  fill_torus(f, 500);
+  const double distance = 0.003;
+  double target[3] = {0.4, 0.0, 1.0}, normal[3], direction[3];
+  fill_torus(f, 250);
   double off = shape_distance(SHAPE_TORUS, target, normal);
   for (int i = 0; i < 3; i++) {
     target[i] -= off * normal[i];
@@ -255,17 +266,15 @@ static void test_near(fixture *f) {
   }
   conic_patches *patches = lay(f, &f->splats, CONIC_ISA_AUTO);
   f->options.near_z = 1e-5;
-  for (int i = 0; i < 4; i++) {
-    look_at(f, target, direction, distances[i], 160.0);
-    conic_patch_selection selection = draw(f, patches);
-    int n_holes = 0;
-    for (int k = 0; k < 160 * 160; k++)
-      n_holes += ((const uint32_t *)f->image.planes[CONIC_PLANE_ID])[k] == CONIC_NO_ID;
-    printf("torus at %g: %zu samples of %zu patches, %d holes\n", distances[i], selection.n_samples,
-           selection.n_patches, n_holes);
-    CHECK(n_holes == 0 || i == 0);
-    CHECK(selection.n_samples < 1000000);
-  }
+  look_at(f, target, direction, distance, 160.0);
+  conic_patch_selection selection = draw(f, patches);
+  int n_holes = 0;
+  for (int k = 0; k < 160 * 160; k++)
+    n_holes += ((const uint32_t *)f->image.planes[CONIC_PLANE_ID])[k] == CONIC_NO_ID;
+  printf("torus at %g: %zu samples of %zu patches, %d holes\n", distance, selection.n_samples, selection.n_patches,
+         n_holes);
+  CHECK(n_holes == 0);
+  CHECK(selection.n_samples < 1000000);
   f->options.near_z = 0.0;
   conic_patches_destroy(patches);
 }
@@ -301,8 +310,8 @@ static void test_bits(void) {
   uint64_t expected[CONIC_N_PLANES], hashes[CONIC_N_PLANES];
   for (int t = 0; t < 3; t++) {
     fixture f = fixture_open(thread_counts[t]);
-    fill_torus(&f, 3000);
-    for (int isa = CONIC_ISA_AUTO; isa < CONIC_N_ISAS; isa++) {
+    fill_torus(&f, 1500);
+    for (int isa = CONIC_ISA_AUTO; isa < (t == 1 ? CONIC_N_ISAS : 1); isa++) {
       conic_patches_options options;
       conic_patches *patches;
       conic_patches_options_init(&options);
@@ -318,7 +327,7 @@ static void test_bits(void) {
       if (t == 0 && isa == CONIC_ISA_AUTO)
         memcpy(expected, hashes, sizeof expected);
       CHECK(memcmp(expected, hashes, sizeof hashes) == 0);
-      CHECK(first.n_kept == 0 && first.n_patches > 100 && first.n_splats < 10);
+      CHECK(first.n_kept == 0 && first.n_patches > 50 && first.n_splats < 10);
       look_at(&f, center, other, 2.2, 400.0); /* another picture between, which shares some grids */
       conic_patch_selection between = draw(&f, patches);
       look_at(&f, center, direction, 2.0, 400.0);

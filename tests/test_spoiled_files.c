@@ -87,8 +87,18 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "lpc") == 0) {
+    conic_layers_info info;
+    return conic_layers_describe(context, path, &info);
+  }
   if (strcmp(target, "mtl") == 0)
     return read_materials(context, path);
+  if (strcmp(target, "chy") == 0) {
+    conic_hybrid *hybrid;
+    status = conic_hybrid_read(context, path, &hybrid);
+    conic_hybrid_destroy(hybrid);
+    return status;
+  }
   if (is_picture(target)) {
     status = conic_image_read(context, path, &image);
     if (status == CONIC_OK)

@@ -15,15 +15,20 @@ extern "C" {
 #endif
 
 typedef enum conic_plane {
-  CONIC_PLANE_RGBA = 0,   /* 4 floats: R, G, B premultiplied by A */
-  CONIC_PLANE_Z = 1,      /* 1 float: camera-space z, 0 where nothing is */
-  CONIC_PLANE_NORMAL = 2, /* 3 floats: world, unit, towards the viewer; 0 where nothing is */
-  CONIC_PLANE_ALBEDO = 3, /* 3 floats: colour before shading */
-  CONIC_PLANE_WEIGHT = 4, /* 1 float: sum of the weights */
-  CONIC_PLANE_COUNT = 5,  /* 1 uint32: splats blended */
-  CONIC_PLANE_ID = 6,     /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
-  CONIC_N_PLANES = 7
+  CONIC_PLANE_RGBA = 0,    /* 4 floats: R, G, B premultiplied by A */
+  CONIC_PLANE_Z = 1,       /* 1 float: camera-space z, 0 where nothing is */
+  CONIC_PLANE_NORMAL = 2,  /* 3 floats: world, unit, towards the viewer; 0 where nothing is */
+  CONIC_PLANE_ALBEDO = 3,  /* 3 floats: colour before shading */
+  CONIC_PLANE_WEIGHT = 4,  /* 1 float: sum of the weights */
+  CONIC_PLANE_COUNT = 5,   /* 1 uint32: splats blended */
+  CONIC_PLANE_ID = 6,      /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
+  CONIC_PLANE_CLUSTER = 7, /* 1 uint32: patch of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
+  CONIC_N_PLANES = 8
 } conic_plane;
+
+/* The planes that drawing fills: the first ones; and as bits. */
+#define CONIC_N_DRAWN_PLANES CONIC_PLANE_CLUSTER
+#define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
 
 #define CONIC_NO_ID 0xFFFFFFFFu
 

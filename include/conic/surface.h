@@ -31,8 +31,9 @@ typedef enum conic_surface_plane {
 
 /* How a sample's weight falls with its distance d, in terms of x = d / h. */
 typedef enum conic_surface_weight {
-  CONIC_WEIGHT_GAUSS = 0,  /* exp(-x²), less the tangent (in x²) at the neglect distance, so that it ends smoothly */
-  CONIC_WEIGHT_COMPACT = 1 /* 2y³ - 3y² + 1, y = x / neglect */
+  CONIC_WEIGHT_GAUSS = 0,   /* exp(-x²), less the tangent (in x²) at the neglect distance, so that it ends smoothly */
+  CONIC_WEIGHT_COMPACT = 1, /* 2y³ - 3y² + 1, y = x / neglect */
+  CONIC_WEIGHT_FLAT = 2     /* (1 - y⁴)² */
 } conic_surface_weight;
 
 #define CONIC_SURFACE_MAX_DEGREE 4

@@ -1,0 +1,136 @@
+/* Hybrid models: of a mesh, patches that are drawn as triangles where the surface is flat and as surfels where it is
+ * not (docs/hybrid.md). */
+#ifndef CONIC_HYBRID_H
+#define CONIC_HYBRID_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/image.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+#include "conic/triangles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_hybrid conic_hybrid;
+
+/* How surfels are put on patches. */
+typedef enum conic_sampling {
+  CONIC_SAMPLING_BLUE = 0, /* blue noise, ellipses that cover the patch */
+  CONIC_SAMPLING_BOX = 1   /* where lines along the three axes meet it (HQP §3.3.2), for comparison */
+} conic_sampling;
+
+typedef struct conic_hybrid_options {
+  size_t size;      /* sizeof(conic_hybrid_options), set by the init function */
+  double phase1;    /* what is flat is joined up to this cost */
+  double phase2;    /* what is small is gathered up to this cost; what is, becomes surfels */
+  double most_area; /* no cluster of the first phase has a larger share of the whole area; 0: by the number of faces */
+  conic_sampling sampling;
+  double density;        /* surfels along the mean edge of a patch */
+  float cutoff;          /* F_g of the kernel that will draw */
+  int has_single_levels; /* leave out what only --error needs: simpler levels, and the other kind of each patch */
+} conic_hybrid_options;
+
+CONIC_API void conic_hybrid_options_init(conic_hybrid_options *options);
+
+/* What became of the mesh's faces, and how long that took. */
+typedef struct conic_hybrid_report {
+  size_t n_faces;
+  size_t nan, zero;              /* of them, left out: a corner that is not finite; not three places */
+  size_t welded;                 /* vertices that lie where an earlier one does */
+  size_t open, crowded, twisted; /* edges of one face, of over two, and whose faces cannot agree */
+  size_t turned;                 /* faces wound against their neighbours */
+  size_t n_pieces;               /* what hangs together */
+  size_t n_first;                /* clusters after the first phase */
+  double cluster_seconds, sample_seconds, simplify_seconds; /* the last two: over all threads, but shared */
+} conic_hybrid_report;
+
+/* Takes the mesh's arrays and textures over: *mesh is empty afterwards, on failure too. The result depends on the mesh
+ * and the options only, never on the threads. `report` may be null. On success the caller owns *hybrid, which must not
+ * outlive the context. Errors: ARGUMENT, INPUT (no face to draw), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh,
+                                          const conic_hybrid_options *options, conic_hybrid **hybrid,
+                                          conic_hybrid_report *report);
+
+/* Null is allowed. */
+CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
+
+/* Writes a .chy file (docs/format-chy.md). Errors: MEMORY, IO. */
+CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path);
+
+/* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid. The file
+ * must not be changed while it is in use. Errors: INPUT, MEMORY. */
+CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid);
+
+/* Whether a file that can be read begins like a .chy. */
+CONIC_API int conic_hybrid_is_file(const char *path);
+
+typedef struct conic_hybrid_info {
+  size_t n_patches, n_surfel_patches; /* all, and those that are surfels as built */
+  size_t n_triangles, n_surfels;      /* drawn as built, if all is in sight */
+  size_t n_levels;                    /* representations, over all patches */
+  size_t n_all_triangles, n_all_surfels;
+  size_t n_vertices, n_textures, n_nodes;
+  float cutoff;
+  double minimum[3], maximum[3]; /* of the vertices */
+  double splat_length;           /* as conic_splats_length of the surfels as built */
+  double near_z;                 /* 1e-4 × the box's diagonal */
+  uint64_t n_bytes;              /* of the file that holds it */
+} conic_hybrid_info;
+
+CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info);
+
+/* What of a hybrid model is not as it must be. */
+typedef struct conic_hybrid_defects {
+  size_t values;  /* numbers that are not finite */
+  size_t spheres; /* patches and nodes that reach out of theirs */
+  size_t cones;   /* patches with a face that faces out of theirs, and nodes with such a patch */
+  size_t levels;  /* patches whose levels' errors do not grow, or that have none without an error */
+} conic_hybrid_defects;
+
+/* Errors: MEMORY. */
+CONIC_API conic_status conic_hybrid_check(const conic_hybrid *hybrid, conic_hybrid_defects *defects);
+
+typedef enum conic_hybrid_kind { CONIC_HYBRID_TRIANGLES = 0, CONIC_HYBRID_SURFELS = 1 } conic_hybrid_kind;
+
+typedef struct conic_hybrid_view {
+  size_t size; /* sizeof(conic_hybrid_view), set by the init function */
+  double
+      error_px;  /* above 0: of each patch the cheapest level whose error on the screen is at most this; 0: as built */
+  int only_kind; /* -1: either; else the conic_hybrid_kind that all patches are drawn as, the finest that there is, or
+                    with error_px the cheapest that is good enough */
+} conic_hybrid_view;
+
+CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
+
+/* What is drawn in one picture. Zero before the first use; the memory is kept from call to call. */
+typedef struct conic_hybrid_selection {
+  conic_splats splats;
+  conic_triangles triangles; /* the textures are the hybrid's; the clusters are patches */
+  uint32_t *splat_cluster;   /* the patch of each splat */
+  size_t n_patches[2];       /* drawn as triangles, as surfels */
+  size_t n_culled;           /* patches that are out of sight */
+  size_t n_simpler;          /* drawn by another level than as built */
+  void *scratch;             /* private */
+} conic_hybrid_selection;
+
+/* Chooses what to draw: patches out of sight, and with cull_back those that face away, are left out. Neighbours meet
+ * without a gap whatever their levels. Errors: ARGUMENT, MEMORY. */
+CONIC_API conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
+                                           const conic_render_options *render, const conic_hybrid_view *view,
+                                           conic_hybrid_selection *selection);
+
+/* Fills the image's cluster plane from its id plane; both must be there. */
+CONIC_API void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image);
+
+CONIC_API void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

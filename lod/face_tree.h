@@ -1,0 +1,26 @@
+/* Boxes around boxes around a mesh's faces: how far a place is from the nearest. */
+#ifndef LOD_FACE_TREE_H
+#define LOD_FACE_TREE_H
+
+#include "lod/mesh.h"
+
+typedef struct conic_face_box {
+  float low[3], high[3];
+} conic_face_box;
+
+typedef struct conic_face_tree {
+  const conic_mesh *mesh;
+  size_t n_faces, n_leaves; /* leaves: a power of two */
+  uint32_t *faces;          /* along a curve that fills space */
+  conic_face_box *boxes;    /* of node i, whose children are 2i and 2i + 1, from 1; leaves from n_leaves */
+} conic_face_tree;
+
+/* Of the faces that are of use; the mesh must outlive the tree. Errors: MEMORY. */
+conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mesh, const conic_adjacency *adjacency,
+                                   conic_face_tree *tree);
+void conic_face_tree_release(conic_context *context, conic_face_tree *tree);
+
+/* How far the place is from the nearest face, where that is more than `known`; else `known`. */
+double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known);
+
+#endif

@@ -1,0 +1,138 @@
+#include "lod/hybrid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "lod/hybrid_layout.h"
+
+void conic_hybrid_destroy(conic_hybrid *hybrid) {
+  if (!hybrid)
+    return;
+  for (size_t i = 0; hybrid->materials && i < hybrid->n_materials; i++)
+    conic_texture_destroy(hybrid->materials[i].texture);
+  conic_memory_release(hybrid->context, hybrid->materials);
+  conic_memory_release(hybrid->context, hybrid->owned);
+  conic_mapping_close(hybrid->context, &hybrid->mapping);
+  conic_memory_release(hybrid->context, hybrid);
+}
+
+conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info) {
+  double square = 0.0;
+  memset(info, 0, sizeof *info);
+  info->n_patches = hybrid->n_patches;
+  info->n_levels = hybrid->n_levels;
+  info->n_all_triangles = hybrid->n_triangles;
+  info->n_all_surfels = hybrid->n_surfels;
+  info->n_vertices = hybrid->n_vertices;
+  info->n_nodes = hybrid->n_nodes;
+  info->cutoff = hybrid->cutoff;
+  info->splat_length = hybrid->splat_length;
+  info->n_bytes = conic_hybrid_file_bytes(hybrid);
+  for (size_t i = 0; i < hybrid->n_patches; i++) {
+    const conic_hybrid_patch *patch = &hybrid->patches[i];
+    const conic_hybrid_level *built = &hybrid->levels[patch->first_level + patch->built];
+    int is_surfels = built->kind == CONIC_HYBRID_SURFELS;
+    info->n_surfel_patches += (size_t)is_surfels;
+    *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
+  }
+  for (size_t i = 0; i < hybrid->n_materials; i++)
+    info->n_textures += hybrid->material_list[i].width > 0;
+  for (int axis = 0; axis < 3; axis++) {
+    info->minimum[axis] = hybrid->origin[axis] + (double)hybrid->low[axis];
+    info->maximum[axis] = hybrid->origin[axis] + (double)hybrid->high[axis];
+    double side = info->maximum[axis] - info->minimum[axis];
+    square += side * side;
+  }
+  info->near_z = square > 0.0 ? 1e-4 * sqrt(square) : 1e-4;
+  return CONIC_OK;
+}
+
+/* --- structure --- */
+
+static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
+  if (level->kind > CONIC_HYBRID_SURFELS || level->zero || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+    return "a level of no known kind";
+  size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
+  if (level->count < 1 || level->count > n || level->first > n - level->count)
+    return "a level without its triangles or surfels";
+  if (level->n_vertices > h->n_listed || level->first_vertex > h->n_listed - level->n_vertices)
+    return "a level without its vertices";
+  if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF))
+    return "a level's error or reach out of range";
+  if (level->kind == CONIC_HYBRID_TRIANGLES)
+    for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
+      for (int corner = 0; corner < 3; corner++)
+        if (h->corners[i][corner] >= level->n_vertices)
+          return "a corner out of range";
+  return NULL;
+}
+
+static int is_bound(const conic_hybrid_bound *b) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(b->center[axis] - b->center[axis] == 0.0f) || !(b->axis[axis] >= -1.001f && b->axis[axis] <= 1.001f))
+      return 0;
+  return b->radius >= 0.0f && b->radius < HUGE_VALF && b->cone >= -1.0f && b->cone <= 1.0f;
+}
+
+/* Every level belongs to just one patch, in their order. */
+static const char *wrong_patches(const conic_hybrid *h) {
+  size_t next = 0;
+  for (size_t i = 0; i < h->n_patches; i++) {
+    const conic_hybrid_patch *patch = &h->patches[i];
+    if (patch->first_level != next || patch->n_levels < 1 || patch->n_levels > h->n_levels - next ||
+        patch->built >= patch->n_levels)
+      return "a patch without its levels";
+    if (!is_bound(&patch->bound) || !(patch->area >= 0.0f && patch->area < HUGE_VALF))
+      return "a patch's bounds out of range";
+    for (size_t k = 0; k < patch->n_levels; k++) {
+      const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
+      if (wrong)
+        return wrong;
+    }
+    next += patch->n_levels;
+  }
+  return next == h->n_levels ? NULL : "levels of no patch";
+}
+
+/* A walk goes from a node to the one after it, or past its subtree; and what is left of the patches is always what the
+ * walk has not come by. */
+static const char *wrong_nodes(const conic_hybrid *h) {
+  size_t next_patch = 0;
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    if (node->next <= i || node->next > h->n_nodes || node->begin >= node->end || node->end > h->n_patches ||
+        node->zero || !is_bound(&node->bound))
+      return "a node that is none";
+    if (node->begin != next_patch)
+      return "nodes out of order";
+    if (node->next == i + 1)
+      next_patch = node->end;
+    else if (h->nodes[i + 1].begin != node->begin || h->nodes[node->next - 1].end != node->end)
+      return "nodes that are not within each other";
+  }
+  return h->n_nodes > 0 && next_patch == h->n_patches && h->nodes[0].next == h->n_nodes &&
+                 h->nodes[0].end == h->n_patches
+             ? NULL
+             : "patches of no node";
+}
+
+const char *conic_hybrid_structure(const conic_hybrid *h) {
+  const char *wrong = wrong_patches(h);
+  if (!wrong)
+    wrong = wrong_nodes(h);
+  for (size_t i = 0; i < h->n_listed && !wrong; i++)
+    if (h->listed[i] >= h->n_vertices)
+      wrong = "a vertex out of range";
+  for (size_t i = 0; i < h->n_triangles && h->material && !wrong; i++)
+    if (h->material[i] >= h->n_materials)
+      wrong = "a material out of range";
+  for (size_t i = 0; i < h->n_materials && !wrong; i++) {
+    const conic_chy_material *m = &h->material_list[i];
+    uint64_t n = (uint64_t)m->width * m->height;
+    if (m->width > 65535 || m->height > 65535 || (m->width == 0) != (m->height == 0) || m->wrap > 1 ||
+        n > h->n_texels || m->first_texel > h->n_texels - n)
+      wrong = "a texture without its texels";
+  }
+  return wrong;
+}

@@ -1,0 +1,80 @@
+/* A hybrid model as it is in memory. */
+#ifndef LOD_HYBRID_H
+#define LOD_HYBRID_H
+
+#include "conic/hybrid.h"
+#include "lod/mapping.h"
+
+/* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
+
+/* One way to draw a patch. */
+typedef struct conic_hybrid_level {
+  uint32_t kind;         /* conic_hybrid_kind */
+  uint32_t first, count; /* of its triangles or surfels among all */
+  uint32_t first_vertex; /* triangles: their vertices are listed from here on, and their corners count from there */
+  uint32_t n_vertices;
+  float error; /* no place of the patch is drawn farther than this from where it is */
+  float reach; /* surfels: the longest half axis of an outline */
+  uint32_t zero;
+} conic_hybrid_level;
+
+/* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
+typedef struct conic_hybrid_bound {
+  float center[3], radius, axis[3], cone;
+} conic_hybrid_bound;
+
+typedef struct conic_hybrid_patch {
+  conic_hybrid_bound bound;
+  float area;
+  uint32_t first_level, n_levels; /* triangles first, of growing error, then surfels likewise */
+  uint32_t built;                 /* which level is drawn where no error is asked for, from first_level */
+} conic_hybrid_patch;
+
+/* In preorder: the root first. */
+typedef struct conic_hybrid_node {
+  conic_hybrid_bound bound;
+  uint32_t begin, end; /* patches */
+  uint32_t next;       /* the node after the subtree: this one + 1 where it has no children */
+  uint32_t zero;
+} conic_hybrid_node;
+
+struct conic_hybrid {
+  conic_context *context;
+  float cutoff;
+  double origin[3];
+  float low[3], high[3]; /* of the vertices, from the origin */
+  double splat_length;
+  size_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_patches, n_nodes;
+  const float *position[3], *normal[3], *color[3],
+      *texture_coordinate[2]; /* by vertex; the last three kinds may be null */
+  const uint32_t (*corners)[3];
+  const uint32_t *material; /* of each triangle; null: all have the first, or there is none */
+  const uint32_t *listed;   /* vertices, by level */
+  const float *surfels[12]; /* positions, t_u, t_v, colours */
+  const conic_hybrid_level *levels;
+  const conic_hybrid_patch *patches;
+  const conic_hybrid_node *nodes;
+  size_t n_materials, n_texels;
+  const struct conic_chy_material *material_list;
+  const unsigned char *texels;
+  conic_material *materials; /* made of these; the textures are the hybrid's own */
+
+  /* Where all that lies: in one piece of memory of its own, or in the file's. */
+  void *owned;
+  conic_mapping mapping;
+};
+
+static inline double conic_hybrid_dot(const double a[3], const double b[3]) {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+/* The size of the file that holds it. */
+uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid);
+
+/* Makes the sums in a file's bytes right, for tests and fuzzing. */
+void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes);
+
+/* What is wrong with its indices, or null: nothing is used before it was asked. */
+const char *conic_hybrid_structure(const conic_hybrid *hybrid);
+
+#endif

@@ -1,0 +1,295 @@
+/* .chy files: docs/format-chy.md. */
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "lod/hybrid_layout.h"
+
+static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'};
+
+typedef conic_chy_header header;
+
+/* The members by place: what is written and what is read cannot differ. */
+typedef struct field {
+  size_t offset, n_bytes, n;
+} field;
+
+#define FIELD(member, n_values)                                                                                        \
+  { offsetof(header, member), sizeof(((header *)0)->member) / (n_values), n_values }
+
+static const field fields[] = {FIELD(version, 1),  FIELD(flags, 1),       FIELD(n_vertices, 1),   FIELD(n_triangles, 1),
+                               FIELD(n_listed, 1), FIELD(n_surfels, 1),   FIELD(n_levels, 1),     FIELD(n_patches, 1),
+                               FIELD(n_nodes, 1),  FIELD(n_materials, 1), FIELD(n_texels, 1),     FIELD(origin, 3),
+                               FIELD(low, 3),      FIELD(high, 3),        FIELD(splat_length, 1), FIELD(cutoff, 1),
+                               FIELD(zero, 1),     FIELD(body_sum, 1)};
+
+static uint64_t get_bits(const unsigned char *from, size_t n_bytes) {
+  uint64_t bits = 0;
+  for (size_t i = 0; i < n_bytes; i++)
+    bits |= (uint64_t)from[i] << 8 * i;
+  return bits;
+}
+
+static void put_bits(unsigned char *to, size_t n_bytes, uint64_t bits) {
+  for (size_t i = 0; i < n_bytes; i++)
+    to[i] = (unsigned char)(bits >> 8 * i);
+}
+
+/* Copies between the bytes and the header, value by value. */
+static void transfer(header *h, unsigned char *bytes, int is_writing) {
+  size_t at = sizeof magic;
+  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+    for (size_t k = 0; k < fields[i].n; k++, at += fields[i].n_bytes) {
+      char *value = (char *)h + fields[i].offset + k * fields[i].n_bytes;
+      uint32_t half;
+      uint64_t whole;
+      if (is_writing && fields[i].n_bytes == 4) {
+        memcpy(&half, value, 4);
+        put_bits(bytes + at, 4, half);
+      } else if (is_writing) {
+        memcpy(&whole, value, 8);
+        put_bits(bytes + at, 8, whole);
+      } else if (fields[i].n_bytes == 4) {
+        half = (uint32_t)get_bits(bytes + at, 4);
+        memcpy(value, &half, 4);
+      } else {
+        whole = get_bits(bytes + at, 8);
+        memcpy(value, &whole, 8);
+      }
+    }
+}
+
+/* --- sums --- */
+
+typedef struct sum_job {
+  const conic_chy_layout *layout;
+  const unsigned char *bytes;
+  uint64_t sums[CONIC_CHY_N_ARRAYS];
+} sum_job;
+
+static void sum_task(void *data, size_t i, int i_thread) {
+  sum_job *job = data;
+  (void)i_thread;
+  job->sums[i] = conic_checksum(job->bytes + job->layout->arrays[i].offset, job->layout->arrays[i].n_bytes);
+}
+
+static uint64_t sum_of_sums(const uint64_t sums[CONIC_CHY_N_ARRAYS]) {
+  unsigned char bytes[8 * CONIC_CHY_N_ARRAYS];
+  for (size_t i = 0; i < CONIC_CHY_N_ARRAYS; i++)
+    put_bits(bytes + 8 * i, 8, sums[i]);
+  return conic_checksum(bytes, sizeof bytes);
+}
+
+static uint64_t sum_body(conic_context *context, const conic_chy_layout *l, const unsigned char *bytes) {
+  sum_job job = {.layout = l, .bytes = bytes};
+  conic_parallel_for(context, CONIC_CHY_N_ARRAYS, sum_task, &job);
+  return sum_of_sums(job.sums);
+}
+
+/* --- writing --- */
+
+static header header_of(const conic_hybrid *hybrid) {
+  header h = {.version = CONIC_CHY_VERSION,
+              .n_vertices = hybrid->n_vertices,
+              .n_triangles = hybrid->n_triangles,
+              .n_listed = hybrid->n_listed,
+              .n_surfels = hybrid->n_surfels,
+              .n_levels = hybrid->n_levels,
+              .n_patches = hybrid->n_patches,
+              .n_nodes = hybrid->n_nodes,
+              .n_materials = hybrid->n_materials,
+              .n_texels = hybrid->n_texels,
+              .splat_length = hybrid->splat_length,
+              .cutoff = hybrid->cutoff};
+  h.flags = (hybrid->normal[0] ? CONIC_CHY_NORMALS : 0u) | (hybrid->color[0] ? CONIC_CHY_COLORS : 0u) |
+            (hybrid->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
+            (hybrid->material ? CONIC_CHY_MATERIALS : 0u);
+  memcpy(h.origin, hybrid->origin, sizeof h.origin);
+  memcpy(h.low, hybrid->low, sizeof h.low);
+  memcpy(h.high, hybrid->high, sizeof h.high);
+  return h;
+}
+
+uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
+  header h = header_of(hybrid);
+  return conic_chy_lay_out(&h).n_bytes;
+}
+
+static void make_header(header *h, unsigned char bytes[CONIC_CHY_HEADER_BYTES]) {
+  memset(bytes, 0, CONIC_CHY_HEADER_BYTES);
+  memcpy(bytes, magic, sizeof magic);
+  transfer(h, bytes, 1);
+  put_bits(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
+}
+
+static conic_status refuse_order(conic_context *context, const char *path) {
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: .chy files need a little-endian machine", path);
+#else
+  (void)context;
+  (void)path;
+  return CONIC_OK;
+#endif
+}
+
+/* What is in memory is what goes into the file, but for the header. */
+conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
+  const unsigned char *body = hybrid->owned ? hybrid->owned : hybrid->mapping.bytes;
+  unsigned char bytes[CONIC_CHY_HEADER_BYTES];
+  header h = header_of(hybrid);
+  conic_chy_layout l = conic_chy_lay_out(&h);
+  conic_output *output;
+  conic_status status = refuse_order(hybrid->context, path);
+  if (status != CONIC_OK)
+    return status;
+  h.body_sum = sum_body(hybrid->context, &l, body);
+  make_header(&h, bytes);
+  status = conic_output_open(hybrid->context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  fwrite(bytes, 1, sizeof bytes, stream); /* a failure is seen when the file is committed */
+  for (size_t at = sizeof bytes, n; at < l.n_bytes; at += n) {
+    n = l.n_bytes - at < (size_t)1 << 24 ? l.n_bytes - at : (size_t)1 << 24;
+    if (fwrite(body + at, 1, n, stream) != n)
+      break;
+    status = conic_progress(hybrid->context, "write", (double)(at + n) / (double)l.n_bytes);
+    if (status != CONIC_OK) {
+      conic_output_abandon(output);
+      return status;
+    }
+  }
+  return conic_output_commit(output);
+}
+
+/* --- reading --- */
+
+static int is_finite(double value) {
+  return value - value == 0.0;
+}
+
+/* What is wrong with a header whose sum is right, or null. */
+static const char *check_header(const header *h) {
+  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed, h->n_surfels,  h->n_levels,
+                             h->n_patches,  h->n_nodes,     h->n_texels, h->n_materials};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    if (counts[i] > UINT32_MAX)
+      return "counts that do not go together";
+  if (h->flags & ~(uint32_t)CONIC_CHY_ALL_FLAGS || h->zero)
+    return "unknown flags";
+  if (h->n_patches < 1 || h->n_levels < h->n_patches || h->n_nodes < 1 || h->n_nodes >= 2 * h->n_patches ||
+      ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) || (h->n_texels && h->n_materials < 1))
+    return "counts that do not go together";
+  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
+    return "a cutoff or length out of range";
+  for (int axis = 0; axis < 3; axis++)
+    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
+        !is_finite((double)h->high[axis]))
+      return "a box that is none";
+  return NULL;
+}
+
+static conic_status read_header(conic_hybrid *hybrid, const char *path, header *h) {
+  conic_context *context = hybrid->context;
+  const conic_mapping *file = &hybrid->mapping;
+  if (file->n_bytes < sizeof magic || memcmp(file->bytes, magic, sizeof magic) != 0)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: no .chy file (at byte 0)", path);
+  if (file->n_bytes < CONIC_CHY_HEADER_BYTES)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, file->n_bytes);
+  transfer(h, file->bytes, 0);
+  if (h->version != CONIC_CHY_VERSION)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
+                      (unsigned)h->version);
+  if (get_bits(file->bytes + CONIC_CHY_HEADER_BYTES - 8, 8) != conic_checksum(file->bytes, CONIC_CHY_HEADER_BYTES - 8))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path,
+                      CONIC_CHY_HEADER_BYTES - 8);
+  const char *wrong = check_header(h);
+  if (wrong)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong);
+  return CONIC_OK;
+}
+
+/* The size, the sums, and nothing between the arrays. */
+static conic_status check_body(const conic_hybrid *hybrid, const char *path, const header *h) {
+  const conic_mapping *file = &hybrid->mapping;
+  conic_chy_layout l = conic_chy_lay_out(h);
+  if (file->n_bytes != l.n_bytes)
+    return conic_fail(hybrid->context, CONIC_ERROR_INPUT,
+                      "%s: has %zu bytes where its header tells of %zu (at byte %zu)", path, file->n_bytes, l.n_bytes,
+                      file->n_bytes < l.n_bytes ? file->n_bytes : l.n_bytes);
+  for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
+    size_t next = i + 1 < CONIC_CHY_N_ARRAYS ? l.arrays[i + 1].offset : l.n_bytes;
+    for (size_t at = l.arrays[i].offset + l.arrays[i].n_bytes; at < next; at++)
+      if (file->bytes[at])
+        return conic_fail(hybrid->context, CONIC_ERROR_INPUT, "%s: is damaged (at byte %zu)", path, at);
+  }
+  if (sum_body(hybrid->context, &l, file->bytes) != h->body_sum)
+    return conic_fail(hybrid->context, CONIC_ERROR_INPUT,
+                      "%s: is damaged: its sum is not that of its header (at byte %d)", path, CONIC_CHY_HEADER_BYTES);
+  return CONIC_OK;
+}
+
+static conic_status read_file(conic_hybrid *hybrid, const char *path) {
+  header h;
+  conic_status status = refuse_order(hybrid->context, path);
+  if (status == CONIC_OK)
+    status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
+  if (status == CONIC_OK)
+    status = read_header(hybrid, path, &h);
+  if (status == CONIC_OK)
+    status = check_body(hybrid, path, &h);
+  if (status != CONIC_OK)
+    return status;
+  conic_chy_attach(&h, hybrid->mapping.bytes, hybrid);
+  const char *wrong = conic_hybrid_structure(hybrid);
+  if (wrong)
+    return conic_fail(hybrid->context, CONIC_ERROR_INPUT, "%s: has %s (at byte %d)", path, wrong,
+                      CONIC_CHY_HEADER_BYTES);
+  return conic_chy_make_materials(hybrid);
+}
+
+conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid) {
+  conic_hybrid *read = conic_memory_allocate_zeroed(context, 1, sizeof *read);
+  *hybrid = NULL;
+  if (!read)
+    return CONIC_ERROR_MEMORY;
+  read->context = context;
+  conic_status status = read_file(read, path);
+  if (status == CONIC_OK)
+    *hybrid = read;
+  else
+    conic_hybrid_destroy(read);
+  return status;
+}
+
+int conic_hybrid_is_file(const char *path) {
+  unsigned char head[sizeof magic];
+  struct stat found;
+  int is_file = strcmp(path, "-") != 0 && stat(path, &found) == 0 && S_ISREG(found.st_mode);
+  FILE *file = is_file ? fopen(path, "rb") : NULL;
+  if (!file)
+    return 0;
+  size_t n = fread(head, 1, sizeof head, file);
+  fclose(file);
+  return n == sizeof head && memcmp(head, magic, sizeof magic) == 0;
+}
+
+void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
+  header h;
+  transfer(&h, bytes, 0);
+  if (!check_header(&h)) {
+    conic_chy_layout l = conic_chy_lay_out(&h);
+    if (l.n_bytes == n_bytes) {
+      uint64_t sums[CONIC_CHY_N_ARRAYS];
+      for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
+        sums[i] = conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes);
+      h.body_sum = sum_of_sums(sums);
+      transfer(&h, bytes, 1);
+    }
+  }
+  put_bits(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
+}

@@ -1,0 +1,226 @@
+#include "lod/hybrid_levels.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+
+enum { PATCHES_A_TASK = 4 };
+
+static double seconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
+  conic_patch_levels_release(context, &ways->triangles);
+  for (int i = 0; i < ways->n_surfels; i++)
+    conic_surfels_release(context, &ways->surfels[i]);
+  ways->n_surfels = 0;
+}
+
+/* --- bounds --- */
+
+static void bound_sphere(const conic_patch_mesh *mesh, uint32_t patch, conic_hybrid_bound *bound) {
+  double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, farthest2 = 0.0;
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++)
+      for (int corner = 0; corner < 3; corner++) {
+        double at[3], distance2 = 0.0;
+        conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at);
+        for (int axis = 0; axis < 3; axis++) {
+          low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
+          high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
+          double d = at[axis] - (double)bound->center[axis];
+          distance2 += d * d;
+        }
+        farthest2 = pass && distance2 > farthest2 ? distance2 : farthest2;
+      }
+    for (int axis = 0; axis < 3 && !pass; axis++)
+      bound->center[axis] = (float)(0.5 * (low[axis] + high[axis]));
+  }
+  bound->radius = (float)(sqrt(farthest2) * (1.0 + 1e-6));
+}
+
+/* The cone of the faces as they are wound, for that is what culling goes by. A face without area faces nowhere. */
+static void bound_cone(const conic_patch_mesh *mesh, uint32_t patch, conic_hybrid_bound *bound) {
+  double axis[3] = {0.0, 0.0, 0.0}, least = 1.0;
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++) {
+      double normal[3], along;
+      conic_patch_face_normal(mesh, mesh->faces[i], normal);
+      for (int k = 0; k < 3; k++) {
+        normal[k] *= (double)mesh->adjacency->side[mesh->faces[i]];
+        axis[k] += pass ? 0.0 : normal[k];
+      }
+      along = conic_dot(normal, axis);
+      least = pass && conic_dot(normal, normal) > 0.0 && along < least ? along : least;
+    }
+    double length = sqrt(conic_dot(axis, axis));
+    for (int k = 0; k < 3 && !pass; k++)
+      axis[k] = length > 0.0 ? axis[k] / length : (double)(k == 2);
+  }
+  for (int k = 0; k < 3; k++)
+    bound->axis[k] = (float)axis[k];
+  bound->cone = least > 1e-3 ? (float)(least - 1e-5) : -1.0f;
+}
+
+conic_hybrid_bound conic_patch_bound(const conic_patch_mesh *mesh, uint32_t patch) {
+  conic_hybrid_bound bound;
+  bound_sphere(mesh, patch, &bound);
+  bound_cone(mesh, patch, &bound);
+  return bound;
+}
+
+static double patch_area(const conic_patch_mesh *mesh, uint32_t patch) {
+  double area = 0.0;
+  for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++) {
+    double at[3][3], sides[2][3], cross[3];
+    for (int corner = 0; corner < 3; corner++)
+      conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at[corner]);
+    for (int axis = 0; axis < 3; axis++) {
+      sides[0][axis] = at[1][axis] - at[0][axis];
+      sides[1][axis] = at[2][axis] - at[0][axis];
+    }
+    conic_cross(sides[0], sides[1], cross);
+    area += 0.5 * sqrt(conic_dot(cross, cross));
+  }
+  return area;
+}
+
+/* --- surfels --- */
+
+/* What is triangles as built begins with surfels that are half as many: finer ones would be of no use. */
+static double first_spacing(const conic_ways_job *job, uint32_t patch) {
+  const conic_patch_mesh *mesh = job->mesh;
+  double edge = conic_patch_edge_length(mesh, patch), n_faces = (double)(mesh->starts[patch + 1] - mesh->starts[patch]);
+  if (mesh->clusters->is_gathered[patch])
+    return edge / job->options->density;
+  double sparse = sqrt(1.3 * job->ways[patch].area / n_faces);
+  return sparse > edge ? sparse : edge;
+}
+
+/* A cover of the patch by one kind of sampling, each level twice as wide as the one before, down to a few surfels. */
+static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, uint32_t patch) {
+  conic_patch_ways *ways = &job->ways[patch];
+  int is_gathered = job->mesh->clusters->is_gathered[patch], is_single = job->options->has_single_levels;
+  conic_sampling_job sampling = {job->mesh, &job->tree, patch, first_spacing(job, patch), (double)job->options->cutoff};
+  conic_status status = CONIC_OK;
+  int n_most = is_single ? is_gathered : CONIC_MOST_SURFEL_LEVELS;
+  while (ways->n_surfels < n_most && status == CONIC_OK && sampling.spacing > 0.0) {
+    conic_surfels *surfels = &ways->surfels[ways->n_surfels++];
+    int is_first = ways->n_surfels == 1;
+    surfels->error = is_first ? 0.0 : surfels[-1].error; /* it has no less than what it is coarser than */
+    if (job->options->sampling == CONIC_SAMPLING_BOX)
+      status = conic_patch_sample_box(job->context, &sampling, surfels);
+    else
+      status = conic_patch_sample(sampler, &sampling, surfels);
+    if (surfels->n == 0 || (!is_first && 4 * surfels->n > 3 * surfels[-1].n)) { /* not worth a level */
+      conic_surfels_release(job->context, surfels);
+      ways->n_surfels--;
+      break;
+    }
+    if (surfels->n <= 2)
+      break;
+    sampling.spacing *= 2.0;
+  }
+  return status;
+}
+
+/* --- all patches --- */
+
+typedef struct ways_pass {
+  conic_ways_job *job;
+  void **workers; /* a sampler or a simplifier for each thread */
+  conic_status *statuses;
+  int is_sampling;
+  size_t first;
+} ways_pass;
+
+static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
+  conic_ways_job *job = pass->job;
+  void **worker = &pass->workers[i_thread];
+  conic_status status = CONIC_OK;
+  if (!pass->is_sampling) {
+    conic_simplifier *simplifier = *worker;
+    if (!simplifier)
+      status = conic_simplifier_create(job->context, job->mesh, &simplifier);
+    *worker = simplifier;
+    return status == CONIC_OK ? conic_patch_simplify(simplifier, patch, &job->ways[patch].triangles) : status;
+  }
+  conic_sampler *sampler = *worker;
+  if (!sampler)
+    status = conic_sampler_create(job->context, &sampler);
+  *worker = sampler;
+  return status == CONIC_OK ? sample_patch(job, sampler, patch) : status;
+}
+
+static void ways_task(void *data, size_t i_task, int i_thread) {
+  ways_pass *pass = data;
+  size_t begin = pass->first + i_task * PATCHES_A_TASK, end = begin + PATCHES_A_TASK;
+  size_t n = pass->job->mesh->clusters->n_clusters;
+  for (size_t i = begin; i < end && i < n; i++)
+    if (pass->statuses[i_thread] == CONIC_OK)
+      pass->statuses[i_thread] = do_patch(pass, (uint32_t)i, i_thread);
+}
+
+/* In portions, so that progress is told. */
+static conic_status run_pass(ways_pass *pass, double from, double to) {
+  conic_context *context = pass->job->context;
+  size_t n = pass->job->mesh->clusters->n_clusters, portion = 64 * PATCHES_A_TASK;
+  int n_threads = conic_context_threads(context);
+  conic_status status = CONIC_OK;
+  for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += portion) {
+    size_t n_now = n - pass->first < portion ? n - pass->first : portion;
+    conic_parallel_for(context, (n_now + PATCHES_A_TASK - 1) / PATCHES_A_TASK, ways_task, pass);
+    for (int i = 0; i < n_threads; i++)
+      status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
+    if (status == CONIC_OK)
+      status = conic_progress(context, "sample", from + (to - from) * (double)(pass->first + n_now) / (double)n);
+  }
+  return status;
+}
+
+static conic_status run_passes(ways_pass *pass) {
+  conic_ways_job *job = pass->job;
+  int n_threads = conic_context_threads(job->context);
+  double start = seconds_now();
+  pass->is_sampling = 1;
+  conic_status status = run_pass(pass, 0.0, 0.5);
+  for (int i = 0; i < n_threads; i++) {
+    conic_sampler_destroy(pass->workers[i]);
+    pass->workers[i] = NULL;
+  }
+  double sampled = seconds_now();
+  pass->is_sampling = 0;
+  if (status == CONIC_OK && !job->options->has_single_levels)
+    status = run_pass(pass, 0.5, 1.0);
+  for (int i = 0; i < n_threads; i++)
+    conic_simplifier_destroy(pass->workers[i]);
+  job->sample_seconds = sampled - start;
+  job->simplify_seconds = seconds_now() - sampled;
+  return status;
+}
+
+conic_status conic_find_ways(conic_ways_job *job) {
+  size_t n_threads = (size_t)conic_context_threads(job->context);
+  ways_pass pass = {.job = job,
+                    .workers = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.workers),
+                    .statuses = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.statuses)};
+  conic_status status = CONIC_ERROR_MEMORY;
+  if (pass.workers && pass.statuses)
+    status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
+  if (status == CONIC_OK) {
+    for (size_t i = 0; i < job->mesh->clusters->n_clusters; i++)
+      job->ways[i].area = patch_area(job->mesh, (uint32_t)i);
+    status = run_passes(&pass);
+  }
+  conic_face_tree_release(job->context, &job->tree);
+  conic_memory_release(job->context, pass.workers);
+  conic_memory_release(job->context, pass.statuses);
+  return status;
+}

@@ -1,0 +1,36 @@
+/* All ways to draw one patch. */
+#ifndef LOD_HYBRID_LEVELS_H
+#define LOD_HYBRID_LEVELS_H
+
+#include "lod/hybrid.h"
+#include "lod/patch_sample.h"
+#include "lod/patch_simplify.h"
+
+enum { CONIC_MOST_SURFEL_LEVELS = 8 };
+
+typedef struct conic_patch_ways {
+  conic_patch_levels triangles; /* the simpler ones; the faces themselves come before them */
+  int n_surfels;
+  conic_surfels surfels[CONIC_MOST_SURFEL_LEVELS];
+  conic_hybrid_bound bound;
+  double area;
+} conic_patch_ways;
+
+typedef struct conic_ways_job {
+  conic_context *context;
+  const conic_patch_mesh *mesh;
+  const conic_hybrid_options *options;
+  conic_face_tree tree;   /* private */
+  conic_patch_ways *ways; /* of each patch; zero before */
+  double sample_seconds, simplify_seconds;
+} conic_ways_job;
+
+/* Finds the ways of all patches, on all threads. The caller releases what is in `ways`, on failure too. Errors: MEMORY,
+ * CANCELLED. */
+conic_status conic_find_ways(conic_ways_job *job);
+void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways);
+
+/* A sphere and a cone for a patch's faces. */
+conic_hybrid_bound conic_patch_bound(const conic_patch_mesh *mesh, uint32_t patch);
+
+#endif

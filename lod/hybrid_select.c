@@ -1,0 +1,284 @@
+/* What of a hybrid model is drawn in one picture. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/message.h"
+#include "core/threads.h"
+#include "lod/hybrid_choose.h"
+
+void conic_hybrid_view_init(conic_hybrid_view *view) {
+  memset(view, 0, sizeof *view);
+  view->size = sizeof *view;
+  view->only_kind = -1;
+}
+
+/* A patch that is drawn, and where its parts go. */
+typedef struct choice {
+  uint32_t patch, level;
+  size_t splat, triangle, vertex;
+} choice;
+
+/* What is kept from call to call. */
+typedef struct scratch {
+  choice *choices;
+  size_t n_choices, choices_room;
+  float *splats; /* arrays of splats_room each */
+  uint32_t *splat_cluster;
+  size_t splats_room;
+  float *vertices; /* arrays of vertices_room each */
+  size_t vertices_room;
+  uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
+  size_t triangles_room;
+} scratch;
+
+enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
+
+typedef struct selecting {
+  const conic_hybrid *hybrid;
+  conic_hybrid_camera camera;
+  const conic_hybrid_view *view;
+  conic_hybrid_selection *selection;
+  scratch *scratch;
+} selecting;
+
+void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
+  scratch *kept = selection->scratch;
+  if (kept) {
+    conic_memory_release(context, kept->choices);
+    conic_memory_release(context, kept->splats);
+    conic_memory_release(context, kept->splat_cluster);
+    conic_memory_release(context, kept->vertices);
+    conic_memory_release(context, kept->triangles);
+  }
+  conic_memory_release(context, kept);
+  memset(selection, 0, sizeof *selection);
+}
+
+static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
+  float reach = 0.0f;
+  for (uint32_t k = 0; k < patch->n_levels; k++) {
+    float own = h->levels[patch->first_level + k].reach;
+    reach = own > reach ? own : reach;
+  }
+  return (double)reach;
+}
+
+static conic_status add_choice(selecting *s, uint32_t i_patch) {
+  scratch *kept = s->scratch;
+  const conic_hybrid_patch *patch = &s->hybrid->patches[i_patch];
+  if (kept->n_choices == kept->choices_room) {
+    size_t room = 2 * kept->choices_room + 256;
+    void *choices = kept->choices;
+    conic_status status = conic_memory_grow(s->hybrid->context, &choices, kept->n_choices, room, sizeof *kept->choices);
+    kept->choices = choices;
+    if (status != CONIC_OK)
+      return status;
+    kept->choices_room = room;
+  }
+  uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
+  s->selection->n_simpler += level != patch->built;
+  kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
+  return CONIC_OK;
+}
+
+static conic_status choose_all(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  conic_status status = CONIC_OK;
+  s->scratch->n_choices = 0;
+  for (size_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    if (conic_hybrid_is_hidden(&s->camera, &node->bound, 0.0)) {
+      s->selection->n_culled += node->end - node->begin;
+      i = node->next;
+      continue;
+    }
+    for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
+      if (conic_hybrid_is_hidden(&s->camera, &h->patches[k].bound, reach_of(h, &h->patches[k])))
+        s->selection->n_culled++;
+      else
+        status = add_choice(s, k);
+    }
+    i++;
+  }
+  return status;
+}
+
+/* Where each choice's parts go, and room for all. */
+static conic_status make_room(selecting *s) {
+  scratch *kept = s->scratch;
+  conic_context *context = s->hybrid->context;
+  size_t n_splats = 0, n_triangles = 0, n_vertices = 0;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    choice *c = &kept->choices[i];
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    c->splat = n_splats;
+    c->triangle = n_triangles;
+    c->vertex = n_vertices;
+    s->selection->n_patches[level->kind]++;
+    n_vertices += level->n_vertices;
+    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count;
+  }
+  s->selection->splats.count = n_splats;
+  s->selection->triangles.count = n_triangles;
+  s->selection->triangles.n_vertices = n_vertices;
+  if (n_vertices > UINT32_MAX)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
+  if (!kept->splats || n_splats > kept->splats_room) {
+    conic_memory_release(context, kept->splats);
+    conic_memory_release(context, kept->splat_cluster);
+    kept->splats_room = 0;
+    kept->splats = conic_memory_allocate(context, n_splats, SPLAT_ARRAYS * sizeof(float));
+    kept->splat_cluster = conic_memory_allocate(context, n_splats, sizeof *kept->splat_cluster);
+    if (!kept->splats || !kept->splat_cluster)
+      return CONIC_ERROR_MEMORY;
+    kept->splats_room = n_splats;
+  }
+  if (!kept->vertices || n_vertices > kept->vertices_room) {
+    conic_memory_release(context, kept->vertices);
+    kept->vertices_room = 0;
+    kept->vertices = conic_memory_allocate(context, n_vertices, VERTEX_ARRAYS * sizeof(float));
+    if (!kept->vertices)
+      return CONIC_ERROR_MEMORY;
+    kept->vertices_room = n_vertices;
+  }
+  if (!kept->triangles || n_triangles > kept->triangles_room) {
+    conic_memory_release(context, kept->triangles);
+    kept->triangles_room = 0;
+    kept->triangles = conic_memory_allocate(context, n_triangles, 5 * sizeof *kept->triangles);
+    if (!kept->triangles)
+      return CONIC_ERROR_MEMORY;
+    kept->triangles_room = n_triangles;
+  }
+  return CONIC_OK;
+}
+
+/* Points the selection's arrays into what is kept. */
+static void attach(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  const scratch *kept = s->scratch;
+  conic_splats *splats = &s->selection->splats;
+  conic_triangles *triangles = &s->selection->triangles;
+  memcpy(splats->origin, h->origin, sizeof splats->origin);
+  memcpy(triangles->origin, h->origin, sizeof triangles->origin);
+  for (size_t axis = 0; axis < 3; axis++) {
+    splats->position[axis] = kept->splats + axis * kept->splats_room;
+    splats->tangent_u[axis] = kept->splats + (3 + axis) * kept->splats_room;
+    splats->tangent_v[axis] = kept->splats + (6 + axis) * kept->splats_room;
+    splats->color[axis] = kept->splats + (9 + axis) * kept->splats_room;
+    triangles->position[axis] = kept->vertices + axis * kept->vertices_room;
+    triangles->normal[axis] = h->normal[0] ? kept->vertices + (3 + axis) * kept->vertices_room : NULL;
+    triangles->color[axis] = h->color[0] ? kept->vertices + (6 + axis) * kept->vertices_room : NULL;
+  }
+  for (size_t k = 0; k < 2; k++)
+    triangles->texture_coordinate[k] = h->texture_coordinate[0] ? kept->vertices + (9 + k) * kept->vertices_room : NULL;
+  s->selection->splat_cluster = kept->splat_cluster;
+  triangles->corners = (uint32_t(*)[3])kept->triangles;
+  triangles->cluster = kept->triangles + 3 * kept->triangles_room;
+  triangles->material = h->material ? kept->triangles + 4 * kept->triangles_room : NULL;
+  triangles->n_materials = h->n_materials;
+  triangles->materials = h->materials;
+}
+
+static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const scratch *kept = s->scratch;
+  for (size_t k = 0; k < SPLAT_ARRAYS; k++)
+    memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
+           level->count * sizeof(float));
+  for (size_t i = 0; i < level->count; i++)
+    kept->splat_cluster[c->splat + i] = c->patch;
+}
+
+static void gather(float *to, const float *from, const uint32_t *listed, size_t n) {
+  for (size_t i = 0; i < n && to; i++)
+    to[i] = from[listed[i]];
+}
+
+static void copy_triangles(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const conic_hybrid *h = s->hybrid;
+  const conic_triangles *to = &s->selection->triangles;
+  const uint32_t *listed = h->listed + level->first_vertex;
+  for (int axis = 0; axis < 3; axis++) {
+    gather(to->position[axis] + c->vertex, h->position[axis], listed, level->n_vertices);
+    if (to->normal[0])
+      gather(to->normal[axis] + c->vertex, h->normal[axis], listed, level->n_vertices);
+    if (to->color[0])
+      gather(to->color[axis] + c->vertex, h->color[axis], listed, level->n_vertices);
+  }
+  for (int k = 0; k < 2 && to->texture_coordinate[0]; k++)
+    gather(to->texture_coordinate[k] + c->vertex, h->texture_coordinate[k], listed, level->n_vertices);
+  for (size_t i = 0; i < level->count; i++) {
+    for (int corner = 0; corner < 3; corner++)
+      to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + h->corners[level->first + i][corner];
+    to->cluster[c->triangle + i] = c->patch;
+  }
+  if (to->material)
+    memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
+}
+
+static void copy_task(void *data, size_t i_task, int i_thread) {
+  const selecting *s = data;
+  size_t begin = i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
+    const choice *c = &s->scratch->choices[i];
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    if (level->kind == CONIC_HYBRID_SURFELS)
+      copy_surfels(s, c, level);
+    else
+      copy_triangles(s, c, level);
+  }
+}
+
+static conic_status begin(selecting *s, const conic_camera *camera, const conic_render_options *render) {
+  conic_context *context = s->hybrid->context;
+  scratch *kept = s->selection->scratch;
+  conic_render_options known = *render;
+  conic_hybrid_info info;
+  if (!(s->view->error_px >= 0.0) || s->view->only_kind > CONIC_HYBRID_SURFELS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "an error on the screen is 0 or more, and a kind one that there is");
+  if (!kept) {
+    kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
+    if (!kept)
+      return CONIC_ERROR_MEMORY;
+  }
+  memset(s->selection, 0, sizeof *s->selection);
+  s->selection->scratch = s->scratch = kept;
+  if (!(known.near_z > 0.0)) {
+    conic_hybrid_describe(s->hybrid, &info);
+    known.near_z = info.near_z;
+  }
+  conic_hybrid_camera_init(s->hybrid, camera, &known, &s->camera);
+  return CONIC_OK;
+}
+
+conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
+                                 const conic_render_options *render, const conic_hybrid_view *view,
+                                 conic_hybrid_selection *selection) {
+  selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
+  conic_status status = begin(&s, camera, render);
+  if (status == CONIC_OK)
+    status = choose_all(&s);
+  if (status == CONIC_OK)
+    status = make_room(&s);
+  if (status != CONIC_OK)
+    return status;
+  attach(&s);
+  conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
+  return CONIC_OK;
+}
+
+void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {
+  const uint32_t *id = image->planes[CONIC_PLANE_ID];
+  uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
+  size_t n_splats = selection->splats.count, n_triangles = selection->triangles.count;
+  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+    if (id[i] < n_splats)
+      cluster[i] = selection->splat_cluster[id[i]];
+    else if (id[i] - n_splats < n_triangles)
+      cluster[i] = selection->triangles.cluster[id[i] - n_splats];
+    else
+      cluster[i] = CONIC_NO_ID;
+  }
+}

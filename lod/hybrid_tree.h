@@ -1,0 +1,25 @@
+/* The hierarchy over the patches. */
+#ifndef LOD_HYBRID_TREE_H
+#define LOD_HYBRID_TREE_H
+
+#include "lod/hybrid.h"
+
+/* The most patches in a node without children. */
+enum { CONIC_HYBRID_LEAF = 4 };
+
+/* How many nodes there are over so many patches. */
+size_t conic_hybrid_count_nodes(size_t n_patches);
+
+/* Brings patches with the given bounds in an order in which neighbours are near each other: order[k] is the number of
+ * the k-th. Errors: MEMORY. */
+conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_patches,
+                                uint32_t *order);
+
+/* Fills in the nodes over ordered patches; reach[k] is how far the surfels of patch k may stand out of its sphere. */
+void conic_hybrid_fill_nodes(const conic_hybrid_patch *patches, const float *reach, size_t n_patches,
+                             conic_hybrid_node *nodes);
+
+/* A sphere and a cone that hold both; a cone of more than half of all directions becomes all of them, -1. */
+conic_hybrid_bound conic_hybrid_join(const conic_hybrid_bound *a, const conic_hybrid_bound *b);
+
+#endif

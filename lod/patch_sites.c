@@ -1,0 +1,249 @@
+#include "lod/patch_sites.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/random.h"
+
+static const uint32_t none = UINT32_MAX;
+
+/* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
+static const double lattice_step = 0.9;
+enum { MOST_SIDES = 32 };
+
+/* The least cosine between two faces that may have a surfel in common. */
+static const double alike = 0.5;
+
+conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
+                                size_t size) {
+  if (count <= *room)
+    return CONIC_OK;
+  size_t larger = count + count / 2 + 64;
+  conic_status status = conic_memory_grow(sampler->context, array, used, larger, size);
+  if (status == CONIC_OK)
+    *room = larger;
+  return status;
+}
+
+/* --- lattices --- */
+
+static int sides_of_face(const conic_sampler *s, uint32_t face) {
+  double longest = 0.0;
+  for (int corner = 0; corner < 3; corner++) {
+    double a[3], b[3];
+    conic_mesh_corner(&s->job->mesh->mesh, face, corner, a);
+    conic_mesh_corner(&s->job->mesh->mesh, face, (corner + 1) % 3, b);
+    for (int axis = 0; axis < 3; axis++)
+      b[axis] -= a[axis];
+    double length = sqrt(conic_dot(b, b));
+    longest = length > longest ? length : longest;
+  }
+  double sides = longest / (lattice_step * s->job->spacing);
+  return sides >= (double)MOST_SIDES ? MOST_SIDES : sides > 1.0 ? (int)sides + 1 : 1;
+}
+
+static conic_status lay_lattices(conic_sampler *s) {
+  const conic_patch_mesh *mesh = s->job->mesh;
+  size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
+  size_t facing_room = s->lattices_room;
+  void *lattices = s->lattices, *facing = s->facing;
+  conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
+  s->lattices = lattices;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &facing, 0, n, &facing_room, sizeof *s->facing);
+  s->facing = facing;
+  if (status != CONIC_OK)
+    return status;
+  s->n_lattices = n;
+  s->n_places = 0;
+  for (size_t i = 0; i < n; i++) {
+    uint32_t face = mesh->faces[begin + i];
+    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face), (uint32_t)s->n_places};
+    s->n_places += conic_lattice_places(s->lattices[i].sides);
+    conic_patch_face_normal(mesh, face, s->facing[i]);
+  }
+  void *owner = s->owner;
+  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->places_room, sizeof *s->owner);
+  s->owner = owner;
+  return status;
+}
+
+/* --- candidates --- */
+
+/* Which side of its face a place lies on, as the corner where that begins; -1 inside; corners count for either side. */
+static int is_on_side(const conic_lattice *l, int i, int j, int corner) {
+  return corner == 0 ? j == 0 : corner == 1 ? i + j == l->sides : i == 0;
+}
+
+/* Whether the surfels must reach to that side by themselves: what lies across is no surfels, or nothing. */
+static int is_rim(const conic_patch_mesh *mesh, uint32_t face, int corner) {
+  uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+  if (!conic_patch_ends_at(mesh, face, corner))
+    return 0;
+  return !conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]];
+}
+
+static conic_status add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  size_t room = s->candidates_room;
+  void *candidates = s->candidates, *seeds = s->seeds;
+  conic_status status =
+      conic_sampler_grow(s, &candidates, s->n_candidates, s->n_candidates + 1, &room, sizeof *s->candidates);
+  s->candidates = candidates;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &seeds, s->n_candidates, s->n_candidates + 1, &s->candidates_room, sizeof *s->seeds);
+  s->seeds = seeds;
+  if (status != CONIC_OK)
+    return status;
+  uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
+  s->candidates[s->n_candidates].key = (is_first ? 0 : (uint64_t)1 << 21) | turn;
+  s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
+  s->seeds[s->n_candidates][0] = i_lattice;
+  s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
+  return CONIC_OK;
+}
+
+/* A place on a side that two faces of the patch share is a candidate of the one only. */
+static int is_mine(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)l->face + (size_t)corner];
+    if (is_on_side(l, i, j, corner) && !conic_patch_ends_at(mesh, l->face, corner) && across / 3 < l->face)
+      return 0;
+  }
+  return 1;
+}
+
+static conic_status list_candidates(conic_sampler *s) {
+  const conic_patch_mesh *mesh = s->job->mesh;
+  conic_status status = CONIC_OK;
+  s->n_candidates = 0;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    int rims[3] = {is_rim(mesh, l->face, 0), is_rim(mesh, l->face, 1), is_rim(mesh, l->face, 2)};
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
+        int is_first = 0;
+        for (int corner = 0; corner < 3; corner++)
+          is_first |= rims[corner] && is_on_side(l, i, j, corner);
+        if (is_first || is_mine(mesh, l, i, j))
+          status = add_candidate(s, (uint32_t)k, i, j, is_first);
+      }
+  }
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 22) : status;
+}
+
+/* --- sites --- */
+
+static void cell_of(const conic_sampler *s, const double at[3], int64_t cell[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    cell[axis] = (int64_t)floor((at[axis] - s->low[axis]) / s->job->spacing);
+}
+
+static uint32_t *bucket_of(const conic_sampler *s, const int64_t cell[3]) {
+  uint64_t hash = (uint64_t)cell[0] * UINT64_C(0x9e3779b97f4a7c15) ^ (uint64_t)cell[1] * UINT64_C(0xc2b2ae3d27d4eb4f) ^
+                  (uint64_t)cell[2] * UINT64_C(0x165667b19e3779f9);
+  return &s->table[(hash ^ hash >> 29) & s->table_mask];
+}
+
+/* The nearest site within a spacing that faces as the place does, or none. */
+static uint32_t nearest_site(const conic_sampler *s, const double at[3], const double facing[3]) {
+  double least = s->job->spacing * s->job->spacing;
+  uint32_t found = none;
+  int64_t cell[3], near[3];
+  cell_of(s, at, cell);
+  for (int k = 0; k < 27; k++) {
+    near[0] = cell[0] + k % 3 - 1;
+    near[1] = cell[1] + k / 3 % 3 - 1;
+    near[2] = cell[2] + k / 9 - 1;
+    for (uint32_t i = *bucket_of(s, near); i != none; i = s->sites[i].next) {
+      const conic_site *site = &s->sites[i];
+      double x = at[0] - site->at[0], y = at[1] - site->at[1], z = at[2] - site->at[2];
+      double distance2 = (x * x + y * y) + z * z;
+      if ((distance2 < least || (distance2 == least && i < found)) && conic_dot(facing, site->facing) >= alike) {
+        least = distance2;
+        found = i;
+      }
+    }
+  }
+  return found;
+}
+
+static conic_status add_site(conic_sampler *s, uint32_t i_lattice, const double bary[3], const double at[3],
+                             uint32_t *added) {
+  void *sites = s->sites;
+  int64_t cell[3];
+  conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
+  s->sites = sites;
+  if (status != CONIC_OK)
+    return status;
+  conic_site *site = &s->sites[s->n_sites];
+  memset(site, 0, sizeof *site);
+  memcpy(site->at, at, sizeof site->at);
+  memcpy(site->bary, bary, sizeof site->bary);
+  memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
+  site->face = s->lattices[i_lattice].face;
+  cell_of(s, at, cell);
+  uint32_t *bucket = bucket_of(s, cell);
+  site->next = *bucket;
+  *added = *bucket = (uint32_t)s->n_sites++;
+  return CONIC_OK;
+}
+
+static conic_status clear_table(conic_sampler *s) {
+  size_t wanted = (size_t)1 << (conic_bits_below(s->n_candidates / 4 + 16) + 1);
+  void *table = s->table;
+  conic_status status = conic_sampler_grow(s, &table, 0, wanted, &s->table_room, sizeof *s->table);
+  s->table = table;
+  if (status != CONIC_OK)
+    return status;
+  s->table_mask = wanted - 1;
+  memset(s->table, 0xFF, wanted * sizeof *s->table);
+  conic_patch_place(s->job->mesh, s->lattices[0].face, (const double[3]){1.0, 0.0, 0.0}, s->low);
+  return CONIC_OK;
+}
+
+static conic_status choose_sites(conic_sampler *s) {
+  conic_status status = clear_table(s);
+  s->n_sites = 0;
+  for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
+    const uint32_t *seed = s->seeds[s->candidates[k].value];
+    const conic_lattice *l = &s->lattices[seed[0]];
+    double bary[3], at[3];
+    uint32_t added;
+    conic_lattice_bary(l, (int)(seed[1] >> 16), (int)(seed[1] & 0xFFFF), bary);
+    conic_patch_place(s->job->mesh, l->face, bary, at);
+    if (nearest_site(s, at, s->facing[seed[0]]) == none)
+      status = add_site(s, seed[0], bary, at, &added);
+  }
+  return status;
+}
+
+/* Every place of the lattices belongs to the nearest site; where there is none near (a place that was no candidate and
+ * lies in a fold), it becomes one. */
+static conic_status find_owners(conic_sampler *s) {
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i; j++) {
+        double bary[3], at[3];
+        conic_lattice_bary(l, i, j, bary);
+        conic_patch_place(s->job->mesh, l->face, bary, at);
+        uint32_t owner = nearest_site(s, at, s->facing[k]);
+        conic_status status = owner == none ? add_site(s, (uint32_t)k, bary, at, &owner) : CONIC_OK;
+        if (status != CONIC_OK)
+          return status;
+        s->owner[conic_lattice_place(l, i, j)] = owner;
+      }
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_patch_find_sites(conic_sampler *s) {
+  conic_status status = lay_lattices(s);
+  if (status == CONIC_OK)
+    status = list_candidates(s);
+  if (status == CONIC_OK)
+    status = choose_sites(s);
+  return status == CONIC_OK ? find_owners(s) : status;
+}

@@ -1,0 +1,58 @@
+/* Hybrid models. Their sums would stop nearly every input at the door, so each also comes in with its sums made right.
+ */
+/* First, for what it defines. */
+#include "tests/fuzz/fuzz.h"
+
+#include "lod/hybrid_layout.h"
+
+/* What is read can be used, whatever it says of itself. */
+static void use(fuzz_input *input, conic_hybrid *hybrid) {
+  conic_hybrid_info info;
+  conic_hybrid_defects found;
+  conic_hybrid_selection selection;
+  conic_hybrid_view view;
+  conic_render_options render;
+  conic_camera camera;
+  conic_framing framing;
+  memset(&selection, 0, sizeof selection);
+  FUZZ_CHECK(conic_hybrid_describe(hybrid, &info) == CONIC_OK);
+  FUZZ_CHECK(conic_hybrid_check(hybrid, &found) == CONIC_OK);
+  conic_framing_init(&framing);
+  conic_render_options_init(&render);
+  conic_hybrid_view_init(&view);
+  render.near_z = 0.1;
+  const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
+  FUZZ_CHECK(conic_camera_frame(input->context, &framing, low, high, &camera) == CONIC_OK);
+  for (int i = 0; i < 4; i++) {
+    view.error_px = i == 1 ? 1.0 : 0.0;
+    view.only_kind = i - 2 < 0 ? -1 : i - 2;
+    render.cull_back = i & 1;
+    FUZZ_CHECK(conic_hybrid_select(hybrid, &camera, &render, &view, &selection) == CONIC_OK);
+    FUZZ_CHECK(conic_triangles_check(input->context, &selection.triangles, "selection") == CONIC_OK);
+    FUZZ_CHECK(selection.n_patches[0] + selection.n_patches[1] + selection.n_culled == info.n_patches);
+  }
+  conic_hybrid_selection_release(input->context, &selection);
+}
+
+static void read_and_use(const uint8_t *bytes, size_t n_bytes) {
+  conic_hybrid *hybrid;
+  fuzz_input input = fuzz_open(bytes, n_bytes);
+  conic_status status = conic_hybrid_read(input.context, input.path, &hybrid);
+  if (status == CONIC_OK)
+    use(&input, hybrid);
+  conic_hybrid_destroy(hybrid);
+  fuzz_close(&input, status, 0);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
+  read_and_use(bytes, n_bytes);
+  if (n_bytes < CONIC_CHY_HEADER_BYTES)
+    return 0;
+  uint8_t *mended = malloc(n_bytes);
+  FUZZ_CHECK(mended);
+  memcpy(mended, bytes, n_bytes);
+  conic_hybrid_mend(mended, n_bytes);
+  read_and_use(mended, n_bytes);
+  free(mended);
+  return 0;
+}
