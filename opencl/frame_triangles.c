@@ -235,7 +235,7 @@ static conic_status make_room(const conic_frame *f) {
     status = conic_frame_room(f, CONIC_BUFFER_TRIANGLE_FRAGMENTS, f->n_tiles, 2 * sizeof(uint32_t));
   if (status == CONIC_OK)
     status = conic_queue_fill_zero(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_TRIANGLE_FRAGMENTS],
-                                   f->n_tiles * 2 * sizeof(uint32_t));
+                                   (size_t)f->n_tiles * 2 * sizeof(uint32_t));
   return status;
 }
 

@@ -41,12 +41,13 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
   nearest_iz[at] = iz_of_nearest;
   nearest[at] = i_nearest;
   if (frame.has_splats && !frame.is_single_pass)
-    thresholds[at] = n_covered ? conic_triangle_hides(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
+    thresholds[at] =
+        n_covered ? conic_triangle_hides(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
   if (n_covered)
     gather_count(n_fragments + 2 * p.tile, n_covered);
 }
 
-/* What the pixel's triangle is to the splats: conic_triangles_hide, conic_triangles_win and conic_triangle_rank_block. */
+/* Whether the pixel's triangle is seen: conic_triangles_hide and conic_triangles_win. */
 static int gather_triangle_is_visible(const conic_device_frame *frame, float iz, float threshold,
                                       const gather_sums *s) {
   return frame->is_single_pass ? iz > s->nearest_iz : iz > 0.0f && iz >= threshold;

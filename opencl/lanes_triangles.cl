@@ -116,9 +116,10 @@ static void lanes_directions(__global const float *columns, __global const float
 
 /* The nearest triangle of every pixel, and where splats are to be blended what it hides: the splats' thresholds begin
  * with that. */
-__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-lanes_triangles(TRIANGLE_LISTS, __global lanes *thresholds, __global lanes *nearest_iz, __global int16 *nearest,
-                __global uint *n_fragments) {
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_triangles(TRIANGLE_LISTS, __global lanes *thresholds,
+                                                                             __global lanes *nearest_iz,
+                                                                             __global int16 *nearest,
+                                                                             __global uint *n_fragments) {
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes_nearest_triangles of_blocks[N_TILE_BLOCKS];

@@ -7,6 +7,7 @@
 #include "raster/shade.c"
 
 #include "opencl/triangle_set.cl"
+
 #include "core/texture_sample.c"
 #include "raster/triangle_look.c"
 #include "raster/triangle_pixel.h"
@@ -39,13 +40,14 @@ static void triangles_of_tile(const conic_device_frame *frame, uint i_chunk, uin
 #define TRIANGLE_SET_TAKEN                                                                                             \
   conic_view view = *frame_view;                                                                                       \
   conic_device_frame frame = *frame_constants;                                                                         \
-  const conic_triangles set = {corners,          normal_corners,     texture_corners, {px, py, pz},                    \
-                               {red, green, blue}, {nx, ny, nz}, {u, v}, frame.n_materials, materials, material};     \
+  const conic_triangles set = {corners,      normal_corners, texture_corners,   {px, py, pz}, {red, green, blue},      \
+                               {nx, ny, nz}, {u, v},         frame.n_materials, materials,    material};               \
   const conic_triangle_frame triangles = {&view, &set, records, pieces};
 
 #include "opencl/gather_resolve.cl"
 #include "opencl/gather_triangles.cl"
 
 #include "opencl/lanes_tile.cl"
+
 #include "opencl/lanes_resolve.cl"
 #include "opencl/lanes_triangles.cl"

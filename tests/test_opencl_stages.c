@@ -276,7 +276,8 @@ static void check_small_device(fixture *f, conic_opencl *opencl, uint64_t *state
   CHECK(opencl_same(&f->image, &image, "a small device"));
   CHECK(statistics.splats_drawn == f->statistics.splats_drawn && statistics.fragments == f->statistics.fragments);
   opencl->device.greatest_buffer_bytes = sizeof(conic_footprint); /* not even the lists of one */
-  CHECK(opencl->backend.draw(&opencl->backend, &view, &f->splats, NULL, &finish, &image, &statistics) == CONIC_ERROR_MEMORY);
+  CHECK(opencl->backend.draw(&opencl->backend, &view, &f->splats, NULL, &finish, &image, &statistics) ==
+        CONIC_ERROR_MEMORY);
   opencl->device.greatest_buffer_bytes = real_bytes;
   conic_image_release(f->context, &image);
 }

@@ -45,7 +45,7 @@ static void check_counts(const conic_render_statistics *a, const conic_render_st
 
 /* Fills the planes with what nothing draws, so that what is not drawn differs. */
 static void spoil(conic_image *image) {
-  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     if (image->planes[plane])
       memset(image->planes[plane], 0x5a,
              (size_t)image->width * (size_t)image->height * 4 *
@@ -268,7 +268,7 @@ static void check_planes(fixture *f) {
     f->options.passes = passes;
     CHECK_OK(triangles_render(f, &t, 1));
     for (int i = 0; i < 2; i++)
-      for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+      for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
         CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, 1u << plane, &image));
         spoil(&image);
         CHECK_OK(conic_render_drawing(f->context, renderers[i], &drawing, &f->camera, &f->options, 1, &image, NULL));
