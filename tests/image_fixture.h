@@ -8,7 +8,7 @@
 
 #include "tests/check.h"
 
-#define ALL_PLANES ((1u << CONIC_N_PLANES) - 1u)
+#define EVERY_PLANE ((1u << CONIC_N_PLANES) - 1u)
 
 static char test_folder[64];
 

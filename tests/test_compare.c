@@ -21,7 +21,7 @@ static conic_difference compare(conic_context *context, const conic_image *a, co
 }
 
 static void test_identical(conic_context *context) {
-  conic_image image = random_image(context, 37, 29, ALL_PLANES); /* with NaN and infinities */
+  conic_image image = random_image(context, 37, 29, EVERY_PLANE); /* with NaN and infinities */
   conic_difference difference = compare(context, &image, &image);
   CHECK(difference.identical && difference.same_size && difference.has_color);
   CHECK(difference.max_abs == 0.0 && difference.rmse == 0.0 && difference.differing_pixels == 0);
@@ -285,7 +285,7 @@ static void release_any(void *cookie, void *pointer) {
 }
 
 static void test_memory(conic_context *context) {
-  conic_image a = random_image(context, 30, 20, ALL_PLANES), b = random_image(context, 30, 20, ALL_PLANES);
+  conic_image a = random_image(context, 30, 20, EVERY_PLANE), b = random_image(context, 30, 20, EVERY_PLANE);
   short_allocator allocator = {1000};
   conic_context_options options;
   conic_context *poor;
@@ -314,7 +314,7 @@ static void test_memory(conic_context *context) {
 
 /* The numbers are the same whatever the threads. */
 static void test_threads(conic_context *context) {
-  conic_image a = random_image(context, 90, 70, ALL_PLANES), b = flat_image(context, 90, 70, 0.3f);
+  conic_image a = random_image(context, 90, 70, EVERY_PLANE), b = flat_image(context, 90, 70, 0.3f);
   conic_context *alone = check_context(1);
   conic_difference one = compare(alone, &a, &b), many = compare(context, &a, &b);
   CHECK(one.ssim == many.ssim && one.psnr == many.psnr && one.differing_pixels == many.differing_pixels);

@@ -32,7 +32,7 @@ static void test_allocation(conic_context *context) {
   const int wrong[][2] = {{0, 1}, {1, 0}, {-1, 5}, {65536, 1}, {1, 65536}};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
     CHECK(conic_image_allocate(context, wrong[i][0], wrong[i][1], 1, &image) == CONIC_ERROR_ARGUMENT);
-  CHECK(conic_image_allocate(context, 1, 1, ALL_PLANES + 1, &image) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_image_allocate(context, 1, 1, EVERY_PLANE + 1, &image) == CONIC_ERROR_ARGUMENT);
 }
 
 static void test_allocation_limit(void) {
@@ -42,7 +42,7 @@ static void test_allocation_limit(void) {
   conic_context_options_init(&options);
   options.max_allocation_bytes = 1000;
   CHECK_OK(conic_context_create(&options, &context));
-  CHECK(conic_image_allocate(context, 16, 16, ALL_PLANES, &image) == CONIC_ERROR_MEMORY);
+  CHECK(conic_image_allocate(context, 16, 16, EVERY_PLANE, &image) == CONIC_ERROR_MEMORY);
   CHECK(conic_image_planes(&image) == 0);
   conic_context_destroy(context);
 }
@@ -177,7 +177,7 @@ static int writable_endings(const char *endings[8]) {
 
 /* A full disk, a missing folder, a folder in the way: IO, and nothing is left behind. */
 static void test_write_failures(conic_context *context) {
-  conic_image image = random_image(context, 200, 100, ALL_PLANES);
+  conic_image image = random_image(context, 200, 100, EVERY_PLANE);
   const char *endings[8];
   int n_endings = writable_endings(endings);
   struct rlimit limit, lower;

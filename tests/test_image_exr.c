@@ -21,7 +21,7 @@ static void test_round_trip(conic_context *context, int width, int height, unsig
 
 /* The file is the same whatever the threads. */
 static void test_threads(conic_context *context) {
-  conic_image image = random_image(context, 61, 301, ALL_PLANES);
+  conic_image image = random_image(context, 61, 301, EVERY_PLANE);
   size_t n_bytes, n_alone;
   conic_context *alone = check_context(1);
   CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
@@ -96,7 +96,7 @@ static void test_attributes(conic_context *context) {
 static void test_channels(conic_context *context) {
   static const char *const names[] = {"A",        "B",        "G",        "N.X",     "N.Y",   "N.Z", "R",     "Z",
                                       "albedo.B", "albedo.G", "albedo.R", "cluster", "count", "id",  "weight"};
-  conic_image image = random_image(context, 3, 3, ALL_PLANES);
+  conic_image image = random_image(context, 3, 3, EVERY_PLANE);
   size_t n_bytes;
   CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
   unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
@@ -141,7 +141,7 @@ int main(void) {
   }
   open_test_folder();
   test_round_trip(context, 1, 1, 1u << CONIC_PLANE_ID);
-  test_round_trip(context, 130, 97, ALL_PLANES);
+  test_round_trip(context, 130, 97, EVERY_PLANE);
   test_round_trip(context, 7, 16, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     test_round_trip(context, 17, 33, 1u << i);
