@@ -122,7 +122,7 @@ static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t s
  * stay in a core's cache until they are sorted, few enough for their tables. */
 static void choose_chunks(frame *f) {
   enum { LEAST = 2048, GREATEST = 8192 };
-  size_t greatest = f->view.cull_back ? 2 * GREATEST : GREATEST; /* half of them or more are not drawn */
+  size_t greatest = f->view.cull_back ? 3 * GREATEST : GREATEST; /* most of them are not drawn */
   size_t n = f->splats->count, size = n / (8 * (size_t)conic_context_threads(f->renderer->context)) + 1;
   size = size < LEAST ? LEAST : size > greatest ? greatest : size;
   while ((n / size + 1) * f->bins.n_tiles > ((size_t)1 << 22) && size < n)
