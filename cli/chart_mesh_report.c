@@ -135,13 +135,14 @@ static int write_boxes(FILE *to, const cli_mesh_chart *chart, int model, const d
   return n_boxes;
 }
 
-static void write_style(FILE *to) {
+static void write_style(FILE *to, const cli_mesh_chart *chart) {
   static const char *const colors[CLI_N_CHART_MODELS] = {"#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910"};
   static const int symbols[CLI_N_CHART_MODELS] = {7, 5, 9, 13, 11};
   fputs("set datafile columnheaders\nset logscale xy\nset xlabel 'pixels a triangle'\n"
         "set xtics (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)\nset grid lc rgb '#dddddd' lt 1\n"
-        "set border lc rgb '#666666'\nset key outside below\n",
+        "set border lc rgb '#666666'\nset key bottom right opaque\n",
         to);
+  fprintf(to, "set xrange [%.6g:%.6g]\n", border_of(chart, chart->n_sizes - 1, 1), border_of(chart, 0, -1));
   for (int i = 0; i < CLI_N_CHART_MODELS; i++)
     fprintf(to, "set style line %d lc rgb '%s' lw 2 pt %d\n", i + 1, colors[i], symbols[i]);
 }
@@ -199,17 +200,17 @@ int cli_mesh_chart_write_script(const char *folder, const cli_mesh_chart *chart)
   find_errors(chart, range);
   for (int i = 0; i < CLI_N_CHART_MODELS; i++)
     n_boxes[i] = write_boxes(to, chart, i, range);
-  write_style(to);
+  write_style(to, chart);
   for (int is_png = 0; is_png < 2; is_png++) {
     fprintf(to, "set terminal %s size 1500,520 font 'Sans,%d'\nset output 'representations.%s'\n",
             is_png ? "pngcairo" : "svg enhanced", is_png ? 10 : 12, is_png ? "png" : "svg");
     fprintf(to, "set multiplot layout 1,3 title 'a mesh of %zu triangles'\n", chart->n_triangles);
     write_crossings(to, chart);
     write_curves(to, "time; dashed: as fast as triangles", "ms");
-    fputs("unset arrow\nunset label\n", to);
+    fputs("unset arrow\nunset label\nunset key\n", to); /* the colours are the same */
     write_curves(to, "error against the mesh, 4 × 4 samples a pixel", "rmse");
     write_map(to, n_boxes, range);
-    fputs("unset multiplot\nset output\n", to);
+    fputs("unset multiplot\nset output\nset key bottom right opaque\n", to);
   }
   return fclose(to) == 0;
 }

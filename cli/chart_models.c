@@ -79,19 +79,31 @@ static conic_status make_points(conic_context *context, const conic_triangles *m
   return status;
 }
 
-static conic_status make_hybrid(cli_session *session, const char *path, size_t side, cli_chart_models *models) {
-  conic_hybrid_options options;
+static conic_status make_hybrid(cli_session *session, const char *path, size_t side,
+                                const conic_hybrid_options *options, conic_hybrid **hybrid, double *splat_length) {
   conic_hybrid_info info;
-  conic_triangles mesh = {0}; /* a second time: it is taken over */
-  conic_hybrid_options_init(&options);
+  conic_triangles mesh = {0}; /* once more: it is taken over */
   conic_status status = read_mesh(session, path, side, &mesh);
   if (status == CONIC_OK)
-    status = conic_hybrid_build(session->context, &mesh, &options, &models->hybrid, NULL);
+    status = conic_hybrid_build(session->context, &mesh, options, hybrid, NULL);
   if (status == CONIC_OK)
-    status = conic_hybrid_describe(models->hybrid, &info);
+    status = conic_hybrid_describe(*hybrid, &info);
   if (status == CONIC_OK)
-    models->splat_length[CLI_CHART_SURFELS] = models->splat_length[CLI_CHART_HYBRID] = info.splat_length;
+    *splat_length = info.splat_length;
   conic_triangles_release(session->context, &mesh);
+  return status;
+}
+
+/* One that chooses, and one of surfels only. */
+static conic_status make_hybrids(cli_session *session, const char *path, size_t side, cli_chart_models *models) {
+  conic_hybrid_options options;
+  conic_hybrid_options_init(&options);
+  conic_status status =
+      make_hybrid(session, path, side, &options, &models->hybrid, &models->splat_length[CLI_CHART_HYBRID]);
+  options.phase2 = 1e6;
+  options.has_single_levels = 1;
+  if (status == CONIC_OK)
+    status = make_hybrid(session, path, side, &options, &models->surfels, &models->splat_length[CLI_CHART_SURFELS]);
   return status;
 }
 
@@ -116,7 +128,7 @@ conic_status cli_chart_models_build(cli_session *session, const char *path, size
   const conic_drawing drawing = {NULL, &models->mesh};
   if (status == CONIC_OK) {
     models->near_z = conic_drawing_near(&drawing);
-    status = make_hybrid(session, path, side, models);
+    status = make_hybrids(session, path, side, models);
   }
   if (status == CONIC_OK)
     status = make_octree(context, models);
@@ -128,20 +140,25 @@ conic_status cli_chart_models_build(cli_session *session, const char *path, size
 }
 
 void cli_chart_models_release(conic_context *context, cli_chart_models *models) {
-  conic_hybrid_selection_release(context, &models->surfels);
+  conic_hybrid_selection_release(context, &models->chosen_surfels);
   conic_hybrid_selection_release(context, &models->patches);
   conic_selection_release(context, &models->leaves);
   conic_hybrid_destroy(models->hybrid);
+  conic_hybrid_destroy(models->surfels);
   conic_octree_destroy(models->octree);
   conic_splats_release(context, &models->points);
   conic_triangles_release(context, &models->mesh);
   memset(models, 0, sizeof *models);
 }
 
-static conic_status choose_patches(const cli_chart_models *models, const conic_camera *camera,
-                                   const conic_render_options *options, const conic_hybrid_view *view,
-                                   conic_hybrid_selection *selection, conic_drawing *drawing) {
-  conic_status status = conic_hybrid_select(models->hybrid, camera, options, view, selection);
+/* Error 0: as built. */
+static conic_status choose_patches(const conic_hybrid *hybrid, const conic_camera *camera, double error_px,
+                                   const conic_render_options *options, conic_hybrid_selection *selection,
+                                   conic_drawing *drawing) {
+  conic_hybrid_view view;
+  conic_hybrid_view_init(&view);
+  view.error_px = error_px;
+  conic_status status = conic_hybrid_select(hybrid, camera, options, &view, selection);
   *drawing = (conic_drawing){&selection->splats, &selection->triangles};
   return status;
 }
@@ -159,18 +176,14 @@ static conic_status choose_leaves(cli_chart_models *models, const conic_camera *
 conic_status cli_chart_models_choose(cli_chart_models *models, cli_chart_model representation,
                                      const conic_camera *camera, double error_px, conic_render_options *options,
                                      conic_drawing *drawing) {
-  conic_hybrid_view view;
-  conic_hybrid_view_init(&view);
   options->method = representation == CLI_CHART_POINTS ? CONIC_METHOD_POINT : CONIC_METHOD_CONIC;
   options->near_z = models->near_z;
   options->splat_length = models->splat_length[representation];
   switch (representation) {
   case CLI_CHART_SURFELS:
-    view.only_kind = CONIC_HYBRID_SURFELS;
-    return choose_patches(models, camera, options, &view, &models->surfels, drawing);
+    return choose_patches(models->surfels, camera, 0.0, options, &models->chosen_surfels, drawing);
   case CLI_CHART_HYBRID:
-    view.error_px = error_px;
-    return choose_patches(models, camera, options, &view, &models->patches, drawing);
+    return choose_patches(models->hybrid, camera, error_px, options, &models->patches, drawing);
   case CLI_CHART_OCTREE:
     return choose_leaves(models, camera, error_px, options, drawing);
   case CLI_CHART_POINTS:
