@@ -13,7 +13,7 @@ typedef struct mesh_job {
   cli_mesh_chart *chart;
   conic_renderer *renderer;
   cli_chart_models models;
-  int repeat, largest; /* frames a round; edge of the largest picture */
+  int repeat, largest; /* frames a round, of the largest picture; its edge */
 } mesh_job;
 
 static conic_status frame(const mesh_job *job, int edge, double zoom, conic_camera *camera) {
@@ -150,12 +150,14 @@ static conic_status draw_truth(mesh_job *job, const conic_camera *camera, conic_
              : status;
 }
 
-/* The first frame of each round is left out of the times: the caches are then another model's. */
+/* The first frame of each round is left out of the times: the caches are then another model's. Small pictures, which
+ * the rest of the machine disturbs most, are drawn more often. */
 static conic_status time_models(mesh_job *job, const conic_camera *camera, conic_image *image, int i_size) {
+  int repeat = job->repeat * job->largest / camera->width;
   conic_status status = CONIC_OK;
   for (int round = 0; round < ROUNDS; round++)
     for (int model = 0; model < CLI_N_CHART_MODELS; model++)
-      for (int i = 0; i <= job->repeat && status == CONIC_OK; i++) {
+      for (int i = 0; i <= repeat && status == CONIC_OK; i++) {
         cli_mesh_point *point = &job->chart->points[model][i_size], warm = {.ms = HUGE_VAL};
         status = draw(job, (cli_chart_model)model, camera, image, i ? point : &warm);
       }
