@@ -166,7 +166,7 @@ static void test_cut(conic_context *context, const seed *from) {
 
 /* So many places of a file are spoiled; fewer under a sanitizer, which takes ten times as long: fuzzing is its job. */
 #ifdef __SANITIZE_ADDRESS__
-enum { N_PLACES = 500 };
+enum { N_PLACES = 250 };
 #else
 enum { N_PLACES = 2000 };
 #endif
