@@ -1,4 +1,4 @@
-/* conic chart: every method and kernel on every scene, its error over its time. */
+/* conic chart: every method and kernel on every scene, and every representation of a mesh: its error over its time. */
 #include "cli/chart.h"
 
 #include <errno.h>
@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "cli/arguments.h"
+#include "cli/chart_mesh.h"
 #include "cli/command.h"
 #include "cli/json.h"
 #include "core/file.h"
@@ -28,10 +29,15 @@ static const chart_kernel kernels[] = {{CONIC_KERNEL_GAUSS, 1.5f, 32}, {CONIC_KE
 enum { N_KERNELS = sizeof kernels / sizeof kernels[0] };
 enum { N_POINTS = N_KERNELS * CONIC_N_METHODS * CLI_N_CHART_SCENES };
 
+/* --only: one of the two charts. */
+enum { ONLY_METHODS, ONLY_REPRESENTATIONS };
+static const char *const only_words[] = {"methods", "representations", NULL};
+
 typedef struct chart_job {
   cli_session *session;
   const char *folder;
-  int is_quick;
+  int is_quick, only; /* -1: both */
+  cli_mesh_chart mesh;
   conic_renderer *renderer;
   int size, repeat; /* of the pictures, and frames that are timed */
   cli_chart_point points[N_POINTS];
@@ -328,18 +334,53 @@ static void print_fronts(const chart_job *job) {
   }
 }
 
-static int write_all(chart_job *job) {
+static conic_status measure_all(chart_job *job) {
+  conic_status status = CONIC_OK;
+  if (job->only != ONLY_METHODS)
+    status = cli_mesh_chart_measure(job->session, &job->mesh);
+  if (status != CONIC_OK || job->only == ONLY_REPRESENTATIONS)
+    return status;
+  status = conic_renderer_create(job->session->context, &job->renderer);
+  for (int i = 0; i < CLI_N_CHART_SCENES && status == CONIC_OK; i++)
+    status = measure_scene(job, &cli_chart_scenes[i]);
+  conic_renderer_destroy(job->renderer);
   find_fronts(job);
-  conic_status status = write_table(job);
-  if (status != CONIC_OK)
-    return cli_exit_of(status);
-  if (!cli_chart_write_script(job->folder, job->points, job->n_points))
+  return status;
+}
+
+static conic_status write_tables(const chart_job *job) {
+  conic_status status = CONIC_OK;
+  if (job->only != ONLY_METHODS)
+    status = cli_mesh_chart_write(job->session, job->folder, &job->mesh);
+  return status == CONIC_OK && job->only != ONLY_REPRESENTATIONS ? write_table(job) : status;
+}
+
+static int draw_charts(const chart_job *job) {
+  int is_drawn = 1;
+  if (job->only != ONLY_METHODS && !cli_mesh_chart_write_script(job->folder, &job->mesh))
+    return cli_error(CLI_RESOURCE, "%s/representations.gp: cannot write: %s", job->folder, strerror(errno));
+  if (job->only != ONLY_REPRESENTATIONS && !cli_chart_write_script(job->folder, job->points, job->n_points))
     return cli_error(CLI_RESOURCE, "%s/chart.gp: cannot write: %s", job->folder, strerror(errno));
-  if (!cli_chart_plot(job->folder))
+  if (job->only != ONLY_METHODS)
+    is_drawn = cli_chart_plot(job->folder, "representations.gp");
+  if (is_drawn && job->only != ONLY_REPRESENTATIONS)
+    is_drawn = cli_chart_plot(job->folder, "chart.gp");
+  if (!is_drawn)
     fprintf(stderr, "conic: warning: %s: no picture, as there is no gnuplot here or it failed; the table is there\n",
             job->folder);
-  if (!job->session->is_quiet && (!job->session->json_path || strcmp(job->session->json_path, "-") != 0))
+  return CLI_DONE;
+}
+
+static int write_all(const chart_job *job) {
+  conic_status status = write_tables(job);
+  int exit_code = status == CONIC_OK ? draw_charts(job) : cli_exit_of(status);
+  if (exit_code != CLI_DONE || job->session->is_quiet ||
+      (job->session->json_path && strcmp(job->session->json_path, "-") == 0))
+    return exit_code;
+  if (job->only != ONLY_REPRESENTATIONS)
     print_fronts(job);
+  if (job->only != ONLY_METHODS)
+    cli_mesh_chart_print(&job->mesh);
   return CLI_DONE;
 }
 
@@ -352,6 +393,7 @@ static int write_statistics(const chart_job *job, double seconds) {
   cli_json_count(json, "scenes", CLI_N_CHART_SCENES);
   cli_json_count(json, "methods", CONIC_N_METHODS);
   cli_json_count(json, "points", (uint64_t)job->n_points);
+  cli_json_count(json, "representation_points", (uint64_t)job->mesh.n_sizes * CLI_N_CHART_MODELS);
   cli_json_number(json, "seconds", seconds);
   cli_json_count(json, "threads", (uint64_t)conic_context_threads(job->session->context));
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
@@ -365,10 +407,7 @@ static int chart(chart_job *job) {
     return exit_code;
   if (mkdir(job->folder, 0777) != 0 && errno != EEXIST)
     return cli_error(CLI_RESOURCE, "%s: cannot make the folder: %s", job->folder, strerror(errno));
-  conic_status status = conic_renderer_create(job->session->context, &job->renderer);
-  for (int i = 0; i < CLI_N_CHART_SCENES && status == CONIC_OK; i++)
-    status = measure_scene(job, &cli_chart_scenes[i]);
-  conic_renderer_destroy(job->renderer);
+  conic_status status = measure_all(job);
   exit_code = status == CONIC_OK ? write_all(job) : cli_exit_of(status);
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
 }
@@ -380,9 +419,21 @@ static int run(cli_session *session, int argc, char **argv) {
   if (!job)
     return cli_error(CLI_RESOURCE, "chart: out of memory");
   job->session = session;
+  job->only = -1;
   const cli_option options[] = {
       {.name = "o", .type = CLI_TEXT, .value = &job->folder, .argument = "DIR", .help = "the folder of the chart"},
       {.name = "quick", .type = CLI_FLAG, .value = &job->is_quick, .help = "a small chart in seconds, to try it"},
+      {.name = "only",
+       .type = CLI_CHOICE,
+       .value = &job->only,
+       .argument = "CHART",
+       .help = "methods or representations [both]",
+       .choices = only_words},
+      {.name = "mesh",
+       .type = CLI_TEXT,
+       .value = &job->mesh.path,
+       .argument = "MESH",
+       .help = "whose representations are charted [a generated terrain]"},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
@@ -392,6 +443,7 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
+  job->mesh.is_quick = job->is_quick;
   if (exit_code == CLI_DONE && job->folder)
     exit_code = chart(job);
   free(job);
@@ -400,7 +452,7 @@ static int run(cli_session *session, int argc, char **argv) {
 
 const cli_command cli_chart = {
     .name = "chart",
-    .summary = "charts every method's and kernel's error over its time",
-    .usage = "conic chart -o DIR [--quick]",
+    .summary = "charts error over time: of every method and kernel, and of every representation of a mesh",
+    .usage = "conic chart -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
     .run = run,
 };

@@ -29,11 +29,11 @@ typedef struct cli_chart_point {
 /* "gauss", "confetti" … */
 const char *cli_kernel_name(conic_kernel_type type);
 
-/* Draws FOLDER/chart.csv by gnuplot, which reads FOLDER/chart.gp: SVG and PNG. Returns 0 where there is no gnuplot or
- * it failed. */
-int cli_chart_plot(const char *folder);
+/* Runs gnuplot on FOLDER/SCRIPT, which draws the tables there: SVG and PNG. Returns 0 where there is no gnuplot or it
+ * failed. */
+int cli_chart_plot(const char *folder, const char *script);
 
-/* The script of that; the points are those of the table. Returns 0 where it cannot be written. */
+/* FOLDER/chart.gp; the points are those of chart.csv. Returns 0 where it cannot be written. */
 int cli_chart_write_script(const char *folder, const cli_chart_point *points, int n_points);
 
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {

@@ -120,14 +120,14 @@ int cli_chart_write_script(const char *folder, const cli_chart_point *points, in
   return fclose(to) == 0;
 }
 
-int cli_chart_plot(const char *folder) {
+int cli_chart_plot(const char *folder, const char *script) {
   int status;
   pid_t child = fork();
   if (child < 0)
     return 0;
   if (child == 0) {
     if (chdir(folder) == 0)
-      execlp("gnuplot", "gnuplot", "chart.gp", (char *)NULL);
+      execlp("gnuplot", "gnuplot", script, (char *)NULL);
     _exit(127);
   }
   while (waitpid(child, &status, 0) < 0)
