@@ -7,61 +7,22 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "lod/file_fields.h"
 #include "lod/hybrid_layout.h"
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'};
 
 typedef conic_chy_header header;
 
-/* The members by place: what is written and what is read cannot differ. */
-typedef struct field {
-  size_t offset, n_bytes, n;
-} field;
+#define FIELD(member, n_values) CONIC_FILE_FIELD(header, member, n_values)
 
-#define FIELD(member, n_values)                                                                                        \
-  { offsetof(header, member), sizeof(((header *)0)->member) / (n_values), n_values }
+static const conic_file_field fields[] = {
+    FIELD(version, 1),   FIELD(flags, 1),    FIELD(n_vertices, 1), FIELD(n_triangles, 1), FIELD(n_listed, 1),
+    FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_patches, 1),  FIELD(n_nodes, 1),     FIELD(n_materials, 1),
+    FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
+    FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1)};
 
-static const field fields[] = {FIELD(version, 1),  FIELD(flags, 1),       FIELD(n_vertices, 1),   FIELD(n_triangles, 1),
-                               FIELD(n_listed, 1), FIELD(n_surfels, 1),   FIELD(n_levels, 1),     FIELD(n_patches, 1),
-                               FIELD(n_nodes, 1),  FIELD(n_materials, 1), FIELD(n_texels, 1),     FIELD(origin, 3),
-                               FIELD(low, 3),      FIELD(high, 3),        FIELD(splat_length, 1), FIELD(cutoff, 1),
-                               FIELD(zero, 1),     FIELD(body_sum, 1)};
-
-static uint64_t get_bits(const unsigned char *from, size_t n_bytes) {
-  uint64_t bits = 0;
-  for (size_t i = 0; i < n_bytes; i++)
-    bits |= (uint64_t)from[i] << 8 * i;
-  return bits;
-}
-
-static void put_bits(unsigned char *to, size_t n_bytes, uint64_t bits) {
-  for (size_t i = 0; i < n_bytes; i++)
-    to[i] = (unsigned char)(bits >> 8 * i);
-}
-
-/* Copies between the bytes and the header, value by value. */
-static void transfer(header *h, unsigned char *bytes, int is_writing) {
-  size_t at = sizeof magic;
-  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
-    for (size_t k = 0; k < fields[i].n; k++, at += fields[i].n_bytes) {
-      char *value = (char *)h + fields[i].offset + k * fields[i].n_bytes;
-      uint32_t half;
-      uint64_t whole;
-      if (is_writing && fields[i].n_bytes == 4) {
-        memcpy(&half, value, 4);
-        put_bits(bytes + at, 4, half);
-      } else if (is_writing) {
-        memcpy(&whole, value, 8);
-        put_bits(bytes + at, 8, whole);
-      } else if (fields[i].n_bytes == 4) {
-        half = (uint32_t)get_bits(bytes + at, 4);
-        memcpy(value, &half, 4);
-      } else {
-        whole = get_bits(bytes + at, 8);
-        memcpy(value, &whole, 8);
-      }
-    }
-}
+enum { N_FIELDS = sizeof fields / sizeof *fields };
 
 /* --- sums --- */
 
@@ -80,7 +41,7 @@ static void sum_task(void *data, size_t i, int i_thread) {
 static uint64_t sum_of_sums(const uint64_t sums[CONIC_CHY_N_ARRAYS]) {
   unsigned char bytes[8 * CONIC_CHY_N_ARRAYS];
   for (size_t i = 0; i < CONIC_CHY_N_ARRAYS; i++)
-    put_bits(bytes + 8 * i, 8, sums[i]);
+    conic_file_put(bytes + 8 * i, 8, sums[i]);
   return conic_checksum(bytes, sizeof bytes);
 }
 
@@ -122,8 +83,8 @@ uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
 static void make_header(header *h, unsigned char bytes[CONIC_CHY_HEADER_BYTES]) {
   memset(bytes, 0, CONIC_CHY_HEADER_BYTES);
   memcpy(bytes, magic, sizeof magic);
-  transfer(h, bytes, 1);
-  put_bits(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
+  conic_file_fields_write(fields, N_FIELDS, h, bytes + sizeof magic);
+  conic_file_put(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
 }
 
 static conic_status refuse_order(conic_context *context, const char *path) {
@@ -200,11 +161,12 @@ static conic_status read_header(conic_hybrid *hybrid, const char *path, header *
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no .chy file (at byte 0)", path);
   if (file->n_bytes < CONIC_CHY_HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, file->n_bytes);
-  transfer(h, file->bytes, 0);
+  conic_file_fields_read(fields, N_FIELDS, file->bytes + sizeof magic, h);
   if (h->version != CONIC_CHY_VERSION)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
                       (unsigned)h->version);
-  if (get_bits(file->bytes + CONIC_CHY_HEADER_BYTES - 8, 8) != conic_checksum(file->bytes, CONIC_CHY_HEADER_BYTES - 8))
+  if (conic_file_get(file->bytes + CONIC_CHY_HEADER_BYTES - 8, 8) !=
+      conic_checksum(file->bytes, CONIC_CHY_HEADER_BYTES - 8))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path,
                       CONIC_CHY_HEADER_BYTES - 8);
   const char *wrong = check_header(h);
@@ -280,7 +242,7 @@ int conic_hybrid_is_file(const char *path) {
 
 void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
-  transfer(&h, bytes, 0);
+  conic_file_fields_read(fields, N_FIELDS, bytes + sizeof magic, &h);
   if (!check_header(&h)) {
     conic_chy_layout l = conic_chy_lay_out(&h);
     if (l.n_bytes == n_bytes) {
@@ -288,8 +250,8 @@ void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
       for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
         sums[i] = conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes);
       h.body_sum = sum_of_sums(sums);
-      transfer(&h, bytes, 1);
+      conic_file_fields_write(fields, N_FIELDS, &h, bytes + sizeof magic);
     }
   }
-  put_bits(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
+  conic_file_put(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
 }

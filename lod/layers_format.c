@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/message.h"
+#include "lod/file_fields.h"
 #include "lod/mapping.h"
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'L', 'P', '\n'};
@@ -13,18 +14,10 @@ enum { AT_HEADER_SUM = CONIC_LAYERS_HEADER_BYTES - 8 };
 /* No coordinate and no length is larger, so that nothing derived of them overflows. */
 static const double farthest = 1e15;
 
-/* A member by its place in memory; in the file they stand one after the other. What is written and what is read so
- * cannot differ. */
-typedef struct field {
-  size_t offset, n_bytes, n;
-} field;
+#define IN_HEADER(member, n_values) CONIC_FILE_FIELD(conic_layers_header, member, n_values)
+#define IN_ENTRY(member, n_values) CONIC_FILE_FIELD(conic_layers_entry, member, n_values)
 
-#define FIELD(type, member, n_values)                                                                                  \
-  { offsetof(type, member), sizeof(((type *)0)->member) / (n_values), n_values }
-#define IN_HEADER(member, n_values) FIELD(conic_layers_header, member, n_values)
-#define IN_ENTRY(member, n_values) FIELD(conic_layers_entry, member, n_values)
-
-static const field header_fields[] = {
+static const conic_file_field header_fields[] = {
     IN_HEADER(version, 1),      IN_HEADER(flags, 1),      IN_HEADER(n_samples, 1),      IN_HEADER(n_clouds, 1),
     IN_HEADER(n_levels, 1),     IN_HEADER(bits, 1),       IN_HEADER(cloud_size, 1),     IN_HEADER(origin, 3),
     IN_HEADER(quantum, 1),      IN_HEADER(low, 3),        IN_HEADER(high, 3),           IN_HEADER(spacing, 1),
@@ -32,7 +25,7 @@ static const field header_fields[] = {
     IN_HEADER(color_bytes, 1),  IN_HEADER(file_bytes, 1), IN_HEADER(index_sum, 1),      IN_HEADER(most_samples, 1),
     IN_HEADER(most_bytes, 1)};
 
-static const field entry_fields[] = {
+static const conic_file_field entry_fields[] = {
     IN_ENTRY(key, 1),       IN_ENTRY(offset, 1),  IN_ENTRY(sum, 1),      IN_ENTRY(n_place, 1), IN_ENTRY(n_bytes, 1),
     IN_ENTRY(n_samples, 1), IN_ENTRY(parent, 1),  IN_ENTRY(child, 1),    IN_ENTRY(n_drawn, 1), IN_ENTRY(level, 1),
     IN_ENTRY(depth, 1),     IN_ENTRY(spacing, 1), IN_ENTRY(covering, 1), IN_ENTRY(radius, 1),  IN_ENTRY(error, 1),
@@ -42,54 +35,6 @@ enum {
   N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,
   N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields
 };
-
-static uint64_t get_bits(const unsigned char *from, size_t n_bytes) {
-  uint64_t bits = 0;
-  for (size_t i = 0; i < n_bytes; i++)
-    bits |= (uint64_t)from[i] << 8 * i;
-  return bits;
-}
-
-static void put_bits(unsigned char *to, size_t n_bytes, uint64_t bits) {
-  for (size_t i = 0; i < n_bytes; i++)
-    to[i] = (unsigned char)(bits >> 8 * i);
-}
-
-static uint64_t value_bits(const char *value, size_t n_bytes) {
-  uint16_t short_value;
-  uint32_t half;
-  uint64_t whole;
-  if (n_bytes == 2)
-    return memcpy(&short_value, value, 2), short_value;
-  if (n_bytes == 4)
-    return memcpy(&half, value, 4), half;
-  return memcpy(&whole, value, 8), whole;
-}
-
-static void set_value(char *value, size_t n_bytes, uint64_t bits) {
-  uint16_t short_value = (uint16_t)bits;
-  uint32_t half = (uint32_t)bits;
-  if (n_bytes == 2)
-    memcpy(value, &short_value, 2);
-  else if (n_bytes == 4)
-    memcpy(value, &half, 4);
-  else
-    memcpy(value, &bits, 8);
-}
-
-static void fields_to_bytes(const field *fields, size_t n, const void *from, unsigned char *bytes) {
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < fields[i].n; k++, bytes += fields[i].n_bytes)
-      put_bits(bytes, fields[i].n_bytes,
-               value_bits((const char *)from + fields[i].offset + k * fields[i].n_bytes, fields[i].n_bytes));
-}
-
-static void fields_from_bytes(const field *fields, size_t n, const unsigned char *bytes, void *to) {
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < fields[i].n; k++, bytes += fields[i].n_bytes)
-      set_value((char *)to + fields[i].offset + k * fields[i].n_bytes, fields[i].n_bytes,
-                get_bits(bytes, fields[i].n_bytes));
-}
 
 static int is_within(double value, double limit) {
   return value >= -limit && value <= limit; /* false where it is not a number */
@@ -140,25 +85,18 @@ static int is_zero(const unsigned char *bytes, size_t n) {
   return 1;
 }
 
-static size_t fields_bytes(const field *fields, size_t n) {
-  size_t n_bytes = 0;
-  for (size_t i = 0; i < n; i++)
-    n_bytes += fields[i].n * fields[i].n_bytes;
-  return n_bytes;
-}
-
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
                                       size_t n_bytes, conic_layers_header *header) {
-  size_t used = sizeof magic + fields_bytes(header_fields, N_HEADER_FIELDS);
+  size_t used = sizeof magic + conic_file_fields_bytes(header_fields, N_HEADER_FIELDS);
   if (n_bytes < sizeof magic || memcmp(bytes, magic, sizeof magic) != 0)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no layered point cloud (at byte 0)", name);
   if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends within the header (at byte %zu)", name, n_bytes);
-  fields_from_bytes(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
+  conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
   if (header->version != CONIC_LAYERS_VERSION)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads version %d (at byte 8)",
                       name, header->version, CONIC_LAYERS_VERSION);
-  if (get_bits(bytes + AT_HEADER_SUM, 8) != conic_checksum(bytes, AT_HEADER_SUM))
+  if (conic_file_get(bytes + AT_HEADER_SUM, 8) != conic_checksum(bytes, AT_HEADER_SUM))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged: its sum is another (at byte %d)", name,
                       AT_HEADER_SUM);
   const char *wrong = check_counts(header);
@@ -173,8 +111,8 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
 void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]) {
   memset(bytes, 0, CONIC_LAYERS_HEADER_BYTES);
   memcpy(bytes, magic, sizeof magic);
-  fields_to_bytes(header_fields, N_HEADER_FIELDS, header, bytes + sizeof magic);
-  put_bits(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+  conic_file_fields_write(header_fields, N_HEADER_FIELDS, header, bytes + sizeof magic);
+  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
 }
 
 uint64_t conic_layers_index_bytes(const conic_layers_header *header) {
@@ -272,14 +210,14 @@ static const char *check_tree(const conic_layers_header *header, const conic_lay
 conic_status conic_layers_read_index(conic_context *context, const char *name, const conic_layers_header *header,
                                      const unsigned char *bytes, conic_layers_entry *entries) {
   size_t n_bytes = (size_t)conic_layers_index_bytes(header);
-  size_t used = fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
   uint32_t at = 0;
   if (conic_checksum(bytes, n_bytes) != header->index_sum)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the index is damaged: its sum is another (at byte %d)", name,
                       CONIC_LAYERS_HEADER_BYTES);
   for (uint32_t i = 0; i < header->n_clouds; i++) {
     const unsigned char *from = bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
-    fields_from_bytes(entry_fields, N_ENTRY_FIELDS, from, &entries[i]);
+    conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, from, &entries[i]);
     if (!is_zero(from + used, CONIC_LAYERS_ENTRY_BYTES - used))
       return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: bytes that should be zero are not (at byte %llu)",
                         name, i, (unsigned long long)(from - bytes) + CONIC_LAYERS_HEADER_BYTES);
@@ -294,7 +232,7 @@ conic_status conic_layers_read_index(conic_context *context, const char *name, c
 void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes) {
   memset(bytes, 0, (size_t)conic_layers_index_bytes(header));
   for (uint32_t i = 0; i < header->n_clouds; i++)
-    fields_to_bytes(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES);
+    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES);
   header->index_sum = conic_checksum(bytes, (size_t)conic_layers_index_bytes(header));
 }
 
@@ -306,17 +244,17 @@ void conic_layers_mend(unsigned char *bytes, size_t n_bytes) {
   conic_layers_header header;
   if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
     return;
-  fields_from_bytes(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
+  conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
   size_t index_bytes = (size_t)conic_layers_index_bytes(&header), offset_at = 8, sum_at = 16, size_at = 32;
   if (index_bytes > n_bytes - CONIC_LAYERS_HEADER_BYTES)
     return;
   for (uint32_t i = 0; i < header.n_clouds; i++) {
     unsigned char *entry = bytes + CONIC_LAYERS_HEADER_BYTES + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
-    uint64_t offset = get_bits(entry + offset_at, 8), n = get_bits(entry + size_at, 4);
+    uint64_t offset = conic_file_get(entry + offset_at, 8), n = conic_file_get(entry + size_at, 4);
     if (offset <= n_bytes && n <= n_bytes - offset)
-      put_bits(entry + sum_at, 8, conic_checksum(bytes + offset, (size_t)n));
+      conic_file_put(entry + sum_at, 8, conic_checksum(bytes + offset, (size_t)n));
   }
   header.index_sum = conic_checksum(bytes + CONIC_LAYERS_HEADER_BYTES, index_bytes);
-  fields_to_bytes(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
-  put_bits(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+  conic_file_fields_write(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
+  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
 }

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "lod/file_fields.h"
 #include "lod/leaf_code.h"
 #include "lod/octree.h"
 
@@ -32,54 +33,14 @@ typedef struct header {
   uint64_t body_sum; /* over the arrays' sums */
 } header;
 
-/* The members by place: what is written and what is read cannot differ. */
-typedef struct field {
-  size_t offset, n_bytes, n;
-} field;
+#define FIELD(member, n_values) CONIC_FILE_FIELD(header, member, n_values)
 
-#define FIELD(member, n_values)                                                                                        \
-  { offsetof(header, member), sizeof(((header *)0)->member) / (n_values), n_values }
+static const conic_file_field fields[] = {
+    FIELD(version, 1), FIELD(flags, 1),        FIELD(n_points, 1),       FIELD(n_leaves, 1), FIELD(n_nodes, 1),
+    FIELD(origin, 3),  FIELD(low, 3),          FIELD(high, 3),           FIELD(cutoff, 1),   FIELD(color, 1),
+    FIELD(length, 1),  FIELD(splat_length, 1), FIELD(position_error, 1), FIELD(n_clips, 1),  FIELD(body_sum, 1)};
 
-static const field fields[] = {FIELD(version, 1),        FIELD(flags, 1),   FIELD(n_points, 1), FIELD(n_leaves, 1),
-                               FIELD(n_nodes, 1),        FIELD(origin, 3),  FIELD(low, 3),      FIELD(high, 3),
-                               FIELD(cutoff, 1),         FIELD(color, 1),   FIELD(length, 1),   FIELD(splat_length, 1),
-                               FIELD(position_error, 1), FIELD(n_clips, 1), FIELD(body_sum, 1)};
-
-static uint64_t get_bits(const unsigned char *from, size_t n_bytes) {
-  uint64_t bits = 0;
-  for (size_t i = 0; i < n_bytes; i++)
-    bits |= (uint64_t)from[i] << 8 * i;
-  return bits;
-}
-
-static void put_bits(unsigned char *to, size_t n_bytes, uint64_t bits) {
-  for (size_t i = 0; i < n_bytes; i++)
-    to[i] = (unsigned char)(bits >> 8 * i);
-}
-
-/* Copies between the bytes and the header, value by value. */
-static void transfer(header *h, unsigned char *bytes, int is_writing) {
-  size_t at = sizeof magic;
-  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
-    for (size_t k = 0; k < fields[i].n; k++, at += fields[i].n_bytes) {
-      char *value = (char *)h + fields[i].offset + k * fields[i].n_bytes;
-      uint32_t half;
-      uint64_t whole;
-      if (is_writing && fields[i].n_bytes == 4) {
-        memcpy(&half, value, 4);
-        put_bits(bytes + at, 4, half);
-      } else if (is_writing) {
-        memcpy(&whole, value, 8);
-        put_bits(bytes + at, 8, whole);
-      } else if (fields[i].n_bytes == 4) {
-        half = (uint32_t)get_bits(bytes + at, 4);
-        memcpy(value, &half, 4);
-      } else {
-        whole = get_bits(bytes + at, 8);
-        memcpy(value, &whole, 8);
-      }
-    }
-}
+enum { N_FIELDS = sizeof fields / sizeof *fields };
 
 /* One array of the file's body. */
 typedef struct array {
@@ -213,15 +174,15 @@ static uint64_t sum_arrays(conic_context *context, const layout *l, const void *
   unsigned char bytes[8 * MOST_ARRAYS];
   conic_parallel_for(context, (size_t)l->n, sum_task, &job);
   for (int i = 0; i < l->n; i++)
-    put_bits(bytes + (size_t)i * 8, 8, job.sums[i]);
+    conic_file_put(bytes + (size_t)i * 8, 8, job.sums[i]);
   return conic_checksum(bytes, 8 * (size_t)l->n);
 }
 
 static void make_header(header *h, unsigned char bytes[HEADER_BYTES]) {
   memset(bytes, 0, HEADER_BYTES);
   memcpy(bytes, magic, sizeof magic);
-  transfer(h, bytes, 1);
-  put_bits(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
+  conic_file_fields_write(fields, N_FIELDS, h, bytes + sizeof magic);
+  conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
 }
 
 static conic_status write_body(conic_octree *octree, const char *path, header *h, const void *const *sources) {
@@ -310,11 +271,11 @@ static conic_status read_header(conic_octree *octree, const char *path, header *
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no .cot file (at byte 0)", path);
   if (file->n_bytes < HEADER_BYTES)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, file->n_bytes);
-  transfer(h, file->bytes, 0);
+  conic_file_fields_read(fields, N_FIELDS, file->bytes + sizeof magic, h);
   if (h->version != VERSION)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
                       (unsigned)h->version);
-  if (get_bits(file->bytes + HEADER_BYTES - 8, 8) != conic_checksum(file->bytes, HEADER_BYTES - 8))
+  if (conic_file_get(file->bytes + HEADER_BYTES - 8, 8) != conic_checksum(file->bytes, HEADER_BYTES - 8))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path, HEADER_BYTES - 8);
   const char *wrong = check_header(h);
   if (wrong)
@@ -345,18 +306,18 @@ static conic_status check_body(const conic_octree *octree, const char *path, con
 
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
-  transfer(&h, bytes, 0);
+  conic_file_fields_read(fields, N_FIELDS, bytes + sizeof magic, &h);
   layout l = {0};
   if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
   if (l.n > 0 && l.n_bytes == n_bytes) {
     unsigned char sums[8 * MOST_ARRAYS];
     for (int i = 0; i < l.n; i++)
-      put_bits(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
+      conic_file_put(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
     h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
-    transfer(&h, bytes, 1);
+    conic_file_fields_write(fields, N_FIELDS, &h, bytes + sizeof magic);
   }
-  put_bits(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
+  conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
 }
 
 static void *array_at(const conic_octree *octree, const layout *l, int i) {
