@@ -2,19 +2,15 @@
 
 #include <stdio.h>
 
-typedef struct defect_name {
-  size_t count;
-  const char *key, *text;
-} defect_name;
+#include "cli/info_parts.h"
 
 enum { N_DEFECTS = 4 };
 
-static size_t list_defects(const conic_hybrid_defects *broken, defect_name list[N_DEFECTS]) {
-  list[0] = (defect_name){broken->values, "values", "numbers that are not finite"};
-  list[1] = (defect_name){broken->spheres, "spheres", "spheres that do not hold their patch"};
-  list[2] = (defect_name){broken->cones, "cones", "cones that do not hold their patch's normals"};
-  list[3] = (defect_name){broken->levels, "levels", "patches whose levels are out of order"};
-  return broken->values + broken->spheres + broken->cones + broken->levels;
+static void list_defects(const conic_hybrid_defects *broken, cli_defect list[N_DEFECTS]) {
+  list[0] = (cli_defect){broken->values, "values", "numbers that are not finite"};
+  list[1] = (cli_defect){broken->spheres, "spheres", "spheres that do not hold their patch"};
+  list[2] = (cli_defect){broken->cones, "cones", "cones that do not hold their patch's normals"};
+  list[3] = (cli_defect){broken->levels, "levels", "patches whose levels are out of order"};
 }
 
 void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects *broken) {
@@ -27,22 +23,12 @@ void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects 
   if (info->n_textures)
     printf("textures   %zu\n", info->n_textures);
   printf("cutoff     %g\n", (double)info->cutoff);
-  printf("bounds     %.9g %.9g %.9g to %.9g %.9g %.9g\n", info->minimum[0], info->minimum[1], info->minimum[2],
-         info->maximum[0], info->maximum[1], info->maximum[2]);
+  cli_bounds_print(info->minimum, info->maximum);
   if (!broken)
     return;
-  defect_name list[N_DEFECTS];
-  printf("sound      %s\n", list_defects(broken, list) ? "no" : "yes");
-  for (int i = 0; i < N_DEFECTS; i++)
-    if (list[i].count)
-      printf("  %zu %s\n", list[i].count, list[i].text);
-}
-
-static void report_vector(cli_json *json, const char *key, const double vector[3]) {
-  cli_json_array(json, key);
-  for (int axis = 0; axis < 3; axis++)
-    cli_json_number(json, NULL, vector[axis]);
-  cli_json_close(json);
+  cli_defect list[N_DEFECTS];
+  list_defects(broken, list);
+  cli_defects_print(list, N_DEFECTS);
 }
 
 void cli_hybrid_report(cli_json *json, const conic_hybrid_info *info, const conic_hybrid_defects *broken) {
@@ -59,16 +45,10 @@ void cli_hybrid_report(cli_json *json, const conic_hybrid_info *info, const coni
   cli_json_number(json, "cutoff", (double)info->cutoff);
   cli_json_number(json, "splat_length", info->splat_length);
   cli_json_number(json, "near", info->near_z);
-  cli_json_object(json, "bounds");
-  report_vector(json, "min", info->minimum);
-  report_vector(json, "max", info->maximum);
-  cli_json_close(json);
+  cli_bounds_report(json, info->minimum, info->maximum);
   if (!broken)
     return;
-  defect_name list[N_DEFECTS];
+  cli_defect list[N_DEFECTS];
   list_defects(broken, list);
-  cli_json_object(json, "defects");
-  for (int i = 0; i < N_DEFECTS; i++)
-    cli_json_count(json, list[i].key, list[i].count);
-  cli_json_close(json);
+  cli_defects_report(json, list, N_DEFECTS);
 }

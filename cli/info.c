@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/hybrid_info.h"
+#include "cli/info_parts.h"
 #include "cli/json.h"
 #include "cli/layers_info.h"
 #include "cli/octree_info.h"
@@ -219,8 +220,7 @@ static void print_model(const info_job *job) {
       printf(", %s", field_names[i].name);
   putchar('\n');
   if (job->n_finite)
-    printf("bounds     %.9g %.9g %.9g to %.9g %.9g %.9g\n", job->minimum[0], job->minimum[1], job->minimum[2],
-           job->maximum[0], job->maximum[1], job->maximum[2]);
+    cli_bounds_print(job->minimum, job->maximum);
   if (!job->is_check)
     return;
   const defects *found = &job->found;
@@ -281,13 +281,6 @@ static int print_text(const info_job *job) {
   return CLI_DONE;
 }
 
-static void report_vector(cli_json *json, const char *key, const double vector[3]) {
-  cli_json_array(json, key);
-  for (int axis = 0; axis < 3; axis++)
-    cli_json_number(json, NULL, vector[axis]);
-  cli_json_close(json);
-}
-
 static void report_model(cli_json *json, const info_job *job) {
   const conic_model *model = &job->model;
   unsigned fields = conic_splats_fields(&model->points);
@@ -302,10 +295,7 @@ static void report_model(cli_json *json, const info_job *job) {
       cli_json_text(json, NULL, field_names[i].name);
   cli_json_close(json);
   if (job->n_finite) {
-    cli_json_object(json, "bounds");
-    report_vector(json, "min", job->minimum);
-    report_vector(json, "max", job->maximum);
-    cli_json_close(json);
+    cli_bounds_report(json, job->minimum, job->maximum);
   }
   if (!job->is_check)
     return;
