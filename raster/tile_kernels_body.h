@@ -509,4 +509,5 @@ const conic_tile_kernels TABLE = {
     .triangles_draw = triangles_draw,
     .triangles_hide = triangles_hide,
     .triangles_add = triangles_add,
+    .texture = texture_at_places,
 };
