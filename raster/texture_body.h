@@ -132,14 +132,13 @@ CONIC_INLINE void fetch_texels(const conic_texel *texels, index_lanes which, lan
 #endif
 }
 
-/* The filter on one level: its footprints, and the sums. */
+/* The filter on one level: its footprints. */
 typedef struct texture_filter {
   const conic_texture_level *level;
   conic_texture_wrap wrap;
   lanes x, y, xx, xy, yy, inverse;
-  lanes slope, reach; /* of the rows' middles; the square of a row's half length is reach·(span − dy²/yy) */
+  lanes slope, of_yy, reach; /* of the rows' middles; the square of a row's half length is reach·(span − dy²/yy) */
   int_lanes x_begin, x_end, y_begin, y_end;
-  lanes sum[4];
 } texture_filter;
 
 /* Pixels where the mask does not hold have no texels. */
@@ -152,10 +151,11 @@ CONIC_INLINE void begin_filter(const texture_part *p, int i_level, lanes_mask ma
   f->yy = lanes_keep(mask, p->yy * scale) + CONIC_FILTER_VARIANCE;
   f->x = p->place[0] * (float)f->level->width - 0.5f;
   f->y = (1.0f - p->place[1]) * (float)f->level->height - 0.5f;
-  lanes determinant = f->xx * f->yy - f->xy * f->xy, of_yy = 1.0f / f->yy;
+  lanes determinant = f->xx * f->yy - f->xy * f->xy;
   f->inverse = 1.0f / determinant;
-  f->slope = f->xy * of_yy;
-  f->reach = determinant * of_yy;
+  f->of_yy = 1.0f / f->yy;
+  f->slope = f->xy * f->of_yy;
+  f->reach = determinant * f->of_yy;
   lanes reach_x = lanes_sqrt(CONIC_FILTER_SUPPORT * f->xx), reach_y = lanes_sqrt(CONIC_FILTER_SUPPORT * f->yy);
   const index_lanes none = lanes_of_index(0);
   f->x_begin = floor_to_int(f->x - reach_x) + 1;
@@ -164,8 +164,6 @@ CONIC_INLINE void begin_filter(const texture_part *p, int i_level, lanes_mask ma
   f->y_end = floor_to_int(f->y + reach_y) + 1;
   f->y_end = (int_lanes)lanes_select_indices(mask, (index_lanes)f->y_end, none);
   f->y_begin = (int_lanes)lanes_select_indices(mask, (index_lanes)f->y_begin, none);
-  for (int i = 0; i < 4; i++)
-    f->sum[i] = lanes_of(0.0f);
 }
 
 CONIC_INLINE int_lanes max_int(int_lanes a, int_lanes b) {
@@ -178,7 +176,7 @@ CONIC_INLINE int_lanes min_int(int_lanes a, int_lanes b) {
 
 /* Where the texels of row j begin and end that may have weights; they end where they begin where there are none. */
 CONIC_INLINE void find_span(const texture_filter *f, int_lanes j, lanes dy, int_lanes *begin, int_lanes *end) {
-  lanes left = CONIC_FILTER_SPAN - dy * dy / f->yy, half = lanes_sqrt(f->reach * lanes_max(left, lanes_of(0.0f)));
+  lanes left = CONIC_FILTER_SPAN - dy * dy * f->of_yy, half = lanes_sqrt(f->reach * lanes_max(left, lanes_of(0.0f)));
   lanes middle = f->x + f->slope * dy;
   lanes_mask has_texels = lanes_less_int(j, f->y_end) & lanes_less(lanes_of(0.0f), left);
   *begin = max_int(floor_to_int(middle - half) + 1, f->x_begin);
@@ -186,32 +184,61 @@ CONIC_INLINE void find_span(const texture_filter *f, int_lanes j, lanes dy, int_
   *end = (int_lanes)lanes_select_indices(has_texels, (index_lanes)*end, (index_lanes)*begin);
 }
 
-CONIC_INLINE void filter_row(texture_filter *f, int_lanes j, conic_texture_wrap wrap) {
+/* A row of a footprint: where its texels that may have weights begin and end, the column of the first, the row's first
+ * texel, and what is the same in all of it. All rows are found before the first is summed up: that waits for nothing. */
+typedef struct texture_row {
+  int_lanes begin, end, column;
+  index_lanes first;
+  lanes skew, rise;
+} texture_row;
+
+/* Footprints are no larger: 8 times twice the greatest half width, and two texels. */
+enum { MOST_ROWS = 52 };
+
+CONIC_INLINE int find_rows(const texture_filter *f, conic_texture_wrap wrap, texture_row rows[MOST_ROWS]) {
+  int n = 0;
+  for (int_lanes j = f->y_begin; lanes_any(lanes_less_int(j, f->y_end)) && n < MOST_ROWS; j += 1) {
+    texture_row *row = &rows[n++];
+    lanes dy = __builtin_convertvector(j, lanes) - f->y;
+    row->skew = 2.0f * f->xy * dy;
+    row->rise = f->xx * dy * dy;
+    find_span(f, j, dy, &row->begin, &row->end);
+    row->column = wrapped_lanes(row->begin, f->level->width, wrap);
+    row->first = (index_lanes)wrapped_lanes(j, f->level->height, wrap) * (uint32_t)f->level->width;
+  }
+  return n;
+}
+
+CONIC_INLINE void add_row(const texture_filter *f, const texture_row *row, conic_texture_wrap wrap, lanes sum[4]) {
   const conic_texture_level *level = f->level;
-  lanes dy = __builtin_convertvector(j, lanes) - f->y, skew = 2.0f * f->xy * dy, rise = f->xx * dy * dy;
-  int_lanes i, end, row = wrapped_lanes(j, level->height, wrap);
-  find_span(f, j, dy, &i, &end);
-  int_lanes column = wrapped_lanes(i, level->width, wrap);
-  index_lanes first = (index_lanes)row * (uint32_t)level->width;
+  int_lanes i = row->begin, column = row->column;
   lanes i_float = __builtin_convertvector(i, lanes);
-  for (lanes_mask is_left = lanes_less_int(i, end); lanes_any(is_left); is_left = lanes_less_int(i, end)) {
+  for (lanes_mask is_left = lanes_less_int(i, row->end); lanes_any(is_left); is_left = lanes_less_int(i, row->end)) {
     lanes dx = i_float - f->x, color[3];
-    lanes q = ((f->yy * dx - skew) * dx + rise) * f->inverse;
-    fetch_texels(level->texels, first + (index_lanes)column, color);
+    lanes q = ((f->yy * dx - row->skew) * dx + row->rise) * f->inverse;
+    fetch_texels(level->texels, row->first + (index_lanes)column, color);
     lanes_mask has_weight = is_left & lanes_less(q, lanes_of(CONIC_FILTER_SUPPORT));
     lanes weight = lanes_keep(has_weight, lanes_exp_negative(-0.5f * q) - CONIC_FILTER_END);
     for (int channel = 0; channel < 3; channel++)
-      f->sum[channel] += weight * color[channel];
-    f->sum[3] += weight;
+      sum[channel] += weight * color[channel];
+    sum[3] += weight;
     i += 1;
     i_float += 1.0f;
     column = next_column(column, i, level->width, wrap);
   }
 }
 
+CONIC_INLINE void add_rows(const texture_filter *f, conic_texture_wrap wrap, lanes sum[4]) {
+  texture_row rows[MOST_ROWS];
+  int n = find_rows(f, wrap, rows);
+  for (int i = 0; i < n; i++)
+    add_row(f, &rows[i], wrap, sum);
+}
+
 /* Replaces the colours where the mask holds. */
 static __attribute__((noinline)) void filter_level(const texture_part *p, int i_level, lanes_mask mask,
                                                    lanes color[3]) {
+  lanes sum[4] = {lanes_of(0.0f), lanes_of(0.0f), lanes_of(0.0f), lanes_of(0.0f)};
   texture_filter f;
   if (i_level == p->texture->n_levels - 1) {
     for (int channel = 0; channel < 3; channel++)
@@ -219,13 +246,12 @@ static __attribute__((noinline)) void filter_level(const texture_part *p, int i_
     return;
   }
   begin_filter(p, i_level, mask, &f);
-  for (int_lanes j = f.y_begin; lanes_any(lanes_less_int(j, f.y_end)); j += 1)
-    if (f.wrap == CONIC_WRAP_REPEAT)
-      filter_row(&f, j, CONIC_WRAP_REPEAT);
-    else
-      filter_row(&f, j, CONIC_WRAP_CLAMP);
+  if (f.wrap == CONIC_WRAP_REPEAT)
+    add_rows(&f, CONIC_WRAP_REPEAT, sum);
+  else
+    add_rows(&f, CONIC_WRAP_CLAMP, sum);
   for (int channel = 0; channel < 3; channel++)
-    color[channel] = lanes_select(mask, f.sum[channel] / f.sum[3], color[channel]);
+    color[channel] = lanes_select(mask, sum[channel] / sum[3], color[channel]);
 }
 
 /* Each pixel on its own level: nearly always they are all on one. */
