@@ -185,7 +185,8 @@ CONIC_INLINE void find_span(const texture_filter *f, int_lanes j, lanes dy, int_
 }
 
 /* A row of a footprint: where its texels that may have weights begin and end, the column of the first, the row's first
- * texel, and what is the same in all of it. All rows are found before the first is summed up: that waits for nothing. */
+ * texel, and what is the same in all of it. All rows are found before the first is summed up: that waits for nothing.
+ */
 typedef struct texture_row {
   int_lanes begin, end, column;
   index_lanes first;
