@@ -1,5 +1,6 @@
 #include "core/ply_texture.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "core/builder.h"
@@ -31,13 +32,12 @@ int conic_ply_has_texture_corners(const conic_ply_header *header) {
 static conic_status add_picture(const conic_input *input, const char *file, conic_faces *faces) {
   const char *name = input->name, *slash = strrchr(name, '/');
   char path[2 * CONIC_INPUT_LONGEST_WORD];
-  size_t folder = slash && file[0] != '/' ? (size_t)(slash + 1 - name) : 0, length = strlen(file);
-  if (folder + length > sizeof path)
+  int folder = slash && file[0] != '/' ? (int)(slash + 1 - name) : 0;
+  int n = snprintf(path, sizeof path, "%.*s%s", folder, name, file);
+  if (n < 0 || (size_t)n >= sizeof path)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the path of a texture is too long (line %llu)",
                       input->name, (unsigned long long)input->line);
-  memcpy(path, name, folder);
-  memcpy(path + folder, file, length);
-  return conic_texts_add(input->context, &faces->pictures, path, folder + length);
+  return conic_texts_add(input->context, &faces->pictures, path, (size_t)n);
 }
 
 conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_header *header, conic_model *model) {

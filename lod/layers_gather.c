@@ -235,7 +235,7 @@ static void copy_all(const copying *c, size_t n, float sigma, uint32_t first_id)
 static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t id) {
   for (int axis = 0; axis < 3; axis++) {
     c->to_position[axis][k] = c->position[axis][i];
-    if (c->to_color[axis])
+    if (c->to_color[axis] && c->color[axis])
       c->to_color[axis][k] = c->color[axis][i];
   }
   set_axes(c, i, k, sigma);

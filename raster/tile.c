@@ -107,7 +107,7 @@ static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kerne
   report->visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
-    band->nearest = tile->scratch.nearest + i_row * (CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS);
+    band->nearest = tile->scratch.nearest + (size_t)i_row * (CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS);
     kernels->take_nearest(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles) {

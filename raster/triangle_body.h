@@ -75,12 +75,12 @@ CONIC_INLINE int_lanes part_columns(int part) {
 
 /* A record, and what of it is the same in all blocks. */
 typedef struct drawing {
-  const conic_triangle_record *record;
-  uint32_t i_record;
-  conic_triangle_edges edges;
   int_lanes within[3][CONIC_PARTS]; /* how far each edge's value is from that at the block's first pixel, in steps */
-  int32_t most[3];                  /* the most that it gains */
   lanes iz_far, iz_near;
+  const conic_triangle_record *record;
+  conic_triangle_edges edges;
+  int32_t most[3]; /* the most that it gains */
+  uint32_t i_record;
 } drawing;
 
 CONIC_INLINE void begin_drawing(const conic_triangle_record *record, uint32_t i_record, drawing *d) {
@@ -167,7 +167,8 @@ CONIC_INLINE int has_few_samples(const conic_box *box) {
 CONIC_INLINE uint32_t covered_bits(const conic_triangle_block *block) {
   uint32_t bits = 0;
   for (int part = 0; part < CONIC_PARTS; part++)
-    bits |= lanes_bits(lanes_less(lanes_of(0.0f), lanes_load(block->iz + part * CONIC_LANES))) << (part * CONIC_LANES);
+    bits |= lanes_bits(lanes_less(lanes_of(0.0f), lanes_load(block->iz + (size_t)part * CONIC_LANES)))
+            << (part * CONIC_LANES);
   return bits;
 }
 
@@ -322,7 +323,7 @@ CONIC_INLINE void find_normals(const conic_triangle_look *look, const places *p,
 
 CONIC_INLINE void add_colors(const lanes color[3], int part, lanes_mask mask, conic_block_sums *sums) {
   for (int channel = 0; channel < 3; channel++) {
-    float *sum = sums->color[channel] + part * CONIC_LANES;
+    float *sum = sums->color[channel] + (size_t)part * CONIC_LANES;
     lanes_replace(sum, mask, lanes_load(sum) + color[channel]);
   }
 }
@@ -369,7 +370,7 @@ CONIC_INLINE void add_alone(conic_band *band, const conic_finish *finish, const 
 CONIC_INLINE int is_alone(const conic_triangle_block *block, uint32_t i_record, uint32_t pixels) {
   uint32_t same = 0;
   for (int part = 0; part < CONIC_PARTS; part++) {
-    index_lanes other = lanes_load_indices(block->record + part * CONIC_LANES) ^ i_record;
+    index_lanes other = lanes_load_indices(block->record + (size_t)part * CONIC_LANES) ^ i_record;
     same |= (~lanes_bits(lanes_has_bits(other, ~0u)) & ((1u << CONIC_LANES) - 1)) << (part * CONIC_LANES);
   }
   same &= pixels;

@@ -8,7 +8,7 @@ enum { N_BLOCKS = 1200, UNTOUCHED = 0x5a };
 static conic_texture *make_texture(conic_context *context, int width, int height, conic_texture_wrap wrap) {
   conic_image image;
   conic_texture *texture;
-  uint64_t state = (uint64_t)(width * 71 + height);
+  uint64_t state = (uint64_t)width * 71 + (uint64_t)height;
   CHECK_OK(conic_image_allocate(context, width, height, 1u << CONIC_PLANE_RGBA, &image));
   float *rgba = image.planes[CONIC_PLANE_RGBA];
   for (int i = 0; i < 4 * width * height; i++)
