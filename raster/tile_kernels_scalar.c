@@ -226,4 +226,5 @@ const conic_tile_kernels conic_tile_kernels_scalar = {
     .triangles_draw = conic_triangles_draw,
     .triangles_hide = conic_triangles_hide,
     .triangles_add = conic_triangles_add,
+    .texture = conic_texture_at_places,
 };
