@@ -144,19 +144,26 @@ static double stated_px(const comparison *c) {
   return worst;
 }
 
+/* PSNR of the picture as it is usually drawn, with one sample a pixel. */
+static double plain_psnr(comparison *c, const conic_drawing *drawing) {
+  conic_image plain = {.width = 0};
+  conic_difference difference;
+  draw(c, drawing, &c->camera, &plain);
+  CHECK_OK(conic_image_compare(c->context, &c->reduced_truth, &plain, &difference));
+  conic_image_release(c->context, &plain);
+  return difference.psnr;
+}
+
 static findings compare(comparison *c, double error_px) {
   findings found;
   conic_hybrid_view view;
-  conic_image small = {.width = 0};
+  conic_image small;
   conic_difference difference;
   conic_hybrid_view_init(&view);
   view.error_px = error_px;
   CHECK_OK(conic_hybrid_select(c->hybrid, &c->camera, &c->options, &view, &c->selection));
   const conic_drawing drawing = {&c->selection.splats, &c->selection.triangles};
-  draw(c, &drawing, &c->camera, &small);
-  CHECK_OK(conic_image_compare(c->context, &c->reduced_truth, &small, &difference));
-  found.plain_psnr = difference.psnr;
-  conic_image_release(c->context, &small);
+  found.plain_psnr = plain_psnr(c, &drawing);
   draw(c, &drawing, &c->fine, &c->image);
   reduce(c, &c->image, &small);
   CHECK_OK(conic_image_compare(c->context, &c->reduced_truth, &small, &difference));
@@ -188,7 +195,10 @@ static void look(comparison *c, int direction) {
 }
 
 static void check_direction(comparison *c, const limits *limit, int direction) {
+  const conic_drawing mesh = {NULL, &c->mesh};
+  const char *name = limit->name ? limit->name : "terrain";
   look(c, direction);
+  fprintf(stderr, "%s, direction %2d, the mesh with one sample: %.2f dB\n", name, direction, plain_psnr(c, &mesh));
   for (int i = 0; i < N_ERRORS; i++) {
     int is_built = errors_px[i] == 0.0;
     double promised_px = is_built ? stated_px(c) : errors_px[i];
@@ -196,8 +206,8 @@ static void check_direction(comparison *c, const limits *limit, int direction) {
     fprintf(stderr,
             "%s, direction %2d, error %.1f: outline +%.2f -%.2f px, off %.2f of %.2f px, %.2f dB, FLIP %.4f, plain "
             "%.2f dB\n",
-            limit->name ? limit->name : "terrain", direction, errors_px[i], found.grown_px, found.shrunk_px,
-            found.off_px, promised_px, found.psnr, found.flip, found.plain_psnr);
+            name, direction, errors_px[i], found.grown_px, found.shrunk_px, found.off_px, promised_px, found.psnr,
+            found.flip, found.plain_psnr);
     CHECK(found.grown_px <= promised_px + slack_px);
     CHECK(found.shrunk_px <= (is_built ? 1.0 / FINE : promised_px + slack_px));
     CHECK(found.off_px <= promised_px + slack_px);
