@@ -92,9 +92,10 @@ static conic_status fit(const fitting *f, uint64_t budget) {
     return CONIC_OK;
   uint64_t count = choose_all(f, HUGE_VAL, &error_px), low = 0, high = bits_of(error_px);
   if (count > budget)
-    return conic_fail(f->hybrid->context, CONIC_ERROR_ARGUMENT,
-                      "the coarsest of what is in sight are %llu triangles and surfels, more than the budget of %llu",
-                      (unsigned long long)count, (unsigned long long)budget);
+    return conic_fail(
+        f->hybrid->context, CONIC_ERROR_ARGUMENT,
+        "hybrid: the coarsest of what is in sight are %llu triangles and surfels, more than the budget of %llu",
+        (unsigned long long)count, (unsigned long long)budget);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
     if (choose_all(f, error_of(middle), &error_px) > budget)
