@@ -6,7 +6,6 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "lod/hybrid_budget.h"
-#include "lod/hybrid_choose.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
   memset(view, 0, sizeof *view);
@@ -78,7 +77,6 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
     kept->choices_room = room;
   }
   uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
-  s->selection->n_simpler += level != patch->built;
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
   return CONIC_OK;
 }
@@ -116,25 +114,24 @@ static conic_status spend_budget(selecting *s) {
   for (size_t i = 0; i < n; i++)
     patches[i] = s->scratch->choices[i].patch;
   conic_status status = conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels);
-  s->selection->n_simpler = 0;
-  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-    const conic_hybrid_patch *patch = &h->patches[patches[i]];
-    s->scratch->choices[i].level = patch->first_level + levels[i];
-    s->selection->n_simpler += levels[i] != patch->built;
-  }
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    s->scratch->choices[i].level = h->patches[patches[i]].first_level + levels[i];
   conic_memory_release(h->context, patches);
   return status;
 }
 
-/* The greatest error on the screen of what was chosen. */
-static double worst_error_px(const selecting *s) {
-  double worst_px = 0.0;
+/* What the choices come to. */
+static void judge(const selecting *s) {
+  conic_hybrid_selection *selection = s->selection;
   for (size_t i = 0; i < s->scratch->n_choices; i++) {
     const choice *c = &s->scratch->choices[i];
-    double error_px = conic_hybrid_error_px(&s->camera, &s->hybrid->patches[c->patch], &s->hybrid->levels[c->level]);
-    worst_px = error_px > worst_px ? error_px : worst_px;
+    const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    double error_px = conic_hybrid_error_px(&s->camera, patch, level);
+    selection->n_patches[level->kind]++;
+    selection->n_simpler += c->level != patch->first_level + patch->built;
+    selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
   }
-  return worst_px;
 }
 
 /* Where each choice's parts go, and room for all. */
@@ -148,7 +145,6 @@ static conic_status make_room(selecting *s) {
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
-    s->selection->n_patches[level->kind]++;
     n_vertices += level->n_vertices;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count;
   }
@@ -272,7 +268,7 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an error on the screen is 0 or more, and a kind one that there is");
   if (s->view->error_px > 0.0 && s->view->budget)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error stands beside a budget");
   if (!kept) {
     kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
     if (!kept)
@@ -301,7 +297,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
     status = make_room(&s);
   if (status != CONIC_OK)
     return status;
-  selection->error_px = worst_error_px(&s);
+  judge(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
   return CONIC_OK;

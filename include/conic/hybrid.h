@@ -114,11 +114,11 @@ typedef struct conic_hybrid_selection {
   conic_splats splats;
   conic_triangles triangles; /* the textures are the hybrid's; the clusters are patches */
   uint32_t *splat_cluster;   /* the patch of each splat */
-  double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
-                                that is not drawn by its own triangles reaches the near distance */
   size_t n_patches[2];       /* drawn as triangles, as surfels */
   size_t n_culled;           /* patches that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
+  double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
+                                that is not drawn by its own triangles reaches the near distance */
   void *scratch;             /* private */
 } conic_hybrid_selection;
 
