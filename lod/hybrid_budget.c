@@ -1,6 +1,7 @@
 #include "lod/hybrid_budget.h"
 
-#include <stdlib.h>
+#include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/message.h"
@@ -12,8 +13,6 @@ typedef struct fitting {
   const uint32_t *patches;
   size_t n;
   double *errors_px; /* of all levels of the first patch, then of the second … */
-  double *steps_px;  /* those of levels that are allowed, rising */
-  size_t n_steps;
   uint32_t *levels;
 } fitting;
 
@@ -42,68 +41,69 @@ static uint32_t fewest(const fitting *f, const conic_hybrid_patch *patch, const 
   return best;
 }
 
-/* Chooses for all patches; returns how many primitives that are. */
-static uint64_t choose_all(const fitting *f, double error_px) {
+/* Chooses for all patches; returns how many primitives that are, and the greatest error of what was chosen. */
+static uint64_t choose_all(const fitting *f, double error_px, double *greatest_px) {
   const double *errors_px = f->errors_px;
   uint64_t count = 0;
+  *greatest_px = 0.0;
   for (size_t i = 0; i < f->n; i++) {
     const conic_hybrid_patch *patch = &f->hybrid->patches[f->patches[i]];
     uint32_t level = fewest(f, patch, errors_px, error_px);
     count += f->hybrid->levels[patch->first_level + level].count;
+    *greatest_px = errors_px[level] > *greatest_px ? errors_px[level] : *greatest_px;
     f->levels[i] = level;
     errors_px += patch->n_levels;
   }
   return count;
 }
 
-static int compare_steps(const void *a, const void *b) {
-  const double *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) {
   const conic_hybrid *h = f->hybrid;
-  size_t n_levels = 0, n = 0;
+  size_t n_levels = 0;
   for (size_t i = 0; i < f->n; i++)
     n_levels += h->patches[f->patches[i]].n_levels;
-  f->errors_px = conic_memory_allocate(h->context, n_levels, sizeof *f->errors_px);
-  f->steps_px = conic_memory_allocate(h->context, n_levels, sizeof *f->steps_px);
-  if (!f->errors_px || !f->steps_px)
+  double *next = f->errors_px = conic_memory_allocate(h->context, n_levels, sizeof *f->errors_px);
+  if (!next)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < f->n; i++) {
     const conic_hybrid_patch *patch = &h->patches[f->patches[i]];
-    for (uint32_t k = 0; k < patch->n_levels; k++) {
-      const conic_hybrid_level *level = &h->levels[patch->first_level + k];
-      f->errors_px[n] = conic_hybrid_error_px(view, patch, level);
-      if (is_allowed(f, level))
-        f->steps_px[f->n_steps++] = f->errors_px[n];
-      n++;
-    }
+    for (uint32_t k = 0; k < patch->n_levels; k++)
+      *next++ = conic_hybrid_error_px(view, patch, &h->levels[patch->first_level + k]);
   }
-  if (f->n_steps)
-    qsort(f->steps_px, f->n_steps, sizeof *f->steps_px, compare_steps);
   return CONIC_OK;
 }
 
-/* Halves the errors that there are, down to the least that the budget gives. */
+static double error_of(uint64_t bits) {
+  double error;
+  memcpy(&error, &bits, sizeof error);
+  return error;
+}
+
+static uint64_t bits_of(double error) {
+  uint64_t bits;
+  memcpy(&bits, &error, sizeof bits);
+  return bits;
+}
+
+/* Halves the errors, which order like their bits as none is negative, down to the least that the budget gives. */
 static conic_status fit(const fitting *f, uint64_t budget) {
-  if (f->n_steps == 0)
+  double error_px;
+  if (choose_all(f, 0.0, &error_px) <= budget)
     return CONIC_OK;
-  size_t low = 0, high = f->n_steps - 1;
-  uint64_t count = choose_all(f, f->steps_px[high]);
+  uint64_t count = choose_all(f, HUGE_VAL, &error_px), low = 0, high = bits_of(error_px);
   if (count > budget)
     return conic_fail(
         f->hybrid->context, CONIC_ERROR_ARGUMENT,
         "hybrid: the coarsest of what is in sight are %llu triangles and surfels, more than the budget of %llu",
         (unsigned long long)count, (unsigned long long)budget);
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (choose_all(f, f->steps_px[middle]) <= budget)
-      high = middle;
-    else
-      low = middle + 1;
+  while (high - low > 1) {
+    uint64_t middle = low + (high - low) / 2;
+    if (choose_all(f, error_of(middle), &error_px) > budget)
+      low = middle;
+    else /* what was chosen may be better than what was asked for */
+      high = error_px < error_of(middle) ? bits_of(error_px) : middle;
   }
-  choose_all(f, f->steps_px[high]);
+  choose_all(f, error_of(high), &error_px);
   return CONIC_OK;
 }
 
@@ -115,6 +115,5 @@ conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hyb
   if (status == CONIC_OK)
     status = fit(&f, budget);
   conic_memory_release(hybrid->context, f.errors_px);
-  conic_memory_release(hybrid->context, f.steps_px);
   return status;
 }

@@ -126,7 +126,7 @@ static void check_budget(spending *s, int only_kind, size_t budget) {
 static void check_view(spending *s, int only_kind) {
   double last = 0.0;
   size_t budget = 2 * s->info.n_vertices + s->info.n_all_surfels, n_steps = 0;
-  for (; n_steps < 200 && select_with(s, only_kind, 0.0, budget) == CONIC_OK; n_steps++) {
+  for (; select_with(s, only_kind, 0.0, budget) == CONIC_OK; n_steps++) {
     CHECK(s->selection.error_px >= last);
     last = s->selection.error_px;
     check_budget(s, only_kind, budget);
