@@ -16,6 +16,7 @@
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
+  int n_lanes;      /* pixels or splats that it takes at a time */
   /* Set-up: appends the splats begin … end - 1 to the chunk, compacted, in order. */
   void (*project)(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                   conic_projected *projected, conic_chunk *chunk);

@@ -496,6 +496,7 @@ static void accumulate(conic_band *band) {
 
 const conic_tile_kernels TABLE = {
     .name = NAME,
+    .n_lanes = CONIC_LANES,
     .project = project,
     .keys = keys,
     .move = move,

@@ -92,9 +92,7 @@ void conic_triangles_win(conic_band *band) {
     if (!row->covered[block] || conic_block_is_empty(band, block))
       continue;
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      size_t at;
-      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
-      if (!(row->blocks[block].iz[l] > strip->iz[at])) {
+      if (!(row->blocks[block].iz[l] > band->nearest->iz[conic_nearest_place(band, block, l)])) {
         row->visible[block] &= ~(1u << l);
         continue;
       }
