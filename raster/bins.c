@@ -2,40 +2,9 @@
 
 #include <string.h>
 
+#include "raster/bins_tiles.h"
 #include "raster/clip_lines.h"
 #include "raster/tile_kernels.h"
-
-/* The tiles that a box touches. */
-typedef struct tile_range {
-  int x_begin, x_end, y_begin, y_end;
-} tile_range;
-
-static tile_range tiles_of(const conic_bins *bins, const conic_box *box) {
-  int shift = bins->tile_bits;
-  tile_range range = {box->x_begin >> shift, ((box->x_end - 1) >> shift) + 1, box->y_begin >> shift,
-                      ((box->y_end - 1) >> shift) + 1};
-  return range;
-}
-
-/* The first and the last of a tile's pixels, along one axis, that are among begin … end - 1. */
-static uint32_t first_pixel(int begin, int tile_begin) {
-  return begin > tile_begin ? (uint32_t)(begin - tile_begin) : 0;
-}
-
-static uint32_t last_pixel(int end, int tile_begin, int tile) {
-  return (uint32_t)(end - 1 < tile_begin + tile - 1 ? end - 1 - tile_begin : tile - 1);
-}
-
-/* The word of a box in the tile at (x, y). */
-static uint32_t word_in(const conic_bins *bins, const conic_box *box, int x, int y) {
-  int tile = bins->tile, left = x * tile, top = y * tile;
-  uint32_t first = first_pixel(box->x_begin, left), last = last_pixel(box->x_end, left, tile);
-  uint32_t first_row = first_pixel(box->y_begin, top), last_row = last_pixel(box->y_end, top, tile);
-  if (bins->by_pixels)
-    return conic_pixel_word_of(first, last, first_row, last_row);
-  return conic_word_of(first / CONIC_BLOCK_EDGE, last / CONIC_BLOCK_EDGE, first_row / CONIC_BLOCK_EDGE,
-                       last_row / CONIC_BLOCK_EDGE);
-}
 
 static size_t rounded(size_t bytes) {
   return (bytes + 63) / 64 * 64;
@@ -78,24 +47,15 @@ void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips
     projected->clips = take(&left, chunk_size * sizeof *projected->clips);
 }
 
-/* The tiles beyond a record's home, the next in x, in y and in both; n_tiles for those that it does not meet. It is no
- * matter of branches, which could not foresee them. */
-static inline void tiles_beyond(const conic_bins *bins, uint32_t home, uint32_t beyond, uint32_t tiles[3]) {
-  uint32_t none = (uint32_t)bins->n_tiles, below = home + (uint32_t)bins->n_tiles_x;
-  tiles[0] = beyond & CONIC_BEYOND_X ? home + 1 : none;
-  tiles[1] = beyond & CONIC_BEYOND_Y ? below : none;
-  tiles[2] = (beyond & CONIC_BEYOND_X) && (beyond & CONIC_BEYOND_Y) ? below + 1 : none;
-}
-
 static __attribute__((noinline)) void count_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i) {
   uint32_t tiles[3];
   if (__builtin_expect(!(sorter->beyond[i] & CONIC_BEYOND_MORE), 1)) {
-    tiles_beyond(bins, sorter->tile[i], sorter->beyond[i], tiles);
+    conic_tiles_beyond(bins, sorter->tile[i], sorter->beyond[i], tiles);
     for (int k = 0; k < 3; k++)
       sorter->next_entry[tiles[k]]++;
     return;
   }
-  tile_range range = tiles_of(bins, &sorter->projected.boxes[i]);
+  conic_tile_range range = conic_tiles_of(bins, &sorter->projected.boxes[i]);
   for (int y = range.y_begin; y < range.y_end; y++)
     for (int x = range.x_begin; x < range.x_end; x++)
       sorter->next_entry[y * bins->n_tiles_x + x] += x != range.x_begin || y != range.y_begin;
@@ -127,46 +87,6 @@ static uint32_t place(const conic_bins *bins, conic_sorter *sorter, uint32_t *ti
   return n_entries;
 }
 
-/* The entries of a record in all of its tiles, which are many. Kept out of the loop, which needs the registers. */
-static __attribute__((noinline)) void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record,
-                                                uint32_t *next, conic_tile_entry *entries) {
-  tile_range range = tiles_of(bins, box);
-  for (int y = range.y_begin; y < range.y_end; y++)
-    for (int x = range.x_begin; x < range.x_end; x++)
-      entries[next[y * bins->n_tiles_x + x]++] = (conic_tile_entry){i_record, word_in(bins, box, x, y)};
-}
-
-/* Those beyond its home; what it does not meet is written to the place behind all. */
-static __attribute__((noinline)) void enter_beyond(const conic_bins *bins, const conic_sorter *sorter, size_t i,
-                                                   uint32_t i_record, conic_tile_entry *entries) {
-  uint32_t *next = sorter->next_entry, tiles[3], word = sorter->word[i], beyond = sorter->beyond[i];
-  uint32_t columns = (beyond & 0xff) << 8, last_row = beyond >> 8 & 0xff;
-  uint32_t rows = bins->by_pixels ? last_row << 24 : ((UINT32_C(2) << last_row) - 1) << 16;
-  uint32_t words[3] = {columns | (word & 0xffff0000), (word & 0xffff) | rows, columns | rows};
-  tiles_beyond(bins, sorter->tile[i], beyond, tiles);
-  for (int k = 0; k < 3; k++) {
-    entries[next[tiles[k]]] = (conic_tile_entry){i_record, words[k]};
-    next[tiles[k]] += tiles[k] < bins->n_tiles;
-  }
-}
-
-/* Finds each record's place, and makes the entries that refer to it. */
-static void enter(const conic_bins *bins, const conic_sorter *sorter, size_t first, conic_tile_entry *entries) {
-  uint32_t *next_record = sorter->next_record, *next_entry = sorter->next_entry, *order = sorter->order;
-  const uint32_t *tile = sorter->tile, *word = sorter->word, *beyond = sorter->beyond;
-  for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++) {
-    uint32_t at = next_record[tile[i]]++, i_record = (uint32_t)first + at;
-    order[at] = (uint32_t)i;
-    if (__builtin_expect((beyond[i] & CONIC_BEYOND_MORE) != 0, 0)) {
-      enter_all(bins, &sorter->projected.boxes[i], i_record, next_entry, entries);
-      continue;
-    }
-    entries[next_entry[tile[i]]++] = (conic_tile_entry){i_record, word[i]};
-    if (__builtin_expect(beyond[i] != 0, 0))
-      enter_beyond(bins, sorter, i, i_record, entries);
-  }
-}
-
 /* The clip lines of the records that are marked. */
 static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected *to) {
   const conic_projected *from = &sorter->projected;
@@ -175,24 +95,26 @@ static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected
       to->clips[first + at] = from->clips[sorter->order[at]];
 }
 
+size_t conic_sorter_count(const conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter,
+                          uint32_t *tile_begin) {
+  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
+                sorter->tile, sorter->word, sorter->beyond);
+  count(bins, sorter);
+  return place(bins, sorter, tile_begin) + (size_t)1; /* one place behind all */
+}
+
 void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = atomic_fetch_add(&bins->n_records, sorter->chunk.n_drawn);
-  kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
-                sorter->tile, sorter->word, sorter->beyond);
-  count(bins, sorter);
-  size_t n_entries = place(bins, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
-  n_entries++; /* one place behind all */
+  size_t n_entries = conic_sorter_count(bins, kernels, sorter, bins->tile_begin + i_chunk * (bins->n_tiles + 1));
   size_t begin = atomic_fetch_add(&bins->n_used, n_entries);
   *chunk = sorter->chunk;
   chunk->first = first;
   bins->chunk_begin[i_chunk] = begin;
   if (begin + n_entries > bins->n_room)
     return;
-  enter(bins, sorter, first, bins->entries + begin);
-  kernels->move(&sorter->projected, sorter->order, chunk->n_drawn, &projected->footprints[first],
-                &projected->surfaces[first]);
+  kernels->sort(bins, sorter, first, bins->entries + begin, &projected->footprints[first], &projected->surfaces[first]);
   copy_clips(sorter, first, projected);
 }
 

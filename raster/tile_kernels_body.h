@@ -78,15 +78,11 @@ static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x,
     keys_in(boxes, n, tile_bits, n_tiles_x, 0, tiles, words, beyond);
 }
 
-/* Past the caches: a frame's records are more than they hold. */
-static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
-                 conic_surface *surfaces) {
-  for (size_t i = 0; i < n; i++) {
-    lanes_stream(&footprints[i], &from->footprints[order[i]], sizeof *footprints);
-    lanes_stream(&surfaces[i], &from->surfaces[order[i]], sizeof *surfaces);
-  }
-  conic_stream_fence();
+CONIC_INLINE void stream_record(void *to, const void *from, size_t bytes) {
+  lanes_stream(to, from, bytes);
 }
+
+#include "raster/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
@@ -499,7 +495,7 @@ const conic_tile_kernels TABLE = {
     .n_lanes = CONIC_LANES,
     .project = project,
     .keys = keys,
-    .move = move,
+    .sort = sort,
     .select = select_references,
     .visibility = visibility,
     .accumulate = accumulate,

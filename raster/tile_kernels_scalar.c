@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "raster/coverage.h"
+#include "raster/stream.h"
 #include "raster/tile_kernels.h"
 #include "raster/triangle_tile.h"
 
@@ -28,13 +29,11 @@ static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x,
   }
 }
 
-static void move(const conic_projected *from, const uint32_t *order, size_t n, conic_footprint *footprints,
-                 conic_surface *surfaces) {
-  for (size_t i = 0; i < n; i++) {
-    footprints[i] = from->footprints[order[i]];
-    surfaces[i] = from->surfaces[order[i]];
-  }
+static inline void stream_record(void *to, const void *from, size_t bytes) {
+  conic_stream_copy(to, from, bytes);
 }
+
+#include "raster/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
@@ -215,7 +214,7 @@ const conic_tile_kernels conic_tile_kernels_scalar = {
     .n_lanes = 1,
     .project = conic_project_range,
     .keys = keys,
-    .move = move,
+    .sort = sort,
     .select = select_references,
     .visibility = visibility,
     .accumulate = accumulate,

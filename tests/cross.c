@@ -47,14 +47,29 @@ static void run_keys_of_pixels(const conic_tile_kernels *kernels, desk *d) {
   kernels->keys(d->projected.boxes, d->chunk.n_drawn, 5, (d->view.width + 31) / 32, 1, d->tiles, d->keys, d->beyond);
 }
 
-/* An order that takes every record once. */
-static void run_move(const conic_tile_kernels *kernels, desk *d) {
-  size_t n = d->chunk.n_drawn, step = 7;
-  while (n % step == 0)
-    step++;
-  for (size_t i = 0; i < n; i++)
-    d->order[i] = (uint32_t)(i * step % n);
-  kernels->move(&d->projected, d->order, n, d->moved_footprints, d->moved_surfaces);
+/* Into bins of 32 × 32 pixels. */
+static void count_tiles(desk *d) {
+  d->bins.tile_bits = 5;
+  d->bins.tile = 1 << d->bins.tile_bits;
+  d->bins.by_pixels = 0;
+  d->bins.n_tiles_x = (d->view.width + d->bins.tile - 1) / d->bins.tile;
+  d->bins.n_tiles = (size_t)(d->bins.n_tiles_x * ((d->view.height + d->bins.tile - 1) / d->bins.tile));
+  CHECK(d->bins.n_tiles < MOST_TILES);
+  d->sorter = (conic_sorter){.projected = d->projected,
+                             .chunk = d->chunk,
+                             .tile = d->tiles,
+                             .word = d->keys,
+                             .beyond = d->beyond,
+                             .order = d->order,
+                             .next_record = d->next_record,
+                             .next_entry = d->next_entry};
+  CHECK(conic_sorter_count(&d->bins, &conic_tile_kernels_scalar, &d->sorter, d->tile_begin) <=
+        d->chunk.n_drawn * MOST_TILES + 1);
+}
+
+static void run_sort(const conic_tile_kernels *kernels, desk *d) {
+  count_tiles(d);
+  kernels->sort(&d->bins, &d->sorter, 0, d->entries, d->moved_footprints, d->moved_surfaces);
 }
 
 static void run_select(const conic_tile_kernels *kernels, desk *d) {
@@ -166,7 +181,7 @@ static const slot slots[] = {
     {"project for nearest", run_project_for_nearest, {NULL}, check_projected, A_SPLAT, 1, 0, 1},
     {"keys", run_keys, {NULL}, NULL, A_RECORD, 0, 0, 0},
     {"keys of pixels", run_keys_of_pixels, {NULL}, NULL, A_RECORD, 0, 0, 0},
-    {"move", run_move, {NULL}, NULL, A_RECORD, 0, 0, 0},
+    {"sort", run_sort, {NULL}, NULL, A_RECORD, 0, 0, 0},
     {"select", run_select, {NULL}, check_selected, AN_INDEX, 0, 0, 0},
     {"visibility", run_visibility, {NULL}, check_kept, A_FRAGMENT, 1, 0, 0},
     {"accumulate", run_accumulate, {run_visibility}, check_sums, A_FRAGMENT, 1, 1, 0},

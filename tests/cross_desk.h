@@ -6,7 +6,15 @@
 #include "raster/tile_kernels.h"
 #include "tests/fixture.h"
 
-enum { N_SPLATS = 2501, GUARD = 256, PATTERN = 0xa5, MAX_ARENAS = 26, N_KERNELS = 4, GREATEST_LIST = 1 << 15 };
+enum {
+  N_SPLATS = 2501,
+  GUARD = 256,
+  PATTERN = 0xa5,
+  MAX_ARENAS = 30,
+  N_KERNELS = 4,
+  GREATEST_LIST = 1 << 15,
+  MOST_TILES = 64
+};
 
 /* Memory between two guard bands. */
 typedef struct arena {
@@ -35,6 +43,10 @@ enum {
   ORDER,
   MOVED_FOOTPRINTS,
   MOVED_SURFACES,
+  NEXT_RECORD,
+  NEXT_ENTRY,
+  TILE_BEGIN,
+  ENTRIES,
   IMAGE
 };
 
@@ -49,6 +61,10 @@ typedef struct desk {
   uint32_t *tiles, *keys, *beyond, *order; /* of records */
   conic_footprint *moved_footprints;
   conic_surface *moved_surfaces;
+  conic_bins bins;
+  conic_sorter sorter;
+  uint32_t *next_record, *next_entry, *tile_begin;
+  conic_tile_entry *entries;
   conic_tile_entry *references;
   conic_band band;
   conic_tile_rays rays;
@@ -168,6 +184,10 @@ static inline void open_turned(desk *d, size_t n) {
   d->order = room(d, n * sizeof *d->order);
   d->moved_footprints = room(d, n * sizeof *d->moved_footprints);
   d->moved_surfaces = room(d, n * sizeof *d->moved_surfaces);
+  d->next_record = room(d, MOST_TILES * sizeof *d->next_record);
+  d->next_entry = room(d, MOST_TILES * sizeof *d->next_entry);
+  d->tile_begin = room(d, MOST_TILES * sizeof *d->tile_begin);
+  d->entries = room(d, (n * MOST_TILES + 1) * sizeof *d->entries);
 }
 
 static inline void open_image(desk *d, unsigned planes) {
@@ -205,10 +225,28 @@ static inline void close_desk(desk *d) {
 
 /* Says where the arena differs first, and how. */
 static inline void compare_arena(const desk *a, const desk *b, int i) {
-  static const char *const names[] = {
-      "footprints",       "boxes",         "surfaces", "rays", "list",  "words", "references", "selected",
-      "selected words",   "kept",          "nearest",  "sums", "tiles", "keys",  "beyond",     "order",
-      "moved footprints", "moved surfaces"};
+  static const char *const names[] = {"footprints",
+                                      "boxes",
+                                      "surfaces",
+                                      "rays",
+                                      "list",
+                                      "words",
+                                      "references",
+                                      "selected",
+                                      "selected words",
+                                      "kept",
+                                      "nearest",
+                                      "sums",
+                                      "tiles",
+                                      "keys",
+                                      "beyond",
+                                      "order",
+                                      "moved footprints",
+                                      "moved surfaces",
+                                      "next record",
+                                      "next entry",
+                                      "tile begin",
+                                      "entries"};
   const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
   size_t n = a->arenas[i].compared, at = 0;
   CHECK(n == b->arenas[i].compared);
