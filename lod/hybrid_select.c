@@ -77,7 +77,9 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
     kept->choices_room = room;
   }
   uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
+  double error = conic_hybrid_error_px(&s->camera, patch, &s->hybrid->levels[patch->first_level + level]);
   s->selection->n_simpler += level != patch->built;
+  s->selection->n_beyond += s->view->error_px > 0.0 && error > s->view->error_px;
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
   return CONIC_OK;
 }

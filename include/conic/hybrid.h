@@ -116,6 +116,7 @@ typedef struct conic_hybrid_selection {
   size_t n_patches[2];       /* drawn as triangles, as surfels */
   size_t n_culled;           /* patches that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
+  size_t n_beyond;           /* with only_kind: drawn with more than error_px, since that kind has nothing better */
   void *scratch;             /* private */
 } conic_hybrid_selection;
 
