@@ -175,7 +175,10 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   status = conic_find_ways(&ways);
   b->report->sample_seconds = ways.sample_seconds;
   b->report->simplify_seconds = ways.simplify_seconds;
-  return status == CONIC_OK ? conic_hybrid_pack(b->context, &b->mesh, b->ways, b->options->cutoff, hybrid) : status;
+  if (status == CONIC_OK)
+    status = conic_hybrid_pack(b->context, &b->mesh, b->ways, &ways.chains, b->options->cutoff, hybrid);
+  conic_patch_chains_release(b->context, &ways.chains);
+  return status;
 }
 
 conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *options,

@@ -15,6 +15,7 @@ typedef struct packing {
   const conic_patch_mesh *mesh;
   const conic_triangles *flat; /* the same mesh */
   const conic_patch_ways *ways;
+  const conic_patch_chains *chains;
   size_t n_patches;
   float cutoff;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
@@ -48,8 +49,10 @@ static void count_patch(packing *p, uint32_t patch) {
   const conic_patch_ways *ways = &p->ways[patch];
   conic_chy_header *h = &p->header;
   h->n_triangles += p->mesh->starts[patch + 1] - p->mesh->starts[patch];
-  for (int i = 0; i < ways->triangles.n; i++)
+  for (int i = 0; i < ways->triangles.n; i++) {
     h->n_triangles += ways->triangles.levels[i].n;
+    h->n_borders += ways->triangles.levels[i].n_borders;
+  }
   for (int i = 0; i < ways->n_surfels; i++)
     h->n_surfels += ways->surfels[i].n;
   h->n_levels += (uint64_t)(1 + ways->triangles.n + ways->n_surfels);
@@ -78,6 +81,7 @@ static conic_status allocate_body(packing *p) {
   h->n_vertices = p->flat->n_vertices;
   h->n_patches = p->n_patches;
   h->n_nodes = conic_hybrid_count_nodes(p->n_patches);
+  h->n_slots = p->chains->n_slots;
   h->n_materials = p->flat->n_materials;
   h->flags = (p->flat->normal[0] ? CONIC_CHY_NORMALS : 0u) | (p->flat->color[0] ? CONIC_CHY_COLORS : 0u) |
              (p->flat->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
@@ -102,11 +106,10 @@ static void *array_at(packing *p, int i) {
 }
 
 typedef struct cursor {
-  size_t level, triangle, listed, surfel;
+  size_t level, triangle, listed, surfel, border;
 } cursor;
 
-static void put_triangles(packing *p, cursor *at, const uint32_t (*corners)[3], const uint32_t *faces, size_t n,
-                          double error) {
+static void put_triangles(packing *p, cursor *at, const conic_patch_level *from) {
   conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
   uint32_t(*local)[3] = array_at(p, CONIC_CHY_CORNERS), *listed = array_at(p, CONIC_CHY_LISTED);
   uint32_t *material = array_at(p, CONIC_CHY_MATERIAL_OF);
@@ -114,14 +117,22 @@ static void put_triangles(packing *p, cursor *at, const uint32_t (*corners)[3], 
   memset(level, 0, sizeof *level);
   level->kind = CONIC_HYBRID_TRIANGLES;
   level->first = (uint32_t)at->triangle;
-  level->count = (uint32_t)n;
+  level->count = (uint32_t)from->n;
   level->first_vertex = (uint32_t)at->listed;
-  level->n_vertices = (uint32_t)list_vertices(p, corners, n, listed + at->listed, local + at->triangle);
-  level->error = (float)(error * (1.0 + 1e-6));
-  for (size_t i = 0; i < n && p->header.flags & CONIC_CHY_MATERIALS; i++)
-    material[at->triangle + i] = p->flat->material[faces[i]];
-  at->triangle += n;
+  level->n_vertices = (uint32_t)list_vertices(p, (const uint32_t(*)[3])from->corners, from->n, listed + at->listed,
+                                              local + at->triangle);
+  level->error = (float)(from->error * (1.0 + 1e-6));
+  level->stage = from->stage;
+  level->first_border = (uint32_t)at->border;
+  level->n_borders = (uint32_t)from->n_borders;
+  for (size_t i = 0; i < from->n && p->header.flags & CONIC_CHY_MATERIALS; i++)
+    material[at->triangle + i] = p->flat->material[from->face[i]];
+  if (from->n_borders > 0)
+    memcpy((conic_hybrid_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
+           from->n_borders * sizeof *from->borders);
+  at->triangle += from->n;
   at->listed += level->n_vertices;
+  at->border += from->n_borders;
 }
 
 static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
@@ -145,22 +156,22 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
 }
 
 /* The first level of triangles is the patch's faces themselves. */
-static void put_patch(packing *p, cursor *at, uint32_t i, uint32_t (*corners)[3]) {
+static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mesh) {
   conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
   const conic_patch_ways *ways = &p->ways[i];
-  size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
   patches[i] = (conic_hybrid_patch){.bound = conic_patch_bound(p->mesh, i),
                                     .area = (float)ways->area,
                                     .first_level = (uint32_t)at->level,
                                     .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
   patches[i].built = p->mesh->clusters->is_gathered[i] && ways->n_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
-  for (size_t k = 0; k < n; k++)
-    memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
-  put_triangles(p, at, (const uint32_t(*)[3])corners, p->mesh->faces + p->mesh->starts[i], n, 0.0);
-  for (int k = 0; k < ways->triangles.n; k++) {
-    const conic_patch_level *level = &ways->triangles.levels[k];
-    put_triangles(p, at, (const uint32_t(*)[3])level->corners, level->face, level->n, level->error);
+  mesh->n = 0;
+  for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1]; k++, mesh->n++) {
+    mesh->face[mesh->n] = p->mesh->faces[k];
+    memcpy(mesh->corners[mesh->n], p->flat->corners[p->mesh->faces[k]], sizeof *mesh->corners);
   }
+  put_triangles(p, at, mesh);
+  for (int k = 0; k < ways->triangles.n; k++)
+    put_triangles(p, at, &ways->triangles.levels[k]);
   for (int k = 0; k < ways->n_surfels; k++) {
     put_surfels(p, at, &ways->surfels[k]);
     float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));
@@ -237,12 +248,17 @@ static conic_status fill_body(packing *p) {
   size_t most = 0;
   for (size_t i = 0; i < p->n_patches; i++)
     most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
-  uint32_t(*corners)[3] = conic_memory_allocate(p->context, most, sizeof *corners);
-  if (!corners)
+  conic_patch_level mesh = {.corners = conic_memory_allocate(p->context, most, sizeof *mesh.corners),
+                            .face = conic_memory_allocate(p->context, most, sizeof *mesh.face)};
+  int is_there = mesh.corners && mesh.face;
+  for (uint32_t i = 0; i < p->n_patches && is_there; i++)
+    put_patch(p, &at, i, &mesh);
+  conic_memory_release(p->context, mesh.corners);
+  conic_memory_release(p->context, mesh.face);
+  if (!is_there)
     return CONIC_ERROR_MEMORY;
-  for (uint32_t i = 0; i < p->n_patches; i++)
-    put_patch(p, &at, i, corners);
-  conic_memory_release(p->context, corners);
+  if (p->chains->n_slots > 0)
+    memcpy(array_at(p, CONIC_CHY_SLOTS), p->chains->slots, p->chains->n_slots * sizeof *p->chains->slots);
   put_vertices(p);
   put_materials(p);
   conic_hybrid_fill_nodes(array_at(p, CONIC_CHY_PATCHES), p->reach, p->n_patches, array_at(p, CONIC_CHY_NODES));
@@ -296,12 +312,13 @@ static conic_status pack(packing *p, conic_hybrid **hybrid) {
 }
 
 conic_status conic_hybrid_pack(conic_context *context, const conic_patch_mesh *mesh, const conic_patch_ways *ways,
-                               float cutoff, conic_hybrid **hybrid) {
+                               const conic_patch_chains *chains, float cutoff, conic_hybrid **hybrid) {
   size_t n_patches = mesh->clusters->n_clusters;
   packing p = {.context = context,
                .mesh = mesh,
                .flat = mesh->triangles,
                .ways = ways,
+               .chains = chains,
                .n_patches = n_patches,
                .cutoff = cutoff,
                .local = conic_memory_allocate(context, mesh->triangles->n_vertices, sizeof *p.local),

@@ -6,6 +6,7 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "lod/hybrid_choose.h"
+#include "lod/hybrid_stitch.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
   memset(view, 0, sizeof *view);
@@ -17,12 +18,15 @@ void conic_hybrid_view_init(conic_hybrid_view *view) {
 typedef struct choice {
   uint32_t patch, level;
   size_t splat, triangle, vertex;
+  size_t n_put; /* into the triangles, so that they fit their neighbours */
 } choice;
 
 /* What is kept from call to call. */
 typedef struct scratch {
   choice *choices;
   size_t n_choices, choices_room;
+  uint32_t *stages; /* of each patch of the hybrid: that of its level */
+  size_t stages_room;
   float *splats; /* arrays of splats_room each */
   uint32_t *splat_cluster;
   size_t splats_room;
@@ -46,6 +50,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
+    conic_memory_release(context, kept->stages);
     conic_memory_release(context, kept->splats);
     conic_memory_release(context, kept->splat_cluster);
     conic_memory_release(context, kept->vertices);
@@ -81,12 +86,30 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
   s->selection->n_simpler += level != patch->built;
   s->selection->n_beyond += s->view->error_px > 0.0 && error > s->view->error_px;
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
+  kept->stages[i_patch] = s->hybrid->levels[patch->first_level + level].stage;
+  return CONIC_OK;
+}
+
+/* All patches are hidden, until a level is chosen. */
+static conic_status clear_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  size_t n = s->hybrid->n_patches;
+  if (!kept->stages || n > kept->stages_room) {
+    conic_memory_release(s->hybrid->context, kept->stages);
+    kept->stages_room = 0;
+    kept->stages = conic_memory_allocate(s->hybrid->context, n, sizeof *kept->stages);
+    if (!kept->stages)
+      return CONIC_ERROR_MEMORY;
+    kept->stages_room = n;
+  }
+  for (size_t i = 0; i < n; i++)
+    kept->stages[i] = CONIC_HYBRID_HIDDEN;
   return CONIC_OK;
 }
 
 static conic_status choose_all(selecting *s) {
   const conic_hybrid *h = s->hybrid;
-  conic_status status = CONIC_OK;
+  conic_status status = clear_stages(s);
   s->scratch->n_choices = 0;
   for (size_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
     const conic_hybrid_node *node = &h->nodes[i];
@@ -118,8 +141,9 @@ static conic_status make_room(selecting *s) {
     c->triangle = n_triangles;
     c->vertex = n_vertices;
     s->selection->n_patches[level->kind]++;
-    n_vertices += level->n_vertices;
-    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count;
+    c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
+    n_vertices += level->n_vertices + c->n_put;
+    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
   }
   s->selection->splats.count = n_splats;
   s->selection->triangles.count = n_triangles;
@@ -216,6 +240,16 @@ static void copy_triangles(const selecting *s, const choice *c, const conic_hybr
   }
   if (to->material)
     memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
+  if (c->n_put == 0)
+    return;
+  conic_hybrid_stitching stitching = {.hybrid = h,
+                                      .level = level,
+                                      .stages = s->scratch->stages,
+                                      .to = &s->selection->triangles,
+                                      .first_triangle = c->triangle,
+                                      .triangle = c->triangle + level->count,
+                                      .vertex = c->vertex + level->n_vertices};
+  conic_hybrid_stitch(&stitching);
 }
 
 static void copy_task(void *data, size_t i_task, int i_thread) {
