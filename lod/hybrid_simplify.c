@@ -8,7 +8,7 @@
 #include "lod/hybrid_tree.h"
 
 /* A region has no more faces than this, or but one patch. What lies between regions stays, so they are large. */
-enum { MOST_FACES = 100000 };
+enum { MOST_FACES = 250000 };
 
 typedef struct regions_job {
   conic_ways_job *ways;
