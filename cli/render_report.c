@@ -44,15 +44,14 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "triangle_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_TRIANGLES]);
     cli_json_count(json, "surfel_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_SURFELS]);
     cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
-    cli_json_count(json, "beyond_patches", job->hybrid_selection.n_beyond);
   }
   cli_json_close(json);
   if (job->layers.file)
     cli_render_layers_report(json, job);
   else
     cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
-  if (job->octree)
-    cli_json_number(json, "error_px", job->selection.error_px);
+  if (job->octree || job->hybrid)
+    cli_json_number(json, "error_px", job->hybrid ? job->hybrid_selection.error_px : job->selection.error_px);
 }
 
 static void report_settings(cli_json *json, const cli_render_job *job) {

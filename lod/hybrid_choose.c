@@ -5,9 +5,9 @@
 
 #include "core/trigonometry.h"
 
-/* What drawing takes, in nanoseconds of one core: a primitive, and a pixel that it covers (docs/hybrid.md). */
-static const double triangle_ns = 90.0, triangle_pixel_ns = 2.0;
-static const double surfel_ns = 25.0, surfel_pixel_ns = 2.5;
+/* What drawing takes, in nanoseconds of one core: of a triangle also a pixel of its patch, of a surfel also the copy,
+ * and a pixel of its outline (docs/hybrid.md). */
+static const double triangle_pixel_ns = 5.5, surfel_ns = 25.0, surfel_pixel_ns = 1.45;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(double side[3], int axis, double a, double b) {
@@ -73,27 +73,67 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
   return view->cull_back && faces_away(view, bound, radius);
 }
 
+/* A patch as the camera sees it. */
+typedef struct sight {
+  double z, distance; /* of its sphere's centre */
+  double radius;
+  double area_px; /* pixels that a unit of its area covers */
+} sight;
+
+static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
+  double at[3];
+  to_camera(view, bound->center, at);
+  return (sight){.z = at[2], .distance = sqrt(conic_hybrid_dot(at, at)), .radius = (double)bound->radius};
+}
+
 /* The most pixels that a displacement of one can be, anywhere in the sphere: the greatest factor of the projection's
  * derivative at X is f·|X|/z². Infinite where the sphere reaches the near plane. */
-static double pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
-  double at[3], radius = ((double)bound->radius + reach) * (1.0 + 1e-6);
-  to_camera(view, bound->center, at);
-  double front = at[2] - radius, distance = sqrt(conic_hybrid_dot(at, at)) + radius;
-  return front > view->near_z ? view->focal_px * distance / (front * front) : HUGE_VAL;
+static double pixels_a_unit(const conic_hybrid_camera *view, const sight *seen, double reach) {
+  double radius = (seen->radius + reach) * (1.0 + 1e-6), front = seen->z - radius;
+  return front > view->near_z ? view->focal_px * (seen->distance + radius) / (front * front) : HUGE_VAL;
+}
+
+static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
+  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
 }
 
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                              const conic_hybrid_level *level) {
-  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, &patch->bound, (double)level->reach) : 0.0;
+  sight seen = look_at(view, &patch->bound);
+  return error_px_of(view, &seen, level);
+}
+
+/* As it faces the camera: by the axis of its cone as far as that says anything, else half. */
+static double pixels_an_area(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
+  double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
+  for (int k = 0; k < 3; k++)
+    along += ((double)bound->center[k] - view->eye[k]) * (double)bound->axis[k];
+  double z = seen->z > view->near_z ? seen->z : view->near_z;
+  double facing = cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
+  return facing * view->focal_px * view->focal_px / (z * z);
 }
 
 static double cost_of(const conic_hybrid_camera *view, const conic_hybrid_patch *patch, const conic_hybrid_level *level,
-                      double scale_px) {
-  double n = (double)level->count, area_px = (double)patch->area * scale_px * scale_px;
+                      double area_px) {
+  double n = (double)level->count;
   if (level->kind == CONIC_HYBRID_TRIANGLES)
-    return n * triangle_ns + area_px * triangle_pixel_ns;
-  /* Their outlines together cover about twice the patch; the prefilter widens each. */
-  return n * (surfel_ns + CONIC_PI * view->margin_px2 * surfel_pixel_ns) + 2.0 * area_px * surfel_pixel_ns;
+    return n * CONIC_HYBRID_TRIANGLE_NS + (double)patch->area * area_px * triangle_pixel_ns;
+  double widened_px = CONIC_PI * view->margin_px2; /* what the prefilter adds to each */
+  return n * (surfel_ns + widened_px * surfel_pixel_ns) + (double)level->cover * area_px * surfel_pixel_ns;
+}
+
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                         double error_px, conic_hybrid_offer offers[2]) {
+  const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
+  sight seen = look_at(view, &patch->bound);
+  double area_px = pixels_an_area(view, &patch->bound, &seen);
+  offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
+  for (uint32_t k = 0; k < patch->n_levels; k++) {
+    conic_hybrid_offer *offer = &offers[levels[k].kind];
+    double cost = cost_of(view, patch, &levels[k], area_px);
+    if (cost < offer->cost_ns && error_px_of(view, &seen, &levels[k]) <= error_px)
+      *offer = (conic_hybrid_offer){k, cost};
+  }
 }
 
 /* The finest of that kind, which is the first; or the first of all. */
@@ -107,24 +147,12 @@ static uint32_t first_of_kind(const conic_hybrid_level *levels, uint32_t n, int 
 uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                              const conic_hybrid_patch *patch, double error_px, int only_kind) {
   const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  uint32_t best = only_kind < 0 ? patch->built : first_of_kind(levels, patch->n_levels, only_kind);
-  double least = HUGE_VAL;
+  conic_hybrid_offer offers[2];
   if (!(error_px > 0.0))
-    return best;
+    return only_kind < 0 ? patch->built : first_of_kind(levels, patch->n_levels, only_kind);
+  conic_hybrid_offers(hybrid, view, patch, error_px, offers);
   if (only_kind < 0)
-    best = 0; /* without an error */
-  double mean_scale_px = pixels_a_unit(view, &patch->bound, 0.0);
-  if (!(mean_scale_px < HUGE_VAL))
-    return best;
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
-    const conic_hybrid_level *level = &levels[k];
-    double cost = cost_of(view, patch, level, mean_scale_px);
-    int is_good =
-        conic_hybrid_error_px(view, patch, level) <= error_px && (only_kind < 0 || level->kind == (uint32_t)only_kind);
-    if (is_good && cost < least) {
-      least = cost;
-      best = k;
-    }
-  }
-  return best;
+    return offers[offers[CONIC_HYBRID_SURFELS].cost_ns < offers[CONIC_HYBRID_TRIANGLES].cost_ns].level;
+  return offers[only_kind].cost_ns < HUGE_VAL ? offers[only_kind].level
+                                              : first_of_kind(levels, patch->n_levels, only_kind);
 }

@@ -19,9 +19,23 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
 /* Whether nothing within the sphere is in the picture, or with cull_back all that the cone holds faces away. */
 int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach);
 
-/* The most pixels by which anything that the level draws of the patch may be away from where it is. */
+/* How many pixels places of the patch may be off where the level draws it: infinite where its sphere reaches near. */
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                              const conic_hybrid_level *level);
+
+/* What a triangle takes in a picture, in nanoseconds of one core. */
+#define CONIC_HYBRID_TRIANGLE_NS 95.0
+
+/* A level of a patch, from its first, and what drawing it may take. */
+typedef struct conic_hybrid_offer {
+  uint32_t level;
+  double cost_ns;
+} conic_hybrid_offer;
+
+/* Of each kind the level that costs least among those whose error is at most so many pixels; of infinite cost where
+ * there is none, which is never so for triangles. */
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                         double error_px, conic_hybrid_offer offers[2]);
 
 /* A level for the patch, from its first; `error_px` and `only_kind` as in conic_hybrid_view. */
 uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/texture.h"
+#include "core/trigonometry.h"
 #include "lod/hybrid_layout.h"
 #include "lod/hybrid_tree.h"
 
@@ -135,6 +136,17 @@ static void put_triangles(packing *p, cursor *at, const conic_patch_level *from)
   at->border += from->n_borders;
 }
 
+/* Of the outline that a surfel has at the cutoff. */
+static double outline_area(const conic_surfel *s, double cutoff) {
+  double u[3], v[3], cross[3];
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = (double)s->tangent_u[axis];
+    v[axis] = (double)s->tangent_v[axis];
+  }
+  conic_cross(u, v, cross);
+  return CONIC_PI * cutoff * cutoff * sqrt(conic_dot(cross, cross));
+}
+
 static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
   conic_hybrid_level *level = &levels[at->level++];
@@ -144,6 +156,10 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   level->count = (uint32_t)surfels->n;
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
+  double cover = 0.0;
+  for (size_t i = 0; i < surfels->n; i++)
+    cover += outline_area(&surfels->items[i], (double)p->cutoff);
+  level->cover = (float)cover;
   for (int k = 0; k < 12; k++) {
     float *values = array_at(p, CONIC_CHY_SURFELS + k);
     for (size_t i = 0; i < surfels->n; i++) {

@@ -5,7 +5,8 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid_budget.h"
+#include "lod/hybrid_plan.h"
 #include "lod/hybrid_stitch.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
@@ -69,6 +70,11 @@ static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
   return (double)reach;
 }
 
+/* Whether the level of a patch depends on those of others. */
+static int is_together(const conic_hybrid_view *view) {
+  return view->budget || (view->error_px > 0.0 && view->only_kind < 0);
+}
+
 static conic_status add_choice(selecting *s, uint32_t i_patch) {
   scratch *kept = s->scratch;
   const conic_hybrid_patch *patch = &s->hybrid->patches[i_patch];
@@ -81,35 +87,16 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
       return status;
     kept->choices_room = room;
   }
-  uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
-  double error = conic_hybrid_error_px(&s->camera, patch, &s->hybrid->levels[patch->first_level + level]);
-  s->selection->n_simpler += level != patch->built;
-  s->selection->n_beyond += s->view->error_px > 0.0 && error > s->view->error_px;
+  uint32_t level = 0;
+  if (!is_together(s->view))
+    level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
-  kept->stages[i_patch] = s->hybrid->levels[patch->first_level + level].stage;
-  return CONIC_OK;
-}
-
-/* All patches are hidden, until a level is chosen. */
-static conic_status clear_stages(selecting *s) {
-  scratch *kept = s->scratch;
-  size_t n = s->hybrid->n_patches;
-  if (!kept->stages || n > kept->stages_room) {
-    conic_memory_release(s->hybrid->context, kept->stages);
-    kept->stages_room = 0;
-    kept->stages = conic_memory_allocate(s->hybrid->context, n, sizeof *kept->stages);
-    if (!kept->stages)
-      return CONIC_ERROR_MEMORY;
-    kept->stages_room = n;
-  }
-  for (size_t i = 0; i < n; i++)
-    kept->stages[i] = CONIC_HYBRID_HIDDEN;
   return CONIC_OK;
 }
 
 static conic_status choose_all(selecting *s) {
   const conic_hybrid *h = s->hybrid;
-  conic_status status = clear_stages(s);
+  conic_status status = CONIC_OK;
   s->scratch->n_choices = 0;
   for (size_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
     const conic_hybrid_node *node = &h->nodes[i];
@@ -129,6 +116,58 @@ static conic_status choose_all(selecting *s) {
   return status;
 }
 
+/* Chooses for all patches in sight, for a budget or for the least time. */
+static conic_status choose_together(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  size_t n = s->scratch->n_choices;
+  uint32_t *patches = conic_memory_allocate(h->context, 2 * n, sizeof *patches);
+  if (!patches)
+    return CONIC_ERROR_MEMORY;
+  uint32_t *levels = patches + n;
+  for (size_t i = 0; i < n; i++)
+    patches[i] = s->scratch->choices[i].patch;
+  conic_status status =
+      s->view->budget ? conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels)
+                      : conic_hybrid_plan(h, &s->camera, s->view->error_px, patches, n, levels);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    s->scratch->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+  conic_memory_release(h->context, patches);
+  return status;
+}
+
+/* What the choices come to. */
+static void judge(const selecting *s) {
+  conic_hybrid_selection *selection = s->selection;
+  for (size_t i = 0; i < s->scratch->n_choices; i++) {
+    const choice *c = &s->scratch->choices[i];
+    const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    double error_px = conic_hybrid_error_px(&s->camera, patch, level);
+    selection->n_patches[level->kind]++;
+    selection->n_simpler += c->level != patch->first_level + patch->built;
+    selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
+  }
+}
+
+/* The stages of what was chosen; all else is hidden. */
+static conic_status note_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  size_t n = s->hybrid->n_patches;
+  if (!kept->stages || n > kept->stages_room) {
+    conic_memory_release(s->hybrid->context, kept->stages);
+    kept->stages_room = 0;
+    kept->stages = conic_memory_allocate(s->hybrid->context, n, sizeof *kept->stages);
+    if (!kept->stages)
+      return CONIC_ERROR_MEMORY;
+    kept->stages_room = n;
+  }
+  for (size_t i = 0; i < n; i++)
+    kept->stages[i] = CONIC_HYBRID_HIDDEN;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+  return CONIC_OK;
+}
+
 /* Where each choice's parts go, and room for all. */
 static conic_status make_room(selecting *s) {
   scratch *kept = s->scratch;
@@ -140,7 +179,6 @@ static conic_status make_room(selecting *s) {
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
-    s->selection->n_patches[level->kind]++;
     c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
     n_vertices += level->n_vertices + c->n_put;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
@@ -274,6 +312,8 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
   if (!(s->view->error_px >= 0.0) || s->view->only_kind > CONIC_HYBRID_SURFELS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an error on the screen is 0 or more, and a kind one that there is");
+  if (s->view->error_px > 0.0 && s->view->budget)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error stands beside a budget");
   if (!kept) {
     kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
     if (!kept)
@@ -296,10 +336,15 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   conic_status status = begin(&s, camera, render);
   if (status == CONIC_OK)
     status = choose_all(&s);
+  if (status == CONIC_OK && is_together(view))
+    status = choose_together(&s);
+  if (status == CONIC_OK)
+    status = note_stages(&s);
   if (status == CONIC_OK)
     status = make_room(&s);
   if (status != CONIC_OK)
     return status;
+  judge(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
   return CONIC_OK;
