@@ -5,9 +5,10 @@
 
 #include "core/trigonometry.h"
 
-/* What drawing takes, in nanoseconds of one core: of a triangle also a pixel of its patch, of a surfel also the copy,
- * and a pixel of its outline (docs/hybrid.md). */
-static const double triangle_pixel_ns = 5.5, surfel_ns = 25.0, surfel_pixel_ns = 1.45;
+/* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
+ * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
+static const double triangle_ns = 18.0, seen_triangle_ns = 98.0, triangle_pixel_ns = 5.3;
+static const double surfel_ns = 37.0, surfel_pixel_ns = 1.2;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(double side[3], int axis, double a, double b) {
@@ -35,6 +36,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->focal_px = camera->fx > camera->fy ? camera->fx : camera->fy;
   view->near_z = render->near_z;
+  view->n_pixels = (double)camera->width * (double)camera->height;
   view->cull_back = render->cull_back;
   view->margin_px2 = (double)render->prefilter * (double)render->kernel.cutoff * (double)render->kernel.cutoff;
 }
@@ -116,8 +118,12 @@ static double pixels_an_area(const conic_hybrid_camera *view, const conic_hybrid
 static double cost_of(const conic_hybrid_camera *view, const conic_hybrid_patch *patch, const conic_hybrid_level *level,
                       double area_px) {
   double n = (double)level->count;
-  if (level->kind == CONIC_HYBRID_TRIANGLES)
-    return n * CONIC_HYBRID_TRIANGLE_NS + (double)patch->area * area_px * triangle_pixel_ns;
+  if (level->kind == CONIC_HYBRID_TRIANGLES) {
+    double n_pixels = (double)patch->area * area_px;
+    double n_seen =
+        n * n_pixels / (n_pixels + 0.6 * n); /* all if they are large, else those that a centre falls into */
+    return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
+  }
   double widened_px = CONIC_PI * view->margin_px2; /* what the prefilter adds to each */
   return n * (surfel_ns + widened_px * surfel_pixel_ns) + (double)level->cover * area_px * surfel_pixel_ns;
 }

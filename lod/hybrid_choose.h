@@ -8,7 +8,7 @@
 typedef struct conic_hybrid_camera {
   double rotation[3][3], translation[3], eye[3]; /* from the model's origin */
   double side[4][3]; /* planes of the picture's sides: unit normals, inwards, through the eye */
-  double focal_px, near_z;
+  double focal_px, near_z, n_pixels;
   int cull_back;
   double margin_px2; /* what the prefilter adds to a splat's squared radius */
 } conic_hybrid_camera;
@@ -23,8 +23,11 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                              const conic_hybrid_level *level);
 
-/* What a triangle takes in a picture, in nanoseconds of one core. */
-#define CONIC_HYBRID_TRIANGLE_NS 95.0
+/* What one of the narrow triangles takes that fit patches to each other, in nanoseconds of one core. */
+#define CONIC_HYBRID_STITCH_NS 70.0
+
+/* What a picture of both kinds takes more than its parts, for each of its pixels. */
+#define CONIC_HYBRID_BOTH_NS 0.5
 
 /* A level of a patch, from its first, and what drawing it may take. */
 typedef struct conic_hybrid_offer {
