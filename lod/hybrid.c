@@ -51,7 +51,7 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
 /* --- structure --- */
 
 static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
-  if (level->kind > CONIC_HYBRID_SURFELS || level->zero || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+  if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level of no known kind";
   size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
   if (level->count < 1 || level->count > n || level->first > n - level->count)
@@ -62,8 +62,8 @@ static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *
       (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level without its borders";
   if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF) ||
-      !(level->cover >= 0.0f && level->cover < HUGE_VALF))
-    return "a level's error, reach or cover out of range";
+      !(level->cover >= 0.0f && level->cover < HUGE_VALF) || !(level->spread >= 0.0f && level->spread < HUGE_VALF))
+    return "a level's error, reach or extent out of range";
   if (level->kind == CONIC_HYBRID_TRIANGLES)
     for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
       for (int corner = 0; corner < 3; corner++)

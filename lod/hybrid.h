@@ -17,8 +17,7 @@ typedef struct conic_hybrid_level {
   float reach;    /* surfels: the longest half axis of an outline */
   uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
   uint32_t first_border, n_borders;
-  float cover; /* surfels: the area of all their outlines */
-  uint32_t zero;
+  float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
 } conic_hybrid_level;
 
 /* A vertex where two patches meet, and the last stage of simplification at which it is still there. */

@@ -7,7 +7,7 @@
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
-static const double triangle_ns = 18.0, seen_triangle_ns = 98.0, triangle_pixel_ns = 5.3;
+static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.2;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
@@ -79,7 +79,7 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
 typedef struct sight {
   double z, distance; /* of its sphere's centre */
   double radius;
-  double area_px; /* pixels that a unit of its area covers */
+  double scale2, facing; /* pixels that a unit of area covers if it faces the camera, and how far it does */
 } sight;
 
 static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
@@ -105,38 +105,41 @@ double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid
   return error_px_of(view, &seen, level);
 }
 
-/* As it faces the camera: by the axis of its cone as far as that says anything, else half. */
-static double pixels_an_area(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
+/* The mean cosine of the faces to the camera: by the axis of their cone as far as that says anything, else half. */
+static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
   double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
   for (int k = 0; k < 3; k++)
     along += ((double)bound->center[k] - view->eye[k]) * (double)bound->axis[k];
-  double z = seen->z > view->near_z ? seen->z : view->near_z;
-  double facing = cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
-  return facing * view->focal_px * view->focal_px / (z * z);
+  return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
 }
 
-static double cost_of(const conic_hybrid_camera *view, const conic_hybrid_patch *patch, const conic_hybrid_level *level,
-                      double area_px) {
-  double n = (double)level->count;
-  if (level->kind == CONIC_HYBRID_TRIANGLES) {
-    double n_pixels = (double)patch->area * area_px;
-    double n_seen =
-        n * n_pixels / (n_pixels + 0.6 * n); /* all if they are large, else those that a centre falls into */
-    return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
-  }
-  double widened_px = CONIC_PI * view->margin_px2; /* what the prefilter adds to each */
-  return n * (surfel_ns + widened_px * surfel_pixel_ns) + (double)level->cover * area_px * surfel_pixel_ns;
+static double cost_of_triangles(const conic_hybrid_patch *patch, const conic_hybrid_level *level, const sight *seen) {
+  double n = (double)level->count, n_pixels = (double)patch->area * seen->scale2 * seen->facing;
+  double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
+  return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
+}
+
+/* Each takes the area of its ellipse, both axes being widened by the prefilter. */
+static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybrid_level *level, const sight *seen) {
+  double n = (double)level->count, facing = seen->facing, widening = view->margin_px2;
+  double product = (double)level->cover / n * seen->scale2 * facing;
+  double squares = (double)level->spread / n * seen->scale2 * 0.5 * (1.0 + facing * facing);
+  double n_pixels = n * CONIC_PI * sqrt(product * product + widening * squares + widening * widening);
+  return n * surfel_ns + n_pixels * surfel_pixel_ns;
 }
 
 void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                          double error_px, conic_hybrid_offer offers[2]) {
   const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
   sight seen = look_at(view, &patch->bound);
-  double area_px = pixels_an_area(view, &patch->bound, &seen);
+  double z = seen.z > view->near_z ? seen.z : view->near_z;
+  seen.scale2 = view->focal_px * view->focal_px / (z * z);
+  seen.facing = facing_of(view, &patch->bound, &seen);
   offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
   for (uint32_t k = 0; k < patch->n_levels; k++) {
     conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = cost_of(view, patch, &levels[k], area_px);
+    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(patch, &levels[k], &seen)
+                                                           : cost_of_surfels(view, &levels[k], &seen);
     if (cost < offer->cost_ns && error_px_of(view, &seen, &levels[k]) <= error_px)
       *offer = (conic_hybrid_offer){k, cost};
   }

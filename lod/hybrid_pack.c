@@ -7,7 +7,6 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/texture.h"
-#include "core/trigonometry.h"
 #include "lod/hybrid_layout.h"
 #include "lod/hybrid_tree.h"
 
@@ -136,15 +135,20 @@ static void put_triangles(packing *p, cursor *at, const conic_patch_level *from)
   at->border += from->n_borders;
 }
 
-/* Of the outline that a surfel has at the cutoff. */
-static double outline_area(const conic_surfel *s, double cutoff) {
-  double u[3], v[3], cross[3];
-  for (int axis = 0; axis < 3; axis++) {
-    u[axis] = (double)s->tangent_u[axis];
-    v[axis] = (double)s->tangent_v[axis];
+/* The half axes of the outlines at the cutoff: what a picture of the level may take is found from these sums. */
+static void sum_extents(const conic_surfels *surfels, double cutoff, conic_hybrid_level *level) {
+  double cover = 0.0, spread = 0.0;
+  for (size_t i = 0; i < surfels->n; i++) {
+    double squares[2] = {0.0, 0.0};
+    for (int axis = 0; axis < 3; axis++) {
+      squares[0] += (double)surfels->items[i].tangent_u[axis] * (double)surfels->items[i].tangent_u[axis];
+      squares[1] += (double)surfels->items[i].tangent_v[axis] * (double)surfels->items[i].tangent_v[axis];
+    }
+    cover += sqrt(squares[0] * squares[1]);
+    spread += squares[0] + squares[1];
   }
-  conic_cross(u, v, cross);
-  return CONIC_PI * cutoff * cutoff * sqrt(conic_dot(cross, cross));
+  level->cover = (float)(cutoff * cutoff * cover);
+  level->spread = (float)(cutoff * cutoff * spread);
 }
 
 static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
@@ -156,10 +160,7 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   level->count = (uint32_t)surfels->n;
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
-  double cover = 0.0;
-  for (size_t i = 0; i < surfels->n; i++)
-    cover += outline_area(&surfels->items[i], (double)p->cutoff);
-  level->cover = (float)cover;
+  sum_extents(surfels, (double)p->cutoff, level);
   for (int k = 0; k < 12; k++) {
     float *values = array_at(p, CONIC_CHY_SURFELS + k);
     for (size_t i = 0; i < surfels->n; i++) {

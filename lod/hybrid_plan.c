@@ -176,8 +176,8 @@ static void settle(planning *p) {
     p->candidates[i].kind = p->kinds[i];
 }
 
-/* Whether all of one kind takes no more than the cheaper of both for each patch, with what a picture of both kinds takes
- * more: then no better one has to be looked for. */
+/* Whether all of one kind takes no more than the cheaper of both for each patch, with what a picture of both kinds
+ * takes more: then no better one has to be looked for. */
 static int is_settled(planning *p) {
   double sums[2] = {0.0, 0.0}, least = p->both_ns;
   for (size_t i = 0; i < p->n; i++) {
