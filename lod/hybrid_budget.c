@@ -109,7 +109,8 @@ static conic_status fit(const fitting *f, uint64_t budget) {
 
 conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hybrid_camera *view, int only_kind,
                                      uint64_t budget, const uint32_t *patches, size_t n, uint32_t *levels) {
-  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .patches = patches, .n = n, .levels = levels};
+  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .patches = patches, .n = n};
+  f.levels = levels;
   conic_status status = measure_levels(&f, view);
   if (status == CONIC_OK)
     status = fit(&f, budget);

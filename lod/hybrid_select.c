@@ -313,7 +313,7 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an error on the screen is 0 or more, and a kind one that there is");
   if (s->view->error_px > 0.0 && s->view->budget)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error stands beside a budget");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
   if (!kept) {
     kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
     if (!kept)

@@ -61,6 +61,9 @@ for budget in 300 1000 4000 1M; do
   last=$(value error_px budget.json)
 done
 [[ $last == 0 && $n == 7200 ]] || fail "a budget for all is not the mesh"
+run 0 render hill.chy -o b.pfm $picture --budget 1000 --json budget.json
+run 0 render hill.obj --as hybrid -o b.pfm $picture --budget 1k --threads 1 --isa scalar --json other.json
+[[ -n $(hashes budget.json) && $(hashes budget.json) == "$(hashes other.json)" ]] || fail "--budget: another picture"
 run 2 render hill.chy -o x.pfm --budget 10
 grep -q '^conic: error: hybrid: the coarsest of what is in sight are [0-9]* triangles' err || fail "no word on the budget"
 
