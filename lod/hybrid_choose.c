@@ -8,7 +8,7 @@
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
 static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
-static const double surfel_ns = 37.0, surfel_pixel_ns = 1.2;
+static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(double side[3], int axis, double a, double b) {
