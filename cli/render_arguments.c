@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -160,8 +161,8 @@ static int check_choice(const cli_session *session, const cli_render_job *job) {
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (cli_layers_is_wanted(job) && cli_lod_is_wanted(job) && !job->draws_layers)
     return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
-  if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) &&
-      (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
+  int may_be_octree = job->n_inputs == 1 && (conic_octree_is_file(job->inputs[0]) || access(job->inputs[0], R_OK) != 0);
+  if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) && !may_be_octree)
     return cli_usage(
         "%s: --error and --budget need a single .cot, .lpc or .chy as input (conic octree, conic layer and "
         "conic hybrid make them), or --as hybrid",

@@ -241,5 +241,9 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
     conic_drawing_bounds(&drawing, low, high);
   }
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
+  if (!is_in_reach(low, high)) { /* what was read point by point was asked before */
+    cli_error(CLI_INPUT, "%s: cannot be drawn: a point is farther out than 1e20", job->inputs[0]);
+    return CONIC_ERROR_INPUT;
+  }
   return conic_camera_frame(session->context, &framing, low, high, camera);
 }

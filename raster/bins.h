@@ -19,9 +19,9 @@ typedef struct conic_bins {
   size_t *chunk_begin;  /* [chunk]: where the chunk's entries begin */
   size_t *length;       /* [n_tiles]: how many entries a tile has */
   conic_tile_entry *entries;
-  size_t n_room;        /* so many entries */
+  size_t n_room;           /* so many entries */
   atomic_size_t n_records; /* of the chunks sorted so far: they lie together, in whatever order */
-  atomic_size_t n_used; /* or needed, where that is more than there is room for */
+  atomic_size_t n_used;    /* or needed, where that is more than there is room for */
 } conic_bins;
 
 /* What a thread sorts a chunk in: its records as set-up leaves them, and where they go. */

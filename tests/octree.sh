@@ -104,6 +104,7 @@ run 2 render knot.cot -o x.pfm --error -1
 run 2 render knot.cot -o x.pfm --budget 0
 run 2 render knot.cot --deep x.exr --error 1
 run 2 verify knot.cot --error 1 --budget 5
+run 3 render missing.cot -o x.pfm --error 1
 run 2 explain knot.ply --error 1 --pixel 1,1
 run 2 render knot.cot -o x.pfm --error 1 --cutoff 3
 run 2 octree knot.ply
