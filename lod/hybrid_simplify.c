@@ -42,7 +42,7 @@ static void simplify_task(void *data, size_t i_task, int i_thread) {
   conic_status *status = &job->statuses[i_thread];
   size_t i = job->first + i_task;
   if (*status == CONIC_OK && !*simplifier)
-    *status = conic_simplifier_create(ways->context, ways->mesh, simplifier);
+    *status = conic_simplifier_create(ways->context, ways->mesh, &ways->tree, simplifier);
   if (*status == CONIC_OK)
     *status = conic_region_simplify(*simplifier, &ways->chains, job->starts[i], job->starts[i + 1],
                                     job->levels + job->starts[i]);

@@ -47,6 +47,7 @@ typedef struct conic_simplifier_point {
 struct conic_simplifier {
   conic_context *context;
   const conic_patch_mesh *mesh;
+  const conic_face_tree *tree; /* of all the mesh's faces */
   conic_patch_chains *chains;
   uint32_t *number; /* of each place of the mesh, while its region is worked on; else none */
   uint32_t begin, end;

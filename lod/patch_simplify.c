@@ -12,7 +12,7 @@ typedef conic_simplifier_triangle triangle;
 /* The least cosine by which a face may turn. */
 static const double least_turn = 0.2;
 
-conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh,
+conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh, const conic_face_tree *tree,
                                      conic_simplifier **simplifier) {
   conic_simplifier *s = conic_memory_allocate_zeroed(context, 1, sizeof *s);
   *simplifier = s;
@@ -20,6 +20,7 @@ conic_status conic_simplifier_create(conic_context *context, const conic_patch_m
     return CONIC_ERROR_MEMORY;
   s->context = context;
   s->mesh = mesh;
+  s->tree = tree;
   s->number = conic_memory_allocate(context, mesh->mesh.n_vertices, sizeof *s->number);
   if (!s->number) {
     conic_simplifier_destroy(s);

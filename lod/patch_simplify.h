@@ -2,6 +2,7 @@
 #ifndef LOD_PATCH_SIMPLIFY_H
 #define LOD_PATCH_SIMPLIFY_H
 
+#include "lod/face_tree.h"
 #include "lod/patch_chains.h"
 
 enum { CONIC_MOST_TRIANGLE_LEVELS = 12 };
@@ -14,7 +15,8 @@ typedef struct conic_patch_level {
   conic_hybrid_border *borders;
   uint32_t stage;
   double error; /* no vertex of the patch, nor middle of an edge or a face, is farther from these triangles, those of
-                   the other patches of the same stage beside them; measured */
+                   the other patches of the same stage beside them; nor are the middles of these and of their edges
+                   from the mesh, nor those of the fans that they become beside others */
 } conic_patch_level;
 
 typedef struct conic_patch_levels {
@@ -24,7 +26,7 @@ typedef struct conic_patch_levels {
 
 /* Memory that is kept from region to region. */
 typedef struct conic_simplifier conic_simplifier;
-conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh,
+conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh, const conic_face_tree *tree,
                                      conic_simplifier **simplifier);
 void conic_simplifier_destroy(conic_simplifier *simplifier);
 

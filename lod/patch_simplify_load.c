@@ -18,13 +18,13 @@ static void release(conic_simplifier *s) {
   }
 }
 
-/* Edges have a point each, and are at most three a face. */
+/* Edges have a point each, and at most two on a border; they are at most three a face. */
 static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_faces) {
   size_t n_patches = s->end - s->begin;
   release(s);
   s->memory[0] = s->vertices = conic_memory_allocate(s->context, n_vertices, sizeof *s->vertices);
   s->memory[1] = s->triangles = conic_memory_allocate(s->context, n_faces, sizeof *s->triangles);
-  s->memory[2] = s->points = conic_memory_allocate(s->context, n_vertices + 4 * n_faces, sizeof *s->points);
+  s->memory[2] = s->points = conic_memory_allocate(s->context, n_vertices + 7 * n_faces, sizeof *s->points);
   s->memory[3] = s->alive = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->alive);
   s->memory[4] = s->taken = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->taken);
   s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->errors2);
@@ -132,6 +132,7 @@ static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
   vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
   if (!conic_patch_ends_at(s->mesh, t->face, corner))
     return;
+  add_point(s, t->patch, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
   for (int k = 0; k < 2; k++) {
     uint32_t place = s->mesh->adjacency->place[ends[k]->original];
     uint8_t kind = across == CONIC_OPEN_EDGE                      ? CONIC_VERTEX_BORDER

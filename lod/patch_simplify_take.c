@@ -57,12 +57,44 @@ static double distance2_of(conic_simplifier *s, const conic_simplifier_point *po
   return least2;
 }
 
+/* The greater of `most` and how far the middle of some places is from the mesh. */
+static double farther(const conic_simplifier *s, const double *const places[3], int n, double most) {
+  double at[3];
+  for (int axis = 0; axis < 3; axis++) {
+    double sum = places[0][axis] + places[1][axis];
+    at[axis] = n == 3 ? (sum + places[2][axis]) / 3.0 : 0.5 * sum;
+  }
+  return conic_face_tree_farther(s->tree, at, most);
+}
+
+/* Whether a patch has become so much simpler that this stage is a level of it. */
+static int is_worth_a_level(const conic_simplifier *s, uint32_t patch) {
+  return 4 * (size_t)s->alive[patch] <= 3 * (size_t)s->taken[patch];
+}
+
+/* How far the triangles are from the mesh: their middles, and those of their edges. */
+static void measure_back(conic_simplifier *s) {
+  for (size_t i = 0; i < s->n_triangles; i++) {
+    const triangle *t = &s->triangles[i];
+    if (!t->is_alive || !is_worth_a_level(s, t->patch))
+      continue;
+    const double *const corners[4] = {s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
+                                      s->vertices[t->corners[2]].at, s->vertices[t->corners[0]].at};
+    double most = farther(s, corners, 3, sqrt(s->errors2[t->patch]));
+    for (int k = 0; k < 3; k++)
+      most = farther(s, corners + k, 2, most);
+    s->errors2[t->patch] = most * most;
+  }
+}
+
+/* How far the mesh is from the triangles, and they from it. */
 static void measure(conic_simplifier *s) {
   for (size_t i = 0; i < s->n_points; i++) {
     double *most2 = &s->errors2[s->points[i].patch];
     double distance2 = distance2_of(s, &s->points[i], *most2);
     *most2 = distance2 > *most2 ? distance2 : *most2;
   }
+  measure_back(s);
 }
 
 /* --- borders --- */
@@ -143,6 +175,48 @@ static conic_status list_borders(conic_simplifier *s, border_list *list, int *is
   return CONIC_OK;
 }
 
+static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
+  return s->vertices[s->number[s->mesh->adjacency->place[s->chains->slots[slot].vertex]]].at;
+}
+
+/* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
+static int loses_some(const conic_simplifier *s, const border *found, uint32_t stage) {
+  uint32_t low = found->of.from < found->of.to ? found->of.from : found->of.to,
+           high = low ^ found->of.from ^ found->of.to;
+  for (uint32_t slot = low + 1; slot < high; slot++)
+    if (s->chains->slots[slot].stage + 1 == stage)
+      return 1;
+  return 0;
+}
+
+/* The fan that a border's triangle becomes beside a patch of an earlier stage: the middles of its triangles and of the
+ * edges between them. */
+static void measure_fan(conic_simplifier *s, const border *found, uint32_t stage) {
+  const triangle *t = &s->triangles[found->of.edge / 4];
+  const double *opposite = s->vertices[t->corners[(found->of.edge % 4 + 2) % 3]].at;
+  uint32_t step = found->of.from < found->of.to ? 1u : UINT32_MAX; /* backwards */
+  const double *corners[3] = {opposite, slot_at(s, found->of.from), NULL};
+  double most = sqrt(s->errors2[found->patch]);
+  for (uint32_t slot = found->of.from + step;; slot += step) {
+    if (slot != found->of.to && s->chains->slots[slot].stage < stage)
+      continue;
+    corners[2] = slot_at(s, slot);
+    most = farther(s, corners, 3, most);
+    if (slot == found->of.to)
+      break;
+    corners[1] = corners[2];
+    most = farther(s, corners, 2, most);
+  }
+  s->errors2[found->patch] = most * most;
+}
+
+static void measure_fans(conic_simplifier *s, const border_list *list) {
+  for (size_t i = 0; i < list->n; i++)
+    for (uint32_t stage = 0; stage < s->stage && is_worth_a_level(s, list->items[i].patch); stage++)
+      if (stage == 0 || loses_some(s, &list->items[i], stage))
+        measure_fan(s, &list->items[i], stage);
+}
+
 /* --- levels --- */
 
 typedef struct range {
@@ -183,7 +257,7 @@ static conic_status take_patches(conic_simplifier *s, const border_list *list, c
     const range triangles = {s->mesh->starts[s->begin + patch] - first, s->mesh->starts[s->begin + patch + 1] - first};
     while (at + n_borders < list->n && list->items[at + n_borders].patch == patch)
       n_borders++;
-    if (4 * (size_t)s->alive[patch] <= 3 * (size_t)s->taken[patch]) { /* worth a level */
+    if (is_worth_a_level(s, patch)) {
       status = take_patch(s, triangles, list->items + at, n_borders, &levels[patch], sqrt(s->errors2[patch]));
       s->taken[patch] = s->alive[patch];
     }
@@ -199,6 +273,7 @@ conic_status conic_simplifier_take(conic_simplifier *s, conic_patch_levels *leve
   if (status == CONIC_OK && is_sound) {
     s->stage++;
     measure(s);
+    measure_fans(s, &list);
     status = take_patches(s, &list, levels);
   }
   conic_memory_release(s->context, list.items);
