@@ -169,7 +169,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
     const char *wanted;
   } edits[] = {
       {0, "CONICHX", 7, "no .chy file (at byte 0)"},
-      {VERSION, &(uint32_t){2}, 4, "version 2 of the format is not known (at byte 8)"},
+      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 3 of the format is not known (at byte 8)"},
       {FLAGS, &(uint32_t){16}, 4, flags},
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
