@@ -111,6 +111,7 @@ static int run(cli_session *session, int argc, char **argv) {
   if (!job)
     return cli_error(CLI_RESOURCE, "bench: out of memory");
   int exit_code = parse(session, argc, argv, job);
+  session->draws_many_frames = 1;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE)

@@ -402,6 +402,7 @@ static int write_statistics(const chart_job *job, double seconds) {
 
 static int chart(chart_job *job) {
   double start = cli_seconds();
+  job->session->draws_many_frames = 1;
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;

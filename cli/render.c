@@ -224,7 +224,9 @@ static int run(cli_session *session, int argc, char **argv) {
   conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
+  enum { MANY = 16 };
   job.layers.start_seconds = start;
+  session->draws_many_frames = (double)job.repeat * job.n_frames >= MANY;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {

@@ -17,6 +17,7 @@ typedef struct cli_session {
   double task_seconds;   /* when that began */
   double drawn_seconds;  /* when the bar was last drawn */
   int bar_is_shown;
+  int draws_many_frames;  /* of the same model: set before cli_session_open */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
 

@@ -52,7 +52,7 @@ conic_status conic_image_allocate(conic_context *context, int width, int height,
       conic_image_release(context, image);
       return CONIC_ERROR_MEMORY;
     }
-    conic_memory_prefer_large_pages(image->planes[i], conic_image_pixels(image) * pixel_bytes);
+    conic_memory_prefer_large_pages(context, image->planes[i], conic_image_pixels(image) * pixel_bytes);
     memset(image->planes[i], 0, conic_image_pixels(image) * pixel_bytes);
   }
   return CONIC_OK;

@@ -22,6 +22,8 @@ static conic_status keep_coordinates(const vertex_reader *reader, size_t n) {
   conic_status status = CONIC_OK;
   if (!reader->layout.has_coordinates)
     return CONIC_OK;
+  if (faces->n_coordinates + n > CONIC_MAX_POINTS)
+    return conic_ply_wrong(reader->source, "too many texture coordinates");
   for (size_t i = 0; status == CONIC_OK && i < n; i++) {
     const double coordinate[2] = {reader->block[CONIC_PLY_COORDINATE][i], reader->block[CONIC_PLY_COORDINATE + 1][i]};
     status = conic_faces_add_coordinate(reader->builder->context, faces, coordinate);

@@ -123,7 +123,7 @@ static void *dense_room(conic_renderer *renderer, kept *memory, size_t count, si
   size_t before = memory->bytes;
   void *pointer = room(renderer, memory, count, size);
   if (memory->bytes != before)
-    conic_memory_prefer_large_pages(pointer, memory->bytes);
+    conic_memory_prefer_large_pages(renderer->context, pointer, memory->bytes);
   return pointer;
 }
 

@@ -224,11 +224,11 @@ static void test_damage(conic_context *context, const sound_file *sound) {
   free(longer);
 }
 
-#define LEVEL(i, member) sound->levels + (i) * sizeof(conic_hybrid_level) + offsetof(conic_hybrid_level, member)
-#define PATCH(i, member) sound->patches + (i) * sizeof(conic_hybrid_patch) + offsetof(conic_hybrid_patch, member)
-#define NODE(i, member) sound->nodes + (i) * sizeof(conic_hybrid_node) + offsetof(conic_hybrid_node, member)
-#define MATERIAL(i, member)                                                                                            \
-  sound->material_list + (i) * sizeof(conic_chy_material) + offsetof(conic_chy_material, member)
+#define RECORD(array, i, type, member) (sound->array + (i) * sizeof(type) + offsetof(type, member))
+#define LEVEL(i, member) RECORD(levels, i, conic_hybrid_level, member)
+#define PATCH(i, member) RECORD(patches, i, conic_hybrid_patch, member)
+#define NODE(i, member) RECORD(nodes, i, conic_hybrid_node, member)
+#define MATERIAL(i, member) RECORD(material_list, i, conic_chy_material, member)
 
 static uint32_t u32_at(const sound_file *sound, size_t at) {
   return (uint32_t)conic_file_get(sound->bytes + at, 4);
