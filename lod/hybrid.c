@@ -51,20 +51,72 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
 /* --- structure --- */
 
 static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
-  if (level->kind > CONIC_HYBRID_SURFELS || level->zero || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+  if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level of no known kind";
   size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
   if (level->count < 1 || level->count > n || level->first > n - level->count)
     return "a level without its triangles or surfels";
   if (level->n_vertices > h->n_listed || level->first_vertex > h->n_listed - level->n_vertices)
     return "a level without its vertices";
-  if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF))
-    return "a level's error or reach out of range";
+  if (level->n_borders > h->n_borders || level->first_border > h->n_borders - level->n_borders ||
+      (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
+    return "a level without its borders";
+  if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF) ||
+      !(level->cover >= 0.0f && level->cover < HUGE_VALF) || !(level->spread >= 0.0f && level->spread < HUGE_VALF))
+    return "a level's error, reach or extent out of range";
   if (level->kind == CONIC_HYBRID_TRIANGLES)
     for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
       for (int corner = 0; corner < 3; corner++)
         if (h->corners[i][corner] >= level->n_vertices)
           return "a corner out of range";
+  return NULL;
+}
+
+/* Whether a slot lies where a corner of one of the level's triangles does. */
+static int is_corner(const conic_hybrid *h, const conic_hybrid_level *level, uint32_t triangle, uint32_t corner,
+                     uint32_t slot) {
+  uint32_t a = h->listed[level->first_vertex + h->corners[level->first + triangle][corner % 3]];
+  uint32_t b = h->slots[slot].vertex;
+  int is_there = 1;
+  for (int axis = 0; axis < 3; axis++)
+    is_there &= h->position[axis][a] == h->position[axis][b];
+  return is_there;
+}
+
+/* `n_left_out` is how many slots the borders run over. */
+static const char *wrong_borders(const conic_hybrid *h, uint32_t patch, const conic_hybrid_level *level,
+                                 size_t *n_left_out) {
+  *n_left_out = 0;
+  for (uint32_t i = 0; i < level->n_borders; i++) {
+    const conic_hybrid_border *border = &h->borders[level->first_border + i];
+    if ((i > 0 && border->edge <= border[-1].edge) || border->edge / 4 >= level->count || border->edge % 4 > 2 ||
+        border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_patches ||
+        border->across == patch)
+      return "a border out of range";
+    if (!is_corner(h, level, border->edge / 4, border->edge % 4, border->from) ||
+        !is_corner(h, level, border->edge / 4, border->edge % 4 + 1, border->to))
+      return "a border that is not its triangle's";
+    *n_left_out += border->from < border->to ? border->to - border->from : border->from - border->to;
+  }
+  return NULL;
+}
+
+/* A slot is of two patches, so that there is never more to put in than twice as many as there are slots. */
+static const char *wrong_chains(const conic_hybrid *h) {
+  size_t n_left = 2 * h->n_slots;
+  for (uint32_t i = 0; i < h->n_patches; i++) {
+    size_t most = 0;
+    for (uint32_t k = 0; k < h->patches[i].n_levels; k++) {
+      size_t n;
+      const char *wrong = wrong_borders(h, i, &h->levels[h->patches[i].first_level + k], &n);
+      if (wrong)
+        return wrong;
+      most = n > most ? n : most;
+    }
+    if (most > n_left)
+      return "borders that run over each other";
+    n_left -= most;
+  }
   return NULL;
 }
 
@@ -124,6 +176,11 @@ const char *conic_hybrid_structure(const conic_hybrid *h) {
   for (size_t i = 0; i < h->n_listed && !wrong; i++)
     if (h->listed[i] >= h->n_vertices)
       wrong = "a vertex out of range";
+  for (size_t i = 0; i < h->n_slots && !wrong; i++)
+    if (h->slots[i].vertex >= h->n_vertices)
+      wrong = "a vertex out of range";
+  if (!wrong)
+    wrong = wrong_chains(h);
   for (size_t i = 0; i < h->n_triangles && h->material && !wrong; i++)
     if (h->material[i] >= h->n_materials)
       wrong = "a material out of range";

@@ -13,10 +13,27 @@ typedef struct conic_hybrid_level {
   uint32_t first, count; /* of its triangles or surfels among all */
   uint32_t first_vertex; /* triangles: their vertices are listed from here on, and their corners count from there */
   uint32_t n_vertices;
-  float error; /* no place of the patch is drawn farther than this from where it is */
-  float reach; /* surfels: the longest half axis of an outline */
-  uint32_t zero;
+  float error;    /* no place of the patch is drawn farther than this from where it is */
+  float reach;    /* surfels: the longest half axis of an outline */
+  uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
+  uint32_t first_border, n_borders;
+  float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
 } conic_hybrid_level;
+
+/* A vertex where two patches meet, and the last stage of simplification at which it is still there. */
+typedef struct conic_hybrid_slot {
+  uint32_t vertex, stage;
+} conic_hybrid_slot;
+
+#define CONIC_HYBRID_ALWAYS UINT32_MAX
+
+/* An edge of a level's triangle along which vertices were left out: what the patch across still has of them is put in
+ * when they are drawn side by side. */
+typedef struct conic_hybrid_border {
+  uint32_t edge;     /* 4 · triangle, counted from the level's first, + the corner where the edge begins */
+  uint32_t from, to; /* slots of its two ends; what was left out lies between */
+  uint32_t across;   /* the other patch */
+} conic_hybrid_border;
 
 /* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
 typedef struct conic_hybrid_bound {
@@ -44,7 +61,7 @@ struct conic_hybrid {
   double origin[3];
   float low[3], high[3]; /* of the vertices, from the origin */
   double splat_length;
-  size_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_patches, n_nodes;
+  size_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_patches, n_nodes, n_slots, n_borders;
   const float *position[3], *normal[3], *color[3],
       *texture_coordinate[2]; /* by vertex; the last three kinds may be null */
   const uint32_t (*corners)[3];
@@ -54,6 +71,8 @@ struct conic_hybrid {
   const conic_hybrid_level *levels;
   const conic_hybrid_patch *patches;
   const conic_hybrid_node *nodes;
+  const conic_hybrid_slot *slots;
+  const conic_hybrid_border *borders; /* by level, in the order of their edges */
   size_t n_materials, n_texels;
   const struct conic_chy_material *material_list;
   const unsigned char *texels;

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/message.h"
+#include "lod/hybrid_stitch.h"
 
 /* Patches in sight, and how far on the screen each of their levels is off. */
 typedef struct fitting {
@@ -14,6 +15,7 @@ typedef struct fitting {
   size_t n;
   double *errors_px; /* of all levels of the first patch, then of the second … */
   uint32_t *levels;
+  uint32_t *stages; /* of each of the model's patches: of the level that it has now; hidden if it is not in sight */
 } fitting;
 
 static int is_allowed(const fitting *f, const conic_hybrid_level *level) {
@@ -41,19 +43,37 @@ static uint32_t fewest(const fitting *f, const conic_hybrid_patch *patch, const 
   return best;
 }
 
-/* Chooses for all patches; returns how many primitives that are, and the greatest error of what was chosen. */
-static uint64_t choose_all(const fitting *f, double error_px, double *greatest_px) {
+/* Chooses for all patches; returns how many primitives that are, without those that fit them to each other.
+ * `greatest_px` is the greatest error of what was chosen, `next_px` the least above `error_px` that any level has. */
+static uint64_t choose_all(const fitting *f, double error_px, double *greatest_px, double *next_px) {
   const double *errors_px = f->errors_px;
   uint64_t count = 0;
   *greatest_px = 0.0;
+  *next_px = HUGE_VAL;
   for (size_t i = 0; i < f->n; i++) {
     const conic_hybrid_patch *patch = &f->hybrid->patches[f->patches[i]];
     uint32_t level = fewest(f, patch, errors_px, error_px);
     count += f->hybrid->levels[patch->first_level + level].count;
     *greatest_px = errors_px[level] > *greatest_px ? errors_px[level] : *greatest_px;
+    for (uint32_t k = 0; k < patch->n_levels; k++)
+      *next_px = errors_px[k] > error_px && errors_px[k] < *next_px ? errors_px[k] : *next_px;
     f->levels[i] = level;
     errors_px += patch->n_levels;
   }
+  return count;
+}
+
+static const conic_hybrid_level *chosen(const fitting *f, size_t i) {
+  return &f->hybrid->levels[f->hybrid->patches[f->patches[i]].first_level + f->levels[i]];
+}
+
+/* How many triangles more it takes to fit what was chosen to each other. */
+static uint64_t count_stitches(const fitting *f) {
+  uint64_t count = 0;
+  for (size_t i = 0; i < f->n; i++)
+    f->stages[f->patches[i]] = chosen(f, i)->stage;
+  for (size_t i = 0; i < f->n; i++)
+    count += conic_hybrid_count_stitches(f->hybrid, chosen(f, i), f->stages);
   return count;
 }
 
@@ -85,35 +105,70 @@ static uint64_t bits_of(double error) {
   return bits;
 }
 
-/* Halves the errors, which order like their bits as none is negative, down to the least that the budget gives. */
-static conic_status fit(const fitting *f, uint64_t budget) {
-  double error_px;
-  if (choose_all(f, 0.0, &error_px) <= budget)
-    return CONIC_OK;
-  uint64_t count = choose_all(f, HUGE_VAL, &error_px), low = 0, high = bits_of(error_px);
-  if (count > budget)
-    return conic_fail(
-        f->hybrid->context, CONIC_ERROR_ARGUMENT,
-        "hybrid: the coarsest of what is in sight are %llu triangles and surfels, more than the budget of %llu",
-        (unsigned long long)count, (unsigned long long)budget);
+/* Halves the errors, which order like their bits as none is negative, down to the least at which the levels alone are
+ * no more than the budget. */
+static double least_error(const fitting *f, uint64_t budget) {
+  double error_px, next_px;
+  choose_all(f, HUGE_VAL, &error_px, &next_px);
+  uint64_t low = 0, high = bits_of(error_px);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
-    if (choose_all(f, error_of(middle), &error_px) > budget)
+    if (choose_all(f, error_of(middle), &error_px, &next_px) > budget)
       low = middle;
     else /* what was chosen may be better than what was asked for */
       high = error_px < error_of(middle) ? bits_of(error_px) : middle;
   }
-  choose_all(f, error_of(high), &error_px);
-  return CONIC_OK;
+  return error_of(high);
+}
+
+/* With what fits them to each other the number may go up and down with the error; so from there on each is tried.
+ * Returns whether one was found, the number that it takes, or the coarsest, and the error of what was chosen. */
+static int fit(const fitting *f, uint64_t budget, uint64_t *count, double *greatest_px) {
+  double next_px, error_px = 0.0;
+  if (choose_all(f, error_px, greatest_px, &next_px) > budget)
+    error_px = least_error(f, budget);
+  for (;; error_px = next_px) {
+    *count = choose_all(f, error_px, greatest_px, &next_px) + count_stitches(f);
+    if (*count <= budget || !(error_px < HUGE_VAL))
+      return *count <= budget;
+  }
+}
+
+/* Of each patch the level of fewest primitives; or of one kind alone, which may be fewer together. */
+static conic_status fit_kinds(fitting *f, uint64_t budget, uint32_t *levels) {
+  uint64_t fewest_count = UINT64_MAX;
+  double least_px = 0.0;
+  int is_found = 0, last = f->only_kind < 0 ? CONIC_HYBRID_SURFELS : f->only_kind;
+  for (int kind = f->only_kind; kind <= last; kind++) {
+    double greatest_px;
+    uint64_t count;
+    f->only_kind = kind;
+    if (fit(f, budget, &count, &greatest_px) && (!is_found || greatest_px < least_px)) {
+      is_found = 1;
+      least_px = greatest_px;
+      memcpy(levels, f->levels, f->n * sizeof *levels);
+    }
+    fewest_count = count < fewest_count ? count : fewest_count;
+  }
+  return is_found ? CONIC_OK
+                  : conic_fail(f->hybrid->context, CONIC_ERROR_ARGUMENT,
+                               "hybrid: the coarsest of what is in sight are %llu triangles and surfels, more than the "
+                               "budget of %llu",
+                               (unsigned long long)fewest_count, (unsigned long long)budget);
 }
 
 conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hybrid_camera *view, int only_kind,
                                      uint64_t budget, const uint32_t *patches, size_t n, uint32_t *levels) {
   fitting f = {.hybrid = hybrid, .only_kind = only_kind, .patches = patches, .n = n};
-  f.levels = levels;
-  conic_status status = measure_levels(&f, view);
+  f.levels = conic_memory_allocate(hybrid->context, n, sizeof *f.levels);
+  f.stages = conic_memory_allocate(hybrid->context, hybrid->n_patches, sizeof *f.stages);
+  conic_status status = f.levels && f.stages ? measure_levels(&f, view) : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < hybrid->n_patches && status == CONIC_OK; i++)
+    f.stages[i] = CONIC_HYBRID_HIDDEN;
   if (status == CONIC_OK)
-    status = fit(&f, budget);
+    status = fit_kinds(&f, budget, levels);
   conic_memory_release(hybrid->context, f.errors_px);
+  conic_memory_release(hybrid->context, f.stages);
+  conic_memory_release(hybrid->context, f.levels);
   return status;
 }

@@ -5,9 +5,10 @@
 
 #include "core/trigonometry.h"
 
-/* What drawing takes, in nanoseconds of one core: a primitive, and a pixel that it covers (docs/hybrid.md). */
-static const double triangle_ns = 90.0, triangle_pixel_ns = 2.0;
-static const double surfel_ns = 25.0, surfel_pixel_ns = 2.5;
+/* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
+ * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
+static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
+static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(double side[3], int axis, double a, double b) {
@@ -35,6 +36,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->focal_px = camera->fx > camera->fy ? camera->fx : camera->fy;
   view->near_z = render->near_z;
+  view->n_pixels = (double)camera->width * (double)camera->height;
   view->cull_back = render->cull_back;
   view->margin_px2 = (double)render->prefilter * (double)render->kernel.cutoff * (double)render->kernel.cutoff;
 }
@@ -73,27 +75,74 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
   return view->cull_back && faces_away(view, bound, radius);
 }
 
+/* A patch as the camera sees it. */
+typedef struct sight {
+  double z, distance; /* of its sphere's centre */
+  double radius;
+  double scale2, facing; /* pixels that a unit of area covers if it faces the camera, and how far it does */
+} sight;
+
+static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
+  double at[3];
+  to_camera(view, bound->center, at);
+  return (sight){.z = at[2], .distance = sqrt(conic_hybrid_dot(at, at)), .radius = (double)bound->radius};
+}
+
 /* The most pixels that a displacement of one can be, anywhere in the sphere: the greatest factor of the projection's
  * derivative at X is f·|X|/z². Infinite where the sphere reaches the near plane. */
-static double pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
-  double at[3], radius = ((double)bound->radius + reach) * (1.0 + 1e-6);
-  to_camera(view, bound->center, at);
-  double front = at[2] - radius, distance = sqrt(conic_hybrid_dot(at, at)) + radius;
-  return front > view->near_z ? view->focal_px * distance / (front * front) : HUGE_VAL;
+static double pixels_a_unit(const conic_hybrid_camera *view, const sight *seen, double reach) {
+  double radius = (seen->radius + reach) * (1.0 + 1e-6), front = seen->z - radius;
+  return front > view->near_z ? view->focal_px * (seen->distance + radius) / (front * front) : HUGE_VAL;
+}
+
+static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
+  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
 }
 
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                              const conic_hybrid_level *level) {
-  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, &patch->bound, (double)level->reach) : 0.0;
+  sight seen = look_at(view, &patch->bound);
+  return error_px_of(view, &seen, level);
 }
 
-static double cost_of(const conic_hybrid_camera *view, const conic_hybrid_patch *patch, const conic_hybrid_level *level,
-                      double scale_px) {
-  double n = (double)level->count, area_px = (double)patch->area * scale_px * scale_px;
-  if (level->kind == CONIC_HYBRID_TRIANGLES)
-    return n * triangle_ns + area_px * triangle_pixel_ns;
-  /* Their outlines together cover about twice the patch; the prefilter widens each. */
-  return n * (surfel_ns + CONIC_PI * view->margin_px2 * surfel_pixel_ns) + 2.0 * area_px * surfel_pixel_ns;
+/* The mean cosine of the faces to the camera: by the axis of their cone as far as that says anything, else half. */
+static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
+  double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
+  for (int k = 0; k < 3; k++)
+    along += ((double)bound->center[k] - view->eye[k]) * (double)bound->axis[k];
+  return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
+}
+
+static double cost_of_triangles(const conic_hybrid_patch *patch, const conic_hybrid_level *level, const sight *seen) {
+  double n = (double)level->count, n_pixels = (double)patch->area * seen->scale2 * seen->facing;
+  double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
+  return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
+}
+
+/* Each takes the area of its ellipse, both axes being widened by the prefilter. */
+static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybrid_level *level, const sight *seen) {
+  double n = (double)level->count, facing = seen->facing, widening = view->margin_px2;
+  double product = (double)level->cover / n * seen->scale2 * facing;
+  double squares = (double)level->spread / n * seen->scale2 * 0.5 * (1.0 + facing * facing);
+  double n_pixels = n * CONIC_PI * sqrt(product * product + widening * squares + widening * widening);
+  return n * surfel_ns + n_pixels * surfel_pixel_ns;
+}
+
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                         double error_px, conic_hybrid_offer offers[2]) {
+  const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
+  sight seen = look_at(view, &patch->bound);
+  double z = seen.z > view->near_z ? seen.z : view->near_z;
+  seen.scale2 = view->focal_px * view->focal_px / (z * z);
+  seen.facing = facing_of(view, &patch->bound, &seen);
+  offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
+  for (uint32_t k = 0; k < patch->n_levels; k++) {
+    conic_hybrid_offer *offer = &offers[levels[k].kind];
+    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(patch, &levels[k], &seen)
+                                                           : cost_of_surfels(view, &levels[k], &seen);
+    if (cost < offer->cost_ns && error_px_of(view, &seen, &levels[k]) <= error_px)
+      *offer = (conic_hybrid_offer){k, cost};
+  }
 }
 
 /* The finest of that kind, which is the first; or the first of all. */
@@ -107,24 +156,12 @@ static uint32_t first_of_kind(const conic_hybrid_level *levels, uint32_t n, int 
 uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                              const conic_hybrid_patch *patch, double error_px, int only_kind) {
   const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  uint32_t best = only_kind < 0 ? patch->built : first_of_kind(levels, patch->n_levels, only_kind);
-  double least = HUGE_VAL;
+  conic_hybrid_offer offers[2];
   if (!(error_px > 0.0))
-    return best;
+    return only_kind < 0 ? patch->built : first_of_kind(levels, patch->n_levels, only_kind);
+  conic_hybrid_offers(hybrid, view, patch, error_px, offers);
   if (only_kind < 0)
-    best = 0; /* without an error */
-  double mean_scale_px = pixels_a_unit(view, &patch->bound, 0.0);
-  if (!(mean_scale_px < HUGE_VAL))
-    return best;
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
-    const conic_hybrid_level *level = &levels[k];
-    double cost = cost_of(view, patch, level, mean_scale_px);
-    int is_good =
-        conic_hybrid_error_px(view, patch, level) <= error_px && (only_kind < 0 || level->kind == (uint32_t)only_kind);
-    if (is_good && cost < least) {
-      least = cost;
-      best = k;
-    }
-  }
-  return best;
+    return offers[offers[CONIC_HYBRID_SURFELS].cost_ns < offers[CONIC_HYBRID_TRIANGLES].cost_ns].level;
+  return offers[only_kind].cost_ns < HUGE_VAL ? offers[only_kind].level
+                                              : first_of_kind(levels, patch->n_levels, only_kind);
 }

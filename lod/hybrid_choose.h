@@ -8,7 +8,7 @@
 typedef struct conic_hybrid_camera {
   double rotation[3][3], translation[3], eye[3]; /* from the model's origin */
   double side[4][3]; /* planes of the picture's sides: unit normals, inwards, through the eye */
-  double focal_px, near_z;
+  double focal_px, near_z, n_pixels;
   int cull_back;
   double margin_px2; /* what the prefilter adds to a splat's squared radius */
 } conic_hybrid_camera;
@@ -22,6 +22,23 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
 /* How many pixels places of the patch may be off where the level draws it: infinite where its sphere reaches near. */
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                              const conic_hybrid_level *level);
+
+/* What one of the narrow triangles takes that fit patches to each other, in nanoseconds of one core. */
+#define CONIC_HYBRID_STITCH_NS 70.0
+
+/* What a picture of both kinds takes more than its parts, for each of its pixels. */
+#define CONIC_HYBRID_BOTH_NS 0.5
+
+/* A level of a patch, from its first, and what drawing it may take. */
+typedef struct conic_hybrid_offer {
+  uint32_t level;
+  double cost_ns;
+} conic_hybrid_offer;
+
+/* Of each kind the level that costs least among those whose error is at most so many pixels; of infinite cost where
+ * there is none, which is never so for triangles. */
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                         double error_px, conic_hybrid_offer offers[2]);
 
 /* A level for the patch, from its first; `error_px` and `only_kind` as in conic_hybrid_view. */
 uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,

@@ -20,7 +20,7 @@ static const conic_file_field fields[] = {
     FIELD(version, 1),   FIELD(flags, 1),    FIELD(n_vertices, 1), FIELD(n_triangles, 1), FIELD(n_listed, 1),
     FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_patches, 1),  FIELD(n_nodes, 1),     FIELD(n_materials, 1),
     FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
-    FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1)};
+    FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1),   FIELD(n_slots, 1),     FIELD(n_borders, 1)};
 
 enum { N_FIELDS = sizeof fields / sizeof *fields };
 
@@ -62,6 +62,8 @@ static header header_of(const conic_hybrid *hybrid) {
               .n_levels = hybrid->n_levels,
               .n_patches = hybrid->n_patches,
               .n_nodes = hybrid->n_nodes,
+              .n_slots = hybrid->n_slots,
+              .n_borders = hybrid->n_borders,
               .n_materials = hybrid->n_materials,
               .n_texels = hybrid->n_texels,
               .splat_length = hybrid->splat_length,
@@ -135,8 +137,8 @@ static int is_finite(double value) {
 
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const header *h) {
-  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed, h->n_surfels,  h->n_levels,
-                             h->n_patches,  h->n_nodes,     h->n_texels, h->n_materials};
+  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_patches,
+                             h->n_nodes,    h->n_texels,    h->n_materials, h->n_slots,   h->n_borders};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i] > UINT32_MAX)
       return "counts that do not go together";

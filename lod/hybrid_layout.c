@@ -8,7 +8,9 @@
 enum { ALIGNMENT = 64 };
 
 /* The records are in the file as they are in memory. */
-_Static_assert(sizeof(conic_hybrid_level) == 32, "levels of 32 bytes");
+_Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
+_Static_assert(sizeof(conic_hybrid_slot) == 8, "slots of 8 bytes");
+_Static_assert(sizeof(conic_hybrid_border) == 16, "borders of 16 bytes");
 _Static_assert(sizeof(conic_hybrid_patch) == 48, "patches of 48 bytes");
 _Static_assert(sizeof(conic_hybrid_node) == 48, "nodes of 48 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
@@ -34,6 +36,8 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
     sizes[CONIC_CHY_TEXTURE + k] = h->flags & CONIC_CHY_TEXTURE_COORDINATES ? vertices : 0;
   for (int k = 0; k < 12; k++)
     sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
+  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_hybrid_slot);
+  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_hybrid_border);
   for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
     l.arrays[i] = (conic_chy_array){l.n_bytes, sizes[i]};
     l.n_bytes = (l.n_bytes + sizes[i] + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
@@ -60,11 +64,15 @@ void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hyb
   hybrid->n_levels = (size_t)h->n_levels;
   hybrid->n_patches = (size_t)h->n_patches;
   hybrid->n_nodes = (size_t)h->n_nodes;
+  hybrid->n_slots = (size_t)h->n_slots;
+  hybrid->n_borders = (size_t)h->n_borders;
   hybrid->n_materials = (size_t)h->n_materials;
   hybrid->n_texels = (size_t)h->n_texels;
   hybrid->nodes = array_at(&l, bytes, CONIC_CHY_NODES);
   hybrid->patches = array_at(&l, bytes, CONIC_CHY_PATCHES);
   hybrid->levels = array_at(&l, bytes, CONIC_CHY_LEVELS);
+  hybrid->slots = array_at(&l, bytes, CONIC_CHY_SLOTS);
+  hybrid->borders = array_at(&l, bytes, CONIC_CHY_BORDERS);
   hybrid->corners = array_at(&l, bytes, CONIC_CHY_CORNERS);
   hybrid->listed = array_at(&l, bytes, CONIC_CHY_LISTED);
   hybrid->material = array_at(&l, bytes, CONIC_CHY_MATERIAL_OF);

@@ -4,7 +4,7 @@
 
 #include "lod/hybrid.h"
 
-enum { CONIC_CHY_HEADER_BYTES = 256, CONIC_CHY_VERSION = 1 };
+enum { CONIC_CHY_HEADER_BYTES = 256, CONIC_CHY_VERSION = 2 };
 
 enum {
   CONIC_CHY_NORMALS = 1,
@@ -24,6 +24,7 @@ typedef struct conic_chy_header {
   float cutoff;
   uint32_t zero;
   uint64_t body_sum; /* over the arrays' sums */
+  uint64_t n_slots, n_borders;
 } conic_chy_header;
 
 /* A material as the file has it: its texture's texels are codes[3 · first_texel …], row by row from the top; sRGB. */
@@ -53,7 +54,9 @@ enum {
   CONIC_CHY_COLOR = CONIC_CHY_NORMAL + 3,
   CONIC_CHY_TEXTURE = CONIC_CHY_COLOR + 3,
   CONIC_CHY_SURFELS = CONIC_CHY_TEXTURE + 2,
-  CONIC_CHY_N_ARRAYS = CONIC_CHY_SURFELS + 12
+  CONIC_CHY_SLOTS = CONIC_CHY_SURFELS + 12,
+  CONIC_CHY_BORDERS,
+  CONIC_CHY_N_ARRAYS
 };
 
 typedef struct conic_chy_layout {

@@ -136,9 +136,8 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
 
 typedef struct ways_pass {
   conic_ways_job *job;
-  void **workers; /* a sampler or a simplifier for each thread */
+  void **workers; /* a sampler for each thread */
   conic_status *statuses;
-  int is_sampling;
   size_t first;
 } ways_pass;
 
@@ -146,13 +145,6 @@ static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
   conic_ways_job *job = pass->job;
   void **worker = &pass->workers[i_thread];
   conic_status status = CONIC_OK;
-  if (!pass->is_sampling) {
-    conic_simplifier *simplifier = *worker;
-    if (!simplifier)
-      status = conic_simplifier_create(job->context, job->mesh, &simplifier);
-    *worker = simplifier;
-    return status == CONIC_OK ? conic_patch_simplify(simplifier, patch, &job->ways[patch].triangles) : status;
-  }
   conic_sampler *sampler = *worker;
   if (!sampler)
     status = conic_sampler_create(job->context, &sampler);
@@ -190,18 +182,12 @@ static conic_status run_passes(ways_pass *pass) {
   conic_ways_job *job = pass->job;
   int n_threads = conic_context_threads(job->context);
   double start = seconds_now();
-  pass->is_sampling = 1;
   conic_status status = run_pass(pass, 0.0, 0.5);
-  for (int i = 0; i < n_threads; i++) {
-    conic_sampler_destroy(pass->workers[i]);
-    pass->workers[i] = NULL;
-  }
-  double sampled = seconds_now();
-  pass->is_sampling = 0;
-  if (status == CONIC_OK && !job->options->has_single_levels)
-    status = run_pass(pass, 0.5, 1.0);
   for (int i = 0; i < n_threads; i++)
-    conic_simplifier_destroy(pass->workers[i]);
+    conic_sampler_destroy(pass->workers[i]);
+  double sampled = seconds_now();
+  if (status == CONIC_OK && !job->options->has_single_levels)
+    status = conic_find_simpler(job);
   job->sample_seconds = sampled - start;
   job->simplify_seconds = seconds_now() - sampled;
   return status;

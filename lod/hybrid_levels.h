@@ -20,8 +20,9 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_patch_mesh *mesh;
   const conic_hybrid_options *options;
-  conic_face_tree tree;   /* private */
-  conic_patch_ways *ways; /* of each patch; zero before */
+  conic_face_tree tree;      /* private */
+  conic_patch_ways *ways;    /* of each patch; zero before */
+  conic_patch_chains chains; /* between simpler triangles of patches; the caller's to release, on failure too */
   double sample_seconds, simplify_seconds;
 } conic_ways_job;
 
@@ -29,6 +30,9 @@ typedef struct conic_ways_job {
  * CANCELLED. */
 conic_status conic_find_ways(conic_ways_job *job);
 void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways);
+
+/* Simpler triangles of all patches, region by region, which depend on the mesh alone. Errors: MEMORY, CANCELLED. */
+conic_status conic_find_simpler(conic_ways_job *job);
 
 /* A sphere and a cone for a patch's faces. */
 conic_hybrid_bound conic_patch_bound(const conic_patch_mesh *mesh, uint32_t patch);

@@ -6,6 +6,8 @@
 #include "core/message.h"
 #include "core/threads.h"
 #include "lod/hybrid_budget.h"
+#include "lod/hybrid_plan.h"
+#include "lod/hybrid_stitch.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
   memset(view, 0, sizeof *view);
@@ -17,12 +19,15 @@ void conic_hybrid_view_init(conic_hybrid_view *view) {
 typedef struct choice {
   uint32_t patch, level;
   size_t splat, triangle, vertex;
+  size_t n_put; /* into the triangles, so that they fit their neighbours */
 } choice;
 
 /* What is kept from call to call. */
 typedef struct scratch {
   choice *choices;
   size_t n_choices, choices_room;
+  uint32_t *stages; /* of each patch of the hybrid: that of its level */
+  size_t stages_room;
   float *splats; /* arrays of splats_room each */
   uint32_t *splat_cluster;
   size_t splats_room;
@@ -46,6 +51,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
+    conic_memory_release(context, kept->stages);
     conic_memory_release(context, kept->splats);
     conic_memory_release(context, kept->splat_cluster);
     conic_memory_release(context, kept->vertices);
@@ -64,6 +70,11 @@ static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
   return (double)reach;
 }
 
+/* Whether the level of a patch depends on those of others. */
+static int is_together(const conic_hybrid_view *view) {
+  return view->budget || (view->error_px > 0.0 && view->only_kind < 0);
+}
+
 static conic_status add_choice(selecting *s, uint32_t i_patch) {
   scratch *kept = s->scratch;
   const conic_hybrid_patch *patch = &s->hybrid->patches[i_patch];
@@ -76,7 +87,9 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
       return status;
     kept->choices_room = room;
   }
-  uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
+  uint32_t level = 0;
+  if (!is_together(s->view))
+    level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
   return CONIC_OK;
 }
@@ -103,8 +116,8 @@ static conic_status choose_all(selecting *s) {
   return status;
 }
 
-/* Chooses again, for a budget. */
-static conic_status spend_budget(selecting *s) {
+/* Chooses for all patches in sight, for a budget or for the least time. */
+static conic_status choose_together(selecting *s) {
   const conic_hybrid *h = s->hybrid;
   size_t n = s->scratch->n_choices;
   uint32_t *patches = conic_memory_allocate(h->context, 2 * n, sizeof *patches);
@@ -113,7 +126,9 @@ static conic_status spend_budget(selecting *s) {
   uint32_t *levels = patches + n;
   for (size_t i = 0; i < n; i++)
     patches[i] = s->scratch->choices[i].patch;
-  conic_status status = conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels);
+  conic_status status =
+      s->view->budget ? conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels)
+                      : conic_hybrid_plan(h, &s->camera, s->view->error_px, patches, n, levels);
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     s->scratch->choices[i].level = h->patches[patches[i]].first_level + levels[i];
   conic_memory_release(h->context, patches);
@@ -134,6 +149,25 @@ static void judge(const selecting *s) {
   }
 }
 
+/* The stages of what was chosen; all else is hidden. */
+static conic_status note_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  size_t n = s->hybrid->n_patches;
+  if (!kept->stages || n > kept->stages_room) {
+    conic_memory_release(s->hybrid->context, kept->stages);
+    kept->stages_room = 0;
+    kept->stages = conic_memory_allocate(s->hybrid->context, n, sizeof *kept->stages);
+    if (!kept->stages)
+      return CONIC_ERROR_MEMORY;
+    kept->stages_room = n;
+  }
+  for (size_t i = 0; i < n; i++)
+    kept->stages[i] = CONIC_HYBRID_HIDDEN;
+  for (size_t i = 0; i < kept->n_choices; i++)
+    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+  return CONIC_OK;
+}
+
 /* Where each choice's parts go, and room for all. */
 static conic_status make_room(selecting *s) {
   scratch *kept = s->scratch;
@@ -145,8 +179,9 @@ static conic_status make_room(selecting *s) {
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
-    n_vertices += level->n_vertices;
-    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count;
+    c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
+    n_vertices += level->n_vertices + c->n_put;
+    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
   }
   s->selection->splats.count = n_splats;
   s->selection->triangles.count = n_triangles;
@@ -243,6 +278,16 @@ static void copy_triangles(const selecting *s, const choice *c, const conic_hybr
   }
   if (to->material)
     memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
+  if (c->n_put == 0)
+    return;
+  conic_hybrid_stitching stitching = {.hybrid = h,
+                                      .level = level,
+                                      .stages = s->scratch->stages,
+                                      .to = &s->selection->triangles,
+                                      .first_triangle = c->triangle,
+                                      .triangle = c->triangle + level->count,
+                                      .vertex = c->vertex + level->n_vertices};
+  conic_hybrid_stitch(&stitching);
 }
 
 static void copy_task(void *data, size_t i_task, int i_thread) {
@@ -291,8 +336,10 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   conic_status status = begin(&s, camera, render);
   if (status == CONIC_OK)
     status = choose_all(&s);
-  if (status == CONIC_OK && view->budget)
-    status = spend_budget(&s);
+  if (status == CONIC_OK && is_together(view))
+    status = choose_together(&s);
+  if (status == CONIC_OK)
+    status = note_stages(&s);
   if (status == CONIC_OK)
     status = make_room(&s);
   if (status != CONIC_OK)

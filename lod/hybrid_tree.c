@@ -7,14 +7,14 @@
 #include "core/memory.h"
 
 /* Where n patches are parted: the halves then need no more levels than they must. */
-static size_t half_of(size_t n) {
+size_t conic_hybrid_half(size_t n) {
   return (n + 1) / 2;
 }
 
 size_t conic_hybrid_count_nodes(size_t n) {
   if (n <= CONIC_HYBRID_LEAF)
     return n > 0;
-  return 1 + conic_hybrid_count_nodes(half_of(n)) + conic_hybrid_count_nodes(n - half_of(n));
+  return 1 + conic_hybrid_count_nodes(conic_hybrid_half(n)) + conic_hybrid_count_nodes(n - conic_hybrid_half(n));
 }
 
 typedef struct place {
@@ -56,8 +56,8 @@ static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_
   qsort(places, n, sizeof *places, compare_places);
   for (size_t i = 0; i < n; i++)
     order[i] = places[i].patch;
-  order_range(bounds, order, half_of(n), places);
-  order_range(bounds, order + half_of(n), n - half_of(n), places);
+  order_range(bounds, order, conic_hybrid_half(n), places);
+  order_range(bounds, order + conic_hybrid_half(n), n - conic_hybrid_half(n), places);
 }
 
 conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_patches,
@@ -149,8 +149,8 @@ static uint32_t fill_node(filling *f, size_t begin, size_t end) {
   conic_hybrid_node *node = &f->nodes[own];
   size_t n = end - begin;
   if (n > CONIC_HYBRID_LEAF) {
-    first = fill_node(f, begin, begin + half_of(n));
-    second = fill_node(f, begin + half_of(n), end);
+    first = fill_node(f, begin, begin + conic_hybrid_half(n));
+    second = fill_node(f, begin + conic_hybrid_half(n), end);
     node->bound = conic_hybrid_join(&f->nodes[first].bound, &f->nodes[second].bound);
   } else {
     for (size_t i = begin; i < end; i++) {

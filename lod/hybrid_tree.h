@@ -7,6 +7,9 @@
 /* The most patches in a node without children. */
 enum { CONIC_HYBRID_LEAF = 4 };
 
+/* Where n patches are parted, those in the first half. */
+size_t conic_hybrid_half(size_t n);
+
 /* How many nodes there are over so many patches. */
 size_t conic_hybrid_count_nodes(size_t n_patches);
 

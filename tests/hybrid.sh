@@ -87,7 +87,7 @@ blended() { # KEY: how often, of what the pixel blends
 }
 for ((i = 0; i < 300; i++)); do
   # shellcheck disable=SC2086
-  run 0 explain hill.chy $view --error 2 --pixel $((20 + i % 60)),$((24 + 4 * (i / 60))) --json pixel.json
+  run 0 explain hill.chy $view --pixel $((20 + i % 60)),$((24 + 4 * (i / 60))) --json pixel.json
   [[ $(blended triangle) -eq 1 && $(blended splat) -gt 1 ]] && break
 done
 [[ $i -lt 300 ]] || fail "no pixel of both kinds"

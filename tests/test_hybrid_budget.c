@@ -1,5 +1,6 @@
 /* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
 #include "lod/hybrid_choose.h"
+#include "lod/hybrid_stitch.h"
 #include "tests/hybrid_fixture.h"
 
 typedef struct spending {
@@ -9,7 +10,9 @@ typedef struct spending {
   conic_camera camera;
   conic_render_options options;
   conic_hybrid_selection selection;
-  unsigned char *is_seen; /* patch by patch */
+  unsigned char *is_seen;            /* patch by patch */
+  const conic_hybrid_level **chosen; /* what the fewest are, patch by patch; null where it is not seen */
+  uint32_t *stages;                  /* theirs */
 } spending;
 
 static void look(spending *s, double azimuth, double zoom) {
@@ -55,27 +58,39 @@ static void mark_seen(spending *s) {
     s->is_seen[s->selection.triangles.cluster[i]] = 1;
 }
 
-/* How few primitives keep every seen patch's error on the screen at or below `error_px`; where surfels alone are asked
- * for and none are good enough, the finest count. `next` becomes the least error above it that any level has. */
+/* How few primitives, with those that fit them to each other, keep every seen patch's error on the screen at or below
+ * `error_px`; where surfels alone are asked for and none are good enough, the finest count. `next` becomes the least
+ * error above it that any level has. */
 static size_t fewest(const spending *s, const conic_hybrid_camera *view, int only_kind, double error_px, double *next) {
   size_t count = 0;
   *next = HUGE_VAL;
   for (size_t i = 0; i < s->info.n_patches; i++) {
     const conic_hybrid_patch *patch = &s->hybrid->patches[i];
     size_t least = SIZE_MAX, finest = 0;
+    double least_error = HUGE_VAL;
+    const conic_hybrid_level *chosen = NULL, *first = NULL;
     for (uint32_t k = patch->n_levels; s->is_seen[i] && k-- > 0;) {
       const conic_hybrid_level *level = &s->hybrid->levels[patch->first_level + k];
       double error = conic_hybrid_error_px(view, patch, level);
       if (only_kind >= 0 && level->kind != (uint32_t)only_kind)
         continue;
       finest = level->count;
-      if (error <= error_px)
-        least = level->count < least ? level->count : least;
-      else if (error < *next)
+      first = level;
+      if (error <= error_px) {
+        if (level->count < least || (level->count == least && error <= least_error)) { /* of as many, the better */
+          chosen = level;
+          least = level->count;
+          least_error = error;
+        }
+      } else if (error < *next)
         *next = error;
     }
     count += least < SIZE_MAX ? least : finest;
+    s->chosen[i] = chosen ? chosen : first;
+    s->stages[i] = s->chosen[i] ? s->chosen[i]->stage : CONIC_HYBRID_HIDDEN;
   }
+  for (size_t i = 0; i < s->info.n_patches; i++)
+    count += s->chosen[i] ? conic_hybrid_count_stitches(s->hybrid, s->chosen[i], s->stages) : 0;
   return count;
 }
 
@@ -112,7 +127,13 @@ static double floor_error(const spending *s, int only_kind) {
 static void check_budget(spending *s, int only_kind, size_t budget) {
   CHECK_OK(select_with(s, only_kind, 0.0, budget));
   mark_seen(s);
-  double expected = fmax(least_error(s, only_kind, budget), floor_error(s, only_kind));
+  double expected = HUGE_VAL;
+  int last = only_kind < 0 ? CONIC_HYBRID_SURFELS : only_kind;
+  for (int kind = only_kind; kind <= last; kind++) { /* one kind alone may be fewer */
+    double least = least_error(s, kind, budget);
+    if (!isnan(least))
+      expected = fmin(expected, fmax(least, floor_error(s, kind)));
+  }
   CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
   CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_culled == s->info.n_patches);
   if (only_kind >= 0)
@@ -194,6 +215,10 @@ int main(void) {
   CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
   s.options.near_z = s.info.near_z;
   s.is_seen = malloc(s.info.n_patches);
+  s.chosen = malloc(s.info.n_patches * sizeof *s.chosen);
+  s.stages = malloc(s.info.n_patches * sizeof *s.stages);
+  if (!s.is_seen || !s.chosen || !s.stages)
+    return 1;
   look(&s, 30.0, 1.0);
   for (int only_kind = -1; only_kind < 2; only_kind++)
     check_view(&s, only_kind);
@@ -209,6 +234,8 @@ int main(void) {
   conic_hybrid_selection_release(s.context, &s.selection);
   conic_hybrid_destroy(s.hybrid);
   free(s.is_seen);
+  free(s.chosen);
+  free(s.stages);
   conic_context_destroy(s.context);
   return check_result();
 }

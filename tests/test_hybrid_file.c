@@ -1,5 +1,7 @@
 /* .chy files: what is written is read, to the bit, and draws the same picture; what was spoiled is refused, also where
  * its sums were made right again, or can be used; what was built is sound. */
+#include "lod/file_fields.h"
+#include "lod/hybrid_layout.h"
 #include "tests/files.h"
 #include "tests/hybrid_fixture.h"
 #include "tests/random.h"
@@ -127,12 +129,42 @@ static void test_threads(void) {
   CHECK(sums[0] == sums[1]);
 }
 
+/* A model with vertices left out along its patches' borders. */
+static void add_hill(seed_set *set, conic_context *context) {
+  const char *path = files_path("hill.chy");
+  conic_hybrid *hybrid = build(context, 24, -2.0, 0);
+  size_t n_bytes = (size_t)conic_hybrid_file_bytes(hybrid);
+  CHECK(hybrid->n_borders > 4 && hybrid->n_slots > 10);
+  CHECK_OK(conic_hybrid_write(hybrid, path));
+  unsigned char *bytes = malloc(n_bytes);
+  FILE *file = fopen(path, "rb");
+  CHECK(bytes && file && fread(bytes, 1, n_bytes, file) == n_bytes);
+  if (file)
+    fclose(file);
+  CHECK(unlink(path) == 0);
+  seeds_add(set, "chy", "chy", 0, bytes, n_bytes);
+  free(bytes);
+  conic_hybrid_destroy(hybrid);
+}
+
+/* Slots and borders are a small part of a file: half of the changes are to them. */
+static size_t place_to_change(uint64_t *state, const unsigned char *bytes, size_t n_bytes) {
+  size_t from = 8;
+  if (random_unit(state) < 0.5) {
+    conic_chy_header h = {.n_slots = conic_file_get(bytes + 160, 8), .n_borders = conic_file_get(bytes + 168, 8)};
+    size_t n_chains = (size_t)h.n_slots * sizeof(conic_hybrid_slot) + (size_t)h.n_borders * sizeof(conic_hybrid_border);
+    from = n_chains < n_bytes - 8 ? n_bytes - n_chains - 8 : 8;
+  }
+  return from + (size_t)(random_unit(state) * (double)(n_bytes - from));
+}
+
 /* A byte is changed and the sums made right: it is refused, or it can be drawn. */
 static void test_mended(conic_context *context) {
   seed_set set = {.n = 0};
   uint64_t state = 3;
   seeds_hybrid(&set, context, 0);
   seeds_hybrid(&set, context, 1);
+  add_hill(&set, context);
   int n_refused = 0;
   for (int i = 0; i < set.n; i++) {
     const seed *from = &set.seeds[i];
@@ -140,7 +172,7 @@ static void test_mended(conic_context *context) {
     for (int run = 0; run < 1500 && bytes; run++) {
       conic_hybrid *hybrid;
       memcpy(bytes, from->bytes, from->n_bytes);
-      size_t at = 8 + (size_t)(random_unit(&state) * (double)(from->n_bytes - 8));
+      size_t at = place_to_change(&state, from->bytes, from->n_bytes);
       bytes[at] = (unsigned char)(random_unit(&state) * 256.0);
       conic_hybrid_mend(bytes, from->n_bytes);
       const char *path = files_write_bytes("mended.chy", bytes, from->n_bytes);

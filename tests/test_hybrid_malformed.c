@@ -169,7 +169,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
     const char *wanted;
   } edits[] = {
       {0, "CONICHX", 7, "no .chy file (at byte 0)"},
-      {VERSION, &(uint32_t){2}, 4, "version 2 of the format is not known (at byte 8)"},
+      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 3 of the format is not known (at byte 8)"},
       {FLAGS, &(uint32_t){16}, 4, flags},
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
@@ -236,10 +236,12 @@ static uint32_t u32_at(const sound_file *sound, size_t at) {
 
 static void test_levels(conic_context *context, const sound_file *sound) {
   static const char no_kind[] = "a level of no known kind", no_parts[] = "a level without its triangles or surfels",
-                    no_vertices[] = "a level without its vertices", range[] = "a level's error or reach out of range";
+                    no_vertices[] = "a level without its vertices",
+                    range[] = "a level's error, reach or extent out of range";
   check_u32(context, sound, LEVEL(0, kind), CONIC_HYBRID_SURFELS, no_kind); /* the first is the mesh itself */
   check_u32(context, sound, LEVEL(1, kind), 2, no_kind);
-  check_u32(context, sound, LEVEL(1, zero), 7, no_kind);
+  check_u32(context, sound, LEVEL(0, n_borders), UINT32_MAX, "a level without its borders");
+  check_u32(context, sound, LEVEL(0, first_border), UINT32_MAX, "a level without its borders");
   check_u32(context, sound, LEVEL(0, count), 0, no_parts);
   check_u32(context, sound, LEVEL(0, count), sound->n_triangles + 1, no_parts);
   check_u32(context, sound, LEVEL(0, first), sound->n_triangles, no_parts);
@@ -252,6 +254,8 @@ static void test_levels(conic_context *context, const sound_file *sound) {
   check_f32(context, sound, LEVEL(1, error), INFINITY, range);
   check_f32(context, sound, LEVEL(1, error), -1e-6f, range);
   check_f32(context, sound, LEVEL(0, reach), -1.0f, range);
+  check_f32(context, sound, LEVEL(1, cover), -1.0f, range);
+  check_f32(context, sound, LEVEL(1, spread), NAN, range);
   check_f32(context, sound, LEVEL(sound->n_levels - 1, reach), NAN, range);
 }
 
