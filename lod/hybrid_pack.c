@@ -149,17 +149,19 @@ static void put_patch(packing *p, cursor *at, uint32_t i, uint32_t (*corners)[3]
   conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
   const conic_patch_ways *ways = &p->ways[i];
   size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
+  double error = 0.0;
   patches[i] = (conic_hybrid_patch){.bound = conic_patch_bound(p->mesh, i),
                                     .area = (float)ways->area,
                                     .first_level = (uint32_t)at->level,
                                     .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
-  patches[i].built = p->mesh->clusters->is_gathered[i] && ways->n_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
+  patches[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
   for (size_t k = 0; k < n; k++)
     memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
   put_triangles(p, at, (const uint32_t(*)[3])corners, p->mesh->faces + p->mesh->starts[i], n, 0.0);
   for (int k = 0; k < ways->triangles.n; k++) {
     const conic_patch_level *level = &ways->triangles.levels[k];
-    put_triangles(p, at, (const uint32_t(*)[3])level->corners, level->face, level->n, level->error);
+    error = level->error > error ? level->error : error; /* no less than that of what it is simpler than */
+    put_triangles(p, at, (const uint32_t(*)[3])level->corners, level->face, level->n, error);
   }
   for (int k = 0; k < ways->n_surfels; k++) {
     put_surfels(p, at, &ways->surfels[k]);
