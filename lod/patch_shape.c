@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "lod/least_ellipse.h"
+#include "lod/patch_contrast.h"
 
 /* How far an ellipse reaches beyond what it must cover, and how long it may be. */
 static const double cover = 1.1;
@@ -228,7 +229,9 @@ static void widen(conic_site *site) {
 
 double conic_site_error(const conic_sampler *s, const conic_site *site, double known) {
   const conic_ellipse *e = &site->ellipse;
+  double smear = site->contrast * e->reach;
   known = site->height > known ? site->height : known;
+  known = smear > known ? smear : known;
   for (int k = 0; k < 4; k++) {
     double length = (k & 1 ? -e->reach : e->reach) * (k & 2 ? e->ratio : 1.0), at[3];
     double x = length * (k & 2 ? -e->major[1] : e->major[0]), y = length * (k & 2 ? e->major[0] : e->major[1]);
@@ -260,6 +263,7 @@ conic_status conic_patch_shape_sites(conic_sampler *s) {
   if (status != CONIC_OK)
     return status;
   settle_planes(s);
+  conic_patch_find_contrasts(s);
   status = do_small_triangles(s, cover_small_triangle);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     shape_site(s, &s->sites[i]);

@@ -105,8 +105,7 @@ static conic_status add_candidate(conic_sampler *s, uint32_t i_lattice, int i, i
   return CONIC_OK;
 }
 
-/* A place on a side that two faces of the patch share is a candidate of the one only. */
-static int is_mine(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)l->face + (size_t)corner];
     if (is_on_side(l, i, j, corner) && !conic_patch_ends_at(mesh, l->face, corner) && across / 3 < l->face)
@@ -127,7 +126,7 @@ static conic_status list_candidates(conic_sampler *s) {
         int is_first = 0;
         for (int corner = 0; corner < 3; corner++)
           is_first |= rims[corner] && is_on_side(l, i, j, corner);
-        if (is_first || is_mine(mesh, l, i, j))
+        if (is_first || conic_lattice_is_own(mesh, l, i, j))
           status = add_candidate(s, (uint32_t)k, i, j, is_first);
       }
   }

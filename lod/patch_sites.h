@@ -38,6 +38,7 @@ typedef struct conic_site {
   double normal[3], color[3], area;
   double u[3], v[3]; /* its plane */
   conic_ellipse ellipse;
+  double darkest[3], brightest[3], contrast; /* of the colours that it stands for */
   uint32_t first_support;
   double lowest, highest; /* of what it stands for, above the plane through its place */
   double height;          /* of that, from its plane along a face's normal, the most */
@@ -79,6 +80,9 @@ struct conic_sampler {
 static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
   return sampler->job->spacing / (double)(1 << depth);
 }
+
+/* Of a place on a side that two faces of the patch share, only the one answers other than 0. */
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *lattice, int i, int j);
 
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
 conic_status conic_patch_find_sites(conic_sampler *sampler);
