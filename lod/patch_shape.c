@@ -19,6 +19,7 @@ typedef struct small_triangle {
   const double *facing;
   double at[3][3], bary[3][3];
   uint32_t owners[3];
+  int is_between; /* two that point as the face does */
 } small_triangle;
 
 /* The corners of the small triangles at (i, j): the one that points as the face does, and the one between. */
@@ -33,7 +34,7 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
     for (int i = 0; i < l->sides; i++)
       for (int j = 0; j < l->sides - i; j++)
         for (int between = 0; between < (i + j < l->sides - 1 ? 2 : 1) && status == CONIC_OK; between++) {
-          small_triangle t = {.lattice = l, .facing = s->facing[k]};
+          small_triangle t = {.lattice = l, .facing = s->facing[k], .is_between = between};
           for (int corner = 0; corner < 3; corner++) {
             const int *step = corner_steps[between][corner];
             conic_lattice_bary(l, i + step[0], j + step[1], t.bary[corner]);
@@ -126,31 +127,43 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
     at[axis] = t->at[from][axis] + share * (t->at[to][axis] - t->at[from][axis]);
 }
 
-/* Each corner's owner covers its part of the triangle: up to the borders on the sides, and to the middle between those
- * where all three have others. */
+static conic_status cover_places(conic_sampler *s) {
+  conic_status status = CONIC_OK;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
+        double bary[3], at[3];
+        conic_lattice_bary(l, i, j, bary);
+        conic_patch_place(s->job->mesh, l->face, bary, at);
+        status = note_support(s, s->owner[conic_lattice_place(l, i, j)], at, l->face, s->facing[k]);
+      }
+  }
+  return status;
+}
+
+/* Each corner's owner covers its part of the triangle: from the corner, which is noted, up to the borders on the sides,
+ * and to the middle between those where all three have others. Every side is one of a triangle that points as the face
+ * does. */
 static conic_status cover_small_triangle(conic_sampler *s, const small_triangle *t) {
   double border[3][3], middle[3]; /* border k: on the side that begins at corner k */
-  int is_parted[3], n_parted = 0;
+  int n_parted = 0;
   conic_status status = CONIC_OK;
   for (int k = 0; k < 3; k++) {
-    is_parted[k] = t->owners[k] != t->owners[(k + 1) % 3];
-    n_parted += is_parted[k];
-    if (is_parted[k])
-      find_border(s, t, k, (k + 1) % 3, border[k]);
+    uint32_t owners[2] = {t->owners[k], t->owners[(k + 1) % 3]};
+    if (owners[0] == owners[1])
+      continue;
+    n_parted++;
+    find_border(s, t, k, (k + 1) % 3, border[k]);
+    for (int end = 0; end < 2 && status == CONIC_OK && !t->is_between; end++)
+      status = note_support(s, owners[end], border[k], t->lattice->face, t->facing);
   }
-  for (int axis = 0; axis < 3 && n_parted == 3; axis++)
+  if (n_parted < 3)
+    return status;
+  for (int axis = 0; axis < 3; axis++)
     middle[axis] = (border[0][axis] + border[1][axis] + border[2][axis]) / 3.0;
-  for (int corner = 0; corner < 3 && status == CONIC_OK; corner++) {
-    uint32_t owner = t->owners[corner];
-    int before = (corner + 2) % 3;
-    status = note_support(s, owner, t->at[corner], t->lattice->face, t->facing);
-    if (status == CONIC_OK && is_parted[corner])
-      status = note_support(s, owner, border[corner], t->lattice->face, t->facing);
-    if (status == CONIC_OK && is_parted[before])
-      status = note_support(s, owner, border[before], t->lattice->face, t->facing);
-    if (status == CONIC_OK && n_parted == 3)
-      status = note_support(s, owner, middle, t->lattice->face, t->facing);
-  }
+  for (int corner = 0; corner < 3 && status == CONIC_OK; corner++)
+    status = note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
   return status;
 }
 
@@ -264,7 +277,9 @@ conic_status conic_patch_shape_sites(conic_sampler *s) {
     return status;
   settle_planes(s);
   conic_patch_find_contrasts(s);
-  status = do_small_triangles(s, cover_small_triangle);
+  status = cover_places(s);
+  if (status == CONIC_OK)
+    status = do_small_triangles(s, cover_small_triangle);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     shape_site(s, &s->sites[i]);
   return status;

@@ -110,10 +110,10 @@ static double judge_errors(const outlines *o) {
     return 0.0;
   qsort(errors, n, sizeof *errors, compare_doubles);
   double greatest = errors[n - 1];
-  fprintf(stderr, "  %zu of %zu patches are %zu surfels, the others %zu triangles; errors px:", n, h->n_patches,
-          o->info.n_surfels, o->info.n_triangles);
-  for (int k = 0; k <= 10; k += 2)
-    fprintf(stderr, " %d %% %.2f", 10 * k, errors[(n - 1) * (size_t)k / 10]);
+  fprintf(stderr, "  %zu of %zu patches are %zu surfels, the others %zu triangles; quarters of errors px:", n,
+          h->n_patches, o->info.n_surfels, o->info.n_triangles);
+  for (size_t quarter = 0; quarter <= 4; quarter++)
+    fprintf(stderr, " %.2f", errors[(n - 1) * quarter / 4]);
   fprintf(stderr, "\n");
   free(errors);
   return greatest;
