@@ -203,6 +203,10 @@ static conic_status read_file(cli_session *session, const char *path, const cli_
   scene->is_framed = !look->camera_path;
   scene->has_camera = look->camera_path != NULL;
   conic_status status = CONIC_OK;
+  if (conic_hybrid_is_file(path)) {
+    cli_error(CLI_USAGE, "%s: hybrid models are measured by conic render --repeat", path);
+    return CONIC_ERROR_ARGUMENT;
+  }
   if (look->camera_path)
     status = conic_camera_read(session->context, look->camera_path, &scene->camera);
   return status == CONIC_OK ? cli_scene_read(session, &job, &scene->splats) : status;

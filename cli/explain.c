@@ -17,6 +17,7 @@ typedef struct explain_job {
   const char *dump_path; /* --dump-projection; null: none */
 
   conic_camera camera;
+  conic_drawing drawing;
   conic_contributions *contributions;
   conic_image image; /* all planes, where a pixel is asked for */
 } explain_job;
@@ -47,11 +48,29 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
   write_numbers(json, key, wide, 3);
 }
 
+/* Which splat it is of what is drawn; and of what that was chosen. */
+static void write_splat_name(cli_json *json, const explain_job *job, uint32_t splat) {
+  cli_json_count(json, "splat", splat);
+  if (job->scene.patches)
+    cli_json_count(json, "point", job->scene.patch_selection.points[splat]);
+  if (job->scene.octree) {
+    uint32_t id = job->scene.selection.ids[splat];
+    int is_point = id < job->scene.info.n_points;
+    cli_json_count(json, is_point ? "point" : "node", is_point ? id : id - job->scene.info.n_points);
+  }
+  if (job->scene.hybrid)
+    cli_json_count(json, "cluster", job->scene.hybrid_selection.splat_cluster[splat]);
+}
+
+static void write_triangle_name(cli_json *json, const explain_job *job, uint32_t triangle) {
+  cli_json_count(json, "triangle", triangle);
+  if (job->drawing.triangles->cluster)
+    cli_json_count(json, "cluster", job->drawing.triangles->cluster[triangle]);
+}
+
 /* What a splat is on the screen, whatever the pixel. */
 static void write_projection(cli_json *json, const explain_job *job, const conic_projection *p) {
-  cli_json_count(json, "splat", p->splat);
-  if (job->scene.patches)
-    cli_json_count(json, "point", job->scene.patch_selection.points[p->splat]);
+  write_splat_name(json, job, p->splat);
   cli_json_text(json, "fate", conic_fate_name(p->fate));
   if (p->fate > CONIC_FATE_RAY)
     return;
@@ -69,6 +88,16 @@ static void write_projection(cli_json *json, const explain_job *job, const conic
   write_vector(json, "color", p->color);
   write_vector(json, "normal", p->normal);
 }
+
+/* What is in reach of the pixel. */
+typedef struct at_pixel {
+  const conic_contribution *list;
+  const conic_triangle_contribution *triangles;
+  size_t n, n_triangles;
+  double visible_weight;
+  float threshold;
+  size_t counts[CONIC_N_CONTRIBUTION_VERDICTS];
+} at_pixel;
 
 static conic_status write_contribution(cli_json *json, const explain_job *job, const conic_contribution *c,
                                        double visible_weight) {
@@ -93,10 +122,32 @@ static conic_status write_contribution(cli_json *json, const explain_job *job, c
   return CONIC_OK;
 }
 
+/* What is blended, in the order of the sums: splats as they come, and the triangle last. */
+static void write_blended(cli_json *json, const explain_job *job, const at_pixel *at) {
+  cli_json_array(json, "blended");
+  for (size_t i = 0; i < at->n; i++)
+    if (at->list[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
+      cli_json_object(json, NULL);
+      write_splat_name(json, job, at->list[i].splat);
+      cli_json_number(json, "weight", (double)at->list[i].weight);
+      cli_json_number(json, "share", (double)at->list[i].weight / at->visible_weight);
+      cli_json_number(json, "depth", (double)at->list[i].depth);
+      cli_json_close(json);
+    }
+  for (size_t i = 0; i < at->n_triangles; i++)
+    if (at->triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE) {
+      cli_json_object(json, NULL);
+      write_triangle_name(json, job, at->triangles[i].triangle);
+      cli_json_number(json, "weight", 1.0);
+      cli_json_number(json, "share", 1.0 / at->visible_weight);
+      cli_json_number(json, "depth", (double)at->triangles[i].depth);
+      cli_json_close(json);
+    }
+  cli_json_close(json);
+}
+
 static void write_triangles(cli_json *json, const explain_job *job, const conic_triangle_contribution *list, size_t n,
                             double visible_weight) {
-  if (!job->scene.triangles.count)
-    return;
   cli_json_array(json, "triangles");
   for (size_t i = 0; i < n; i++) {
     cli_json_object(json, NULL);
@@ -107,7 +158,7 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
     cli_json_number(json, "depth", (double)list[i].depth);
     cli_json_number(json, "inverse_depth", (double)list[i].inverse_depth);
     cli_json_number(json, "hides", (double)list[i].hides);
-    cli_json_count(json, "triangle", list[i].triangle);
+    write_triangle_name(json, job, list[i].triangle);
     write_vector(json, "color", list[i].color);
     write_vector(json, "normal", list[i].normal);
     cli_json_close(json);
@@ -119,7 +170,9 @@ static void write_triangles(cli_json *json, const explain_job *job, const conic_
 static void write_planes(cli_json *json, const explain_job *job) {
   size_t at = (size_t)job->pixel[1] * (size_t)job->image.width + (size_t)job->pixel[0];
   cli_json_object(json, "planes");
-  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (!job->image.planes[i])
+      continue;
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     size_t n = (size_t)plane->n_channels;
     double values[4];
@@ -134,39 +187,49 @@ static void write_planes(cli_json *json, const explain_job *job) {
   cli_json_close(json);
 }
 
-static conic_status write_pixel(cli_json *json, const explain_job *job) {
-  const conic_contribution *list;
-  const conic_triangle_contribution *triangles;
-  size_t n, n_triangles, counts[CONIC_N_CONTRIBUTION_VERDICTS] = {0};
-  float visible_weight = 0.0f, threshold = 0.0f;
-  const double pixel[2] = {job->pixel[0], job->pixel[1]};
-  conic_status status = conic_contributions_at(job->contributions, job->pixel[0], job->pixel[1], &list, &n);
+static conic_status look_at_pixel(const explain_job *job, at_pixel *at) {
+  const int x = job->pixel[0], y = job->pixel[1];
+  float weight = 0.0f;
+  memset(at, 0, sizeof *at);
+  conic_status status = conic_contributions_at(job->contributions, x, y, &at->list, &at->n);
   if (status == CONIC_OK)
-    status =
-        conic_contributions_triangles_at(job->contributions, job->pixel[0], job->pixel[1], &triangles, &n_triangles);
+    status = conic_contributions_triangles_at(job->contributions, x, y, &at->triangles, &at->n_triangles);
   if (status != CONIC_OK)
     return status;
-  for (size_t i = 0; i < n; i++) {
-    counts[list[i].verdict]++;
-    visible_weight += list[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? list[i].weight : 0.0f;
-    threshold = threshold < list[i].hides ? list[i].hides : threshold;
+  for (size_t i = 0; i < at->n; i++) {
+    at->counts[at->list[i].verdict]++;
+    weight += at->list[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? at->list[i].weight : 0.0f;
+    at->threshold = at->threshold < at->list[i].hides ? at->list[i].hides : at->threshold;
   }
-  for (size_t i = 0; i < n_triangles; i++) {
-    visible_weight += triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? 1.0f : 0.0f;
-    threshold = threshold < triangles[i].hides ? triangles[i].hides : threshold;
+  for (size_t i = 0; i < at->n_triangles; i++) {
+    weight += at->triangles[i].verdict == CONIC_CONTRIBUTION_VISIBLE ? 1.0f : 0.0f;
+    at->threshold = at->threshold < at->triangles[i].hides ? at->triangles[i].hides : at->threshold;
   }
+  at->visible_weight = (double)weight;
+  return CONIC_OK;
+}
+
+static conic_status write_pixel(cli_json *json, const explain_job *job) {
+  at_pixel at;
+  const double pixel[2] = {job->pixel[0], job->pixel[1]};
+  conic_status status = look_at_pixel(job, &at);
+  if (status != CONIC_OK)
+    return status;
   write_numbers(json, "pixel", pixel, 2);
   write_planes(json, job);
-  cli_json_number(json, "threshold", (double)threshold);
+  cli_json_number(json, "threshold", (double)at.threshold);
   cli_json_object(json, "counts");
   for (int i = 0; i < CONIC_N_CONTRIBUTION_VERDICTS; i++)
-    cli_json_count(json, conic_contribution_verdict_name((conic_contribution_verdict)i), counts[i]);
+    cli_json_count(json, conic_contribution_verdict_name((conic_contribution_verdict)i), at.counts[i]);
   cli_json_close(json);
+  if (job->drawing.triangles->count)
+    write_blended(json, job, &at);
   cli_json_array(json, "contributions");
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    status = write_contribution(json, job, &list[i], (double)visible_weight);
+  for (size_t i = 0; i < at.n && status == CONIC_OK; i++)
+    status = write_contribution(json, job, &at.list[i], at.visible_weight);
   cli_json_close(json);
-  write_triangles(json, job, triangles, n_triangles, (double)visible_weight);
+  if (job->drawing.triangles->count)
+    write_triangles(json, job, at.triangles, at.n_triangles, at.visible_weight);
   return status;
 }
 
@@ -239,29 +302,32 @@ static conic_status dump_projection(cli_session *session, const explain_job *job
   return status;
 }
 
-static conic_status draw(cli_session *session, explain_job *job, const conic_splats *splats) {
+static conic_status draw(cli_session *session, explain_job *job) {
   conic_renderer *renderer;
+  unsigned planes = CONIC_DRAWN_PLANES | (job->scene.hybrid ? 1u << CONIC_PLANE_CLUSTER : 0u);
   if (!job->is_pixel_given)
     return CONIC_OK;
   conic_status status =
-      conic_image_allocate(session->context, job->camera.width, job->camera.height, CONIC_DRAWN_PLANES, &job->image);
+      conic_image_allocate(session->context, job->camera.width, job->camera.height, planes, &job->image);
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status != CONIC_OK)
     return status;
-  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
-  status = conic_render_drawing(session->context, renderer, &drawing, &job->camera, &job->scene.options, 1, &job->image,
-                                NULL);
+  status = conic_render_drawing(session->context, renderer, &job->drawing, &job->camera, &job->scene.options, 1,
+                                &job->image, NULL);
   conic_renderer_destroy(renderer);
-  if (status == CONIC_OK && job->scene.patches)
-    conic_patch_selection_name(&job->scene.patch_selection, &job->image);
+  if (status == CONIC_OK)
+    cli_scene_name(&job->scene, &job->image);
   return status;
 }
 
 /* What was asked about is there: only now is it known what there is. */
-static int check_questions(const explain_job *job, const conic_splats *splats) {
-  if (job->is_splat_given && job->splat >= splats->count)
-    return cli_usage("explain: there is no splat %llu: the last is %zu", job->splat, splats->count - 1);
+static int check_questions(const explain_job *job) {
+  size_t n_splats = job->drawing.splats->count;
+  if (job->is_splat_given && n_splats == 0)
+    return cli_usage("explain: there is no splat %llu: triangles alone are drawn", job->splat);
+  if (job->is_splat_given && job->splat >= n_splats)
+    return cli_usage("explain: there is no splat %llu: the last is %zu", job->splat, n_splats - 1);
   if (job->is_pixel_given && (job->pixel[0] >= job->camera.width || job->pixel[1] >= job->camera.height))
     return cli_usage("explain: the pixel %d,%d is not in a picture of %d x %d", job->pixel[0], job->pixel[1],
                      job->camera.width, job->camera.height);
@@ -271,20 +337,17 @@ static int check_questions(const explain_job *job, const conic_splats *splats) {
 static int answer(cli_session *session, explain_job *job, const conic_splats *splats) {
   double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &job->camera);
-  if (status == CONIC_OK && job->scene.patches) { /* what is drawn, and explained, are the picture's samples */
-    status = cli_patch_select(&job->scene, &job->camera, &ms);
-    splats = &job->scene.patch_selection.splats;
-  }
-  int exit_code = status == CONIC_OK ? check_questions(job, splats) : cli_exit_of(status);
+  if (status == CONIC_OK) /* where something is chosen, that is what is drawn, and explained */
+    status = cli_scene_select(&job->scene, &job->camera, splats, &job->drawing, &ms);
+  int exit_code = status == CONIC_OK ? check_questions(job) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;
-  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
-  status = conic_contributions_create_drawing(session->context, &drawing, &job->camera, &job->scene.options,
+  status = conic_contributions_create_drawing(session->context, &job->drawing, &job->camera, &job->scene.options,
                                               &job->contributions);
   if (status == CONIC_OK)
-    status = draw(session, job, splats);
+    status = draw(session, job);
   if (status == CONIC_OK)
-    status = dump_projection(session, job, splats->count);
+    status = dump_projection(session, job, job->drawing.splats->count);
   exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE && (job->is_pixel_given || job->is_splat_given))
     exit_code = write_report(session, job);

@@ -105,9 +105,18 @@ static conic_status clean_cells(mls_job *job) {
   return status;
 }
 
+static conic_status act(mls_job *job) {
+  switch (job->action) {
+  case MLS_THIN:
+    return thin(job);
+  case MLS_DENSIFY:
+    return densify(job);
+  default:
+    return project(job);
+  }
+}
+
 static conic_status work(mls_job *job) {
-  static conic_status (*const actions[N_MLS_ACTIONS])(mls_job *) = {
-      [MLS_PROJECT] = project, [MLS_THIN] = thin, [MLS_DENSIFY] = densify};
   double start = cli_seconds();
   job->options.type = (conic_surface_type)job->type;
   job->options.plane = (conic_surface_plane)job->plane;
@@ -118,7 +127,7 @@ static conic_status work(mls_job *job) {
     return clean_cells(job);
   conic_status status = conic_surface_create(job->session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
-    status = actions[job->action](job);
+    status = act(job);
   job->n_out = job->result.count;
   job->work_seconds = cli_seconds() - start;
   return status;

@@ -124,16 +124,17 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
   return status;
 }
 
-/* --deep: the splats behind the picture's pixels. */
+/* --deep: what is behind the picture's pixels. */
 static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                const conic_camera *camera, const conic_image *image, int i_frame) {
+  const conic_drawing drawing = cli_scene_drawing(job, splats);
   conic_contributions *contributions;
   double start = cli_seconds();
   if (!job->deep_path)
     return CONIC_OK;
   char *path = frame_path(job, job->deep_path, i_frame);
   conic_status status =
-      path ? conic_contributions_create(session->context, splats, camera, &job->options, &contributions)
+      path ? conic_contributions_create_drawing(session->context, &drawing, camera, &job->options, &contributions)
            : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     status = conic_contributions_write(contributions, path, image);
@@ -144,30 +145,20 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
   return status;
 }
 
-/* One picture; of an octree, of what is chosen for it, which counts among the frame's time. */
+/* One picture; where what is drawn is chosen for it, that counts among the frame's time. */
 static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
                          const conic_camera *camera, conic_renderer *renderer, conic_image *image,
                          conic_render_statistics *statistics) {
-  double lod_ms = 0.0;
+  double lod_ms;
+  conic_drawing drawing;
   if (job->layers.file)
     return cli_layers_draw(session, job, camera, renderer, image, statistics);
-  conic_status status = job->octree    ? cli_lod_select(job, camera, &lod_ms)
-                        : job->patches ? cli_patch_select(job, camera, &lod_ms)
-                        : job->hybrid  ? cli_hybrid_select(job, camera, &lod_ms)
-                                       : CONIC_OK;
-  const conic_splats *chosen = job->octree    ? &job->selection.splats
-                               : job->patches ? &job->patch_selection.splats
-                                              : splats;
-  const conic_drawing drawing = cli_scene_drawing(job, chosen);
+  conic_status status = cli_scene_select(job, camera, splats, &drawing, &lod_ms);
   if (status == CONIC_OK)
     status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
                                   statistics);
-  if (status == CONIC_OK && job->octree)
-    conic_selection_name(&job->selection, image);
-  if (status == CONIC_OK && image->planes[CONIC_PLANE_CLUSTER])
-    conic_hybrid_name(&job->hybrid_selection, image);
-  if (status == CONIC_OK && job->patches)
-    conic_patch_selection_name(&job->patch_selection, image);
+  if (status == CONIC_OK)
+    cli_scene_name(job, image);
   statistics->ms.lod = lod_ms;
   statistics->ms.frame += lod_ms;
   return status;
@@ -242,9 +233,6 @@ static int run(cli_session *session, int argc, char **argv) {
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
     cli_scene_release(session, &job, &splats);
-    cli_lod_close(session, &job);
-    cli_layers_close(&job);
-    cli_hybrid_close(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
@@ -143,6 +144,32 @@ static int parse_planes(const char *text, void *value) {
   return *planes != 0;
 }
 
+/* What goes with choosing less than everything, and with hybrid models. */
+static int check_choice(const cli_session *session, const cli_render_job *job) {
+  const char *command = session->command;
+  if (job->error_px > 0.0 && job->budget > 0)
+    return cli_usage("%s: --error and --budget are two ways to choose; give one of both", command);
+  if (job->is_patch && (job->as != CLI_AS_POINTS || cli_hybrid_is_wanted(job)))
+    return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
+  if (job->is_patch && cli_lod_is_wanted(job))
+    return cli_usage("%s: --method patch draws samples of its own: not with --error or --budget", command);
+  if (cli_hybrid_is_wanted(job) && job->n_inputs != 1)
+    return cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+  if (cli_hybrid_is_wanted(job))
+    return CLI_DONE;
+  if (job->only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
+    return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
+  if (cli_layers_is_wanted(job) && cli_lod_is_wanted(job) && !job->draws_layers)
+    return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
+  int may_be_octree = job->n_inputs == 1 && (conic_octree_is_file(job->inputs[0]) || access(job->inputs[0], R_OK) != 0);
+  if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) && !may_be_octree)
+    return cli_usage(
+        "%s: --error and --budget need a single .cot, .lpc or .chy as input (conic octree, conic layer and "
+        "conic hybrid make them), or --as hybrid",
+        command);
+  return CLI_DONE;
+}
+
 /* What the options of the scene and the drawing mean together. */
 static int check_scene(const cli_session *session, const raw_options *raw, const cli_render_job *job) {
   const char *command = session->command;
@@ -155,17 +182,14 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
                      command);
   if (job->texture_path && job->as == CLI_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
-  if (job->as == CLI_AS_HYBRID && job->n_inputs != 1)
-    return cli_usage("%s: a hybrid is made of one mesh", command);
-  if (job->is_patch && (job->as != CLI_AS_POINTS || cli_hybrid_is_wanted(job)))
-    return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
   if (job->is_smooth && job->as != CLI_AS_MESH)
     return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
-  return cli_device_check(session, &job->device);
+  int answer = check_choice(session, job);
+  return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
 }
 
 /* Refused now, and not after the work. */
@@ -201,17 +225,6 @@ static int check_layers(const cli_render_job *job) {
   return CLI_DONE;
 }
 
-/* What goes with a hybrid model. */
-static int check_hybrid(const cli_render_job *job) {
-  if (job->n_inputs != 1)
-    return cli_usage("render: a hybrid is drawn by itself");
-  if (job->budget)
-    return cli_usage("render: --budget needs a .cot; of a hybrid --error chooses");
-  if (job->deep_path)
-    return cli_usage("render: --deep lists splats, not triangles; a hybrid has both");
-  return CLI_DONE;
-}
-
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
   const char *paths[CLI_MAX_OUTPUTS + 3];
@@ -232,24 +245,11 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     answer = check_output(job->clusters_path);
   if (answer != CLI_DONE)
     return answer;
-  if (cli_lod_is_wanted(job) && job->deep_path)
+  if (cli_lod_is_wanted(job) && job->deep_path && !cli_hybrid_is_wanted(job))
     return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
-  if (job->as != CLI_AS_POINTS && job->deep_path)
-    return cli_usage("render: --deep lists splats, not triangles; give --as points");
-  if (job->is_patch && (cli_lod_is_wanted(job) || job->deep_path))
-    return cli_usage("render: --method patch draws samples of its own: not with --error, --budget or --deep");
-  if (job->error_px > 0.0 && job->budget)
-    return cli_usage("render: --error and --budget are two ways to choose; give one of both");
-  if (cli_hybrid_is_wanted(job))
-    answer = check_hybrid(job);
-  else if (job->only_kind >= 0 || job->planes & 1u << CONIC_PLANE_CLUSTER)
-    return cli_usage("render: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid");
-  else if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) &&
-           (job->n_inputs != 1 || !conic_octree_is_file(job->inputs[0])))
-    return cli_usage("render: --error and --budget need a single .cot or .lpc as input (conic octree and conic layer "
-                     "make them), and --error a .chy");
-  if (answer == CLI_DONE)
-    answer = check_layers(job);
+  if (job->is_patch && job->deep_path)
+    return cli_usage("render: --method patch draws samples of its own: not with --deep");
+  answer = check_layers(job);
   if (answer != CLI_DONE)
     return answer;
   if (job->camera_path && job->is_turntable)
@@ -316,6 +316,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      {"error", CLI_NUMBER, &job->error_px, "PX",
+       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
+      {"budget", CLI_COUNT, &job->budget, "N",
+       "of a .cot, .lpc or hybrid, the N primitives or fewer whose error is the least", 1, 4294967294.0},
+      {"only", CLI_CHOICE, &job->only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
+       .choices = only_words},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
        "surface [conic]",
@@ -376,17 +382,12 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
-      {"deep", CLI_TEXT, &job->deep_path, "OUT.exr", "every splat of every pixel, as a deep image: id, depth, weight"},
+      {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
+       "every splat and triangle of every pixel, as a deep image: id, depth, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
-      {"error", CLI_NUMBER, &job->error_px, "PX",
-       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
-      {"only", CLI_CHOICE, &job->only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
-       .choices = only_words},
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
-      {"budget", CLI_COUNT, &job->budget, "N", "of a .cot or .lpc, the N splats or fewer whose error is the least", 1,
-       4294967294.0},
       {"progressive", CLI_TEXT, &job->layers.progressive_path, "DIR",
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},
       {"deadline", CLI_NUMBER, &job->layers.deadline, "S",

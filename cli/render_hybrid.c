@@ -1,6 +1,4 @@
-/* conic render of hybrid models: a .chy, or a mesh with --as hybrid. */
-#include <string.h>
-
+/* Hybrid models as a scene: a .chy, or a mesh with --as hybrid. */
 #include "cli/hybrid_mesh.h"
 #include "cli/render_job.h"
 
@@ -32,10 +30,6 @@ static conic_status build(cli_session *session, cli_render_job *job) {
 conic_status cli_hybrid_open(cli_session *session, cli_render_job *job) {
   double start = cli_seconds();
   conic_status status;
-  if (strcmp(session->command, "render") != 0) {
-    cli_error(CLI_USAGE, "%s: hybrid models are for conic render", session->command);
-    return CONIC_ERROR_ARGUMENT;
-  }
   if (conic_hybrid_is_file(job->inputs[0])) {
     status = conic_hybrid_read(session->context, job->inputs[0], &job->hybrid);
     job->read_ms = 1e3 * (cli_seconds() - start);
@@ -49,6 +43,7 @@ conic_status cli_hybrid_select(cli_render_job *job, const conic_camera *camera, 
   conic_hybrid_view_init(&view);
   view.error_px = job->error_px;
   view.only_kind = job->only_kind;
+  view.budget = job->budget;
   double start = cli_seconds();
   conic_status status = conic_hybrid_select(job->hybrid, camera, &job->options, &view, &job->hybrid_selection);
   *ms = 1e3 * (cli_seconds() - start);

@@ -55,7 +55,7 @@ typedef struct cli_render_job {
   int is_smooth;                /* meshes get vertex normals from their faces */
   const char *texture_path;     /* of meshes that are drawn as such, in place of their own; null: none */
   double error_px;              /* 0: every splat */
-  unsigned long long budget;    /* 0: no limit */
+  unsigned long long budget;    /* 0: no limit; splats, or triangles and surfels */
 
   /* Where one of both is given: the only input, and what was chosen of it for the frame. */
   conic_octree *octree;
@@ -133,8 +133,13 @@ conic_status cli_patch_select(cli_render_job *job, const conic_camera *camera, d
 /* Ends both; fine where they never were. */
 void cli_patch_close(cli_render_job *job);
 
-/* What is drawn: the splats and the job's triangles. */
+/* What is drawn: what was chosen, or the splats and the job's triangles. */
 conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats);
+/* Chooses for a frame where that is asked for, and says what is drawn; *ms is what it took. */
+conic_status cli_scene_select(cli_render_job *job, const conic_camera *camera, const conic_splats *splats,
+                              conic_drawing *drawing, double *ms);
+/* Names what was chosen in the drawn picture: planes id and cluster. */
+void cli_scene_name(const cli_render_job *job, conic_image *image);
 
 /* Reads the inputs into one set of splats, which the caller releases by cli_scene_release, also after a failure; and
  * into the job's triangles. */

@@ -50,8 +50,8 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_render_layers_report(json, job);
   else
     cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
-  if (job->octree)
-    cli_json_number(json, "error_px", job->selection.error_px);
+  if (job->octree || job->hybrid)
+    cli_json_number(json, "error_px", job->hybrid ? job->hybrid_selection.error_px : job->selection.error_px);
 }
 
 static void report_settings(cli_json *json, const cli_render_job *job) {

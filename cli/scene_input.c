@@ -164,17 +164,11 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
   return CONIC_OK;
 }
 
-conic_drawing cli_scene_drawing(const cli_render_job *job, const conic_splats *splats) {
-  conic_drawing drawing = {splats, &job->triangles};
-  if (job->hybrid) {
-    drawing.splats = &job->hybrid_selection.splats;
-    drawing.triangles = &job->hybrid_selection.triangles;
-  }
-  return drawing;
-}
-
 void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats) {
   cli_patch_close(job); /* it refers to the splats */
+  cli_lod_close(session, job);
+  cli_layers_close(job);
+  cli_hybrid_close(session, job);
   conic_splats_release(session->context, splats);
   conic_triangles_release(session->context, &job->triangles);
 }
@@ -187,7 +181,8 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job, c
     spacing = job->layers.scale.spacing;
   if ((job->octree || job->hybrid) && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings)) {
     cli_error(CLI_USAGE,
-              "render: lengths in spacings need every splat; give world units with --error, --budget or a hybrid");
+              "%s: lengths in spacings need every splat; give world units with --error, --budget or a hybrid",
+              session->command);
     return CONIC_ERROR_ARGUMENT;
   }
   if (!job->layers.file && (job->epsilon.is_in_spacings || job->near_z.is_in_spacings))
@@ -217,7 +212,7 @@ conic_status cli_scene_measure(cli_session *session, cli_render_job *job, const 
   else if (status == CONIC_OK && splats->count)
     status = conic_splats_length(session->context, splats, &job->options.splat_length);
   if (status == CONIC_OK && !job->octree && !job->hybrid && !job->layers.file && job->options.near_z == 0.0) {
-    const conic_drawing drawing = cli_scene_drawing(job, splats);
+    const conic_drawing drawing = {splats, &job->triangles};
     job->options.near_z = conic_drawing_near(&drawing);
   }
   if (status == CONIC_OK && job->is_patch)
@@ -242,9 +237,13 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
     memcpy(low, job->info.minimum, sizeof low);
     memcpy(high, job->info.maximum, sizeof high);
   } else {
-    const conic_drawing drawing = cli_scene_drawing(job, splats);
+    const conic_drawing drawing = {splats, &job->triangles};
     conic_drawing_bounds(&drawing, low, high);
   }
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
+  if (!is_in_reach(low, high)) { /* what was read point by point was asked before */
+    cli_error(CLI_INPUT, "%s: cannot be drawn: a point is farther out than 1e20", job->inputs[0]);
+    return CONIC_ERROR_INPUT;
+  }
   return conic_camera_frame(session->context, &framing, low, high, camera);
 }

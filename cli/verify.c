@@ -19,7 +19,7 @@ typedef struct verify_job {
   double render_ms, oracle_ms;
 } verify_job;
 
-static conic_status get_image(cli_session *session, verify_job *job, const conic_splats *splats,
+static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
                               const conic_camera *camera) {
   conic_renderer *renderer;
   if (job->image_path)
@@ -32,8 +32,7 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
   if (status != CONIC_OK)
     return status;
   double start = cli_seconds();
-  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
-  status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->scene.options, job->scene.samples,
+  status = conic_render_drawing(session->context, renderer, drawing, camera, &job->scene.options, job->scene.samples,
                                 &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   conic_renderer_destroy(renderer);
@@ -49,24 +48,43 @@ static conic_status check_size(const verify_job *job, const conic_camera *camera
   return CONIC_ERROR_INPUT;
 }
 
+/* A picture from a file has the names of what was chosen, where the oracle counts. */
+static void name_reference(verify_job *job) {
+  const conic_selection *leaves = &job->scene.selection;
+  const conic_patch_selection *samples = &job->scene.patch_selection;
+  const uint32_t *names = job->scene.octree ? leaves->ids : job->scene.patches ? samples->points : NULL;
+  size_t n_names = job->scene.octree ? leaves->splats.count : samples->splats.count;
+  double *ids = job->reference.planes[CONIC_PLANE_ID];
+  uint32_t *tied = job->reference.tied_id;
+  for (size_t i = 0; names && i < (size_t)job->reference.width * (size_t)job->reference.height; i++) {
+    if (ids[i] < (double)n_names)
+      ids[i] = (double)names[(size_t)ids[i]];
+    if (tied[i] < n_names)
+      tied[i] = names[tied[i]];
+  }
+}
+
 static conic_status compare(cli_session *session, verify_job *job, const conic_splats *splats) {
   conic_camera camera;
+  conic_drawing drawing;
   double ms;
   conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &camera);
-  if (status == CONIC_OK && job->scene.patches) { /* the oracle judges how samples are drawn, not where they are */
-    status = cli_patch_select(&job->scene, &camera, &ms);
-    splats = &job->scene.patch_selection.splats;
-  }
+  if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
+    status = cli_scene_select(&job->scene, &camera, splats, &drawing, &ms);
   if (status == CONIC_OK)
-    status = get_image(session, job, splats, &camera);
+    status = get_image(session, job, &drawing, &camera);
   if (status == CONIC_OK)
     status = check_size(job, &camera);
-  const conic_drawing drawing = cli_scene_drawing(&job->scene, splats);
+  conic_render_options options = job->scene.options;
+  if (!job->scene.octree && !job->scene.hybrid)
+    options.splat_length = 0.0; /* the oracle sees all splats, and measures them by itself */
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &job->scene.options,
+    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &options,
                                          (conic_oracle_question)job->question, job->scene.samples, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK && job->image_path)
+    name_reference(job);
   if (status == CONIC_OK)
     status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
   return status;
@@ -214,6 +232,8 @@ static int run(cli_session *session, int argc, char **argv) {
       {"image", CLI_TEXT, &job.image_path, "FILE", "the picture to verify, of whatever renderer [drawn anew]"},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  if (exit_code == CLI_DONE && job.scene.planes & 1u << CONIC_PLANE_CLUSTER)
+    exit_code = cli_usage("verify: the plane cluster holds names; the oracle knows what is drawn");
   if (exit_code == CLI_DONE)
     exit_code = verify(session, &job);
   free(job.scene.inputs);

@@ -27,6 +27,7 @@ void conic_faces_destroy(conic_context *context, conic_faces *faces) {
   conic_memory_release(context, faces->coordinates);
   conic_memory_release(context, faces->material_names.bytes);
   conic_memory_release(context, faces->libraries.bytes);
+  conic_memory_release(context, faces->pictures.bytes);
   conic_memory_release(context, faces);
 }
 
@@ -97,6 +98,11 @@ conic_status conic_faces_add_coordinate(conic_context *context, conic_faces *fac
   faces->coordinates[faces->n_coordinates][1] = (float)coordinate[1];
   faces->n_coordinates++;
   return CONIC_OK;
+}
+
+void conic_faces_begin_vertices(conic_faces *faces) {
+  faces->has_vertex_coordinates = 1;
+  faces->first_vertex_coordinate = faces->n_coordinates;
 }
 
 conic_status conic_faces_use_material(conic_context *context, conic_faces *faces, const char *name, size_t length) {

@@ -27,9 +27,12 @@ typedef struct conic_faces {
   size_t n_coordinates, coordinate_room;
   float (*coordinates)[2];
   int has_normal_corners, has_texture_corners;
+  int has_vertex_coordinates; /* a texture coordinate a vertex, for corners that have none of their own: */
+  size_t first_vertex_coordinate;
   uint32_t current_material;
   conic_texts material_names; /* the first is empty: no material */
   conic_texts libraries;      /* material files, as paths */
+  conic_texts pictures;       /* where no names are: material i is the texture of path i, one after all is none */
 } conic_faces;
 
 /* Errors: MEMORY. */
@@ -43,6 +46,9 @@ conic_status conic_faces_add(conic_context *context, conic_faces *faces, const u
 /* Errors: MEMORY. */
 conic_status conic_faces_add_normal(conic_context *context, conic_faces *faces, const double normal[3]);
 conic_status conic_faces_add_coordinate(conic_context *context, conic_faces *faces, const double coordinate[2]);
+
+/* What is added from here on are the vertices' coordinates, in their order. */
+void conic_faces_begin_vertices(conic_faces *faces);
 
 /* Makes the material of that name the one of the triangles that follow. Errors: MEMORY, INPUT (too many). */
 conic_status conic_faces_use_material(conic_context *context, conic_faces *faces, const char *name, size_t length);

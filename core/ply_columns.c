@@ -78,6 +78,30 @@ static void find_columns(const conic_ply_header *header, const conic_ply_element
   }
 }
 
+/* Whether the vertices have a value of that name; which property it is. */
+static int find_value(const conic_ply_header *header, const conic_ply_element *vertices, const char *name,
+                      int *i_property) {
+  *i_property = conic_ply_find_property(header, vertices, name);
+  return *i_property >= 0 && !header->properties[vertices->first_property + (size_t)*i_property].is_list;
+}
+
+/* The first pair of names of which both are there. */
+static void find_coordinates(const conic_ply_header *header, const conic_ply_element *vertices,
+                             conic_ply_layout *layout) {
+  static const char *const pairs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs && !layout->has_coordinates; i++) {
+    int of_pair[2];
+    if (!find_value(header, vertices, pairs[i][0], &of_pair[0]) ||
+        !find_value(header, vertices, pairs[i][1], &of_pair[1]))
+      continue;
+    layout->has_coordinates = 1;
+    for (int k = 0; k < 2; k++) {
+      layout->property[CONIC_PLY_COORDINATE + k] = of_pair[k];
+      layout->type[CONIC_PLY_COORDINATE + k] = header->properties[vertices->first_property + (size_t)of_pair[k]].type;
+    }
+  }
+}
+
 /* Clip lines are given in units of the tangent axes, and so need them. */
 static void find_clip_lists(const conic_ply_header *header, const conic_ply_element *vertices,
                             conic_ply_layout *layout) {
@@ -132,7 +156,8 @@ static int needs_origin(conic_ply_type type) {
 }
 
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
-                                   const conic_ply_element *vertices, float cutoff, conic_ply_layout *layout) {
+                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
+                                   conic_ply_layout *layout) {
   memset(layout, 0, sizeof *layout);
   find_columns(header, vertices, layout);
   if (!has_columns(layout, CONIC_PLY_X, 3))
@@ -140,6 +165,8 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
                       (unsigned long long)vertices->line);
   choose_form(layout);
   find_clip_lists(header, vertices, layout);
+  if (keeps_coordinates)
+    find_coordinates(header, vertices, layout);
   layout->cutoff = cutoff;
   conic_srgb_decode_table(layout->srgb);
   for (int axis = 0; axis < 3; axis++)

@@ -17,7 +17,8 @@ typedef enum conic_ply_column {
   CONIC_PLY_SCALE = 17,
   CONIC_PLY_ROTATION = 20,
   CONIC_PLY_HARMONIC = 24,
-  CONIC_PLY_N_COLUMNS = 27
+  CONIC_PLY_COORDINATE = 27, /* of a texture: two */
+  CONIC_PLY_N_COLUMNS = 29
 } conic_ply_column;
 
 /* Rows that are converted at a time, column by column. */
@@ -39,8 +40,9 @@ typedef struct conic_ply_layout {
                                       */
   conic_ply_type type[CONIC_PLY_N_COLUMNS];
   conic_ply_form form;
-  unsigned fields; /* of the splat set, bits of conic_splats_field */
-  int n_scales;    /* of GAUSSIANS: 2 or 3 */
+  unsigned fields;     /* of the splat set, bits of conic_splats_field */
+  int has_coordinates; /* of textures, which are not converted */
+  int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
   int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
@@ -48,9 +50,11 @@ typedef struct conic_ply_layout {
   float srgb[256]; /* linear values of 8-bit codes */
 } conic_ply_layout;
 
-/* Finds what the vertices hold; `cutoff` turns radii into standard deviations. Errors: INPUT (no x, y, z). */
+/* Finds what the vertices hold; `cutoff` turns radii into standard deviations. Texture coordinates are left out unless
+ * `keeps_coordinates`. Errors: INPUT (no x, y, z). */
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
-                                   const conic_ply_element *vertices, float cutoff, conic_ply_layout *layout);
+                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
+                                   conic_ply_layout *layout);
 
 /* Converts the first `n` rows of `block` into `points` from `first` on; sets the origin from the first finite position
  * where positions need one. */

@@ -3,6 +3,7 @@
 
 #include "core/message.h"
 #include "core/ply_read.h"
+#include "core/ply_texture.h"
 
 /* Turns a list of vertex indices, one at a time, into triangles. */
 typedef struct triangulation {
@@ -12,6 +13,7 @@ typedef struct triangulation {
   int is_strip;
   uint64_t n_seen;   /* indices since the start of the polygon or strip */
   uint32_t first[2]; /* of a polygon: the corner of all its triangles, and the last one; of a strip: the last two */
+  conic_ply_face_texture texture;
 } triangulation;
 
 static conic_status wrong_index(const triangulation *faces, double index) {
@@ -73,9 +75,21 @@ static conic_status skip_property(conic_ply_source *source, const conic_ply_prop
 }
 
 static conic_status read_row(triangulation *faces, const conic_ply_property *properties, size_t i_indices) {
+  size_t n_before = faces->builder->model->n_triangles;
   conic_status status = conic_ply_begin_row(faces->source);
-  for (size_t i = 0; status == CONIC_OK && i < faces->source->element->n_properties; i++)
-    status = i == i_indices ? read_indices(faces, &properties[i]) : skip_property(faces->source, &properties[i]);
+  conic_ply_face_texture_begin_row(&faces->texture);
+  for (size_t i = 0; status == CONIC_OK && i < faces->source->element->n_properties; i++) {
+    int is_read = i == i_indices;
+    if (is_read)
+      status = read_indices(faces, &properties[i]);
+    else
+      status = conic_ply_face_texture_read(faces->source, properties, i, &faces->texture, &is_read);
+    if (status == CONIC_OK && !is_read)
+      status = skip_property(faces->source, &properties[i]);
+  }
+  if (status == CONIC_OK)
+    status = conic_ply_face_texture_end_row(faces->source, faces->n_seen, faces->builder->model->n_triangles - n_before,
+                                            &faces->texture);
   return status == CONIC_OK ? conic_ply_end_row(faces->source) : status;
 }
 
@@ -93,6 +107,7 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
     return conic_fail(source->input->context, CONIC_ERROR_INPUT,
                       "%s: the element '%s' has no list of integers vertex_indices (line %llu)", source->input->name,
                       element->name, (unsigned long long)element->line);
+  conic_ply_face_texture_find(header, element, builder->model, &faces.texture);
   for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++)
     status = read_row(&faces, properties, (size_t)i_indices);
   return status;

@@ -54,12 +54,47 @@ static int is_word(const header_line *line, int i_word, const char *word) {
   return i_word < line->n_words && strcmp(line->words[i_word], word) == 0;
 }
 
-/* What a comment says does not matter, nor how long it is: only the first words of a line are looked at. */
+/* What a comment says does not matter, nor how long it is, but for one that names a texture. */
 static int is_comment(const header_line *line) {
   return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
 }
 
-static conic_status read_line(conic_input *input, header_line *line) {
+static conic_status wrong(conic_input *input, const header_line *line, const char *what, const char *word) {
+  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s%s%s%s (line %llu)", input->name, what, word ? " '" : "",
+                    word ? word : "", word ? "'" : "", (unsigned long long)line->line);
+}
+
+static int is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* comment TextureFile NAME: the name is the rest of the line, and may have blanks in it. */
+static conic_status read_comment(conic_input *input, const header_line *line, conic_texts *textures) {
+  static const char keyword[] = "TextureFile";
+  size_t n_keyword = sizeof keyword - 1;
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  if (status != CONIC_OK)
+    return status;
+  const char *c = (const char *)conic_input_bytes(input), *end = c + conic_input_available(input);
+  while (c < end && is_blank(*c))
+    c++;
+  if ((size_t)(end - c) <= n_keyword || memcmp(c, keyword, n_keyword) != 0 || !is_blank(c[n_keyword]))
+    return CONIC_OK;
+  const char *name = c + n_keyword, *name_end = memchr(name, '\n', (size_t)(end - name));
+  while (name < end && is_blank(*name))
+    name++;
+  if (!name_end || name_end - name > CONIC_INPUT_LONGEST_WORD / 2)
+    return wrong(input, line, "a texture's name is too long", NULL);
+  while (name_end > name && is_blank(name_end[-1]))
+    name_end--;
+  if (name_end <= name)
+    return wrong(input, line, "a texture without a name", NULL);
+  if (textures->count == CONIC_MAX_MATERIALS)
+    return wrong(input, line, "too many textures", NULL);
+  return conic_texts_add(input->context, textures, name, (size_t)(name_end - name));
+}
+
+static conic_status read_line(conic_input *input, header_line *line, conic_texts *textures) {
   int is_done = 0;
   line->n_words = 0;
   line->line = input->line;
@@ -77,16 +112,13 @@ static conic_status read_line(conic_input *input, header_line *line) {
     if (line->n_words == 1 && is_comment(line))
       break;
   }
-  conic_status status = conic_input_next_line(input, &is_done);
+  conic_status status = is_word(line, 0, "comment") ? read_comment(input, line, textures) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_input_next_line(input, &is_done);
   if (status == CONIC_OK && is_done)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file ends within the header (line %llu)", input->name,
                       (unsigned long long)line->line);
   return status;
-}
-
-static conic_status wrong(conic_input *input, const header_line *line, const char *what, const char *word) {
-  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s%s%s%s (line %llu)", input->name, what, word ? " '" : "",
-                    word ? word : "", word ? "'" : "", (unsigned long long)line->line);
 }
 
 static conic_status parse_format(conic_input *input, const header_line *line, conic_ply_header *header) {
@@ -182,11 +214,11 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
 static conic_status read_lines(conic_input *input, conic_ply_header *header) {
   header_line line;
   int has_format = 0;
-  conic_status status = read_line(input, &line);
+  conic_status status = read_line(input, &line, &header->textures);
   if (status == CONIC_OK && !(line.n_words == 1 && is_word(&line, 0, "ply")))
     status = wrong(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
   while (status == CONIC_OK) {
-    status = read_line(input, &line);
+    status = read_line(input, &line, &header->textures);
     if (status != CONIC_OK || is_comment(&line))
       continue;
     if (is_word(&line, 0, "end_header"))
@@ -217,6 +249,7 @@ conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header)
 void conic_ply_header_release(conic_context *context, conic_ply_header *header) {
   conic_memory_release(context, header->elements);
   conic_memory_release(context, header->properties);
+  conic_memory_release(context, header->textures.bytes);
   memset(header, 0, sizeof *header);
 }
 

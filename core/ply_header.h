@@ -2,6 +2,7 @@
 #ifndef CORE_PLY_HEADER_H
 #define CORE_PLY_HEADER_H
 
+#include "core/faces.h"
 #include "core/input.h"
 
 typedef enum conic_ply_format { CONIC_PLY_TEXT, CONIC_PLY_LITTLE_ENDIAN, CONIC_PLY_BIG_ENDIAN } conic_ply_format;
@@ -41,6 +42,7 @@ typedef struct conic_ply_header {
   conic_ply_element *elements;
   conic_ply_property *properties;
   size_t n_elements, n_properties, element_capacity, property_capacity;
+  conic_texts textures; /* comment TextureFile NAME */
 } conic_ply_header;
 
 /* Reads from "ply" to past "end_header". On success the caller releases *header; on failure it is empty.

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/ply_columns.h"
+#include "core/ply_texture.h"
 
 /* What the reading of the vertices shares. */
 typedef struct vertex_reader {
@@ -15,6 +16,19 @@ typedef struct vertex_reader {
   conic_ply_block block;
 } vertex_reader;
 
+/* The texture coordinates of the block's first `n` rows. */
+static conic_status keep_coordinates(const vertex_reader *reader, size_t n) {
+  conic_faces *faces = reader->builder->model->faces;
+  conic_status status = CONIC_OK;
+  if (!reader->layout.has_coordinates)
+    return CONIC_OK;
+  for (size_t i = 0; status == CONIC_OK && i < n; i++) {
+    const double coordinate[2] = {reader->block[CONIC_PLY_COORDINATE][i], reader->block[CONIC_PLY_COORDINATE + 1][i]};
+    status = conic_faces_add_coordinate(reader->builder->context, faces, coordinate);
+  }
+  return status;
+}
+
 /* Appends the block's first `n` rows to the points. A known file size has shown that all rows can be there; behind a
  * pipe the arrays grow with what has really come. */
 static conic_status append_block(vertex_reader *reader, size_t n) {
@@ -24,7 +38,8 @@ static conic_status append_block(vertex_reader *reader, size_t n) {
     return status;
   conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, points->count, points);
   points->count += n;
-  return conic_builder_deliver(reader->builder, 0);
+  status = keep_coordinates(reader, n);
+  return status == CONIC_OK ? conic_builder_deliver(reader->builder, 0) : status;
 }
 
 /* Binary rows of one size: column by column, straight from the window. */
@@ -137,6 +152,8 @@ static conic_status read_vertices(vertex_reader *reader) {
   const conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
   conic_status status = CONIC_OK;
+  if (reader->layout.has_coordinates)
+    conic_faces_begin_vertices(reader->builder->model->faces);
   if (source->input->has_size && !reader->builder->delivery)
     status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
   if (status != CONIC_OK)
@@ -183,11 +200,16 @@ static conic_status read_body(conic_input *input, const conic_read_options *opti
     return CONIC_ERROR_MEMORY;
   reader->source = &source;
   reader->builder = &builder;
-  conic_status status = conic_ply_layout_find(input, header, vertices, options->cutoff, &reader->layout);
+  int keeps_coordinates = options->keeps_faces && !delivery;
+  conic_status status =
+      conic_ply_layout_find(input, header, vertices, options->cutoff, keeps_coordinates, &reader->layout);
   if (status == CONIC_OK) {
     reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
     status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
   }
+  if (status == CONIC_OK && keeps_coordinates &&
+      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header)))
+    status = conic_ply_begin_textures(input, header, model);
   if (status == CONIC_OK)
     status = read_elements(reader, header, vertices);
   if (status == CONIC_OK)

@@ -47,6 +47,7 @@ conic_status conic_splats_allocate(conic_context *context, size_t count, unsigne
       conic_splats_release(context, splats);
       return CONIC_ERROR_MEMORY;
     }
+    conic_memory_prefer_large_pages(*arrays[i], count * sizeof(float));
   }
   if (fields & CONIC_SPLATS_CLIPS) {
     splats->clips = conic_memory_allocate(context, count, sizeof *splats->clips);

@@ -4,21 +4,7 @@
 
 #include "core/kernel.h"
 #include "core/texture.h"
-
-/* The filter of a pixel, and that of a texel, have a standard deviation of half their width, and end at two. */
-#define FILTER_VARIANCE 0.25f
-#define FILTER_SUPPORT 4.0f
-#define FILTER_END 0x1.152aaap-3f /* e⁻², which the Gaussian is lowered by, so that it ends at 0 */
-
-/* A footprint is no more than so many times as long as wide: a narrower one is widened. */
-#define GREATEST_RATIO 8.0f
-
-/* In texels of a level, the least half width of a footprint that is filtered on it, but for the first. The more, the
- * less the filter of a texel blurs, and the more texels a pixel reads. */
-#define LEAST_WIDTH 1.5f
-
-/* No sum of what is farther out than this has any digits left. */
-#define FARTHEST 1e6f
+#include "core/texture_filter.h"
 
 /* A footprint's variance in texels². */
 typedef struct footprint {
@@ -26,7 +12,14 @@ typedef struct footprint {
 } footprint;
 
 static float finite_or_zero(float value) {
-  return value >= -FARTHEST && value <= FARTHEST ? value : 0.0f;
+  return value >= -CONIC_TEXTURE_FARTHEST && value <= CONIC_TEXTURE_FARTHEST ? value : 0.0f;
+}
+
+/* One component of a footprint's side, in texels. */
+static float side_of(float value, int size) {
+  float side = finite_or_zero(value) * (float)size;
+  side = side > -CONIC_TEXTURE_WIDEST ? side : -CONIC_TEXTURE_WIDEST;
+  return side < CONIC_TEXTURE_WIDEST ? side : CONIC_TEXTURE_WIDEST;
 }
 
 /* The place in [0, 1). */
@@ -56,14 +49,13 @@ static void extents_of(const footprint *v, float *greater, float *smaller) {
 
 /* The pixel's variance in texels of the first level, widened where it is too narrow. */
 static footprint footprint_of(const conic_texture_level *level, const float along[2], const float across[2]) {
-  float w = (float)level->width, h = (float)level->height, greater, smaller;
-  float ax = finite_or_zero(along[0]) * w, ay = finite_or_zero(along[1]) * h;
-  float bx = finite_or_zero(across[0]) * w, by = finite_or_zero(across[1]) * h;
-  footprint v = {FILTER_VARIANCE * (ax * ax + bx * bx), FILTER_VARIANCE * (ax * ay + bx * by),
-                 FILTER_VARIANCE * (ay * ay + by * by)};
+  float ax = side_of(along[0], level->width), ay = side_of(along[1], level->height), greater, smaller;
+  float bx = side_of(across[0], level->width), by = side_of(across[1], level->height);
+  footprint v = {CONIC_FILTER_VARIANCE * (ax * ax + bx * bx), CONIC_FILTER_VARIANCE * (ax * ay + bx * by),
+                 CONIC_FILTER_VARIANCE * (ay * ay + by * by)};
   v.xy = -v.xy; /* rows go down, v goes up */
   extents_of(&v, &greater, &smaller);
-  float least = greater / (GREATEST_RATIO * GREATEST_RATIO);
+  float least = greater / (CONIC_FILTER_RATIO * CONIC_FILTER_RATIO);
   if (smaller < least) {
     v.xx += least - smaller;
     v.yy += least - smaller;
@@ -82,11 +74,11 @@ static void filter(const conic_texture *texture, int i_level, const float place[
     return;
   }
   float shrunk = 1.0f / (float)(1 << i_level), scale = shrunk * shrunk;
-  float xx = of_pixel->xx * scale + FILTER_VARIANCE, xy = of_pixel->xy * scale;
-  float yy = of_pixel->yy * scale + FILTER_VARIANCE;
+  float xx = of_pixel->xx * scale + CONIC_FILTER_VARIANCE, xy = of_pixel->xy * scale;
+  float yy = of_pixel->yy * scale + CONIC_FILTER_VARIANCE;
   float x = place[0] * (float)level->width - 0.5f, y = (1.0f - place[1]) * (float)level->height - 0.5f;
   float determinant = xx * yy - xy * xy, inverse = 1.0f / determinant;
-  float reach_x = sqrtf(FILTER_SUPPORT * xx), reach_y = sqrtf(FILTER_SUPPORT * yy);
+  float reach_x = sqrtf(CONIC_FILTER_SUPPORT * xx), reach_y = sqrtf(CONIC_FILTER_SUPPORT * yy);
   float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f};
   int x_begin = (int)floorf(x - reach_x) + 1, x_end = (int)floorf(x + reach_x) + 1;
   int y_begin = (int)floorf(y - reach_y) + 1, y_end = (int)floorf(y + reach_y) + 1;
@@ -97,9 +89,9 @@ static void filter(const conic_texture *texture, int i_level, const float place[
     for (int i = x_begin; i < x_end; i++) {
       float dx = (float)i - x;
       float q = ((yy * dx - 2.0f * xy * dy) * dx + xx * dy * dy) * inverse;
-      if (!(q < FILTER_SUPPORT))
+      if (!(q < CONIC_FILTER_SUPPORT))
         continue;
-      float weight = conic_exp_negative(-0.5f * q) - FILTER_END;
+      float weight = conic_exp_negative(-0.5f * q) - CONIC_FILTER_END;
       const conic_texel *texel = row + 4 * (size_t)wrapped(i, level->width, texture->wrap);
       for (int channel = 0; channel < 3; channel++)
         sum[channel] += weight * texel[channel];
@@ -116,9 +108,11 @@ static int level_of(const conic_texture *texture, const footprint *v, float *bey
   extents_of(v, &greater, &smaller);
   float width = 2.0f * sqrtf(smaller); /* the ellipse's half width, at two standard deviations */
   int i = 0;
-  for (; width >= 2.0f * LEAST_WIDTH && i < texture->n_levels - 1; i++)
+  for (; width >= 2.0f * CONIC_FILTER_WIDTH && i < texture->n_levels - 1; i++)
     width *= 0.5f;
-  *beyond = i == texture->n_levels - 1 || width < LEAST_WIDTH ? 0.0f : (width - LEAST_WIDTH) / LEAST_WIDTH;
+  *beyond = i == texture->n_levels - 1 || width < CONIC_FILTER_WIDTH
+                ? 0.0f
+                : (width - CONIC_FILTER_WIDTH) / CONIC_FILTER_WIDTH;
   return i;
 }
 

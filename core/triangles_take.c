@@ -47,6 +47,14 @@ static void name_none(uint32_t (*corners)[3], size_t count, size_t none) {
         corners[i][k] = (uint32_t)none;
 }
 
+/* Those without a texture coordinate get their vertices'. */
+static void name_vertices(uint32_t (*corners)[3], const conic_triangles *triangles, size_t first) {
+  for (size_t i = 0; i < triangles->count; i++)
+    for (int k = 0; k < 3; k++)
+      if (corners[i][k] == CONIC_NO_CORNER)
+        corners[i][k] = (uint32_t)(first + triangles->corners[i][k]);
+}
+
 static conic_status take_normals(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
   if (!faces->has_normal_corners)
     return CONIC_OK;
@@ -62,40 +70,74 @@ static conic_status take_normals(conic_context *context, conic_faces *faces, con
 }
 
 static conic_status take_coordinates(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
-  if (!faces->has_texture_corners)
+  if (!faces->has_texture_corners && !faces->has_vertex_coordinates)
     return CONIC_OK;
+  if (!faces->has_texture_corners) {
+    triangles->n_texture_coordinates = triangles->n_vertices;
+    return split(context, faces->coordinates[faces->first_vertex_coordinate], triangles->n_vertices, 2,
+                 triangles->texture_coordinate);
+  }
   triangles->n_texture_coordinates = faces->n_coordinates + 1;
   triangles->texture_corners = faces->texture_corners;
   faces->texture_corners = NULL;
+  if (faces->has_vertex_coordinates)
+    name_vertices(triangles->texture_corners, triangles, faces->first_vertex_coordinate);
   name_none(triangles->texture_corners, triangles->count, faces->n_coordinates);
   return split(context, faces->coordinates[0], faces->n_coordinates, 2, triangles->texture_coordinate);
 }
 
-/* What a material file that is not there would have said is white. */
-static conic_status take_materials(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
-  size_t n = faces->material_names.count;
-  if (n < 2)
-    return CONIC_OK;
+static conic_status allocate_materials(conic_context *context, size_t n, conic_triangles *triangles) {
   triangles->materials = conic_memory_allocate_zeroed(context, n, sizeof *triangles->materials);
   if (!triangles->materials)
     return CONIC_ERROR_MEMORY;
   triangles->n_materials = n;
-  triangles->material = faces->material;
-  faces->material = NULL;
   for (size_t i = 0; i < n; i++)
     for (int channel = 0; channel < 3; channel++)
       triangles->materials[i].color[channel] = 1.0f;
+  return CONIC_OK;
+}
+
+/* What a material file that is not there would have said is white. */
+static conic_status take_named_materials(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
+  size_t n = faces->material_names.count;
+  if (n < 2)
+    return CONIC_OK;
+  conic_status status = allocate_materials(context, n, triangles);
+  if (status != CONIC_OK)
+    return status;
+  triangles->material = faces->material;
+  faces->material = NULL;
   for (size_t i = 0; i < faces->libraries.count; i++) {
     const char *path = conic_texts_at(&faces->libraries, i);
     if (!conic_file_is_there(path)) {
       conic_log(context, CONIC_LOG_WARNING, "%s: the material file is not there, and is left out", path);
       continue;
     }
-    conic_status status = conic_material_file_read(context, path, &faces->material_names, triangles->materials);
+    status = conic_material_file_read(context, path, &faces->material_names, triangles->materials);
     if (status != CONIC_OK)
       return status;
   }
   return CONIC_OK;
+}
+
+/* Without corners of their own, all triangles have the first picture. */
+static conic_status take_pictures(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
+  size_t n = faces->pictures.count;
+  if (n == 0 || !triangles->texture_coordinate[0])
+    return CONIC_OK;
+  conic_status status = allocate_materials(context, n + (faces->count > 0), triangles);
+  for (size_t i = 0; status == CONIC_OK && i < n; i++) {
+    const char *path = conic_texts_at(&faces->pictures, i);
+    if (conic_file_is_there(path))
+      status = conic_texture_read(context, path, CONIC_WRAP_REPEAT, &triangles->materials[i].texture);
+    else
+      conic_log(context, CONIC_LOG_WARNING, "%s: the texture is not there, and is left out", path);
+  }
+  if (faces->count) {
+    triangles->material = faces->material;
+    faces->material = NULL;
+  }
+  return status;
 }
 
 conic_status conic_triangles_take(conic_context *context, conic_model *model, conic_triangles *triangles) {
@@ -110,7 +152,9 @@ conic_status conic_triangles_take(conic_context *context, conic_model *model, co
     if (status == CONIC_OK)
       status = take_coordinates(context, faces, triangles);
     if (status == CONIC_OK)
-      status = take_materials(context, faces, triangles);
+      status = take_named_materials(context, faces, triangles);
+    if (status == CONIC_OK)
+      status = take_pictures(context, faces, triangles);
   }
   conic_faces_destroy(context, faces);
   model->faces = NULL;

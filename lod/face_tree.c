@@ -128,11 +128,11 @@ static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const 
   return least2;
 }
 
-/* Nearer children first; done where something is near enough. A face without area may have no distance. */
-double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
+/* As conic_face_tree_farther, where least2 is a squared distance that is known to be there. Nearer children first; done
+ * where something is near enough. */
+static double search(const conic_face_tree *tree, const double at[3], double least2, double known) {
   size_t stack[64];
-  double distances2[64], guessed2 = distance2_to_face(tree, guess, at), known2 = known * known;
-  double least2 = guessed2 >= 0.0 ? guessed2 : HUGE_VAL;
+  double distances2[64], known2 = known * known;
   int n = 1;
   stack[0] = 1;
   distances2[0] = 0.0;
@@ -152,4 +152,14 @@ double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], 
     distances2[n++] = farther ? first2 : second2;
   }
   return least2 > known2 && least2 < HUGE_VAL ? sqrt(least2) : known;
+}
+
+double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known) {
+  return search(tree, at, HUGE_VAL, known);
+}
+
+/* A face without area may have no distance. */
+double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
+  double guessed2 = distance2_to_face(tree, guess, at);
+  return search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, known);
 }

@@ -71,7 +71,7 @@ static const char *value_of(const char *line, const char *name) {
 }
 
 int conic_http_header(conic_http_response *response, const char *line, size_t n_bytes) {
-  char text[256];
+  char text[256] = "";
   const char *value;
   response->n_bytes += n_bytes;
   if (response->n_bytes > MOST_HEADER_BYTES)

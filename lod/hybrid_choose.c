@@ -82,6 +82,11 @@ static double pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_
   return front > view->near_z ? view->focal_px * distance / (front * front) : HUGE_VAL;
 }
 
+double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                             const conic_hybrid_level *level) {
+  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, &patch->bound, (double)level->reach) : 0.0;
+}
+
 static double cost_of(const conic_hybrid_camera *view, const conic_hybrid_patch *patch, const conic_hybrid_level *level,
                       double scale_px) {
   double n = (double)level->count, area_px = (double)patch->area * scale_px * scale_px;
@@ -113,9 +118,9 @@ uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_came
     return best;
   for (uint32_t k = 0; k < patch->n_levels; k++) {
     const conic_hybrid_level *level = &levels[k];
-    double error = (double)level->error * pixels_a_unit(view, &patch->bound, (double)level->reach);
     double cost = cost_of(view, patch, level, mean_scale_px);
-    int is_good = (level->error == 0.0f || error <= error_px) && (only_kind < 0 || level->kind == (uint32_t)only_kind);
+    int is_good =
+        conic_hybrid_error_px(view, patch, level) <= error_px && (only_kind < 0 || level->kind == (uint32_t)only_kind);
     if (is_good && cost < least) {
       least = cost;
       best = k;

@@ -19,6 +19,10 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
 /* Whether nothing within the sphere is in the picture, or with cull_back all that the cone holds faces away. */
 int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach);
 
+/* How many pixels places of the patch may be off where the level draws it: infinite where its sphere reaches near. */
+double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+                             const conic_hybrid_level *level);
+
 /* A level for the patch, from its first; `error_px` and `only_kind` as in conic_hybrid_view. */
 uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                              const conic_hybrid_patch *patch, double error_px, int only_kind);

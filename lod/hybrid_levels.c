@@ -27,6 +27,7 @@ void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
 
 static void bound_sphere(const conic_patch_mesh *mesh, uint32_t patch, conic_hybrid_bound *bound) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, farthest2 = 0.0;
+  memset(bound->center, 0, sizeof bound->center); /* known in the second pass */
   for (int pass = 0; pass < 2; pass++) {
     for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++)
       for (int corner = 0; corner < 3; corner++) {
@@ -197,7 +198,7 @@ static void ways_task(void *data, size_t i_task, int i_thread) {
 /* In portions, so that progress is told. */
 static conic_status run_pass(ways_pass *pass, double from, double to) {
   conic_context *context = pass->job->context;
-  size_t n = pass->job->mesh->clusters->n_clusters, portion = 64 * PATCHES_A_TASK;
+  size_t n = pass->job->mesh->clusters->n_clusters, portion = 64 * (size_t)PATCHES_A_TASK;
   int n_threads = conic_context_threads(context);
   conic_status status = CONIC_OK;
   for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += portion) {

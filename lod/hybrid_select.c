@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid_budget.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
   memset(view, 0, sizeof *view);
@@ -77,7 +77,6 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
     kept->choices_room = room;
   }
   uint32_t level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
-  s->selection->n_simpler += level != patch->built;
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
   return CONIC_OK;
 }
@@ -104,6 +103,37 @@ static conic_status choose_all(selecting *s) {
   return status;
 }
 
+/* Chooses again, for a budget. */
+static conic_status spend_budget(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  size_t n = s->scratch->n_choices;
+  uint32_t *patches = conic_memory_allocate(h->context, 2 * n, sizeof *patches);
+  if (!patches)
+    return CONIC_ERROR_MEMORY;
+  uint32_t *levels = patches + n;
+  for (size_t i = 0; i < n; i++)
+    patches[i] = s->scratch->choices[i].patch;
+  conic_status status = conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    s->scratch->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+  conic_memory_release(h->context, patches);
+  return status;
+}
+
+/* What the choices come to. */
+static void judge(const selecting *s) {
+  conic_hybrid_selection *selection = s->selection;
+  for (size_t i = 0; i < s->scratch->n_choices; i++) {
+    const choice *c = &s->scratch->choices[i];
+    const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    double error_px = conic_hybrid_error_px(&s->camera, patch, level);
+    selection->n_patches[level->kind]++;
+    selection->n_simpler += c->level != patch->first_level + patch->built;
+    selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
+  }
+}
+
 /* Where each choice's parts go, and room for all. */
 static conic_status make_room(selecting *s) {
   scratch *kept = s->scratch;
@@ -115,7 +145,6 @@ static conic_status make_room(selecting *s) {
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
-    s->selection->n_patches[level->kind]++;
     n_vertices += level->n_vertices;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count;
   }
@@ -238,6 +267,8 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
   if (!(s->view->error_px >= 0.0) || s->view->only_kind > CONIC_HYBRID_SURFELS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an error on the screen is 0 or more, and a kind one that there is");
+  if (s->view->error_px > 0.0 && s->view->budget)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
   if (!kept) {
     kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
     if (!kept)
@@ -260,10 +291,13 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   conic_status status = begin(&s, camera, render);
   if (status == CONIC_OK)
     status = choose_all(&s);
+  if (status == CONIC_OK && view->budget)
+    status = spend_budget(&s);
   if (status == CONIC_OK)
     status = make_room(&s);
   if (status != CONIC_OK)
     return status;
+  judge(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
   return CONIC_OK;

@@ -262,7 +262,8 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
                                      int *n_bands) {
   conic_context *context = drawing->layers->context;
   bands b = {.d = drawing, .tile = drawing->render->tile};
-  b.most = (double)(conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1);
+  size_t most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
+  b.most = (double)most;
   b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
   conic_status status = b.chosen ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
   conic_memory_release(context, b.chosen);

@@ -79,7 +79,7 @@ static conic_status find_spacing(const conic_layers_plan *plan, const conic_laye
     for (int axis = 0; axis < 3; axis++)
       steps[i][axis] = (float)conic_layers_step(leaf->keys[i], axis);
   for (size_t i = 0; i < N_PROBES; i++)
-    spacings[i] = spacing_about((const float(*)[3])steps, n, (2 * i + 1) * n / (2 * N_PROBES));
+    spacings[i] = spacing_about((const float(*)[3])steps, n, (2 * i + 1) * n / (2 * (size_t)N_PROBES));
   conic_memory_release(plan->context, steps);
   double found = middle_of(spacings, N_PROBES);
   *spacing = found > 0.0 ? found : *spacing;
@@ -95,7 +95,7 @@ static double outline_given(const conic_layers_plan *plan, const conic_layers_br
     largest = size > largest ? size : largest;
   }
   for (size_t i = 0; i < N_PROBES; i++) {
-    double size = size_of(leaf->samples[(2 * i + 1) * leaf->n_drawn / (2 * N_PROBES)].size);
+    double size = size_of(leaf->samples[(2 * i + 1) * leaf->n_drawn / (2 * (size_t)N_PROBES)].size);
     if (size > 0.0)
       some[n++] = size;
   }

@@ -193,7 +193,7 @@ static conic_status create_workers(growing *g) {
   conic_context *context = g->plan->context;
   conic_status status = CONIC_OK;
   g->n_workers = conic_context_threads(context);
-  g->workers = conic_memory_allocate_zeroed(context, (size_t)g->n_workers, sizeof *g->workers);
+  g->workers = conic_memory_allocate_zeroed(context, (size_t)g->n_workers, sizeof(void *));
   if (!g->workers)
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < g->n_workers && status == CONIC_OK; i++)

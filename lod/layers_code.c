@@ -55,7 +55,7 @@ conic_status conic_layers_coder_create(conic_context *context, size_t most_sampl
   }
   if (status == CONIC_OK) {
     size_t room = (MOST_STREAMS - 1) * conic_zstd_bound(most_samples) + conic_zstd_bound(bits_room(most_samples));
-    made->packed = conic_memory_allocate(context, room + MOST_STREAMS * SIZE_BYTES, 1);
+    made->packed = conic_memory_allocate(context, room + (size_t)MOST_STREAMS * SIZE_BYTES, 1);
     status = made->packed ? CONIC_OK : CONIC_ERROR_MEMORY;
   }
   if (status == CONIC_OK)

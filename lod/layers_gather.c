@@ -122,10 +122,15 @@ static int is_within(const conic_window *inner, const conic_window *outer) {
          inner->y_end <= outer->y_end;
 }
 
-static sieve begin_sieve(const gather *g, const conic_layers_piece *piece) {
+/* Of a piece's cloud: it is in memory. */
+static const conic_layers_cloud *cloud_of(const conic_layers *layers, const conic_layers_piece *piece) {
+  return &layers->store.slots[piece->cloud].cloud;
+}
+
+static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const conic_layers_cloud *cloud) {
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_window *window = g->asked->window;
-  return (sieve){.cloud = conic_layers_store_find(&g->layers->store, piece->cloud),
+  return (sieve){.cloud = cloud,
                  .place = place,
                  .view = g->asked->view,
                  .window = window && is_within(&place->sight.pixels, window) ? NULL : window,
@@ -154,13 +159,13 @@ static inline int is_in_window(const sieve *s, size_t i) {
 static void count_piece(const gather *g, conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
-  const conic_layers_cloud *cloud = conic_layers_store_find(&layers->store, piece->cloud);
+  const conic_layers_cloud *cloud = cloud_of(layers, piece);
   size_t first = 0, end = cloud->count;
   if (piece->cloud != place->node)
     conic_layers_range(&layers->header, cloud, &layers->entries[place->node], &first, &end);
   piece->first = (uint32_t)first;
   piece->end = (uint32_t)end;
-  sieve s = begin_sieve(g, piece);
+  sieve s = begin_sieve(g, piece, cloud);
   piece->n_chosen = piece->n_kept = piece->end - piece->first;
   if (place->state != CONIC_PLACE_GRAZING && !s.window)
     return;
@@ -230,7 +235,7 @@ static void copy_all(const copying *c, size_t n, float sigma, uint32_t first_id)
 static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t id) {
   for (int axis = 0; axis < 3; axis++) {
     c->to_position[axis][k] = c->position[axis][i];
-    if (c->to_color[axis])
+    if (c->to_color[axis] && c->color[axis])
       c->to_color[axis][k] = c->color[axis][i];
   }
   set_axes(c, i, k, sigma);
@@ -240,7 +245,7 @@ static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t
 static void fill_piece(const gather *g, const conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
-  const conic_layers_cloud *cloud = conic_layers_store_find(&layers->store, piece->cloud);
+  const conic_layers_cloud *cloud = cloud_of(layers, piece);
   uint32_t first_id = (uint32_t)(layers->first_sample[piece->cloud] + piece->first);
   float sigma = layers->entries[place->node].radius / g->asked->cutoff;
   size_t n = piece->end - piece->first, k = 0;
@@ -249,7 +254,7 @@ static void fill_piece(const gather *g, const conic_layers_piece *piece) {
     copy_all(&c, n, sigma, first_id);
     return;
   }
-  sieve s = begin_sieve(g, piece);
+  sieve s = begin_sieve(g, piece, cloud);
   for (size_t i = 0; i < n && k < piece->n_kept; i++)
     if (is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i))
       copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);

@@ -38,7 +38,7 @@ conic_status conic_layers_store_open(conic_layers *layers) {
   size_t n_threads = (size_t)conic_context_threads(context);
   store->newest = store->oldest = CONIC_NO_CLOUD;
   store->slots = conic_memory_allocate_zeroed(context, layers->header.n_clouds, sizeof *store->slots);
-  store->decoders = conic_memory_allocate_zeroed(context, n_threads, sizeof *store->decoders);
+  store->decoders = conic_memory_allocate_zeroed(context, n_threads, sizeof(void *));
   if (!store->slots || !store->decoders)
     return CONIC_ERROR_MEMORY;
   conic_status status = CONIC_OK;

@@ -67,7 +67,7 @@ static void look_at_faces(const conic_mesh *mesh, conic_adjacency *adjacency) {
     int is_three = a != b && b != c && c != a;
     adjacency->oddities.nan += !is_finite;
     adjacency->oddities.zero += is_finite && !is_three;
-    adjacency->side[i] = is_finite && is_three;
+    adjacency->side[i] = (int8_t)(is_finite && is_three);
   }
 }
 

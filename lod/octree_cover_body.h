@@ -27,7 +27,8 @@ _Static_assert(CONIC_DISC_SAMPLES % CONIC_LANES == 0, "samples are whole lanes")
 /* Of a block in a node's list: that it was flattened. */
 static const uint32_t FLAT = UINT32_C(1) << 31;
 
-/* The error that no disc has lowered: of no real distance, but a number, so that boxes of the padding stay out of it. */
+/* The error that no disc has lowered: of no real distance, but a number, so that boxes of the padding stay out of it.
+ */
 static const float unknown = 1e30f;
 
 typedef float flat_block[N_NUMBERS][CONIC_DISC_BLOCK];
@@ -155,11 +156,18 @@ CONIC_INLINE void flatten_lanes(const cover *c, const conic_discs *discs, size_t
   /* The plane's slope: z changes by (uz, vz)·inverse as (x, y) does. */
   lanes slope_x = uz * inverse[0] + vz * inverse[2], slope_y = uz * inverse[1] + vz * inverse[3];
   lanes lift = lanes_sqrt(slope_x * slope_x + slope_y * slope_y) * c->gap;
-  const lanes numbers[N_NUMBERS] = {
-      [AT_X] = dot_lanes(apart, c->u), [AT_Y] = dot_lanes(apart, c->v), [AT_Z] = dot_lanes(apart, node->n),
-      [AT_INVERSE] = inverse[0],       [AT_INVERSE + 1] = inverse[1],   [AT_INVERSE + 2] = inverse[2],
-      [AT_INVERSE + 3] = inverse[3],   [AT_UZ] = uz,                    [AT_VZ] = vz,
-      [AT_MINOR] = minor,              [AT_LIFT] = lift,                [AT_ERROR] = lanes_load(discs->error + first)};
+  const lanes numbers[N_NUMBERS] = {[AT_X] = dot_lanes(apart, c->u),
+                                    [AT_Y] = dot_lanes(apart, c->v),
+                                    [AT_Z] = dot_lanes(apart, node->n),
+                                    [AT_INVERSE] = inverse[0],
+                                    [AT_INVERSE + 1] = inverse[1],
+                                    [AT_INVERSE + 2] = inverse[2],
+                                    [AT_INVERSE + 3] = inverse[3],
+                                    [AT_UZ] = uz,
+                                    [AT_VZ] = vz,
+                                    [AT_MINOR] = minor,
+                                    [AT_LIFT] = lift,
+                                    [AT_ERROR] = lanes_load(discs->error + first)};
   for (int k = 0; k < N_NUMBERS; k++)
     lanes_store(flat + (ptrdiff_t)k * CONIC_DISC_BLOCK, numbers[k]);
 }
@@ -173,7 +181,8 @@ static void flatten(const cover *c, const conic_discs *discs, size_t block, flat
  * outline; inside, where that is below 0, it is known from how much larger the disc could be. */
 CONIC_INLINE lanes count_error(lanes dx, lanes dy, const lanes disc[N_NUMBERS], float gap) {
   const lanes one = lanes_of(1.0f), none = lanes_of(0.0f);
-  lanes a = dx * disc[AT_INVERSE] + dy * disc[AT_INVERSE + 1], b = dx * disc[AT_INVERSE + 2] + dy * disc[AT_INVERSE + 3];
+  lanes a = dx * disc[AT_INVERSE] + dy * disc[AT_INVERSE + 1],
+        b = dx * disc[AT_INVERSE + 2] + dy * disc[AT_INVERSE + 3];
   lanes out = lanes_sqrt(a * a + b * b), inside = one / lanes_max(out, one), beyond = one - inside;
   lanes outside2 = (dx * dx + dy * dy) * (beyond * beyond);
   lanes z = inside * (a * disc[AT_UZ] + b * disc[AT_VZ]) + disc[AT_Z], distance = lanes_sqrt(outside2 + z * z);
@@ -278,8 +287,8 @@ static middle_box box_of_node(const conic_node_disc *node, float error) {
   middle_box box;
   for (int axis = 0; axis < 3; axis++) {
     box.center[axis] = node->center[axis];
-    box.half[axis] = sqrtf(node->u[axis] * node->u[axis] + node->v[axis] * node->v[axis]) +
-                     error * (1.0f / CONIC_COVER_WEIGHT);
+    box.half[axis] =
+        sqrtf(node->u[axis] * node->u[axis] + node->v[axis] * node->v[axis]) + error * (1.0f / CONIC_COVER_WEIGHT);
   }
   return box;
 }
@@ -312,7 +321,8 @@ static void begin_list(conic_block_list *list) {
   list->count = 0;
 }
 
-static void add_to_list(float *const center[3], float *const half[3], size_t i, uint32_t block, conic_block_list *list) {
+static void add_to_list(float *const center[3], float *const half[3], size_t i, uint32_t block,
+                        conic_block_list *list) {
   for (int axis = 0; axis < 3; axis++) {
     list->center[axis][list->count] = center[axis][i];
     list->half[axis][list->count] = half[axis][i];
@@ -335,7 +345,8 @@ static void list_blocks(const conic_node_disc *node, float farthest, conic_near_
   middle_box box = box_of_node(node, farthest);
   begin_list(&near->of_node);
   for (size_t first = 0; first < from->count; first += CONIC_DISC_BLOCK)
-    for (unsigned bits = find_in_block(from->center, from->half, first / CONIC_DISC_BLOCK, &box); bits; bits &= bits - 1) {
+    for (unsigned bits = find_in_block(from->center, from->half, first / CONIC_DISC_BLOCK, &box); bits;
+         bits &= bits - 1) {
       size_t i = first + (size_t)__builtin_ctz(bits);
       add_to_list(from->center, from->half, i, from->block[i], &near->of_node);
     }

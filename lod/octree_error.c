@@ -282,7 +282,7 @@ static void find_error(neighbourhood *around, const member *m) {
   float error = pass->kernels.cover(&pass->samples, &around->discs, begin, end, &around->near, &m->disc);
   if (error > m->disc.enough) /* a hair more for the floats */
     conic_code_error(&octree->scale, (double)error * (1.0 + 1e-5), (double)m->radius,
-                     octree->codes + m->i_node * CONIC_NODE_BYTES);
+                     octree->codes + (size_t)m->i_node * CONIC_NODE_BYTES);
 }
 
 /* The errors of a member and of those in its subtree. Returns the member after them. */
@@ -350,7 +350,7 @@ static conic_status make_room(neighbourhood *around, size_t n_own) {
   conic_discs *discs = &around->discs;
   conic_near_discs *near = &around->near;
   size_t room = 8 * n_own + 512;
-  if (room <= around->room)
+  if (around->first_leaf && room <= around->room)
     return CONIC_OK;
   release(around);
   size_t stride = room + WHOLE - room % WHOLE;

@@ -427,7 +427,7 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
 }
 
 static conic_status read_octree(conic_octree *octree, const char *path) {
-  header h;
+  header h = {.n_points = 0};
   conic_status status = refuse_order(octree->context, path);
   if (status == CONIC_OK)
     status = conic_mapping_open(octree->context, path, &octree->mapping);

@@ -15,7 +15,7 @@ typedef struct conic_surfels {
   size_t n, room;
   conic_surfel *items;
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
-   * measured at the ends of its axes. */
+   * measured at twenty places. */
   double error;
   double reach; /* the longest half axis of an outline */
 } conic_surfels;

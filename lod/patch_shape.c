@@ -212,15 +212,22 @@ static int find_farthest(const conic_sampler *s, const conic_site *site,
   return most[0] > -HUGE_VAL ? 2 * n : 0;
 }
 
-/* Makes the ellipse large enough for all supports. Notes for each end of its axes, the major one's first, on which face
- * the support lies that is farthest that way. */
+/* Where a surfel is measured, in its half axes: sixteen places of its outline in turn, and four within. */
+static const double ends[][2] = {{1.0, 0.0},  {0.92388, 0.38268},   {0.70711, 0.70711},   {0.38268, 0.92388},
+                                 {0.0, 1.0},  {-0.38268, 0.92388},  {-0.70711, 0.70711},  {-0.92388, 0.38268},
+                                 {-1.0, 0.0}, {-0.92388, -0.38268}, {-0.70711, -0.70711}, {-0.38268, -0.92388},
+                                 {0.0, -1.0}, {0.38268, -0.92388},  {0.70711, -0.70711},  {0.92388, -0.38268},
+                                 {0.5, 0.0},  {0.0, 0.5},           {-0.5, 0.0},          {0.0, -0.5}};
+
+/* Makes the ellipse large enough for all supports. Notes for each of the four ends of its axes on which face the
+ * support lies that is farthest that way. */
 static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
   double most[4] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   const double *major = site->ellipse.major;
   for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
     double x = s->supports[k].at[0] - center[0], y = s->supports[k].at[1] - center[1];
     double along = x * major[0] + y * major[1], across = y * major[0] - x * major[1];
-    const double ways[4] = {along, -along, across, -across};
+    const double ways[4] = {along, across, -along, -across};
     conic_ellipse_cover(&site->ellipse, x, y);
     for (int i = 0; i < 4; i++)
       if (ways[i] > most[i]) {
@@ -245,12 +252,12 @@ double conic_site_error(const conic_sampler *s, const conic_site *site, double k
   double smear = site->contrast * e->reach;
   known = site->height > known ? site->height : known;
   known = smear > known ? smear : known;
-  for (int k = 0; k < 4; k++) {
-    double length = (k & 1 ? -e->reach : e->reach) * (k & 2 ? e->ratio : 1.0), at[3];
-    double x = length * (k & 2 ? -e->major[1] : e->major[0]), y = length * (k & 2 ? e->major[0] : e->major[1]);
+  for (int k = 0; k < 20; k++) {
+    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio, at[3];
+    double x = along * e->major[0] - across * e->major[1], y = along * e->major[1] + across * e->major[0];
     for (int axis = 0; axis < 3; axis++)
       at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-    known = conic_face_tree_farther(s->job->tree, at, site->end_faces[k], known);
+    known = conic_face_tree_farther_by(s->job->tree, at, site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16], known);
   }
   return known;
 }

@@ -1,6 +1,8 @@
 /* The splats' passes a tile a work-item, a block's 16 pixels a vector: for CPUs. */
 #include "opencl/lanes_tile.cl"
 
+#include "opencl/lanes_exponential.cl"
+
 #include "opencl/lanes_coverage.cl"
 
 /* So many references ahead records are called for. */

@@ -191,29 +191,6 @@ static void lanes_weights_at(const conic_triangle_look *look, lanes_weights *w) 
   }
 }
 
-/* The texture's colour, pixel by pixel where the mask holds. */
-static void lanes_texture(const conic_triangle_look *look, const lanes_weights *w, int16 mask, lanes color[3]) {
-  lanes uv[2], along[2], across[2];
-  for (int i = 0; i < 2; i++) {
-    uv[i] = look->uv[0][i] + (w->at[0] * look->uv[1][i] + w->at[1] * look->uv[2][i]);
-    along[i] = w->by_x[0] * look->uv[1][i] + w->by_x[1] * look->uv[2][i];
-    across[i] = w->by_y[0] * look->uv[1][i] + w->by_y[1] * look->uv[2][i];
-  }
-  for (int lane = 0; lane < 16; lane++) {
-    float place[2], side[2], other[2], texel[3];
-    if (!((const int *)&mask)[lane])
-      continue;
-    for (int i = 0; i < 2; i++) {
-      place[i] = ((const float *)&uv[i])[lane];
-      side[i] = ((const float *)&along[i])[lane];
-      other[i] = ((const float *)&across[i])[lane];
-    }
-    conic_texture_sample(look->texture, place, side, other, texel);
-    for (int channel = 0; channel < 3; channel++)
-      ((float *)&color[channel])[lane] *= texel[channel];
-  }
-}
-
 static void lanes_normals(const conic_triangle_look *look, const lanes_weights *w, const conic_device_frame *frame,
                           lanes dx, lanes dy, lanes normal[3]) {
   lanes away = 0.0f;
@@ -239,8 +216,38 @@ static void lanes_normals(const conic_triangle_look *look, const lanes_weights *
 /* What the triangles look like at a block's pixels. */
 typedef struct lanes_look {
   lanes color[3], normal[3];
-  int16 index; /* in the set */
+  int16 index;                  /* in the set */
+  const conic_texture *texture; /* that colours are still without */
+  int16 textured;               /* where, and where it is seen there */
+  lanes uv[2], along[2], across[2];
 } lanes_look;
+
+/* Gives colours their texture, whichever triangles the pixels see. */
+static void lanes_lay_texture(lanes_look *to) {
+  lanes texel[3] = {1.0f, 1.0f, 1.0f};
+  if (!lanes_any(to->textured))
+    return;
+  lanes_sample_texture(to->texture, to->uv, to->along, to->across, to->textured, texel);
+  for (int channel = 0; channel < 3; channel++)
+    to->color[channel] = to->textured ? to->color[channel] * texel[channel] : to->color[channel];
+  to->textured = 0;
+}
+
+/* Notes down where a triangle's texture is seen. */
+static void lanes_note_texture(const conic_triangle_look *look, const lanes_weights *w, int16 mask, lanes_look *to) {
+  if (to->texture != look->texture)
+    lanes_lay_texture(to);
+  to->texture = look->texture;
+  to->textured |= mask;
+  for (int i = 0; i < 2; i++) {
+    lanes uv = look->uv[0][i] + (w->at[0] * look->uv[1][i] + w->at[1] * look->uv[2][i]);
+    lanes along = w->by_x[0] * look->uv[1][i] + w->by_x[1] * look->uv[2][i];
+    lanes across = w->by_y[0] * look->uv[1][i] + w->by_y[1] * look->uv[2][i];
+    to->uv[i] = mask ? uv : to->uv[i];
+    to->along[i] = mask ? along : to->along[i];
+    to->across[i] = mask ? across : to->across[i];
+  }
+}
 
 /* Takes one triangle's looks where the mask holds. */
 static void lanes_take_look(const conic_device_frame *frame, const conic_triangle_look *look, int16 mask, lanes dx,
@@ -251,7 +258,7 @@ static void lanes_take_look(const conic_device_frame *frame, const conic_triangl
   for (int channel = 0; channel < 3; channel++)
     color[channel] = look->color[0][channel] + (w.at[0] * look->color[1][channel] + w.at[1] * look->color[2][channel]);
   if (look->texture)
-    lanes_texture(look, &w, mask, color);
+    lanes_note_texture(look, &w, mask, to);
   lanes_normals(look, &w, frame, dx, dy, normal);
   for (int axis = 0; axis < 3; axis++) {
     to->color[axis] = mask ? color[axis] : to->color[axis];
@@ -274,6 +281,7 @@ static void lanes_look_at(const conic_device_frame *frame, const conic_triangle_
     to->index = mask ? (int16)(int)record.index : to->index;
     visible &= ~mask;
   }
+  lanes_lay_texture(to);
 }
 
 /* add_part, and what it needs to know of the splats before. */
@@ -325,7 +333,7 @@ lanes_add_triangles(TRIANGLE_SET, __global const lanes *nearest_iz, __global con
     if (frame.has_splats)
       visible &= frame.is_single_pass ? iz > s.values[CONIC_SUM_NEAREST_IZ] : iz >= thresholds[at];
     if (lanes_any(visible)) {
-      lanes_look look = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0};
+      lanes_look look = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0, 0, 0};
       for (int i = 0; i < CONIC_N_SUMS && frame.is_single_pass; i++)
         s.values[i] = visible ? 0.0f : s.values[i];
       lanes_directions(columns, rows, x, y, &dx, &dy);

@@ -4,6 +4,8 @@
 #ifndef RASTER_BAND_H
 #define RASTER_BAND_H
 
+#include <string.h>
+
 #include "conic/image.h"
 #include "raster/projected.h"
 
@@ -85,20 +87,20 @@ typedef struct conic_block_sums {
   uint32_t count[CONIC_BLOCK_PIXELS];    /* how many; likewise */
 } conic_block_sums;
 
-/* Where the nearest splat wins: its fragments in two rows of a tile's pixels, column by column, so that a few columns
- * from any one on lie together: most splats are a handful of pixels wide. iz is 0 where there is none, and scale is
- * meant of special ones only. The last columns are beside the tile, and stay as they are. */
-#define CONIC_STRIP_ROWS 2
-#define CONIC_TILE_STRIPS (CONIC_GREATEST_TILE / CONIC_STRIP_ROWS)
-#define CONIC_STRIP_SLACK 8
-#define CONIC_STRIP_PIXELS (CONIC_STRIP_ROWS * (CONIC_GREATEST_TILE + CONIC_STRIP_SLACK))
+/* Where the nearest splat wins: its fragments of a tile, in strips of two or four rows of pixels, each column by
+ * column, so that a few columns from any one on lie together: most splats are a handful of pixels wide. iz is 0 where
+ * there is none, and scale is meant of special ones only. A strip's last columns and the last strip are beside the
+ * tile, and stay as they are. */
+#define CONIC_STRIP_COLUMNS (CONIC_GREATEST_TILE + 8)
+#define CONIC_GREATEST_STRIP 4
+#define CONIC_NEAREST_PIXELS ((CONIC_GREATEST_TILE + CONIC_GREATEST_STRIP) * CONIC_STRIP_COLUMNS)
 
-typedef struct conic_nearest_strip {
-  _Alignas(64) float iz[CONIC_STRIP_PIXELS];
-  float q[CONIC_STRIP_PIXELS];
-  uint32_t footprint[CONIC_STRIP_PIXELS];
-  float scale[CONIC_STRIP_PIXELS];
-} conic_nearest_strip;
+typedef struct conic_nearest {
+  _Alignas(64) float iz[CONIC_NEAREST_PIXELS];
+  float q[CONIC_NEAREST_PIXELS];
+  uint32_t footprint[CONIC_NEAREST_PIXELS];
+  float scale[CONIC_NEAREST_PIXELS];
+} conic_nearest;
 
 struct conic_triangle_frame;
 struct conic_triangle_row;
@@ -120,24 +122,35 @@ typedef struct conic_band {
    * fragments. */
   const conic_tile_entry *entries;
   size_t n_entries;
-  int n_rows;
-  conic_nearest_strip *nearest; /* two a row of blocks */
+  int n_rows, strip_rows;
+  conic_nearest *nearest;
+  int nearest_row; /* the band's first row in it */
   conic_block_sums *sums;
   /* Where triangles meet the band, else null: the frame's, and what they are to the band's pixels. */
   const struct conic_triangle_frame *triangle_frame;
   struct conic_triangle_row *triangles;
 } conic_band;
 
-/* Where a strip keeps the pixel in the given column and row of the tile. */
-static inline size_t conic_strip_place(int column, int row) {
-  return (size_t)(column * CONIC_STRIP_ROWS + row % CONIC_STRIP_ROWS);
+/* Where a strip of so many rows keeps the pixel in the given column and row of the tile. */
+static inline size_t conic_strip_place(int strip_rows, int column, int row) {
+  return (size_t)(row / strip_rows * strip_rows * CONIC_STRIP_COLUMNS + column * strip_rows + row % strip_rows);
 }
 
-/* The strip that has pixel l of a block of the band, and where. */
-static inline const conic_nearest_strip *conic_strip_of(const conic_band *band, int block, int l, size_t *at) {
-  int column = block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, row = l % CONIC_BLOCK_EDGE;
-  *at = conic_strip_place(column, row);
-  return &band->nearest[row / CONIC_STRIP_ROWS];
+/* Where `nearest` has pixel l of a block of the band. */
+static inline size_t conic_nearest_place(const conic_band *band, int block, int l) {
+  return conic_strip_place(band->strip_rows, block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE,
+                           band->nearest_row + l % CONIC_BLOCK_EDGE);
+}
+
+/* Empties the tile. What is kept in the strip beside it is written to, so that its pages are there: stores that mask
+ * everything out are slow where they are not. */
+static inline void conic_nearest_begin(const conic_band *band) {
+  conic_nearest *kept = band->nearest;
+  size_t n = (size_t)band->n_rows * CONIC_BLOCK_EDGE * CONIC_STRIP_COLUMNS;
+  size_t beside = (size_t)band->strip_rows * CONIC_STRIP_COLUMNS;
+  memset(kept->iz, 0, (n + beside) * sizeof *kept->iz);
+  memset(kept->q + n, 0, beside * sizeof *kept->q);
+  memset(kept->footprint + n, 0, beside * sizeof *kept->footprint);
 }
 
 /* Nothing covers the block. */

@@ -178,7 +178,7 @@ static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected
 void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
-  size_t first = chunk->first;
+  size_t first = atomic_fetch_add(&bins->n_records, sorter->chunk.n_drawn);
   kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
                 sorter->tile, sorter->word, sorter->beyond);
   count(bins, sorter);

@@ -19,8 +19,9 @@ typedef struct conic_bins {
   size_t *chunk_begin;  /* [chunk]: where the chunk's entries begin */
   size_t *length;       /* [n_tiles]: how many entries a tile has */
   conic_tile_entry *entries;
-  size_t n_room;        /* so many entries */
-  atomic_size_t n_used; /* or needed, where that is more than there is room for */
+  size_t n_room;           /* so many entries */
+  atomic_size_t n_records; /* of the chunks sorted so far: they lie together, in whatever order */
+  atomic_size_t n_used;    /* or needed, where that is more than there is room for */
 } conic_bins;
 
 /* What a thread sorts a chunk in: its records as set-up leaves them, and where they go. */
@@ -64,8 +65,8 @@ size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_cli
 void conic_sorter_place(const conic_bins *bins, size_t chunk_size, int has_clips, conic_ray *rays, void *memory,
                         conic_sorter *sorter);
 
-/* Copies the sorter's chunk to `projected`, in the order of the tiles, as chunk i_chunk, whose `first` is set; and
- * makes its entries. Where these have no room, nothing is written, and n_used tells what is needed. */
+/* Copies the sorter's chunk to `projected`, in the order of the tiles, as chunk i_chunk, behind those that are there
+ * already; and makes its entries. Where these have no room, nothing is written, and n_used tells what is needed. */
 void conic_bins_sort(conic_bins *bins, const struct conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected);
 

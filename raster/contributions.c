@@ -95,6 +95,7 @@ static conic_status prepare_triangles(conic_contributions *c, const conic_camera
   if (status != CONIC_OK)
     return status;
   conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
+  c->triangles.first_id = (uint32_t)c->splats->count;
   conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
   return conic_triangle_frame_prepare(&c->triangles, conic_tile_kernels_of(CONIC_ISA_AUTO));
 }

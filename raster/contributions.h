@@ -30,6 +30,15 @@ struct conic_contributions {
 conic_status conic_contribution_triangles(conic_contributions *contributions, int x, int y,
                                           const conic_triangle_contribution **nearest, size_t *n);
 
+/* The nearest triangle at a pixel; with iz = 0 there is none. */
+typedef struct conic_near_triangle {
+  uint32_t triangle;
+  float iz, hides;
+} conic_near_triangle;
+
+/* Finds those of a line of the picture, one a pixel. */
+void conic_contribution_triangle_line(const conic_contributions *contributions, int y, conic_near_triangle *line);
+
 /* The footprint at a pixel, which it covers: everything but the verdict. */
 conic_contribution conic_contribution_of(const conic_contributions *contributions, uint32_t i_footprint, int x, int y,
                                          const conic_fragment *fragment);

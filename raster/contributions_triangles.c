@@ -1,4 +1,6 @@
 /* What triangles do to a pixel. */
+#include <string.h>
+
 #include "core/memory.h"
 #include "raster/contributions.h"
 #include "raster/triangle_tile.h"
@@ -15,11 +17,17 @@ static conic_status make_room(conic_contributions *c, size_t n) {
   return CONIC_OK;
 }
 
+/* The viewer looks at the pixel along (x, y, 1). */
+static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
+  ray[0] = (float)(((double)x + 0.5 - view->cx) / view->fx);
+  ray[1] = (float)(((double)y + 0.5 - view->cy) / view->fy);
+}
+
 static void describe(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
                      conic_triangle_contribution *to) {
   const conic_view *view = &c->view;
-  const float ray[2] = {(float)(((double)x + 0.5 - view->cx) / view->fx),
-                        (float)(((double)y + 0.5 - view->cy) / view->fy)};
+  float ray[2];
+  set_ray(view, x, y, ray);
   float world_from_cam[3][3];
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -74,6 +82,47 @@ conic_status conic_contribution_triangles(conic_contributions *c, int x, int y,
     found->verdict = CONIC_CONTRIBUTION_VISIBLE;
   *nearest = found;
   return status;
+}
+
+/* The nearest of a tile's triangles along a line of it. */
+static void near_in_tile(const conic_triangle_frame *frame, size_t i_tile, int x_begin, int x_end, int y,
+                         conic_near_triangle *line) {
+  for (size_t i = 0; i < frame->n_chunks; i++) {
+    const conic_triangle_chunk *chunk = &frame->chunks[i];
+    const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
+    for (uint32_t k = begin[0]; k < begin[1]; k++) {
+      const conic_triangle_record *record =
+          &frame->records[chunk->first_record + frame->entries[chunk->first_entry + k]];
+      const conic_box *box = &record->box;
+      conic_triangle_edges edges;
+      if (y < box->y_begin || y >= box->y_end)
+        continue;
+      int first = box->x_begin > x_begin ? box->x_begin : x_begin, last = box->x_end < x_end ? box->x_end : x_end;
+      conic_triangle_edges_of(record, &edges);
+      for (int x = first; x < last; x++) {
+        float iz;
+        if (conic_triangle_sample(record, &edges, x, y, &iz) && line[x].iz < iz)
+          line[x] = (conic_near_triangle){.triangle = record->index, .iz = iz};
+      }
+    }
+  }
+}
+
+void conic_contribution_triangle_line(const conic_contributions *c, int y, conic_near_triangle *line) {
+  const conic_triangle_frame *frame = &c->triangles;
+  int width = c->view.width;
+  memset(line, 0, (size_t)width * sizeof *line);
+  if (!c->drawing.triangles)
+    return;
+  for (int x = 0; x < width; x += frame->tile) {
+    size_t i_tile = (size_t)(y >> frame->tile_bits) * (size_t)frame->n_tiles_x + (size_t)(x >> frame->tile_bits);
+    near_in_tile(frame, i_tile, x, x + frame->tile < width ? x + frame->tile : width, y, line);
+  }
+  for (int x = 0; x < width; x++) {
+    float ray[2];
+    set_ray(&c->view, x, y, ray);
+    line[x].hides = line[x].iz > 0.0f ? conic_triangle_hides(frame->epsilon, line[x].iz, ray[0], ray[1]) : 0.0f;
+  }
 }
 
 /* Whether splats hide a triangle. */

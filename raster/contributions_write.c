@@ -1,4 +1,4 @@
-/* Every pixel's visible splats, line by line, into a deep image. */
+/* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
 #include <string.h>
 
 #include "core/image_exr_deep.h"
@@ -10,8 +10,9 @@
 /* A line that a thread works out; what it holds serves line after line. */
 typedef struct line {
   int y;
-  float *threshold;  /* a pixel; the nearest iz, where one pass asks for that */
-  uint32_t *nearest; /* a pixel: with one pass, the footprint that wins */
+  float *threshold;               /* a pixel; the nearest iz, where one pass asks for that */
+  uint32_t *nearest;              /* a pixel: with one pass, the footprint that wins */
+  conic_near_triangle *triangles; /* a pixel; iz = 0 where none is visible */
   uint32_t *counts;
   size_t *next; /* a pixel: where its next sample goes */
   float *depths, *weights;
@@ -65,6 +66,32 @@ static int is_visible(const conic_contributions *c, const line *l, uint32_t i_fo
   return c->options.passes == 1 ? l->nearest[x] == i_footprint : conic_seen_iz(fragment) >= l->threshold[x];
 }
 
+/* A pixel's triangle is visible unless splats hide it, and then hides them in turn. */
+static void judge_triangles(const conic_contributions *c, line *l) {
+  conic_contribution_triangle_line(c, l->y, l->triangles);
+  for (int x = 0; x < c->view.width; x++) {
+    conic_near_triangle *triangle = &l->triangles[x];
+    if (c->options.passes == 1 ? !(triangle->iz > l->threshold[x]) : !(triangle->iz >= l->threshold[x]))
+      triangle->iz = 0.0f;
+    else if (c->options.passes == 1)
+      l->nearest[x] = UINT32_MAX;
+    else if (l->threshold[x] < triangle->hides)
+      l->threshold[x] = triangle->hides;
+  }
+}
+
+static void keep_triangles(const conic_contributions *c, line *l) {
+  for (int x = 0; x < c->view.width; x++) {
+    const conic_near_triangle *triangle = &l->triangles[x];
+    if (!(triangle->iz > 0.0f))
+      continue;
+    size_t at = l->next[x]++;
+    l->depths[at] = 1.0f / triangle->iz;
+    l->ids[at] = c->triangles.first_id + triangle->triangle;
+    l->weights[at] = 1.0f;
+  }
+}
+
 static void count(const conic_contributions *c, line *l, uint32_t i_footprint, int x, const conic_fragment *fragment) {
   l->counts[x] += (uint32_t)is_visible(c, l, i_footprint, x, fragment);
 }
@@ -105,29 +132,34 @@ static void work_out(void *data, size_t i_item, int i_thread) {
   memset(l->nearest, 0xff, width * sizeof *l->nearest);
   memset(l->counts, 0, width * sizeof *l->counts);
   walk(c, l, c->options.passes == 1 ? keep_nearest : raise_threshold);
+  judge_triangles(c, l);
   walk(c, l, count);
   l->n_samples = 0;
   for (size_t x = 0; x < width; x++) {
+    l->counts[x] += l->triangles[x].iz > 0.0f;
     l->next[x] = l->n_samples;
     l->n_samples += l->counts[x];
   }
   if (all->is_counting)
     return;
   l->has_failed = !make_room(c->context, l);
-  if (!l->has_failed)
-    walk(c, l, keep);
+  if (l->has_failed)
+    return;
+  walk(c, l, keep);
+  keep_triangles(c, l);
 }
 
 static conic_status allocate_line(conic_context *context, size_t width, line *l) {
   l->threshold = conic_memory_allocate(context, width, sizeof *l->threshold);
   l->nearest = conic_memory_allocate(context, width, sizeof *l->nearest);
+  l->triangles = conic_memory_allocate(context, width, sizeof *l->triangles);
   l->counts = conic_memory_allocate(context, width, sizeof *l->counts);
   l->next = conic_memory_allocate(context, width, sizeof *l->next);
-  return l->threshold && l->nearest && l->counts && l->next ? CONIC_OK : CONIC_ERROR_MEMORY;
+  return l->threshold && l->nearest && l->triangles && l->counts && l->next ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static void release_line(conic_context *context, line *l) {
-  void *all[] = {l->threshold, l->nearest, l->counts, l->next, l->depths, l->weights, l->ids};
+  void *all[] = {l->threshold, l->nearest, l->triangles, l->counts, l->next, l->depths, l->weights, l->ids};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(context, all[i]);
 }

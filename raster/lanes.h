@@ -341,8 +341,8 @@ CONIC_INLINE lanes lanes_of_pairs(const float *a, const float *b) {
 CONIC_INLINE index_lanes lanes_ascending(uint32_t first) {
   index_lanes ascending = {0};
   for (int lane = 0; lane < CONIC_LANES; lane++)
-    ascending[lane] = first + (uint32_t)lane;
-  return ascending;
+    ascending[lane] = (uint32_t)lane; /* a constant: `first` in it would be put together lane by lane */
+  return ascending + first;
 }
 
 /* 0, 0, 0, 0, 1, 1, 1, 1, … and 0, 1, 2, 3, 0, 1, 2, 3, …: a lane's place in its block. */

@@ -29,6 +29,28 @@ typedef struct doubles {
 #define CONIC_HIGH_LANES 2, 3
 #endif
 
+#if defined(__AVX512F__)
+
+/* By name: gcc 12 would take them apart into quarters. */
+CONIC_INLINE half_doubles half_of(lanes value, int half) {
+  __m256d part = half == 0 ? _mm512_castpd512_pd256((__m512d)value) : _mm512_extractf64x4_pd((__m512d)value, 1);
+  return (half_doubles)_mm512_cvtps_pd((__m256)part);
+}
+
+/* Rounded to float. */
+CONIC_INLINE lanes lanes_narrow(const doubles *value) {
+  __m256 low = _mm512_cvtpd_ps((__m512d)value->half[0]), high = _mm512_cvtpd_ps((__m512d)value->half[1]);
+  return (lanes)_mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)low), (__m256d)high, 1);
+}
+
+/* Truncated; the values are within int32_t. */
+CONIC_INLINE int_lanes lanes_truncate(const doubles *value) {
+  __m256i low = _mm512_cvttpd_epi32((__m512d)value->half[0]), high = _mm512_cvttpd_epi32((__m512d)value->half[1]);
+  return (int_lanes)_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+
+#else
+
 /* Both halves in one vector. */
 CONIC_INLINE lanes lanes_join(half_floats low, half_floats high) {
   return __builtin_shufflevector(low, high, CONIC_ALL_LANES);
@@ -55,6 +77,8 @@ CONIC_INLINE int_lanes lanes_truncate(const doubles *value) {
   return lanes_join_int(__builtin_convertvector(value->half[0], half_ints),
                         __builtin_convertvector(value->half[1], half_ints));
 }
+
+#endif
 
 CONIC_INLINE half_doubles half_of_value(double value) {
   return value - (half_doubles){0};

@@ -76,7 +76,7 @@ CONIC_INLINE void lanes_gather_records(const float *records, const uint32_t *ind
   for (int half = 0; half < 2; half++) {
     lanes quads[4];
     __m512 rows[4];
-    const float *from = records + 4 * half;
+    const float *from = records + 4 * (size_t)half;
     for (int row = 0; row < 4; row++) {
       __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(from + (size_t)indices[row] * 8));
       four = _mm512_insertf32x4(four, _mm_loadu_ps(from + (size_t)indices[4 + row] * 8), 1);
@@ -117,7 +117,7 @@ CONIC_INLINE void lanes_store_plane(float *to, size_t stride, lanes value) {
 CONIC_INLINE void lanes_whole_records(const lanes *fields, __m512 records[16]) {
   __m512 rows[4][4];
   for (int quarter = 0; quarter < 4; quarter++)
-    lanes_pixels(fields + 4 * quarter, rows[quarter]);
+    lanes_pixels(fields + 4 * (size_t)quarter, rows[quarter]);
   for (int row = 0; row < 4; row++) {
     __m512 low01 = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0x44);
     __m512 high01 = _mm512_shuffle_f32x4(rows[0][row], rows[1][row], 0xee);
@@ -159,9 +159,9 @@ CONIC_INLINE void lanes_store_records(const lanes *fields, size_t n_fields, unsi
   if (__builtin_expect(drawn == 0xffff, 1)) {
     for (int lane = 0; lane < 16; lane++)
       if (n_fields == 16)
-        _mm512_storeu_ps(to + lane * 16, whole[lane]);
+        _mm512_storeu_ps(to + (size_t)lane * 16, whole[lane]);
       else
-        _mm256_storeu_ps(to + lane * 8, half[lane]);
+        _mm256_storeu_ps(to + (size_t)lane * 8, half[lane]);
     return;
   }
   for (int lane = 0; lane < 16; lane++) {
@@ -219,7 +219,7 @@ CONIC_INLINE void lanes_append_pairs(uint32_t *to, lanes_mask mask, index_lanes 
   for (int lane = 0; lane < CONIC_LANES; lane++) {
     to[0] = first[lane];
     to[1] = second[lane];
-    to += (bits >> lane & 1) * 2;
+    to += (size_t)(bits >> lane & 1) * 2;
   }
 }
 
@@ -230,7 +230,7 @@ CONIC_INLINE void lanes_store_quads(float *to, size_t stride, const lanes *chann
       rows[channel] = lanes_column(channels[channel], column);
     quad_transpose(rows);
     for (size_t row = 0; row < 4; row++)
-      memcpy(to + row * stride + 4 * column, &rows[row], sizeof rows[row]);
+      memcpy(to + row * stride + 4 * (size_t)column, &rows[row], sizeof rows[row]);
   }
 }
 
@@ -241,7 +241,7 @@ CONIC_INLINE void lanes_store_triples(float *to, size_t stride, const lanes *cha
     rows[3] = rows[2];
     quad_transpose(rows);
     for (size_t row = 0; row < 4; row++)
-      memcpy(to + row * stride + 3 * column, &rows[row], 3 * sizeof(float));
+      memcpy(to + row * stride + 3 * (size_t)column, &rows[row], 3 * sizeof(float));
   }
 }
 

@@ -1,31 +1,32 @@
 /* The single pass in lanes, where the nearest splat wins alone: a tile splat by splat, then its colours. Included by
  * tile_kernels_body.h. */
-CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest_strip *strip, size_t at,
+CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest *kept, size_t at,
                                int is_special) {
-  lanes iz = lanes_load(strip->iz + at);
+  lanes iz = lanes_load(kept->iz + at);
   lanes_mask nearer = f->covered & lanes_less(iz, f->iz);
-  lanes_replace(strip->iz + at, nearer, f->iz);
-  lanes_replace(strip->q + at, nearer, f->q);
-  lanes_replace_indices(strip->footprint + at, nearer, lanes_of_index(i_footprint));
+  lanes_replace(kept->iz + at, nearer, f->iz);
+  lanes_replace(kept->q + at, nearer, f->q);
+  lanes_replace_indices(kept->footprint + at, nearer, lanes_of_index(i_footprint));
   if (is_special)
-    lanes_replace(strip->scale + at, nearer, f->scale);
+    lanes_replace(kept->scale + at, nearer, f->scale);
 }
 
 /* A tile's pixels as its strips have them, NaN beside the tile and outside the image. */
 typedef struct strip_sites {
-  float x[CONIC_STRIP_PIXELS];
-  lanes y[CONIC_TILE_STRIPS];
+  float x[CONIC_GREATEST_STRIP * CONIC_STRIP_COLUMNS];
+  lanes y[CONIC_GREATEST_TILE / 2 + 1];
 } strip_sites;
 
-CONIC_INLINE void find_strip_sites(const conic_band *band, strip_sites *s) {
-  int right = band->x + band->n_blocks * CONIC_BLOCK_EDGE;
+CONIC_INLINE void find_strip_sites(const conic_band *band, int strip_rows, strip_sites *s) {
+  int right = band->x + band->n_blocks * CONIC_BLOCK_EDGE, n_strips = band->n_rows * CONIC_BLOCK_EDGE / strip_rows;
   right = right < band->view->width ? right : band->view->width;
-  for (int at = 0; at < CONIC_STRIP_PIXELS; at++) {
-    int x = band->x + at / CONIC_STRIP_ROWS;
+  for (int at = 0; at < strip_rows * CONIC_STRIP_COLUMNS; at++) {
+    int x = band->x + at / strip_rows;
     s->x[at] = x < right ? (float)x : __builtin_nanf("");
   }
-  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
-    s->y[i] = nan_beyond(lanes_alternating(CONIC_STRIP_ROWS) + (band->y + i * CONIC_STRIP_ROWS), band->view->height);
+  for (int i = 0; i < n_strips; i++)
+    s->y[i] = nan_beyond(lanes_alternating(strip_rows) + (band->y + i * strip_rows), band->view->height);
+  s->y[n_strips] = lanes_of(__builtin_nanf(""));
 }
 
 /* An ellipse in all lanes, and what of it does not depend on the row: ellipse_fragments, with its operations in their
@@ -50,38 +51,50 @@ CONIC_INLINE void column_fragments(const ellipse_columns *e, lanes y, float supp
   f->iz = lanes_min(lanes_max((e->iz0 + e->iz_dy * dy) + e->iz_dx_dx, e->iz_far), e->iz_near);
 }
 
-/* One splat in the pixels that its entry names, and those beside them that lanes have in one go. */
-CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
-                                  conic_nearest_strip *strips, index_lanes *n_covered) {
-  const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t begin = conic_word_first(entry->word) * CONIC_STRIP_ROWS,
-               end = (conic_word_last(entry->word) + 1) * CONIC_STRIP_ROWS;
-  const uint32_t first = conic_word_first_row(entry->word) / CONIC_STRIP_ROWS,
-                 last = conic_word_last_row(entry->word) / CONIC_STRIP_ROWS;
+/* A splat in one register of a strip. */
+CONIC_INLINE void nearest_in_strip(const ellipse_columns *columns, const sources *from, const strip_sites *s,
+                                   uint32_t i, uint32_t i_footprint, conic_nearest *kept, size_t at, size_t stride,
+                                   index_lanes *n_covered) {
   fragments f;
+  column_fragments(columns, s->y[i], from->support, &f);
+  keep_nearest(&f, i_footprint, kept, i * stride + at, 0);
+  *n_covered = lanes_increment(f.covered, *n_covered);
+}
+
+/* One splat in the pixels that its entry names, and those beside them that lanes have in one go. Of strips of four rows
+ * always two: how many it meets cannot be foreseen. */
+CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
+                                  uint32_t strip_rows, conic_nearest *kept, index_lanes *n_covered) {
+  const conic_footprint *footprint = &from->footprints[entry->footprint];
+  const size_t begin = conic_word_first(entry->word) * strip_rows,
+               end = (conic_word_last(entry->word) + 1) * strip_rows, stride = strip_rows * CONIC_STRIP_COLUMNS;
+  const uint32_t first = conic_word_first_row(entry->word) / strip_rows,
+                 last = conic_word_last_row(entry->word) / strip_rows;
   for (size_t at = begin; at < end; at += CONIC_LANES) {
     const ellipse_columns columns = begin_columns(footprint, lanes_load(s->x + at));
-    for (uint32_t i = first; i <= last; i++) {
-      column_fragments(&columns, s->y[i], from->support, &f);
-      keep_nearest(&f, entry->footprint, &strips[i], at, 0);
-      *n_covered = lanes_increment(f.covered, *n_covered);
-    }
+    uint32_t i = first;
+    if (strip_rows == 4)
+      for (; i < first + 2; i++)
+        nearest_in_strip(&columns, from, s, i, entry->footprint, kept, at, stride, n_covered);
+    for (; i <= last; i++)
+      nearest_in_strip(&columns, from, s, i, entry->footprint, kept, at, stride, n_covered);
   }
 }
 
 static __attribute__((noinline)) unsigned nearest_special(const sources *from, const strip_sites *s,
-                                                          const conic_tile_entry *entry, conic_nearest_strip *strips) {
+                                                          const conic_tile_entry *entry, uint32_t strip_rows,
+                                                          conic_nearest *kept) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t begin = conic_word_first(entry->word) * CONIC_STRIP_ROWS,
-               end = (conic_word_last(entry->word) + 1) * CONIC_STRIP_ROWS;
-  const uint32_t last = conic_word_last_row(entry->word) / CONIC_STRIP_ROWS;
+  const size_t begin = conic_word_first(entry->word) * strip_rows,
+               end = (conic_word_last(entry->word) + 1) * strip_rows, stride = strip_rows * CONIC_STRIP_COLUMNS;
+  const uint32_t last = conic_word_last_row(entry->word) / strip_rows;
   unsigned n_covered = 0;
   fragments f;
-  for (uint32_t i = conic_word_first_row(entry->word) / CONIC_STRIP_ROWS; i <= last; i++) {
+  for (uint32_t i = conic_word_first_row(entry->word) / strip_rows; i <= last; i++) {
     const splat_rows rows = begin_rows(footprint, s->y[i]);
     for (size_t at = begin; at < end; at += CONIC_LANES) {
       evaluate(from, footprint, &rows, lanes_load(s->x + at), 1, &f);
-      keep_nearest(&f, entry->footprint, &strips[i], at, 1);
+      keep_nearest(&f, entry->footprint, kept, i * stride + at, 1);
       n_covered += lanes_count(f.covered);
     }
   }
@@ -90,10 +103,11 @@ static __attribute__((noinline)) unsigned nearest_special(const sources *from, c
 
 /* The splats of the entries begin … end - 1, so few that no lane's count overflows. Returns how many pixels they
  * cover. */
-static uint64_t nearest_of(conic_band *band, const sources *from, const strip_sites *s, size_t begin, size_t end) {
+CONIC_INLINE uint64_t nearest_of(conic_band *band, const sources *from, const strip_sites *s, uint32_t strip_rows,
+                                 size_t begin, size_t end) {
   enum { AHEAD = 32 };
   const conic_tile_entry *const entries = band->entries;
-  conic_nearest_strip *const strips = band->nearest;
+  conic_nearest *const kept = band->nearest;
   const size_t n = band->n_entries;
   index_lanes n_covered = lanes_of_index(0);
   uint64_t sum = 0;
@@ -102,10 +116,10 @@ static uint64_t nearest_of(conic_band *band, const sources *from, const strip_si
     __builtin_prefetch(&from->footprints[later]);
     __builtin_prefetch(&from->surfaces[later], 0, 2);
     if (__builtin_expect(from->footprints[entries[i].footprint].s3 > 0.0f, 1))
-      nearest_ellipse(from, s, &entries[i], strips, &n_covered);
+      nearest_ellipse(from, s, &entries[i], strip_rows, kept, &n_covered);
     else {
       prefetch_ray(from, entries[i + 12 < n ? i + 12 : i].footprint);
-      sum += nearest_special(from, s, &entries[i], strips);
+      sum += nearest_special(from, s, &entries[i], strip_rows, kept);
       band->has_special = 1;
     }
   }
@@ -114,42 +128,54 @@ static uint64_t nearest_of(conic_band *band, const sources *from, const strip_si
   return sum;
 }
 
-static void nearest(conic_band *band) {
+CONIC_INLINE void nearest_in_strips(conic_band *band, uint32_t strip_rows) {
   enum { COUNTABLE = 1 << 20 };
   const sources from = sources_of(band);
   strip_sites s;
-  find_strip_sites(band, &s);
-  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
-    memset(band->nearest[i].iz, 0, sizeof band->nearest[i].iz);
+  find_strip_sites(band, (int)strip_rows, &s);
+  conic_nearest_begin(band);
   band->has_special = 0;
   for (size_t begin = 0, n = band->n_entries; begin < n; begin += COUNTABLE)
-    band->n_fragments += nearest_of(band, &from, &s, begin, begin + COUNTABLE < n ? begin + COUNTABLE : n);
+    band->n_fragments += nearest_of(band, &from, &s, strip_rows, begin, begin + COUNTABLE < n ? begin + COUNTABLE : n);
 }
 
-/* A part of a block from the two strips that it is in: what lies at `upper`, and as far on in the strip below. */
-CONIC_INLINE lanes load_part(const float *upper) {
-  return lanes_of_pairs(upper, upper + sizeof(conic_nearest_strip) / sizeof *upper);
+static void nearest(conic_band *band) {
+  if (band->strip_rows == 4)
+    nearest_in_strips(band, 4);
+  else
+    nearest_in_strips(band, 2);
+}
+
+/* Where the part of a block is whose first pixel is `at`. */
+CONIC_INLINE size_t place_of_part(const conic_band *band, int strip_rows, int block, size_t at) {
+  return conic_strip_place(strip_rows, block * CONIC_BLOCK_EDGE + (int)at / CONIC_BLOCK_EDGE, band->nearest_row);
+}
+
+/* It: one piece of a strip of four rows, or what lies at `upper` and as far on in the strip below. */
+CONIC_INLINE lanes load_part(const float *upper, int strip_rows) {
+  return strip_rows == 4 ? lanes_load(upper) : lanes_of_pairs(upper, upper + 2 * CONIC_STRIP_COLUMNS);
 }
 
 /* The nearest splats' colour, normal and weight, in one part of a block. */
-CONIC_INLINE void take_part(const conic_band *band, const sources *from, int block, size_t at, lanes_mask covered) {
-  const conic_nearest_strip *strip = band->nearest;
-  const size_t of_strip = (size_t)block * CONIC_BLOCK_EDGE * CONIC_STRIP_ROWS + at / 2;
+CONIC_INLINE void take_part(const conic_band *band, const sources *from, int strip_rows, int block, size_t at,
+                            lanes_mask covered) {
+  const conic_nearest *kept = band->nearest;
+  const size_t of_strip = place_of_part(band, strip_rows, block, at);
   uint32_t footprint[CONIC_LANES];
   lanes surface[8], scale = lanes_of(1.0f); /* the fields of conic_surface */
   part_sums to;
   clear_sums(&to);
-  to.nearest = (index_lanes)load_part((const float *)(const void *)(strip->footprint + of_strip));
+  to.nearest = (index_lanes)load_part((const float *)(const void *)(kept->footprint + of_strip), strip_rows);
   to.heaviest = to.nearest = lanes_select_indices(covered, to.nearest, lanes_of_index(0)); /* else it is anything */
   lanes_store_indices(footprint, to.nearest);
   lanes_gather_records(from->surfaces->color, footprint, surface);
   if (band->has_special) {
-    lanes kept = load_part(strip->scale + of_strip);
+    lanes scales = load_part(kept->scale + of_strip, strip_rows);
     for (int lane = 0; lane < CONIC_LANES; lane++)
       if (!(from->footprints[footprint[lane]].s3 > 0.0f))
-        scale[lane] = kept[lane];
+        scale[lane] = scales[lane];
   }
-  to.weight = weigh(from->view, 1.0f, load_part(strip->q + of_strip), surface[7] * scale, covered,
+  to.weight = weigh(from->view, 1.0f, load_part(kept->q + of_strip, strip_rows), surface[7] * scale, covered,
                     kind_of(&from->view->kernel));
   for (int axis = 0; axis < 3; axis++) { /* to 0, which a product may be below: -0 */
     to.color[axis] += to.weight * surface[axis];
@@ -159,19 +185,26 @@ CONIC_INLINE void take_part(const conic_band *band, const sources *from, int blo
   store_sums(&to, at, &band->sums[block]);
 }
 
-static void take_nearest(conic_band *band) {
+CONIC_INLINE void take_from_strips(conic_band *band, int strip_rows) {
   const sources from = sources_of(band);
   empty_blocks(band);
   for (int block = 0; block < band->n_blocks; block++) {
-    const float *iz = band->nearest->iz + block * CONIC_BLOCK_EDGE * CONIC_STRIP_ROWS;
     lanes_mask covered[CONIC_PARTS];
     int is_any = 0;
     for (int part = 0; part < CONIC_PARTS; part++) {
-      covered[part] = lanes_less(lanes_of(0.0f), load_part(iz + part * CONIC_LANES / 2));
+      const float *iz = band->nearest->iz + place_of_part(band, strip_rows, block, (size_t)part * CONIC_LANES);
+      covered[part] = lanes_less(lanes_of(0.0f), load_part(iz, strip_rows));
       is_any |= lanes_any(covered[part]);
     }
     band->n_kept[block] = (size_t)is_any;
     for (int part = 0; part < CONIC_PARTS && is_any; part++)
-      take_part(band, &from, block, (size_t)part * CONIC_LANES, covered[part]);
+      take_part(band, &from, strip_rows, block, (size_t)part * CONIC_LANES, covered[part]);
   }
+}
+
+static void take_nearest(conic_band *band) {
+  if (band->strip_rows == 4)
+    take_from_strips(band, 4);
+  else
+    take_from_strips(band, 2);
 }

@@ -95,7 +95,7 @@ conic_status conic_oracle_compare(conic_context *context, const conic_reference 
   size_t unstable = reference->samples > 1 ? reference->unstable_samples : reference->unstable_pixels;
   size_t covered = reference->samples > 1 ? reference->covered_samples : reference->covered_pixels;
   verdict->pass = is_exact || (double)unstable <= unstable_limit * (double)covered;
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_N_DRAWN_PLANES; i++) { /* the others are names, given after drawing */
     conic_oracle_plane_verdict *plane = &verdict->planes[i];
     plane->bound = is_exact ? NAN : bounds[i];
     if (!image->planes[i])

@@ -226,11 +226,13 @@ static int place(const oracle_view *view, const conic_splats *splats, const coni
 
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                        const conic_render_options *options, oracle_scene *scene) {
-  double median = 0.0;
+  double median = options->splat_length; /* of all splats, where these are some that were chosen of them */
   scene->n = 0;
   scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
   scene->splats = conic_memory_allocate(context, splats->count, sizeof *scene->splats);
-  conic_status status = scene->splats ? median_length(context, splats, &median) : CONIC_ERROR_MEMORY;
+  conic_status status = scene->splats ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK && !(median > 0.0))
+    status = median_length(context, splats, &median);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
     if (place(&scene->view, splats, options, i, median, &scene->splats[scene->n]))
       scene->n++;

@@ -50,10 +50,10 @@ CONIC_INLINE void append_columns(const float *const columns[N_COLUMNS], size_t i
     }
 }
 
-/* Packs those of the n splats from `first` on that do not surely face away; the spare lanes repeat the last. */
+/* Appends those of the n splats from `first` on that do not surely face away. */
 static void pack_batch(const conic_view *view, const conic_splats *splats, size_t first, size_t n, batch *to) {
   const float *columns[N_COLUMNS];
-  size_t i = 0, n_packed = 0;
+  size_t i = 0, n_packed = to->n;
   find_columns(splats, first, columns);
   for (; view->cull_back && i + CONIC_LANES <= n; i += CONIC_LANES) {
     lanes_mask kept = lanes_not(surely_faces_away(view, columns, i));
@@ -66,15 +66,33 @@ static void pack_batch(const conic_view *view, const conic_splats *splats, size_
   for (; i < n; i++)
     to->index[n_packed++] = (uint32_t)(first + i);
   to->n = n_packed;
-  for (size_t spare = n_packed; spare % CONIC_LANES != 0; spare++) {
-    to->index[spare] = to->index[n_packed - 1];
-    for (int column = 0; column < N_COLUMNS; column++)
-      to->columns[column][spare] = to->columns[column][n_packed - 1];
-  }
 }
 
-/* A set without colours is white, one without opacities opaque. */
-static void fill_with_ones(float *column) {
-  for (size_t i = 0; i < BATCH + CONIC_LANES; i++)
-    column[i] = 1.0f;
+/* Lets the last splat stand in the spare lanes of its group too; returns where that ends. */
+static size_t fill_last_group(batch *last) {
+  size_t end = (last->n + CONIC_LANES - 1) / CONIC_LANES * CONIC_LANES;
+  for (size_t spare = last->n; spare < end; spare++) {
+    last->index[spare] = last->index[last->n - 1];
+    for (int column = 0; column < N_COLUMNS; column++)
+      last->columns[column][spare] = last->columns[column][last->n - 1];
+  }
+  return end;
+}
+
+/* Brings what is behind the first n to the front: less than a group. */
+static void keep_rest(batch *of, size_t n) {
+  size_t n_left = of->n > n ? of->n - n : 0;
+  for (int column = 0; column < N_COLUMNS && n_left; column++)
+    memmove(of->columns[column], of->columns[column] + n, n_left * sizeof(float));
+  if (n_left)
+    memmove(of->index, of->index + n, n_left * sizeof *of->index);
+  of->n = n_left;
+}
+
+/* None are packed yet. A set without colours is white, one without opacities opaque. */
+static void begin_batches(batch *packed) {
+  packed->n = 0;
+  for (int column = COLOR; column < N_COLUMNS; column++)
+    for (size_t i = 0; i < BATCH_ROOM; i++)
+      packed->columns[column][i] = 1.0f;
 }

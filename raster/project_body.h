@@ -13,10 +13,13 @@ enum { BATCH = 512 };
 /* The columns of a splat set that set-up reads. */
 enum { POSITION, TANGENT_U = 3, TANGENT_V = 6, COLOR = 9, OPACITY = 12, N_COLUMNS };
 
-/* The splats of a batch that may be drawn, with room for a last group's spare lanes. */
+/* The splats of a batch that may be drawn, after those that the one before it left over, which were too few for a
+ * group; with room for a last group's spare lanes. */
+enum { BATCH_ROOM = BATCH + 2 * CONIC_LANES };
+
 typedef struct batch {
-  float columns[N_COLUMNS][BATCH + CONIC_LANES];
-  uint32_t index[BATCH + CONIC_LANES];
+  float columns[N_COLUMNS][BATCH_ROOM];
+  uint32_t index[BATCH_ROOM];
   size_t n;
 } batch;
 
@@ -491,13 +494,14 @@ CONIC_INLINE void project_group(const conic_view *view, const conic_splats *spla
 static void project(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                     conic_projected *projected, conic_chunk *chunk) {
   batch packed;
-  for (int column = COLOR; column < N_COLUMNS; column++)
-    fill_with_ones(packed.columns[column]);
+  begin_batches(&packed);
   for (size_t first = begin; first < end; first += BATCH) {
-    size_t n = end - first < BATCH ? end - first : BATCH;
+    size_t n = end - first < BATCH ? end - first : BATCH, n_before = packed.n;
     pack_batch(view, splats, first, n, &packed);
-    chunk->n_culled += n - packed.n;
-    for (size_t i = 0; i < packed.n; i += CONIC_LANES)
+    chunk->n_culled += n - (packed.n - n_before);
+    size_t n_due = first + n < end ? packed.n - packed.n % CONIC_LANES : fill_last_group(&packed);
+    for (size_t i = 0; i < n_due; i += CONIC_LANES)
       project_group(view, splats, &packed, i, projected, chunk);
+    keep_rest(&packed, n_due);
   }
 }

@@ -118,6 +118,15 @@ static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t s
   return memory->pointer;
 }
 
+/* The same for what fills up from its beginning. */
+static void *dense_room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
+  size_t before = memory->bytes;
+  void *pointer = room(renderer, memory, count, size);
+  if (memory->bytes != before)
+    conic_memory_prefer_large_pages(pointer, memory->bytes);
+  return pointer;
+}
+
 /* Chunks of splats are what set-up and binning share out: enough of them for balance, small enough for their records to
  * stay in a core's cache until they are sorted, few enough for their tables. */
 static void choose_chunks(frame *f) {
@@ -140,8 +149,8 @@ static conic_status plan_records(frame *f) {
   size_t n = f->splats->count;
   projected->chunks = room(renderer, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
   size_t n_named = n ? n : 1; /* where nothing is, sums name the first */
-  projected->footprints = room(renderer, &renderer->footprints, n_named, sizeof *projected->footprints);
-  projected->surfaces = room(renderer, &renderer->surfaces, n_named, sizeof *projected->surfaces);
+  projected->footprints = dense_room(renderer, &renderer->footprints, n_named, sizeof *projected->footprints);
+  projected->surfaces = dense_room(renderer, &renderer->surfaces, n_named, sizeof *projected->surfaces);
   projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
   if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
@@ -160,7 +169,7 @@ static conic_status plan_bins(frame *f) {
   bins->chunk_begin = room(renderer, &renderer->chunk_begin, bins->n_chunks, sizeof *bins->chunk_begin);
   bins->tile_begin =
       room(renderer, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
-  bins->entries = room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
+  bins->entries = dense_room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
   bins->n_room = renderer->entries.bytes / sizeof *bins->entries;
   bins->length = room(renderer, &renderer->lengths, bins->n_tiles, sizeof *bins->length);
   f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
@@ -193,7 +202,7 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   uint64_t start = conic_ticks();
   conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
                      f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
-  sorter.chunk.first_ray = f->projected.chunks[i_chunk].first = begin;
+  sorter.chunk.first_ray = begin;
   f->kernels->project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
   if (sorter.projected.clips)
     conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
@@ -263,11 +272,12 @@ static conic_status project_and_sort(frame *f) {
   conic_bins *bins = &f->bins;
   for (;;) {
     atomic_store(&bins->n_used, 0);
+    atomic_store(&bins->n_records, 0);
     conic_parallel_for(renderer->context, f->projected.n_chunks, project_task, f);
     size_t n_used = atomic_load(&bins->n_used);
     if (n_used <= bins->n_room)
       break;
-    bins->entries = room(renderer, &renderer->entries, n_used, sizeof *bins->entries);
+    bins->entries = dense_room(renderer, &renderer->entries, n_used, sizeof *bins->entries);
     bins->n_room = n_used;
     if (!bins->entries)
       return CONIC_ERROR_MEMORY;

@@ -13,7 +13,7 @@ static size_t padded(size_t n) {
 }
 
 size_t conic_tile_bytes(size_t n_references) {
-  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + CONIC_TILE_STRIPS * sizeof(conic_nearest_strip) +
+  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + sizeof(conic_nearest) +
          (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
          padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
 }
@@ -22,7 +22,7 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
   conic_tile_scratch *scratch = &tile->scratch;
   size_t n = padded(tile->n_references);
   scratch->nearest = memory;
-  scratch->sums = (conic_block_sums *)(scratch->nearest + CONIC_TILE_STRIPS);
+  scratch->sums = (conic_block_sums *)(scratch->nearest + 1);
   scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
   scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
   scratch->indices = (uint32_t *)(scratch->entries + n);
@@ -98,16 +98,30 @@ static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kerne
   }
 }
 
+/* Four rows a strip where that is cheaper, as the tile's first splats tell: a register of 16 pixels then has four
+ * columns and four rows, which most splats of up to four columns meet two of; and eight columns of two rows else, which
+ * is better the wider they are. Fewer pixels are never better off with four rows. */
+static int choose_strip(const conic_band *band, int n_lanes) {
+  enum { LOOKED_AT = 64 };
+  size_t n = band->n_entries < LOOKED_AT ? band->n_entries : LOOKED_AT, n_narrow = 0;
+  for (size_t i = 0; i < n; i++) {
+    uint32_t word = band->entries[i].word;
+    n_narrow += conic_word_last(word) - conic_word_first(word) < 4;
+  }
+  return n_lanes == 16 && 4 * n_narrow >= 3 * n ? 4 : 2;
+}
+
 /* The nearest splat alone: all rows in one go, since little is kept of it. */
 static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
   uint64_t start = conic_ticks();
+  band->strip_rows = choose_strip(band, kernels->n_lanes);
   kernels->nearest(band);
   uint64_t seen = conic_ticks();
   report->visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
-    band->nearest = tile->scratch.nearest + i_row * (CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS);
+    band->nearest_row = i_row * CONIC_BLOCK_EDGE;
     kernels->take_nearest(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles) {

@@ -9,7 +9,7 @@ typedef struct conic_tile_scratch {
   conic_tile_entry *entries; /* the tile's, in file order */
   uint32_t *indices, *words; /* of a row of blocks */
   conic_kept *kept;
-  conic_nearest_strip *nearest;
+  conic_nearest *nearest;
   conic_block_sums *sums;
 } conic_tile_scratch;
 

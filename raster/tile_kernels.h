@@ -8,6 +8,7 @@
 
 #include "raster/bins.h"
 #include "raster/resolve.h"
+#include "raster/texture_places.h"
 #include "raster/triangle_frame.h"
 
 /* select may write so many entries past those that it counts. */
@@ -15,6 +16,7 @@
 
 typedef struct conic_tile_kernels {
   const char *name; /* "scalar", "sse2" … */
+  int n_lanes;      /* pixels or splats that it takes at a time */
   /* Set-up: appends the splats begin … end - 1 to the chunk, compacted, in order. */
   void (*project)(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                   conic_projected *projected, conic_chunk *chunk);
@@ -45,6 +47,9 @@ typedef struct conic_tile_kernels {
   void (*triangles_hide)(conic_band *band, const conic_tile_rays *rays);
   /* After pass 2: adds those that are seen to the sums; heaviest, nearest. */
   void (*triangles_add)(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
+  /* The texture's colours at those of a block's pixels; the others' stay as they are. */
+  void (*texture)(const conic_texture *texture, const conic_texture_places *places, uint32_t pixels,
+                  float color[3][CONIC_BLOCK_PIXELS]);
 } conic_tile_kernels;
 
 extern const conic_tile_kernels conic_tile_kernels_scalar;

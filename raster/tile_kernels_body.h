@@ -285,7 +285,7 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
-    n_covered += pass_part(splat->nearness, &f, kept, place, part * CONIC_LANES, is_special);
+    n_covered += pass_part(splat->nearness, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
   }
   p->n_fragments += n_covered;
   if (place < p->room)
@@ -424,7 +424,7 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, 
                              part_sums *to) {
   const sources from = sources_of(band);
   int at = block * CONIC_PARTS + part;
-  lanes threshold = lanes_load(band->kept[block].threshold + part * CONIC_LANES);
+  lanes threshold = lanes_load(band->kept[block].threshold + (size_t)part * CONIC_LANES);
   fragments f;
   for (size_t i = band->not_kept[block]; i < from.n; i++) {
     if (!conic_word_has(from.words[i], (uint32_t)block))
@@ -496,6 +496,7 @@ static void accumulate(conic_band *band) {
 
 const conic_tile_kernels TABLE = {
     .name = NAME,
+    .n_lanes = CONIC_LANES,
     .project = project,
     .keys = keys,
     .move = move,
@@ -509,4 +510,5 @@ const conic_tile_kernels TABLE = {
     .triangles_draw = triangles_draw,
     .triangles_hide = triangles_hide,
     .triangles_add = triangles_add,
+    .texture = texture_at_places,
 };

@@ -156,24 +156,23 @@ static void accumulate(conic_band *band) {
 
 /* Returns whether the splat covers the pixel in the given column and row of the tile. */
 static unsigned keep_nearest(const conic_band *band, uint32_t i_footprint, int column, int row) {
-  conic_nearest_strip *strip = &band->nearest[row / CONIC_STRIP_ROWS];
-  size_t at = conic_strip_place(column, row);
+  conic_nearest *kept = band->nearest;
+  size_t at = conic_strip_place(band->strip_rows, column, row);
   conic_fragment fragment;
   if (!fragment_at(band, i_footprint, band->x + column, band->y + row, &fragment))
     return 0;
-  if (!(strip->iz[at] < fragment.iz))
+  if (!(kept->iz[at] < fragment.iz))
     return 1;
-  strip->iz[at] = fragment.iz;
-  strip->q[at] = fragment.q;
-  strip->scale[at] = fragment.scale;
-  strip->footprint[at] = i_footprint;
+  kept->iz[at] = fragment.iz;
+  kept->q[at] = fragment.q;
+  kept->scale[at] = fragment.scale;
+  kept->footprint[at] = i_footprint;
   return 1;
 }
 
 static void nearest(conic_band *band) {
   band->has_special = 0;
-  for (int i = 0; i < band->n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++)
-    memset(band->nearest[i].iz, 0, sizeof band->nearest[i].iz);
+  conic_nearest_begin(band);
   for (size_t i = 0; i < band->n_entries; i++) {
     const conic_tile_entry *entry = &band->entries[i];
     band->has_special |= !(band->projected->footprints[entry->footprint].s3 > 0.0f);
@@ -188,14 +187,14 @@ static void take_block(const conic_band *band, int block) {
   conic_block_sums *sums = &band->sums[block];
   memset(sums, 0, sizeof *sums);
   for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-    size_t at;
-    const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
+    const conic_nearest *kept = band->nearest;
+    size_t at = conic_nearest_place(band, block, l);
     float heaviest_weight = 0.0f;
-    conic_fragment fragment = {.q = strip->q[at], .scale = strip->scale[at]};
-    if (!(strip->iz[at] > 0.0f))
+    conic_fragment fragment = {.q = kept->q[at], .scale = kept->scale[at]};
+    if (!(kept->iz[at] > 0.0f))
       continue;
-    blend(band, strip->footprint[at], block, l, &fragment, &heaviest_weight);
-    sums->nearest[l] = strip->footprint[at];
+    blend(band, kept->footprint[at], block, l, &fragment, &heaviest_weight);
+    sums->nearest[l] = kept->footprint[at];
     sums->count[l] = 1;
   }
 }
@@ -204,11 +203,8 @@ static void take_nearest(conic_band *band) {
   for (int block = 0; block < band->n_blocks; block++) {
     band->n_kept[block] = 0;
     band->not_kept[block] = band->n;
-    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      size_t at;
-      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
-      band->n_kept[block] |= strip->iz[at] > 0.0f;
-    }
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      band->n_kept[block] |= band->nearest->iz[conic_nearest_place(band, block, l)] > 0.0f;
     if (!conic_block_is_empty(band, block))
       take_block(band, block);
   }
@@ -216,6 +212,7 @@ static void take_nearest(conic_band *band) {
 
 const conic_tile_kernels conic_tile_kernels_scalar = {
     .name = "scalar",
+    .n_lanes = 1,
     .project = conic_project_range,
     .keys = keys,
     .move = move,
@@ -229,4 +226,5 @@ const conic_tile_kernels conic_tile_kernels_scalar = {
     .triangles_draw = conic_triangles_draw,
     .triangles_hide = conic_triangles_hide,
     .triangles_add = conic_triangles_add,
+    .texture = conic_texture_at_places,
 };

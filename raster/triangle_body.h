@@ -1,7 +1,9 @@
 /* The triangles' slots in lanes: the operations of triangle_vertices.c and triangle_tile.c in the same order. Included
  * by tile_kernels_body.h. */
 #include "raster/lanes_double.h"
+#include "raster/texture_body.h"
 #include "raster/triangle_look.h"
+#include "raster/triangle_pixel.h"
 #include "raster/triangle_tile.h"
 
 /* half_of_value's vectors of integers as they are compared. */
@@ -73,12 +75,12 @@ CONIC_INLINE int_lanes part_columns(int part) {
 
 /* A record, and what of it is the same in all blocks. */
 typedef struct drawing {
-  const conic_triangle_record *record;
-  uint32_t i_record;
-  conic_triangle_edges edges;
   int_lanes within[3][CONIC_PARTS]; /* how far each edge's value is from that at the block's first pixel, in steps */
-  int32_t most[3];                  /* the most that it gains */
   lanes iz_far, iz_near;
+  const conic_triangle_record *record;
+  conic_triangle_edges edges;
+  int32_t most[3]; /* the most that it gains */
+  uint32_t i_record;
 } drawing;
 
 CONIC_INLINE void begin_drawing(const conic_triangle_record *record, uint32_t i_record, drawing *d) {
@@ -165,7 +167,8 @@ CONIC_INLINE int has_few_samples(const conic_box *box) {
 CONIC_INLINE uint32_t covered_bits(const conic_triangle_block *block) {
   uint32_t bits = 0;
   for (int part = 0; part < CONIC_PARTS; part++)
-    bits |= lanes_bits(lanes_less(lanes_of(0.0f), lanes_load(block->iz + part * CONIC_LANES))) << (part * CONIC_LANES);
+    bits |= lanes_bits(lanes_less(lanes_of(0.0f), lanes_load(block->iz + (size_t)part * CONIC_LANES)))
+            << (part * CONIC_LANES);
   return bits;
 }
 
@@ -242,23 +245,57 @@ CONIC_INLINE void find_places(const conic_triangle_look *look, lanes column, lan
   }
 }
 
-/* The texture's colour, pixel by pixel where the mask holds. */
-static __attribute__((noinline)) void texture_part(const conic_triangle_look *look, const places *p, unsigned bits,
-                                                   lanes color[3]) {
-  lanes uv[2], along[2], across[2];
+/* Pixels of a block whose triangles have a texture, one for all: their colours are added when it is known at all of
+ * them, since it is filtered a pixel a lane, whichever triangles they see. */
+typedef struct textured_pixels {
+  const conic_texture *texture;
+  uint32_t pixels;
+  conic_texture_places places;
+  float color[3][CONIC_BLOCK_PIXELS]; /* without the texture's */
+} textured_pixels;
+
+static __attribute__((noinline)) void add_textured(textured_pixels *t, conic_block_sums *sums) {
+  float texel[3][CONIC_BLOCK_PIXELS];
+  texture_at_places(t->texture, &t->places, t->pixels, texel);
+  for (int at = 0; at < CONIC_BLOCK_PIXELS; at += CONIC_LANES) {
+    lanes_mask mask = lanes_mask_of(t->pixels >> at & ((1u << CONIC_LANES) - 1));
+    for (int channel = 0; channel < 3; channel++) {
+      float *sum = sums->color[channel] + at;
+      lanes_replace(sum, mask, lanes_load(sum) + lanes_load(t->color[channel] + at) * lanes_load(texel[channel] + at));
+    }
+  }
+  t->pixels = 0;
+}
+
+/* Before pixels of a triangle are noted down: those of another texture are added. */
+CONIC_INLINE void turn_to_texture(const conic_texture *texture, textured_pixels *t, conic_block_sums *sums) {
+  if (t->pixels && t->texture != texture)
+    add_textured(t, sums);
+  t->texture = texture;
+}
+
+CONIC_INLINE void note_part(const conic_triangle_look *look, const places *p, int part, lanes_mask mask,
+                            const lanes color[3], textured_pixels *t) {
+  size_t at = (size_t)part * CONIC_LANES;
   for (int i = 0; i < 2; i++) {
-    uv[i] = look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]);
-    along[i] = p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i];
-    across[i] = p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i];
+    lanes_replace(t->places.uv[i] + at, mask, look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]));
+    lanes_replace(t->places.along[i] + at, mask, p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i]);
+    lanes_replace(t->places.across[i] + at, mask, p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i]);
   }
-  for (; bits; bits &= bits - 1) {
-    int lane = __builtin_ctz(bits);
-    float place[2] = {uv[0][lane], uv[1][lane]}, side[2] = {along[0][lane], along[1][lane]};
-    float other[2] = {across[0][lane], across[1][lane]}, texel[3];
-    conic_texture_sample(look->texture, place, side, other, texel);
-    for (int channel = 0; channel < 3; channel++)
-      color[channel][lane] *= texel[channel];
+  for (int channel = 0; channel < 3; channel++)
+    lanes_replace(t->color[channel] + at, mask, color[channel]);
+  t->pixels |= (uint32_t)lanes_bits(mask) << at;
+}
+
+CONIC_INLINE void note_pixel(const conic_triangle_sight *sight, int l, textured_pixels *t) {
+  for (int i = 0; i < 2; i++) {
+    t->places.uv[i][l] = sight->uv[i];
+    t->places.along[i][l] = sight->along[i];
+    t->places.across[i][l] = sight->across[i];
   }
+  for (int channel = 0; channel < 3; channel++)
+    t->color[channel][l] = sight->color[channel];
+  t->pixels |= 1u << l;
 }
 
 CONIC_INLINE void find_normals(const conic_triangle_look *look, const places *p, const conic_finish *finish, lanes dx,
@@ -284,9 +321,16 @@ CONIC_INLINE void find_normals(const conic_triangle_look *look, const places *p,
     normal[axis] = lanes_select(is_away, -normal[axis], normal[axis]);
 }
 
-/* Adds one triangle to the pixels of a part where the mask holds. */
+CONIC_INLINE void add_colors(const lanes color[3], int part, lanes_mask mask, conic_block_sums *sums) {
+  for (int channel = 0; channel < 3; channel++) {
+    float *sum = sums->color[channel] + (size_t)part * CONIC_LANES;
+    lanes_replace(sum, mask, lanes_load(sum) + color[channel]);
+  }
+}
+
+/* Adds one triangle to the pixels of a part where the mask holds; colours that want a texture are noted down. */
 CONIC_INLINE void add_part(const conic_triangle_look *look, const conic_finish *finish, lanes dx, lanes dy, int part,
-                           lanes_mask mask, conic_block_sums *sums) {
+                           lanes_mask mask, textured_pixels *textured, conic_block_sums *sums) {
   size_t at = (size_t)part * CONIC_LANES;
   lanes columns = __builtin_convertvector(part_columns(part), lanes);
   lanes rows = __builtin_convertvector(lanes_rows(), lanes), color[3], normal[3], sum[3], size = lanes_of(0.0f);
@@ -295,12 +339,13 @@ CONIC_INLINE void add_part(const conic_triangle_look *look, const conic_finish *
   for (int channel = 0; channel < 3; channel++)
     color[channel] = look->color[0][channel] + (p.at[0] * look->color[1][channel] + p.at[1] * look->color[2][channel]);
   if (look->texture)
-    texture_part(look, &p, lanes_bits(mask), color);
+    note_part(look, &p, part, mask, color, textured);
+  else
+    add_colors(color, part, mask, sums);
   find_normals(look, &p, finish, dx, dy, normal);
   lanes_replace(sums->weight + at, mask, lanes_load(sums->weight + at) + 1.0f);
   lanes_store_indices(sums->count + at, lanes_increment(mask, lanes_load_indices(sums->count + at)));
   for (int axis = 0; axis < 3; axis++) {
-    lanes_replace(sums->color[axis] + at, mask, lanes_load(sums->color[axis] + at) + color[axis]);
     sum[axis] = lanes_load(sums->normal[axis] + at) + normal[axis];
     size += lanes_absolute(sum[axis]);
   }
@@ -309,11 +354,23 @@ CONIC_INLINE void add_part(const conic_triangle_look *look, const conic_finish *
     lanes_replace(sums->normal[axis] + at, mask, lanes_select(has_size, sum[axis], normal[axis] * CONIC_LEAST_WEIGHT));
 }
 
+/* Adds the triangle that pixel l sees, by plain C but for the texture. */
+CONIC_INLINE void add_alone(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int i_block,
+                            int l, textured_pixels *textured) {
+  conic_triangle_sight sight;
+  conic_triangle_see_pixel(band, finish, rays, i_block, l, &sight);
+  if (sight.texture) {
+    turn_to_texture(sight.texture, textured, &band->sums[i_block]);
+    note_pixel(&sight, l, textured);
+  }
+  conic_triangle_add_sight(&sight, l, &band->sums[i_block]);
+}
+
 /* Whether the first of the pixels is the only one of them that sees the record. */
 CONIC_INLINE int is_alone(const conic_triangle_block *block, uint32_t i_record, uint32_t pixels) {
   uint32_t same = 0;
   for (int part = 0; part < CONIC_PARTS; part++) {
-    index_lanes other = lanes_load_indices(block->record + part * CONIC_LANES) ^ i_record;
+    index_lanes other = lanes_load_indices(block->record + (size_t)part * CONIC_LANES) ^ i_record;
     same |= (~lanes_bits(lanes_has_bits(other, ~0u)) & ((1u << CONIC_LANES) - 1)) << (part * CONIC_LANES);
   }
   same &= pixels;
@@ -324,17 +381,21 @@ CONIC_INLINE int is_alone(const conic_triangle_block *block, uint32_t i_record, 
 CONIC_INLINE void add_block(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int i_block) {
   const conic_triangle_block *block = &band->triangles->blocks[i_block];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
+  textured_pixels textured;
+  textured.pixels = 0;
   for (uint32_t left = band->triangles->visible[i_block]; left;) {
     uint32_t i_record = block->record[__builtin_ctz(left)], done = 0;
     /* In a fine mesh, hardly two pixels see the same triangle. */
     if (is_alone(block, i_record, left)) {
-      conic_triangle_add_pixel(band, finish, rays, i_block, __builtin_ctz(left));
+      add_alone(band, finish, rays, i_block, __builtin_ctz(left), &textured);
       left &= left - 1;
       continue;
     }
     conic_triangle_look look;
     conic_triangle_look_at(band->triangle_frame, &band->triangle_frame->records[i_record],
                            band->x + i_block * CONIC_BLOCK_EDGE, band->y, &look);
+    if (look.texture)
+      turn_to_texture(look.texture, &textured, &band->sums[i_block]);
     for (int part = 0; part < CONIC_PARTS; part++) {
       int at = part * CONIC_LANES;
       unsigned of_part = left >> at & ((1u << CONIC_LANES) - 1);
@@ -345,10 +406,12 @@ CONIC_INLINE void add_block(conic_band *band, const conic_finish *finish, const 
       done |= of_part << at;
       if (of_part)
         add_part(&look, finish, lanes_load(rays->block_x[i_block] + at), lanes_load(rays->block_y[i_row] + at), part,
-                 lanes_mask_of(of_part), &band->sums[i_block]);
+                 lanes_mask_of(of_part), &textured, &band->sums[i_block]);
     }
     left &= ~done;
   }
+  if (textured.pixels)
+    add_textured(&textured, &band->sums[i_block]);
 }
 
 static void triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays) {

@@ -34,19 +34,31 @@ static inline void conic_triangle_weights_at(const conic_triangle_look *look, fl
   }
 }
 
-static inline void conic_triangle_look_color(const conic_triangle_look *look, const conic_triangle_weights *w,
-                                             float color[3]) {
-  float uv[2], along[2], across[2], texel[3];
+/* Without the texture's. */
+static inline void conic_triangle_look_plain_color(const conic_triangle_look *look, const conic_triangle_weights *w,
+                                                   float color[3]) {
   for (int channel = 0; channel < 3; channel++)
     color[channel] =
         look->color[0][channel] + (w->at[0] * look->color[1][channel] + w->at[1] * look->color[2][channel]);
-  if (!look->texture)
-    return;
+}
+
+/* Where the pixel sees the texture: as conic_texture_sample takes it. */
+static inline void conic_triangle_look_place(const conic_triangle_look *look, const conic_triangle_weights *w,
+                                             float uv[2], float along[2], float across[2]) {
   for (int i = 0; i < 2; i++) {
     uv[i] = look->uv[0][i] + (w->at[0] * look->uv[1][i] + w->at[1] * look->uv[2][i]);
     along[i] = w->by_x[0] * look->uv[1][i] + w->by_x[1] * look->uv[2][i];
     across[i] = w->by_y[0] * look->uv[1][i] + w->by_y[1] * look->uv[2][i];
   }
+}
+
+static inline void conic_triangle_look_color(const conic_triangle_look *look, const conic_triangle_weights *w,
+                                             float color[3]) {
+  float uv[2], along[2], across[2], texel[3];
+  conic_triangle_look_plain_color(look, w, color);
+  if (!look->texture)
+    return;
+  conic_triangle_look_place(look, w, uv, along, across);
   conic_texture_sample(look->texture, uv, along, across, texel);
   for (int channel = 0; channel < 3; channel++)
     color[channel] *= texel[channel];

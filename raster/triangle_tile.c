@@ -92,9 +92,7 @@ void conic_triangles_win(conic_band *band) {
     if (!row->covered[block] || conic_block_is_empty(band, block))
       continue;
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      size_t at;
-      const conic_nearest_strip *strip = conic_strip_of(band, block, l, &at);
-      if (!(row->blocks[block].iz[l] > strip->iz[at])) {
+      if (!(row->blocks[block].iz[l] > band->nearest->iz[conic_nearest_place(band, block, l)])) {
         row->visible[block] &= ~(1u << l);
         continue;
       }
@@ -136,16 +134,39 @@ void conic_triangle_rank_block(const conic_band *band, int block) {
   }
 }
 
-void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
-                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
-                             float normal[3]) {
+static void see(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                const float world_from_cam[3][3], int x, int y, const float ray[2], conic_triangle_sight *sight) {
   int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
   conic_triangle_look look;
   conic_triangle_weights weights;
   conic_triangle_look_at(frame, record, x - column, y - row, &look);
   conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
-  conic_triangle_look_color(&look, &weights, color);
-  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], normal);
+  conic_triangle_look_plain_color(&look, &weights, sight->color);
+  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], sight->normal);
+  sight->texture = look.texture;
+  if (look.texture)
+    conic_triangle_look_place(&look, &weights, sight->uv, sight->along, sight->across);
+}
+
+/* Gives the colour its texture. */
+static void lay_texture(conic_triangle_sight *sight) {
+  float texel[3];
+  if (!sight->texture)
+    return;
+  conic_texture_sample(sight->texture, sight->uv, sight->along, sight->across, texel);
+  for (int channel = 0; channel < 3; channel++)
+    sight->color[channel] *= texel[channel];
+  sight->texture = NULL;
+}
+
+void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
+                             float normal[3]) {
+  conic_triangle_sight sight;
+  see(frame, record, world_from_cam, x, y, ray, &sight);
+  lay_texture(&sight);
+  memcpy(color, sight.color, sizeof sight.color);
+  memcpy(normal, sight.normal, sizeof sight.normal);
 }
 
 /* Lists the records that a row sees, each once or little more often. */
@@ -184,26 +205,35 @@ void conic_triangle_fetch_row(const conic_band *band) {
   }
 }
 
-void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
-                              int l) {
-  conic_block_sums *sums = &band->sums[block];
+void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays,
+                              int block, int l, conic_triangle_sight *sight) {
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
   const float ray[2] = {rays->block_x[block][l], rays->block_y[i_row][l]};
-  float color[3], normal[3];
-  conic_triangle_color_at(band->triangle_frame, record, finish->world_from_cam,
-                          band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, band->y + l % CONIC_BLOCK_EDGE,
-                          ray, color, normal);
+  see(band->triangle_frame, record, finish->world_from_cam, band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE,
+      band->y + l % CONIC_BLOCK_EDGE, ray, sight);
+}
+
+void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_block_sums *sums) {
   sums->weight[l] += 1.0f;
   sums->count[l]++;
+  for (int channel = 0; channel < 3 && !sight->texture; channel++)
+    sums->color[channel][l] += sight->color[channel];
   float size = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
-    sums->color[axis][l] += color[axis];
-    sums->normal[axis][l] += normal[axis];
+    sums->normal[axis][l] += sight->normal[axis];
     size += fabsf(sums->normal[axis][l]);
   }
   for (int axis = 0; axis < 3 && !(size > 0.0f); axis++)
-    sums->normal[axis][l] = normal[axis] * CONIC_LEAST_WEIGHT;
+    sums->normal[axis][l] = sight->normal[axis] * CONIC_LEAST_WEIGHT;
+}
+
+/* Adds the triangle that pixel l of the block sees to its sums. */
+static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
+  conic_triangle_sight sight;
+  conic_triangle_see_pixel(band, finish, rays, block, l, &sight);
+  lay_texture(&sight);
+  conic_triangle_add_sight(&sight, l, &band->sums[block]);
 }
 
 void conic_triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays) {
@@ -218,6 +248,6 @@ void conic_triangles_add(conic_band *band, const conic_finish *finish, const con
     conic_triangle_rank_block(band, block);
     for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
       if (row->visible[block] >> l & 1)
-        conic_triangle_add_pixel(band, finish, rays, block, l);
+        add_pixel(band, finish, rays, block, l);
   }
 }

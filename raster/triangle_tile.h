@@ -25,9 +25,19 @@ void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_tria
 /* Fetches what the look of a row's visible triangles is read from, where they are many. */
 void conic_triangle_fetch_row(const conic_band *band);
 
-/* Adds the triangle that pixel l of the block sees to its sums. */
-void conic_triangle_add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block,
-                              int l);
+/* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */
+typedef struct conic_triangle_sight {
+  float color[3], normal[3];
+  const conic_texture *texture; /* null: none */
+  float uv[2], along[2], across[2];
+} conic_triangle_sight;
+
+/* Of pixel l of the block. */
+void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays,
+                              int block, int l, conic_triangle_sight *sight);
+
+/* Adds it to the pixel's sums, all but the colour where it is still without its texture. */
+void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_block_sums *sums);
 
 /* The plain C references of the slots. */
 void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);

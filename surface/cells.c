@@ -13,7 +13,7 @@ conic_status conic_cells_begin(conic_context *context, double side, conic_cells 
   cells->context = context;
   cells->side = side;
   cells->room = FIRST_ROOM;
-  cells->table_size = 4 * FIRST_ROOM;
+  cells->table_size = 4 * (size_t)FIRST_ROOM;
   cells->cells = conic_memory_allocate(context, cells->room, sizeof *cells->cells);
   cells->table = conic_memory_allocate_zeroed(context, cells->table_size, sizeof *cells->table);
   return cells->cells && cells->table ? CONIC_OK : CONIC_ERROR_MEMORY;
@@ -78,19 +78,19 @@ static conic_status grow(conic_cells *cells) {
 }
 
 conic_status conic_cells_count(conic_cells *cells, const int32_t at[3]) {
-  conic_cell *cell = conic_cells_find(cells, at);
-  if (!cell) {
+  uint32_t entry = cells->table[look_up(cells, at)];
+  if (!entry) {
     if (cells->n == cells->room) {
       conic_status status = grow(cells);
       if (status != CONIC_OK)
         return status;
     }
-    cell = &cells->cells[cells->n++];
+    conic_cell *cell = &cells->cells[cells->n++];
     memset(cell, 0, sizeof *cell);
     memcpy(cell->at, at, sizeof cell->at);
-    cells->table[look_up(cells, at)] = (uint32_t)cells->n;
+    cells->table[look_up(cells, at)] = entry = (uint32_t)cells->n;
   }
-  cell->count++;
+  cells->cells[entry - 1].count++;
   return CONIC_OK;
 }
 

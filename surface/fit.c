@@ -11,9 +11,8 @@ static const double LEAST_SHARE = 1e-9;
 static const double MOST_GAIN = 4.0;
 
 double conic_fit_gain(const conic_fit *fit, int degree, double x, double y) {
-  double z[CONIC_MAX_COLUMNS], gain = 0.0;
+  double z[CONIC_MAX_COLUMNS] = {1.0}, gain = 0.0;
   int n = conic_n_coefficients(degree);
-  z[0] = 1.0;
   for (int power = 1, first = 1; power <= degree; first += ++power) {
     for (int k = 0; k < power; k++)
       z[first + k] = z[first - power + k] * x;

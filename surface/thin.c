@@ -6,10 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/heap.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "core/heap.h"
 #include "surface/surface.h"
 
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */

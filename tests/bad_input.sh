@@ -126,6 +126,52 @@ printf "${header/3/4000000000}end_header\n0 0 0\n" > huge.ply
 wrong_model huge.ply '4000000000.*line 3'
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n' > index.obj
 wrong_model index.obj 'index 4.*(line 4)'
+
+# Meshes, as those who draw triangles or make hybrid models read them
+wrong_mesh() { # FILE, PATTERN
+  run_wrong 3 "$1" "$2" hybrid "$1" -o outputs/a.chy --json outputs/a.json
+  run_wrong 3 "$1" "$2" render "$1" --as hybrid -o outputs/a.pfm --size 16x16
+}
+corners='v 0 0 0\nv 1 0 0\nv 0 1 0\n'
+while IFS='|' read -r name text pattern; do
+  printf "$corners$text\n" > "$name.obj"
+  wrong_mesh "$name.obj" "$pattern"
+  run_wrong 3 "$name.obj" "$pattern" render "$name.obj" --as mesh -o outputs/a.pfm --size 16x16
+done << 'END'
+past|f 1 2 4|: index 4, but there are only 3 vertices (line 4)$
+back|f 1 2 -4|: index -4, but there are only 3 vertices so far (line 4)$
+zero|f 1 2 0|: a face.s corner is v, v/t, v//n or v/t/n (line 4)$
+wide|f 1 2 4294967297|: an index is out of range (line 4)$
+two|f 1 2|: a face has at least 3 corners (line 4)$
+texture|f 1/1 2/1 3/1|: index 1, but there are only 0 texture coordinates (line 4)$
+normal|f 1//1 2//1 3//1|: index 1, but there are only 0 normals (line 4)$
+END
+printf "$corners" > faceless.obj
+wrong_mesh faceless.obj ': the file has no faces$'
+printf 'v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > nan.obj
+printf 'v 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n' > flat.obj
+printf 'v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > infinite.obj
+for name in nan flat infinite; do
+  wrong_mesh $name.obj ': no face has three finite corners at three places$'
+done
+printf "${corners}v nan 1 1\nf 1 2 3\nf 1 2 4\n" > partly.obj # one face is sound, and the other one counted
+run 0 hybrid partly.obj -o partly.chy --json -
+grep -q '"nan": 1' out || fail "a face that is not finite is not counted: $(grep nan out)"
+run 0 render partly.chy -o partly.pfm --size 16x16
+printf 'v 1e30 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > distant.obj
+run 0 hybrid distant.obj -o distant.chy
+run_wrong 3 distant.chy ': cannot be drawn: a point is farther out than 1e20$' render distant.chy -o outputs/a.pfm
+run_wrong 3 distant.obj 'farther out than 1e20$' render distant.obj --as hybrid -o outputs/a.pfm
+run_wrong 3 distant.obj 'farther out than 1e20$' render distant.obj --as mesh -o outputs/a.pfm
+head -c 1000 partly.chy > cut.chy # longer than its header
+run_wrong 3 cut.chy ": has 1000 bytes where its header tells of $(stat -c %s partly.chy) (at byte 1000)$" info cut.chy
+run_wrong 3 cut.chy ': has 1000 bytes' render cut.chy -o outputs/a.pfm
+head -c 200 partly.chy > header.chy
+run_wrong 3 header.chy ': ends within its header (at byte 200)$' render header.chy -o outputs/a.pfm
+{ head -c 600 partly.chy && printf 'damaged' && tail -c +608 partly.chy; } > damaged.chy
+run_wrong 3 damaged.chy ': is damaged.*(at byte [0-9]*)$' info damaged.chy --check
+run_wrong 3 damaged.chy ': is damaged' render damaged.chy -o outputs/a.pfm
+
 printf '4000000000\n0 0 0\n' > huge.pts
 wrong_model huge.pts '4000000000.*line 1'
 printf '{"width": 1e300}' > camera.json

@@ -112,15 +112,13 @@ static void check_sums(desk *d) {
 
 /* The fragments of pixels that nothing covers may be anything, and scales but those of special splats. */
 static void check_nearest(desk *d) {
-  for (int i = 0; i < d->band.n_rows * CONIC_BLOCK_EDGE / CONIC_STRIP_ROWS; i++) {
-    conic_nearest_strip *strip = &d->band.nearest[i];
-    for (int l = 0; l < CONIC_STRIP_PIXELS; l++) {
-      if (strip->iz[l] == 0.0f || d->projected.footprints[strip->footprint[l]].s3 > 0.0f)
-        strip->scale[l] = 0.0f;
-      if (strip->iz[l] == 0.0f) {
-        strip->q[l] = 0.0f;
-        strip->footprint[l] = 0;
-      }
+  conic_nearest *kept = d->band.nearest;
+  for (int l = 0; l < CONIC_NEAREST_PIXELS; l++) {
+    if (kept->iz[l] == 0.0f || d->projected.footprints[kept->footprint[l]].s3 > 0.0f)
+      kept->scale[l] = 0.0f;
+    if (kept->iz[l] == 0.0f) {
+      kept->q[l] = 0.0f;
+      kept->footprint[l] = 0;
     }
   }
 }
@@ -261,6 +259,7 @@ static void prepare(const slot *s, desk *d, int x, int y) {
   d->band.n_rows = (d->view.height - y + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE;
   d->band.n_rows = d->band.n_rows < CONIC_BAND_BLOCKS ? d->band.n_rows : CONIC_BAND_BLOCKS;
   d->band.n_fragments = d->band.n_covered = 0;
+  d->band.strip_rows = y / CONIC_BLOCK_EDGE % 2 ? 2 : 4;
   conic_tile_rays_init(&d->view, x, y / CONIC_GREATEST_TILE * CONIC_GREATEST_TILE, &d->rays);
   list_splats(d, is_single_pass(s));
   for (int i = 0; i < 3 && s->before[i]; i++)

@@ -151,7 +151,7 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
   d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
   d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
   d->band.kept = room(d, (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
-  d->band.nearest = room(d, CONIC_TILE_STRIPS * sizeof *d->band.nearest);
+  d->band.nearest = room(d, sizeof *d->band.nearest);
   d->band.sums = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
   d->band.view = &d->view;
   d->band.projected = &d->projected;

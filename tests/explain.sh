@@ -85,6 +85,12 @@ run 0 render knot.ply --size 80x60 --deep d.exr --aov count -o flat.exr
 run 0 render knot.ply --size 40x30 --deep t.exr --turntable 2
 [[ -s t.0001.exr && -s t.0002.exr && ! -e t.exr ]] || fail "not a deep image a frame"
 run 4 render knot.ply --size 80x60 --deep missing/d.exr
+printf 'v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n' > one.obj # triangles, too, and hybrids
+run 0 render one.obj --as mesh --size 40x30 --deep t.exr
+run 0 hybrid one.obj -o one.chy
+run 0 render one.chy --size 40x30 --deep t.exr
+run 0 render one.chy --size 40x30 --error 1 --deep t.exr --turntable 2
+run 2 render one.chy --size 40x30 --deep t.exr --samples 2
 if command -v oiiotool > /dev/null; then
   oiiotool --info -v --stats d.exr > out 2> err || fail "oiiotool cannot read it: $(cat err)"
   has '80 x   60, 3 channel, deep float/uint/float openexr'

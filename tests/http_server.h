@@ -61,7 +61,6 @@ static inline int http_say(int socket, const char *text) {
 static inline int http_receive(const http_server *server, int socket, http_request *request) {
   char text[4096];
   size_t n = 0;
-  unsigned long long first = 0, last = 0;
   memset(request, 0, sizeof *request);
   while (n < sizeof text - 1) {
     ssize_t got = recv(socket, text + n, 1, 0);
@@ -74,8 +73,15 @@ static inline int http_receive(const http_server *server, int socket, http_reque
   }
   if (sscanf(text, "GET /%31[^/ ]", request->mode) != 1)
     return 0;
-  const char *range = strstr(text, "Range: bytes=");
-  request->has_range = range && sscanf(range, "Range: bytes=%llu-%llu", &first, &last) == 2;
+  static const char before_range[] = "Range: bytes=";
+  const char *range = strstr(text, before_range);
+  if (!range)
+    return 1;
+  char *end = NULL;
+  unsigned long long first = strtoull(range + sizeof before_range - 1, &end, 10), last = 0;
+  request->has_range = *end == '-' && end[1] >= '0' && end[1] <= '9';
+  if (request->has_range)
+    last = strtoull(end + 1, NULL, 10);
   request->first = (size_t)first;
   request->last = last < server->n_bytes ? (size_t)last : server->n_bytes - 1;
   return 1;

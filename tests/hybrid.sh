@@ -50,6 +50,72 @@ for error in 0.25 1 4; do
   last=$n
 done
 
+# Never more than the budget, and better with more of it.
+last=1000000
+for budget in 300 1000 4000 1M; do
+  run 0 render hill.chy -o b.pfm $picture --budget $budget --json budget.json
+  triangles=$(value triangles_in budget.json)
+  n=$(($(value splats_in budget.json) + ${triangles:-0}))
+  [[ $n -le ${budget/M/000000} && $n -gt 0 ]] || fail "--budget $budget draws $n"
+  perl -e 'exit !($ARGV[0] < $ARGV[1])' "$(value error_px budget.json)" $last || fail "--budget $budget is no better"
+  last=$(value error_px budget.json)
+done
+[[ $last == 0 && $n == 7200 ]] || fail "a budget for all is not the mesh"
+run 0 render hill.chy -o b.pfm $picture --budget 1000 --json budget.json
+run 0 render hill.obj --as hybrid -o b.pfm $picture --budget 1k --threads 1 --isa scalar --json other.json
+[[ -n $(hashes budget.json) && $(hashes budget.json) == "$(hashes other.json)" ]] || fail "--budget: another picture"
+run 2 render hill.chy -o x.pfm --budget 10
+grep -q '^conic: error: hybrid: the coarsest of what is in sight are [0-9]* triangles' err || fail "no word on the budget"
+
+# The oracle draws what was chosen, splats and triangles in one picture, and agrees.
+view="--size 100x80 --zoom 2"
+for choice in "" "--error 1" "--error 4" "--budget 1000" "--only surfels" "--only triangles" "--error 2 --passes 1" \
+  "--error 2 --method ray --cull back" "--error 4 --samples 2"; do
+  # shellcheck disable=SC2086 # options and their values
+  run 0 verify hill.chy $view $choice --json verify.json
+  [[ $(value pass verify.json) == true && $(value covered_pixels verify.json) -gt 1000 ]] || fail "verify $choice"
+done
+# shellcheck disable=SC2086
+run 0 verify hill.obj --as hybrid $view --error 2
+run 0 verify hill.obj --as mesh $view
+run 0 verify hill.chy --size 32x24 --error 2 --against exact
+grep -q '^weights  *max ' out || fail "no errors of the weights"
+
+# A pixel of both kinds: who is blended, and whose patch that is. The first on the way across the picture is taken.
+blended() { # KEY: how often, of what the pixel blends
+  sed -n '/^  "blended"/,/^  \]/p' pixel.json | grep -c "\"$1\": "
+}
+for ((i = 0; i < 300; i++)); do
+  # shellcheck disable=SC2086
+  run 0 explain hill.chy $view --error 2 --pixel $((20 + i % 60)),$((24 + 4 * (i / 60))) --json pixel.json
+  [[ $(blended triangle) -eq 1 && $(blended splat) -gt 1 ]] && break
+done
+[[ $i -lt 300 ]] || fail "no pixel of both kinds"
+for key in blended contributions triangles cluster threshold; do
+  grep -q "\"$key\":" pixel.json || fail "explain: no $key"
+done
+if command -v python3 > /dev/null; then
+  python3 - pixel.json << 'END' || fail "the pixel does not add up"
+import json, sys
+pixel = json.load(open(sys.argv[1]))
+blended, planes = pixel["blended"], pixel["planes"]
+assert len(blended) == planes["count"] > 2
+assert abs(sum(b["weight"] for b in blended) - planes["weight"]) < 1e-6 * planes["weight"]
+assert abs(sum(b["share"] for b in blended) - 1) < 1e-6
+assert all("splat" in b for b in blended[:-1]) and "triangle" in blended[-1]
+visible = [c for c in pixel["contributions"] + pixel["triangles"] if c["verdict"] == "visible"]
+assert [(c.get("splat"), c.get("triangle"), c["cluster"], c["depth"]) for c in visible] == [
+    (b.get("splat"), b.get("triangle"), b["cluster"], b["depth"]) for b in blended]
+assert planes["cluster"] in {b["cluster"] for b in blended}
+END
+fi
+# shellcheck disable=SC2086
+run 0 explain hill.chy $view --splat 3 --json splat.json
+grep -q '"cluster": ' splat.json || fail "explain: no patch of the splat"
+run 0 explain hill.chy --size 100x80 --dump-projection p.csv
+run 2 explain hill.chy --only triangles --splat 0
+run 2 explain hill.chy --size 100x80 --pixel 100,0
+
 # Refused, and nothing is left under the output's name.
 run 2 hybrid -o x.chy
 run 2 hybrid hill.obj
@@ -68,7 +134,16 @@ run 3 info cut.chy
 run 2 render hill.chy hill.obj -o x.pfm
 run 2 render hill.obj -o x.pfm --only surfels
 run 2 render hill.obj -o x.pfm --aov cluster
-run 2 render hill.chy -o x.pfm --budget 10
-run 2 verify hill.chy
+run 2 render hill.chy -o x.pfm --budget 10 --error 1
+run 2 render hill.chy -o x.pfm --clusters
+run 2 render hill.obj -o x.pfm --clusters c.png
+run 2 render hill.obj --as mesh -o x.pfm --budget 100
+run 2 verify hill.chy hill.obj
+run 2 verify hill.chy --aov cluster
+run 2 verify hill.chy --error 1 --budget 1000
+run 2 verify hill.obj --only surfels
+run 2 explain hill.chy --pixel 1,1 --method patch
+run 2 bench hill.chy
+[[ ! -e x.pfm ]] || fail "a picture of what was refused"
 
 [[ $failures -eq 0 ]]

@@ -67,7 +67,8 @@ wanted["render of a layered cloud"]="${wanted[render]} error_px layers.clouds la
 wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
 wanted[hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
-wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches"
+wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches error_px"
+wanted["explain of a hybrid"]="method pixel planes.rgba planes.cluster threshold contributions blended triangles"
 wanted["info of a hybrid"]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound"
 
 if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then

@@ -46,6 +46,8 @@ run 0 render knot.lpc -o turn.pfm --size 64x64 --turntable 3 --repeat 2
 run 0 render knot.lpc knot.lpc -o both.pfm --size 64x64 --json both.json
 [[ $(value splats_in both.json) == 120000 ]] || fail "two clouds"
 run 0 explain knot.lpc --size 64x64 --pixel 32,32 --json explain.json
+run 2 explain knot.lpc --size 64x64 --pixel 32,32 --error 2
+run 2 verify knot.lpc --size 64x64 --budget 5000
 
 # Picture after picture, the last being the whole one.
 run 0 render knot.lpc --progressive steps $picture --error 1 --json steps.json

@@ -71,6 +71,18 @@ run 0 render knot.cot knot.ply -o both.pfm --size 64x64 --json both.json
 [[ $(value splats_in both.json) == 60000 ]] || fail "a .cot beside other inputs"
 run 0 render small.cot -o small.pfm $picture --error 1
 
+# What was chosen is what is verified and explained, by the names that the picture has.
+run 0 verify knot.cot --size 64x48 --error 2
+run 0 verify knot.cot --size 64x48 --budget 500 --json verify.json
+[[ $(value pass verify.json) == true ]] || fail "a budget is not verified"
+run 0 explain knot.cot --size 64x48 --error 2 --pixel 32,24 --json explain.json
+grep -qE '"(point|node)": ' explain.json || fail "no name of a splat that was chosen"
+if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
+  run 0 render knot.cot --size 64x48 --error 2 --aov all -o chosen.exr
+  run 0 verify knot.cot --size 64x48 --error 2 --image chosen.exr
+  run 1 verify knot.cot --size 64x48 --error 8 --image chosen.exr
+fi
+
 # What each pixel blends, as a picture.
 run 0 render knot.cot --overdraw overdraw.pfm --size 64x64 --error 1
 run 0 render knot.cot --overdraw turn.pfm --size 64x64 --turntable 2
@@ -90,6 +102,10 @@ run 2 render knot.ply -o x.pfm --error 1
 run 2 render knot.cot knot.ply -o x.pfm --error 1
 run 2 render knot.cot -o x.pfm --error -1
 run 2 render knot.cot -o x.pfm --budget 0
+run 2 render knot.cot --deep x.exr --error 1
+run 2 verify knot.cot --error 1 --budget 5
+run 3 render missing.cot -o x.pfm --error 1
+run 2 explain knot.ply --error 1 --pixel 1,1
 run 2 render knot.cot -o x.pfm --error 1 --cutoff 3
 run 2 octree knot.ply
 run 2 octree -o x.cot

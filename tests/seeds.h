@@ -57,7 +57,7 @@ static inline size_t seeds_value(unsigned char *to, char type, double value, int
   return n_bytes;
 }
 
-/* A PLY of `rows` rows of these types after a header; a letter l is a list of three indices. */
+/* A PLY of `rows` rows of these types after a header; a letter l is a list of three indices, c one of six floats. */
 static inline void seeds_ply(seed_set *set, const char *header, const char *types, int rows, const char *face_types,
                              int face_rows, int is_big) {
   unsigned char bytes[4096];
@@ -68,6 +68,12 @@ static inline void seeds_ply(seed_set *set, const char *header, const char *type
   for (int kind = 0; kind < 2; kind++)
     for (int row = 0; row < counts[kind]; row++)
       for (const char *type = kinds[kind]; *type; type++) {
+        if (*type == 'c') {
+          n += seeds_value(bytes + n, 'b', 6, is_big);
+          for (int k = 0; k < 6; k++)
+            n += seeds_value(bytes + n, 'f', row + 0.125 * k, is_big);
+          continue;
+        }
         if (*type != 'l') {
           n += seeds_value(bytes + n, *type, row + 0.25 * (double)(type - kinds[kind]), is_big);
           continue;
@@ -107,6 +113,11 @@ static inline void seeds_all_ply(seed_set *set) {
             "property float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\nproperty float tv_z\n"
             "property uchar a\nproperty list uchar int clip_or\nproperty float opacity\n",
             "fffffffffblf", 3, "", 0, 0);
+  seeds_ply(set,
+            "comment TextureFile gone.pfm\ncomment TextureFile gone too.pfm\nelement vertex 3\nproperty float x\n"
+            "property float y\nproperty float z\nproperty float s\nproperty double t\nelement face 2\n"
+            "property list uchar float texcoord\nproperty list uchar int vertex_indices\nproperty short texnumber\n",
+            "ffffd", 3, "cls", 2, 1);
   seeds_text(
       set, "ply", "ply",
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -118,6 +129,11 @@ static inline void seeds_all_ply(seed_set *set) {
              "property int z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 2\n"
              "property list uchar int vertex_index\nproperty uchar flag\nend_header\n0 0 0 0 0 1\n1e0 0 0 0 0 -1\n"
              "1 1 1 nan 0 inf\n.5 +1 -1 0 1 0\n3 0 1 2 7\n4 0 1 2 3 0\n");
+  seeds_text(set, "ply", "ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+             "property float texture_u\nproperty float texture_v\nelement face 2\n"
+             "property list uchar int vertex_index\nproperty list int float texcoord\nend_header\n0 0 0 0 0\n"
+             "1 0 0 1 0\n1 1 0 1 1\n0 1 0 nan 1\n3 0 1 2 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n");
 }
 
 static inline void seeds_all_text(seed_set *set) {

@@ -1,7 +1,7 @@
 /* What stands behind a picture's pixels: added up, it is the picture, bit for bit; and the deep file holds it. */
 #include <unistd.h>
 
-#include "tests/fixture.h"
+#include "tests/deep_file.h"
 
 enum { NEAR_KNOT, INSIDE_TORUS, SHARP_CUBE, N_SCENES };
 
@@ -83,106 +83,12 @@ static void test_sums(fixture *f, size_t counts[4]) {
   conic_contributions_destroy(c);
 }
 
-/* A whole file; the caller frees. */
-static unsigned char *read_file(const char *path, size_t *n_bytes) {
-  FILE *file = fopen(path, "rb");
-  *n_bytes = 0;
-  if (!file)
-    return NULL;
-  fseek(file, 0, SEEK_END);
-  size_t n = (size_t)ftell(file);
-  rewind(file);
-  unsigned char *bytes = malloc(n);
-  *n_bytes = bytes ? fread(bytes, 1, n, file) : 0;
-  fclose(file);
-  return bytes;
-}
-
-/* Steps over the attributes of an EXR's header; `most` becomes maxSamplesPerPixel. Returns where the table of the
- * lines' places begins. */
-static size_t skip_header(const unsigned char *bytes, size_t n_bytes, int32_t *most) {
-  size_t at = 8;
-  while (at < n_bytes && bytes[at]) {
-    const char *name = (const char *)bytes + at;
-    int32_t size;
-    at += strlen(name) + 1;
-    at += strlen((const char *)bytes + at) + 1;
-    memcpy(&size, bytes + at, 4);
-    at += 4;
-    if (strcmp(name, "maxSamplesPerPixel") == 0)
-      memcpy(most, bytes + at, 4);
-    at += (size_t)size;
-  }
-  return at + 1;
-}
-
-/* One line of the file against the picture: the weights of each pixel add up to its weight plane. */
-static int32_t check_line(const fixture *f, const unsigned char *chunk, int y) {
-  int32_t line, begin = 0, most = 0;
-  uint64_t sizes[3];
-  size_t width = (size_t)f->camera.width;
-  memcpy(&line, chunk, 4);
-  memcpy(sizes, chunk + 4, sizeof sizes);
-  CHECK(line == y && sizes[0] == 4 * width && sizes[1] == sizes[2] && sizes[1] % 12 == 0);
-  const unsigned char *ends = chunk + 28, *depths = ends + 4 * width, *ids = depths + sizes[1] / 3;
-  const unsigned char *weights = ids + sizes[1] / 3;
-  for (int x = 0; x < f->camera.width; x++) {
-    int32_t end;
-    float sum = 0.0f, heaviest = 0.0f, z = 0.0f, weight, depth;
-    memcpy(&end, ends + 4 * x, 4);
-    for (int32_t i = begin; i < end; i++) {
-      memcpy(&weight, weights + 4 * i, 4);
-      memcpy(&depth, depths + 4 * i, 4);
-      sum += weight;
-      z = heaviest < weight ? depth : z;
-      heaviest = heaviest < weight ? weight : heaviest;
-      if (i > begin)
-        CHECK(memcmp(ids + 4 * i, ids + 4 * i - 4, 4) != 0);
-    }
-    CHECK(sum == *fixture_pixel(f, CONIC_PLANE_WEIGHT, x, y));
-    CHECK(z == *fixture_pixel(f, CONIC_PLANE_Z, x, y));
-    CHECK((uint32_t)(end - begin) == fixture_index(f, CONIC_PLANE_COUNT, x, y));
-    most = end - begin > most ? end - begin : most;
-    begin = end;
-  }
-  CHECK((uint64_t)begin * 12 == sizes[1]);
-  return most;
-}
-
 static void test_deep(fixture *f, const char *folder) {
-  char path[200], again[200];
-  size_t n_bytes, n_again;
-  int32_t most_said = -1, most = 0;
-  snprintf(path, sizeof path, "%s/deep.exr", folder);
-  snprintf(again, sizeof again, "%s/again.exr", folder);
+  const conic_drawing drawing = {&f->splats, NULL};
+  deep_counts counts;
   fixture_render(f);
-  conic_contributions *c = contributions_of(f);
-  conic_status status = conic_contributions_write(c, path, &f->image);
-  conic_contributions_destroy(c);
-  if (status == CONIC_ERROR_UNSUPPORTED)
-    return;
-  CHECK_OK(status);
-  unsigned char *bytes = read_file(path, &n_bytes);
-  size_t table = skip_header(bytes, n_bytes, &most_said);
-  for (int y = 0; y < f->camera.height; y++) {
-    uint64_t place;
-    memcpy(&place, bytes + table + 8 * (size_t)y, 8);
-    CHECK(place < n_bytes);
-    int32_t of_line = place < n_bytes ? check_line(f, bytes + place, y) : 0;
-    most = of_line > most ? of_line : most;
-  }
-  CHECK(most == most_said && most > 1 - (f->options.passes == 1));
-  fixture alone = fixture_open(1); /* another number of threads writes the same */
-  CHECK_OK(conic_contributions_create(alone.context, &f->splats, &f->camera, &f->options, &c));
-  CHECK_OK(conic_contributions_write(c, again, &f->image));
-  conic_contributions_destroy(c);
-  fixture_close(&alone);
-  unsigned char *others = read_file(again, &n_again);
-  CHECK(n_bytes == n_again && memcmp(bytes, others, n_bytes) == 0);
-  free(bytes);
-  free(others);
-  remove(path);
-  remove(again);
+  if (deep_check(f, &drawing, folder, &counts))
+    CHECK(counts.most > 1 - (f->options.passes == 1) && counts.n_triangles == 0);
 }
 
 /* Fates add up to the statistics; the conic is the variance's inverse; nothing covers a pixel outside its box. */

@@ -140,7 +140,7 @@ static void test_percentile(conic_context *context, int width, int height) {
   size_t rank = (999 * n + 999) / 1000;
   CHECK(differences && difference.p999 == (double)differences[rank - 1]);
   CHECK(difference.planes[CONIC_PLANE_Z].p999 == difference.p999);
-  CHECK(difference.max_abs == (double)differences[n - 1]);
+  CHECK(differences && difference.max_abs == (double)differences[n - 1]);
   free(differences);
   conic_image_release(context, &a);
   conic_image_release(context, &b);

@@ -114,6 +114,15 @@ static void test_failures(void) {
       {"v 1 \\\n2 \\\nthree\n", "not a number", "line 6"},
       {"vn 1 2\n", "3 values", "line 4"},
       {"vt\n", "1 to 3 values", "line 4"},
+      {"f 1 2 -9223372036854775809\n", "there are only 3 vertices so far", "line 4"},
+      {"f 1 2 18446744073709551617\n", "out of range", "line 4"},
+      {"f 1 2 4294967297\n", "out of range", "line 4"},
+      {"f 1 2 -0\n", "corner is", "line 4"},
+      {"f 1 2 1.5\n", "corner is", "line 4"},
+      {"f 1 2 nan\n", "corner is", "line 4"},
+      {"f 1/1 2/1 3/-1\n", "index -1, but there are only 0 texture coordinates so far", "line 4"},
+      {"f 1//-1 2 3\nvn 0 0 1\n", "index -1, but there are only 0 normals so far", "line 4"},
+      {"f 1 2 3 \\\n1 2 5\n", "index 5, but there are only 3 vertices", "line 5"},
   };
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     snprintf(text, sizeof text, "%s%s", three, lines[i][0]);
@@ -123,6 +132,25 @@ static void test_failures(void) {
   memset(text, 'v', 8000);
   text[8000] = 0;
   check_fails(text, "a word of more than", "line 1");
+}
+
+/* A polygon of many corners is a fan from its first; values that are no numbers are kept, and faces with them. */
+static void test_odd(void) {
+  enum { N_CORNERS = 30000 };
+  conic_model model;
+  char *text = malloc(16 * N_CORNERS);
+  if (!text)
+    exit(1);
+  int n = snprintf(text, 64, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv nan inf -inf\nf");
+  for (int i = 0; i < N_CORNERS; i++)
+    n += snprintf(text + n, 16, " %d", i % 4 + 1);
+  CHECK_OK(read_text(text, &model));
+  CHECK(model.points.count == 4 && model.n_triangles == N_CORNERS - 2);
+  for (uint32_t i = 0; i + 2 < N_CORNERS; i += 997)
+    check_triangle(&model, i, 0, (i + 1) % 4, (i + 2) % 4);
+  CHECK(model.points.position[0][3] != model.points.position[0][3] && model.points.position[2][3] == -INFINITY);
+  conic_model_release(context, &model);
+  free(text);
 }
 
 static void test_real(const char *source_folder) {
@@ -149,6 +177,7 @@ int main(int argc, char **argv) {
   test_indices_that_come_first();
   test_content_tells();
   test_failures();
+  test_odd();
   test_real(argc > 1 ? argv[1] : ".");
   files_end(context);
   return check_result();

@@ -107,7 +107,7 @@ static conic_status read_target(conic_context *context, const char *target, cons
   }
   conic_read_options options;
   conic_read_options_init(&options);
-  options.keeps_faces = strcmp(target, "obj") == 0;
+  options.keeps_faces = strcmp(target, "obj") == 0 || strcmp(target, "ply") == 0;
   status = conic_model_read(context, path, &options, &model);
   for (size_t i = 0; i < model.n_triangles; i++)
     for (int corner = 0; corner < 3; corner++)

@@ -1,5 +1,8 @@
 /* Splats and triangles in one picture: no fringe, no hole, no seam; one set of bits. */
+#include <unistd.h>
+
 #include "raster/tile_kernels.h"
+#include "tests/deep_file.h"
 #include "tests/triangle_fixture.h"
 
 /* The square [-1, 1]² in z = 0: its left half splats, its right half two triangles, all of one colour. */
@@ -195,8 +198,8 @@ static void check_defined(void) {
   fixture_close(&f);
 }
 
-/* What is said of a pixel adds up to it. */
-static void check_explained(int passes) {
+/* What is said of a pixel adds up to it, in a deep image, too. */
+static void check_explained(int passes, const char *folder) {
   fixture f = fixture_open(1);
   conic_contributions *c;
   size_t n_hidden = 0, n_mixed = 0;
@@ -240,6 +243,9 @@ static void check_explained(int passes) {
     }
   printf("explained: %zu hidden triangles, %zu among splats\n", n_hidden, n_mixed);
   CHECK(n_hidden > 50 && (n_mixed > 10 || passes == 1));
+  deep_counts deep;
+  if (deep_check(&f, &drawing, folder, &deep))
+    CHECK(deep.n_splats > 500 && deep.n_triangles > 500 && deep.n_mixed == n_mixed);
   conic_contributions_destroy(c);
   conic_triangles_release(f.context, &t);
   fixture_close(&f);
@@ -263,12 +269,16 @@ static void check_splats_alone(void) {
 }
 
 int main(void) {
+  char folder[] = "/tmp/conic-test-XXXXXX";
+  if (!mkdtemp(folder))
+    return 1;
   check_seam();
   check_order();
   check_identity();
   check_defined();
-  check_explained(3);
-  check_explained(1);
+  check_explained(3, folder);
+  check_explained(1, folder);
   check_splats_alone();
+  rmdir(folder);
   return check_result();
 }

@@ -80,6 +80,123 @@ static void test_materials(void) {
   CHECK(unlink(library) == 0 && unlink(picture) == 0);
 }
 
+#define PLY_VERTICES                                                                                                   \
+  "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float %s\nproperty double %s\n"
+#define PLY_FACES "element face 3\n%sproperty list uchar int vertex_indices\n%sproperty uchar flags\n"
+
+static conic_triangles read_ply(const char *header, const char *body, conic_status expected) {
+  conic_triangles t;
+  char text[2000];
+  snprintf(text, sizeof text, "ply\nformat ascii 1.0\n%send_header\n%s", header, body);
+  const char *path = files_write("a.ply", text);
+  CHECK(conic_triangles_read(context, path, &t) == expected);
+  CHECK(unlink(path) == 0);
+  if (expected == CONIC_OK)
+    CHECK_OK(conic_triangles_check(context, &t, "a.ply"));
+  else
+    CHECK(t.count == 0 && !t.texture_coordinate[0]);
+  return t;
+}
+
+/* Coordinates of the vertices, by each of the names; half a pair is none. */
+static void test_ply_vertices(void) {
+  static const char *const names[5][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"v", "u"}, {"s", "v"}};
+  for (int i = 0; i < 5; i++) {
+    char header[600];
+    snprintf(header, sizeof header, PLY_VERTICES PLY_FACES, names[i][0], names[i][1], "", "");
+    conic_triangles t = read_ply(header,
+                                 "0 0 0 0.25 0.5\n1 0 0 0.75 0.125\n1 1 0 nan 1\n0 1 0 -3 2\n"
+                                 "4 0 1 2 3 0\n3 3 2 1 0\n2 0 1 0\n",
+                                 CONIC_OK);
+    CHECK(t.count == 3 && !t.texture_corners && t.n_materials == 0);
+    CHECK((t.texture_coordinate[0] != NULL) == (i < 4));
+    if (i < 4) {
+      CHECK(coordinate_of(&t, 0, 1, i == 3) == 0.75f && coordinate_of(&t, 0, 1, i != 3) == 0.125f);
+      CHECK(coordinate_of(&t, 1, 2, i == 3) == -3.0f && coordinate_of(&t, 2, 0, i != 3) == 2.0f);
+    }
+    conic_triangles_release(context, &t);
+  }
+}
+
+/* Coordinates of the faces' corners, before and behind their vertices, with the vertices' where a face has none. */
+static void test_ply_corners(void) {
+  static const char list[] = "property list uchar float texcoord\n";
+  char header[600];
+  snprintf(header, sizeof header, PLY_VERTICES PLY_FACES, "u", "v", "", list);
+  conic_triangles t = read_ply(header,
+                               "0 0 0 0.25 0.5\n1 0 0 0.75 0.125\n1 1 0 0 1\n0 1 0 -3 2\n"
+                               "4 0 1 2 3 8 10 11 12 13 14 15 16 17 0\n3 3 2 1 0 0\n3 0 1 2 6 1 2 3 4 5 6 0\n",
+                               CONIC_OK);
+  CHECK(t.count == 4 && t.texture_corners);
+  CHECK(coordinate_of(&t, 0, 0, 0) == 10.0f && coordinate_of(&t, 0, 2, 1) == 15.0f);
+  CHECK(coordinate_of(&t, 1, 0, 1) == 11.0f && coordinate_of(&t, 1, 1, 0) == 14.0f &&
+        coordinate_of(&t, 1, 2, 1) == 17.0f);
+  CHECK(coordinate_of(&t, 2, 0, 0) == -3.0f && coordinate_of(&t, 2, 2, 1) == 0.125f);
+  CHECK(coordinate_of(&t, 3, 0, 0) == 1.0f && coordinate_of(&t, 3, 2, 1) == 6.0f);
+  conic_triangles_release(context, &t);
+
+  /* Faces before vertices, lists before indices; vertices without. */
+  snprintf(header, sizeof header, PLY_FACES PLY_VERTICES, list, "", "a", "b");
+  t = read_ply(header,
+               "6 1 2 3 4 5 6 3 0 1 2 0\n0 3 1 2 3 0\n8 10 11 12 13 14 15 16 17 4 0 1 2 3 0\n"
+               "0 0 0 9 9\n1 0 0 9 9\n1 1 0 9 9\n0 1 0 9 9\n",
+               CONIC_OK);
+  CHECK(t.count == 4 && coordinate_of(&t, 0, 1, 1) == 4.0f && coordinate_of(&t, 1, 1, 1) == 0.0f);
+  CHECK(coordinate_of(&t, 3, 2, 0) == 16.0f && coordinate_of(&t, 3, 1, 1) == 15.0f);
+  conic_triangles_release(context, &t);
+
+  /* The same with vertices that have coordinates, for lists that lie on no triangle. */
+  snprintf(header, sizeof header, PLY_FACES PLY_VERTICES, list, "", "s", "t");
+  t = read_ply(header,
+               "4 1 2 3 4 2 0 1 0\n0 3 1 2 3 0\n0 3 0 1 2 0\n"
+               "0 0 0 9 1\n1 0 0 9 2\n1 1 0 9 3\n0 1 0 9 4\n",
+               CONIC_OK);
+  CHECK(t.count == 2 && coordinate_of(&t, 0, 2, 1) == 4.0f && coordinate_of(&t, 1, 0, 1) == 1.0f);
+  conic_triangles_release(context, &t);
+
+  read_ply(header,
+           "8 1 2 3 4 5 6 7 8 3 0 1 2 0\n0 3 1 2 3 0\n0 3 0 1 2 0\n0 0 0 9 1\n1 0 0 9 2\n1 1 0 9 3\n0 1 0 9 4\n",
+           CONIC_ERROR_INPUT);
+  CHECK(strstr(files_message, "two a corner") && strstr(files_message, "(line 14)"));
+  read_ply(header, "200 1 2 3\n", CONIC_ERROR_INPUT);
+  files_message[0] = 0;
+}
+
+/* Pictures by comments, and by the faces' numbers of them. */
+static void test_ply_pictures(void) {
+  char pfm[64 + 4 * 12], picture[160], header[900];
+  const float texels[12] = {0, 0, 0, 1, 1, 1, 0.5f, 0.25f, 0.125f, 1, 0, 0};
+  int n = snprintf(pfm, sizeof pfm, "PF\n2 2\n-1.0\n");
+  memcpy(pfm + n, texels, sizeof texels);
+  snprintf(picture, sizeof picture, "%s", files_write_bytes("a b.pfm", pfm, (size_t)n + sizeof texels));
+  static const char body[] = "0 0 0 0.25 0.5\n1 0 0 0.75 0.125\n1 1 0 0 1\n0 1 0 -3 2\n"
+                             "4 0 1 2 3 1 0\n3 3 2 1 7 0\n3 0 1 2 0 0\n";
+  snprintf(header, sizeof header,
+           "comment TextureFile   gone.pfm \r\ncomment TextureFiles x\ncomment\n" PLY_VERTICES PLY_FACES
+           "comment TextureFile\ta b.pfm\n",
+           "u", "v", "", "property int texnumber\n");
+  conic_triangles t = read_ply(header, body, CONIC_OK);
+  CHECK(t.n_materials == 3 && t.material[0] == 1 && t.material[1] == 1 && t.material[2] == 2 && t.material[3] == 0);
+  CHECK(!t.materials[0].texture && t.materials[1].texture && !t.materials[2].texture);
+  CHECK(t.materials[1].color[2] == 1.0f && conic_texture_height(t.materials[1].texture) == 2);
+  conic_triangles_release(context, &t);
+
+  snprintf(header, sizeof header, "comment TextureFile a b.pfm\n" PLY_VERTICES PLY_FACES, "u", "v", "",
+           "property int texnumber\n");
+  t = read_ply(header, body, CONIC_OK);
+  CHECK(t.n_materials == 1 && !t.material && t.materials[0].texture);
+  conic_triangles_release(context, &t);
+  snprintf(header, sizeof header, "comment TextureFile gone.pfm\n" PLY_VERTICES PLY_FACES, "a", "b", "",
+           "property int texnumber\n");
+  t = read_ply(header, body, CONIC_OK); /* nothing to lay it on */
+  CHECK(t.n_materials == 0);
+  conic_triangles_release(context, &t);
+  read_ply("comment TextureFile \n", "", CONIC_ERROR_INPUT);
+  CHECK(strstr(files_message, "without a name (line 3)"));
+  CHECK(unlink(picture) == 0);
+  files_message[0] = 0;
+}
+
 static void test_strip(void) {
   conic_triangles t;
   const char *path =
@@ -127,6 +244,9 @@ int main(void) {
   test_corners();
   test_refused();
   test_materials();
+  test_ply_vertices();
+  test_ply_corners();
+  test_ply_pictures();
   test_strip();
   test_append();
   test_smooth();

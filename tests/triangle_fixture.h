@@ -26,7 +26,7 @@ static inline void triangles_corner(conic_triangles *t, size_t i, uint32_t a, ui
 /* A closed grid of n × m vertices around a torus, or a sphere where `tube` is 0; both wound counter-clockwise from
  * outside. */
 static inline conic_triangles triangles_torus(fixture *f, int n, int m, double tube) {
-  conic_triangles t = triangles_make(f, (size_t)(2 * n * m), (size_t)(n * m), 0);
+  conic_triangles t = triangles_make(f, 2 * (size_t)n * (size_t)m, (size_t)n * (size_t)m, 0);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < m; j++) {
       double a = 6.283185307179586 * i / n, b = 6.283185307179586 * j / m, r = 1.0 + tube * cos(b);

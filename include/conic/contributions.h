@@ -107,10 +107,10 @@ CONIC_API conic_status conic_contributions_at(conic_contributions *contributions
 CONIC_API conic_status conic_contributions_triangles_at(conic_contributions *contributions, int x, int y,
                                                         const conic_triangle_contribution **list, size_t *n);
 
-/* Writes the visible splats of every pixel, in the order of the set, as a deep scanline EXR: channels Z (the depth), id
- * (UINT) and weight. `header` gives the attributes; its planes are not looked at; may be null. The file appears under
- * its name only when it is whole. Reports progress as "deep". Errors: UNSUPPORTED (a build without OpenEXR), MEMORY,
- * IO, CANCELLED. */
+/* Writes the visible splats of every pixel, in the order of the set, and after them the visible triangle, as a deep
+ * scanline EXR: channels Z (the depth), id (UINT; triangle j is the number of splats + j) and weight. `header` gives
+ * the attributes; its planes are not looked at; may be null. The file appears under its name only when it is whole.
+ * Reports progress as "deep". Errors: UNSUPPORTED (a build without OpenEXR), MEMORY, IO, CANCELLED. */
 CONIC_API conic_status conic_contributions_write(conic_contributions *contributions, const char *path,
                                                  const conic_image *header);
 

@@ -106,6 +106,7 @@ typedef struct conic_hybrid_view {
       error_px;  /* above 0: of each patch the cheapest level whose error on the screen is at most this; 0: as built */
   int only_kind; /* -1: either; else the conic_hybrid_kind that all patches are drawn as, the finest that there is, or
                     with error_px the cheapest that is good enough */
+  uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
 } conic_hybrid_view;
 
 CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
@@ -118,11 +119,13 @@ typedef struct conic_hybrid_selection {
   size_t n_patches[2];       /* drawn as triangles, as surfels */
   size_t n_culled;           /* patches that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
+  double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
+                                that is not drawn by its own triangles reaches the near distance */
   void *scratch;             /* private */
 } conic_hybrid_selection;
 
 /* Chooses what to draw: patches out of sight, and with cull_back those that face away, are left out. Neighbours meet
- * without a gap whatever their levels. Errors: ARGUMENT, MEMORY. */
+ * without a gap whatever their levels. Errors: ARGUMENT (a budget below the coarsest of all levels, too), MEMORY. */
 CONIC_API conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
                                            const conic_render_options *render, const conic_hybrid_view *view,
                                            conic_hybrid_selection *selection);

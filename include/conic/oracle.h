@@ -73,10 +73,10 @@ typedef struct conic_reference {
 } conic_reference;
 
 /* Computes the reference picture of `splats` (with tangent axes); `options` as for conic_render, `tile` and
- * `splat_length` are not looked at. All planes are there. On success the caller owns *reference; on failure it is
- * empty. Takes microseconds per splat and pixel for the method's question, some hundred times that for the exact one;
- * reports progress as "verify". The result is the same for any number of threads. Errors: ARGUMENT, MEMORY,
- * CANCELLED. */
+ * `isa` are not looked at, and splat_length, of all splats where these are some of them, is found where it is 0. All
+ * planes are there. On success the caller owns *reference; on failure it is empty. Takes microseconds per splat and
+ * pixel for the method's question, some hundred times that for the exact one; reports progress as "verify". The result
+ * is the same for any number of threads. Errors: ARGUMENT, MEMORY, CANCELLED. */
 CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_splats *splats,
                                            const conic_camera *camera, const conic_render_options *options,
                                            conic_oracle_question question, conic_reference *reference);

@@ -70,6 +70,17 @@ static inline void fuzz_close(fuzz_input *input, conic_status status, int may_be
   close(input->descriptor);
 }
 
+/* A mesh as triangles. What can be read as a model can be read as those, unless a material file or a picture that it
+ * names is spoiled. */
+static inline void fuzz_triangles(const uint8_t *bytes, size_t n_bytes) {
+  fuzz_input input = fuzz_open(bytes, n_bytes);
+  conic_triangles triangles;
+  conic_status status = conic_triangles_read(input.context, input.path, &triangles);
+  FUZZ_CHECK(conic_triangles_check(input.context, &triangles, "fuzz") == CONIC_OK);
+  conic_triangles_release(input.context, &triangles);
+  fuzz_close(&input, status, 1);
+}
+
 /* The models' targets differ in their seeds, and in what the bytes begin with: a target keeps to its own reader. */
 static inline int fuzz_model(const uint8_t *bytes, size_t n_bytes, conic_model_kind kind) {
   conic_model model;

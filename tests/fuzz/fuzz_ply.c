@@ -1,5 +1,6 @@
 #include "tests/fuzz/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
+  fuzz_triangles(bytes, n_bytes);
   return fuzz_model(bytes, n_bytes, CONIC_MODEL_PLY);
 }

@@ -1,0 +1,16 @@
+#include <stdint.h>
+#include <sys/mman.h>
+
+#include "core/memory.h"
+
+void conic_memory_prefer_large_pages(void *pointer, size_t bytes) {
+#if defined(MADV_HUGEPAGE)
+  const uintptr_t page = (uintptr_t)2 << 20, begin = (uintptr_t)pointer;
+  uintptr_t first = (begin + (page - 1)) / page * page, last = (begin + bytes) / page * page;
+  if (pointer && first < last)
+    (void)madvise((char *)pointer + (first - begin), last - first, MADV_HUGEPAGE);
+#else
+  (void)pointer;
+  (void)bytes;
+#endif
+}

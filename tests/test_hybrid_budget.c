@@ -1,0 +1,214 @@
+/* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
+#include "lod/hybrid_choose.h"
+#include "tests/hybrid_fixture.h"
+
+typedef struct spending {
+  conic_context *context;
+  conic_hybrid *hybrid;
+  conic_hybrid_info info;
+  conic_camera camera;
+  conic_render_options options;
+  conic_hybrid_selection selection;
+  unsigned char *is_seen; /* patch by patch */
+} spending;
+
+static void look(spending *s, double azimuth, double zoom) {
+  conic_framing framing;
+  conic_framing_init(&framing);
+  framing.width = framing.height = 300;
+  framing.azimuth_deg = azimuth;
+  framing.elevation_deg = 25.0;
+  framing.zoom = zoom;
+  CHECK_OK(conic_camera_frame(s->context, &framing, s->info.minimum, s->info.maximum, &s->camera));
+}
+
+/* So near that patches reach the near plane, where pixels have no bound. */
+static void look_from_within(spending *s) {
+  look(s, 30.0, 1.0);
+  for (int row = 0; row < 3; row++) {
+    double center = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      center += 0.5 * (s->info.minimum[axis] + s->info.maximum[axis]) * s->camera.cam_from_world[row][axis];
+    s->camera.cam_from_world[row][3] = -center;
+  }
+}
+
+static conic_status select_with(spending *s, int only_kind, double error_px, uint64_t budget) {
+  conic_hybrid_view view;
+  conic_hybrid_view_init(&view);
+  view.only_kind = only_kind;
+  view.error_px = error_px;
+  view.budget = budget;
+  return conic_hybrid_select(s->hybrid, &s->camera, &s->options, &view, &s->selection);
+}
+
+static size_t n_selected(const spending *s) {
+  return s->selection.splats.count + s->selection.triangles.count;
+}
+
+/* The patches that are drawn, by what the selection says of its parts. */
+static void mark_seen(spending *s) {
+  memset(s->is_seen, 0, s->info.n_patches);
+  for (size_t i = 0; i < s->selection.splats.count; i++)
+    s->is_seen[s->selection.splat_cluster[i]] = 1;
+  for (size_t i = 0; i < s->selection.triangles.count; i++)
+    s->is_seen[s->selection.triangles.cluster[i]] = 1;
+}
+
+/* How few primitives keep every seen patch's error on the screen at or below `error_px`; where surfels alone are asked
+ * for and none are good enough, the finest count. `next` becomes the least error above it that any level has. */
+static size_t fewest(const spending *s, const conic_hybrid_camera *view, int only_kind, double error_px, double *next) {
+  size_t count = 0;
+  *next = HUGE_VAL;
+  for (size_t i = 0; i < s->info.n_patches; i++) {
+    const conic_hybrid_patch *patch = &s->hybrid->patches[i];
+    size_t least = SIZE_MAX, finest = 0;
+    for (uint32_t k = patch->n_levels; s->is_seen[i] && k-- > 0;) {
+      const conic_hybrid_level *level = &s->hybrid->levels[patch->first_level + k];
+      double error = conic_hybrid_error_px(view, patch, level);
+      if (only_kind >= 0 && level->kind != (uint32_t)only_kind)
+        continue;
+      finest = level->count;
+      if (error <= error_px)
+        least = level->count < least ? level->count : least;
+      else if (error < *next)
+        *next = error;
+    }
+    count += least < SIZE_MAX ? least : finest;
+  }
+  return count;
+}
+
+/* The least error of which so few are enough, by trying every one that there is. */
+static double least_error(const spending *s, int only_kind, size_t budget) {
+  conic_hybrid_camera view;
+  conic_hybrid_camera_init(s->hybrid, &s->camera, &s->options, &view);
+  for (double error = 0.0;;) {
+    double next;
+    if (fewest(s, &view, only_kind, error, &next) <= budget)
+      return error;
+    if (!(error < HUGE_VAL))
+      return NAN;
+    error = next;
+  }
+}
+
+/* What no budget makes better: the finest levels' error, where all of the kind have one. */
+static double floor_error(const spending *s, int only_kind) {
+  conic_hybrid_camera view;
+  double greatest = 0.0;
+  conic_hybrid_camera_init(s->hybrid, &s->camera, &s->options, &view);
+  for (size_t i = 0; i < s->info.n_patches; i++) {
+    const conic_hybrid_patch *patch = &s->hybrid->patches[i];
+    uint32_t k = 0;
+    while (only_kind >= 0 && s->hybrid->levels[patch->first_level + k].kind != (uint32_t)only_kind)
+      k++;
+    double error = conic_hybrid_error_px(&view, patch, &s->hybrid->levels[patch->first_level + k]);
+    greatest = s->is_seen[i] && error > greatest ? error : greatest;
+  }
+  return greatest;
+}
+
+static void check_budget(spending *s, int only_kind, size_t budget) {
+  CHECK_OK(select_with(s, only_kind, 0.0, budget));
+  mark_seen(s);
+  double expected = fmax(least_error(s, only_kind, budget), floor_error(s, only_kind));
+  CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
+  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_culled == s->info.n_patches);
+  if (only_kind >= 0)
+    CHECK(s->selection.n_patches[1 - only_kind] == 0);
+  if (!(s->selection.error_px == expected))
+    fprintf(stderr, "budget %zu: error %.17g, and %.17g could be had\n", budget, s->selection.error_px, expected);
+  CHECK(s->selection.error_px == expected);
+}
+
+/* From what everything takes down to less than the coarsest takes. */
+static void check_view(spending *s, int only_kind) {
+  double last = 0.0;
+  size_t budget = 2 * s->info.n_vertices + s->info.n_all_surfels, n_steps = 0;
+  for (; select_with(s, only_kind, 0.0, budget) == CONIC_OK; n_steps++) {
+    CHECK(s->selection.error_px >= last);
+    last = s->selection.error_px;
+    check_budget(s, only_kind, budget);
+    budget = n_selected(s) * 9 / 10;
+  }
+  printf("kind %d: %zu budgets, errors up to %g px\n", only_kind, n_steps, last);
+  CHECK(n_steps > 5 && last > 0.5);
+  CHECK(select_with(s, only_kind, 0.0, budget) == CONIC_ERROR_ARGUMENT);
+  CHECK(isnan(least_error(s, only_kind, budget)));
+}
+
+/* An error that is asked for is kept, and said. */
+static void check_errors(spending *s) {
+  static const double errors[] = {0.25, 1.0, 4.0};
+  for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+    CHECK_OK(select_with(s, -1, errors[i], 0));
+    CHECK(s->selection.error_px > 0.0 && s->selection.error_px <= errors[i]);
+    size_t n = n_selected(s);
+    CHECK_OK(select_with(s, -1, 0.0, n)); /* as many do no worse */
+    CHECK(s->selection.error_px <= errors[i]);
+  }
+  CHECK_OK(select_with(s, CONIC_HYBRID_TRIANGLES, 0.0, 0));
+  CHECK(s->selection.error_px == 0.0);
+  CHECK(select_with(s, -1, 1.0, 1000) == CONIC_ERROR_ARGUMENT);
+}
+
+static int n_left = 1 << 30;
+
+static void *allocate_few(void *cookie, size_t bytes) {
+  (void)cookie;
+  return n_left-- > 0 ? malloc(bytes) : NULL;
+}
+
+static void release_any(void *cookie, void *pointer) {
+  (void)cookie;
+  free(pointer);
+}
+
+/* Memory that runs out anywhere is told, and nothing is lost. */
+static void check_memory(spending *s) {
+  int n_failed = 0;
+  conic_hybrid_selection_release(s->context, &s->selection);
+  for (n_left = 0; select_with(s, -1, 0.0, 1000) == CONIC_ERROR_MEMORY; n_left = ++n_failed)
+    CHECK(n_failed < 100);
+  CHECK(n_failed > 4);
+  n_left = 1 << 30;
+  CHECK_OK(select_with(s, -1, 0.0, 1000));
+}
+
+int main(void) {
+  conic_context_options options;
+  conic_hybrid_options how;
+  conic_triangles mesh;
+  spending s;
+  memset(&s, 0, sizeof s);
+  conic_context_options_init(&options);
+  options.threads = 2;
+  options.allocate = allocate_few;
+  options.release = release_any;
+  CHECK_OK(conic_context_create(&options, &s.context));
+  conic_hybrid_options_init(&how);
+  conic_render_options_init(&s.options);
+  hybrid_terrain(s.context, 60, &mesh);
+  CHECK_OK(conic_hybrid_build(s.context, &mesh, &how, &s.hybrid, NULL));
+  CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
+  s.options.near_z = s.info.near_z;
+  s.is_seen = malloc(s.info.n_patches);
+  look(&s, 30.0, 1.0);
+  for (int only_kind = -1; only_kind < 2; only_kind++)
+    check_view(&s, only_kind);
+  check_errors(&s);
+  check_memory(&s);
+  look(&s, 200.0, 4.0); /* half of it is out of sight */
+  check_view(&s, -1);
+  CHECK(s.selection.n_culled > 0);
+  look_from_within(&s);
+  check_budget(&s, -1, 20000);
+  check_budget(&s, -1, 3000);
+  check_budget(&s, CONIC_HYBRID_SURFELS, 3000);
+  conic_hybrid_selection_release(s.context, &s.selection);
+  conic_hybrid_destroy(s.hybrid);
+  free(s.is_seen);
+  conic_context_destroy(s.context);
+  return check_result();
+}
