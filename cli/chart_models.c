@@ -101,6 +101,7 @@ static conic_status make_hybrids(cli_session *session, const char *path, size_t 
   conic_status status =
       make_hybrid(session, path, side, &options, &models->hybrid, &models->splat_length[CLI_CHART_HYBRID]);
   options.phase2 = 1e6;
+  options.most_error = 0.0;
   options.has_single_levels = 1;
   if (status == CONIC_OK)
     status = make_hybrid(session, path, side, &options, &models->surfels, &models->splat_length[CLI_CHART_SURFELS]);

@@ -113,21 +113,26 @@ static double distance2_to_box(const conic_face_box *box, const double at[3]) {
   return sum;
 }
 
+static double distance2_to_face(const conic_face_tree *tree, uint32_t face, const double at[3]) {
+  double corners[3][3];
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(tree->mesh, face, corner, corners[corner]);
+  return conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
+}
+
 static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const double at[3], double least2) {
   for (size_t i = leaf * LEAF_FACES; i < (leaf + 1) * LEAF_FACES && i < tree->n_faces; i++) {
-    double corners[3][3];
-    for (int corner = 0; corner < 3; corner++)
-      conic_mesh_corner(tree->mesh, tree->faces[i], corner, corners[corner]);
-    double distance2 = conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
+    double distance2 = distance2_to_face(tree, tree->faces[i], at);
     least2 = distance2 < least2 ? distance2 : least2;
   }
   return least2;
 }
 
-/* Nearer children first; done where something is near enough. */
-double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known) {
+/* As conic_face_tree_farther, where least2 is a squared distance that is known to be there. Nearer children first; done
+ * where something is near enough. */
+static double search(const conic_face_tree *tree, const double at[3], double least2, double known) {
   size_t stack[64];
-  double distances2[64], least2 = HUGE_VAL, known2 = known * known;
+  double distances2[64], known2 = known * known;
   int n = 1;
   stack[0] = 1;
   distances2[0] = 0.0;
@@ -147,4 +152,14 @@ double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], 
     distances2[n++] = farther ? first2 : second2;
   }
   return least2 > known2 && least2 < HUGE_VAL ? sqrt(least2) : known;
+}
+
+double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known) {
+  return search(tree, at, HUGE_VAL, known);
+}
+
+/* A face without area may have no distance. */
+double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
+  double guessed2 = distance2_to_face(tree, guess, at);
+  return search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, known);
 }

@@ -105,27 +105,53 @@ static double first_spacing(const conic_ways_job *job, uint32_t patch) {
   return sparse > edge ? sparse : edge;
 }
 
+/* The error of surfels, in spacings, above which they are laid closer: a pixel where they lie two apart. That goes on
+ * as long as there are no more than so many a face: more take longer to draw than the faces. */
+static const double tolerance = 0.5;
+enum { MOST_A_FACE = 2, MOST_A_FACE_OF_TRIANGLES = 1 };
+
+/* Keeps the level that was sampled last where it is worth one: with a fourth less than the one before. */
+static void keep_level(conic_context *context, conic_patch_ways *ways) {
+  conic_surfels *last = &ways->surfels[ways->n_surfels];
+  if (last->n == 0 || (ways->n_surfels > 0 && 4 * last->n > 3 * last[-1].n))
+    conic_surfels_release(context, last);
+  else
+    ways->n_surfels++;
+}
+
+/* Whether a patch that was gathered is drawn as its finest surfels where no error is asked for. */
+static int is_surfels(const conic_hybrid_options *options, const conic_surfels *finest, double spacing) {
+  int is_good = options->most_error <= 0.0 || finest->error <= options->most_error * spacing;
+  return finest->n > 0 && (is_good || options->sampling == CONIC_SAMPLING_BOX);
+}
+
 /* A cover of the patch by one kind of sampling, each level twice as wide as the one before, down to a few surfels. */
 static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, uint32_t patch) {
   conic_patch_ways *ways = &job->ways[patch];
+  size_t n_faces = job->mesh->starts[patch + 1] - job->mesh->starts[patch];
   int is_gathered = job->mesh->clusters->is_gathered[patch], is_single = job->options->has_single_levels;
-  conic_sampling_job sampling = {job->mesh, &job->tree, patch, first_spacing(job, patch), (double)job->options->cutoff};
+  conic_sampling_job sampling = {.mesh = job->mesh,
+                                 .tree = &job->tree,
+                                 .patch = patch,
+                                 .spacing = first_spacing(job, patch),
+                                 .most = n_faces * (is_gathered ? MOST_A_FACE : MOST_A_FACE_OF_TRIANGLES),
+                                 .cutoff = (double)job->options->cutoff};
   conic_status status = CONIC_OK;
   int n_most = is_single ? is_gathered : CONIC_MOST_SURFEL_LEVELS;
-  while (ways->n_surfels < n_most && status == CONIC_OK && sampling.spacing > 0.0) {
-    conic_surfels *surfels = &ways->surfels[ways->n_surfels++];
-    int is_first = ways->n_surfels == 1;
-    surfels->error = is_first ? 0.0 : surfels[-1].error; /* it has no less than what it is coarser than */
+  for (int i = 0; i < n_most && status == CONIC_OK && sampling.spacing > 0.0; i++) {
+    conic_surfels *surfels = &ways->surfels[ways->n_surfels];
+    surfels->error = ways->n_surfels ? surfels[-1].error : 0.0; /* it has no less than what it is coarser than */
+    sampling.tolerance = tolerance * sampling.spacing;
+    sampling.is_coarser = i > 0;
     if (job->options->sampling == CONIC_SAMPLING_BOX)
       status = conic_patch_sample_box(job->context, &sampling, surfels);
     else
       status = conic_patch_sample(sampler, &sampling, surfels);
-    if (surfels->n == 0 || (!is_first && 4 * surfels->n > 3 * surfels[-1].n)) { /* not worth a level */
-      conic_surfels_release(job->context, surfels);
-      ways->n_surfels--;
-      break;
-    }
-    if (surfels->n <= 2)
+    if (i == 0)
+      ways->is_surfels = is_gathered && is_surfels(job->options, surfels, sampling.spacing);
+    int is_last = surfels->n <= 2;
+    keep_level(job->context, ways);
+    if (is_last)
       break;
     sampling.spacing *= 2.0;
   }

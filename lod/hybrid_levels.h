@@ -10,6 +10,7 @@ enum { CONIC_MOST_SURFEL_LEVELS = 8 };
 
 typedef struct conic_patch_ways {
   conic_patch_levels triangles; /* the simpler ones; the faces themselves come before them */
+  int is_surfels;               /* as built: the first of those below */
   int n_surfels;
   conic_surfels surfels[CONIC_MOST_SURFEL_LEVELS];
   conic_hybrid_bound bound;

@@ -176,19 +176,23 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
 static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mesh) {
   conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
   const conic_patch_ways *ways = &p->ways[i];
+  double error = 0.0;
   patches[i] = (conic_hybrid_patch){.bound = conic_patch_bound(p->mesh, i),
                                     .area = (float)ways->area,
                                     .first_level = (uint32_t)at->level,
                                     .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
-  patches[i].built = p->mesh->clusters->is_gathered[i] && ways->n_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
+  patches[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
   mesh->n = 0;
   for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1]; k++, mesh->n++) {
     mesh->face[mesh->n] = p->mesh->faces[k];
     memcpy(mesh->corners[mesh->n], p->flat->corners[p->mesh->faces[k]], sizeof *mesh->corners);
   }
   put_triangles(p, at, mesh);
-  for (int k = 0; k < ways->triangles.n; k++)
-    put_triangles(p, at, &ways->triangles.levels[k]);
+  for (int k = 0; k < ways->triangles.n; k++) {
+    conic_patch_level level = ways->triangles.levels[k];
+    level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
+    put_triangles(p, at, &level);
+  }
   for (int k = 0; k < ways->n_surfels; k++) {
     put_surfels(p, at, &ways->surfels[k]);
     float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));

@@ -15,7 +15,7 @@ typedef struct conic_surfels {
   size_t n, room;
   conic_surfel *items;
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
-   * measured at the ends of its axes. */
+   * measured at twenty places. */
   double error;
   double reach; /* the longest half axis of an outline */
 } conic_surfels;
@@ -24,8 +24,11 @@ typedef struct conic_sampling_job {
   const conic_patch_mesh *mesh;
   const conic_face_tree *tree; /* of all its faces */
   uint32_t patch;
-  double spacing; /* no two surfels that face alike are nearer than this */
-  double cutoff;  /* standard deviations at which a splat ends */
+  double spacing;   /* no two surfels that face alike are nearer than this, but where the surface needs closer ones */
+  double tolerance; /* surfels whose error is larger are made of closer ones, */
+  size_t most;      /* as long as there are no more than these */
+  int is_coarser;   /* the job before was the same patch's, at half the spacing */
+  double cutoff;    /* standard deviations at which a splat ends */
 } conic_sampling_job;
 
 /* Memory that is kept from patch to patch. Zero before the first use. */

@@ -6,14 +6,9 @@
 #include "core/memory.h"
 #include "core/random.h"
 
-static const uint32_t none = UINT32_MAX;
-
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;
 enum { MOST_SIDES = 32 };
-
-/* The least cosine between two faces that may have a surfel in common. */
-static const double alike = 0.5;
 
 conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
                                 size_t size) {
@@ -28,7 +23,7 @@ conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t use
 
 /* --- lattices --- */
 
-static int sides_of_face(const conic_sampler *s, uint32_t face) {
+static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
   double longest = 0.0;
   for (int corner = 0; corner < 3; corner++) {
     double a[3], b[3];
@@ -39,7 +34,7 @@ static int sides_of_face(const conic_sampler *s, uint32_t face) {
     double length = sqrt(conic_dot(b, b));
     longest = length > longest ? length : longest;
   }
-  double sides = longest / (lattice_step * s->job->spacing);
+  double sides = longest / (lattice_step * conic_spacing_at(s, depth));
   return sides >= (double)MOST_SIDES ? MOST_SIDES : sides > 1.0 ? (int)sides + 1 : 1;
 }
 
@@ -57,9 +52,14 @@ static conic_status lay_lattices(conic_sampler *s) {
     return status;
   s->n_lattices = n;
   s->n_places = 0;
+  s->finest = 0;
+  s->coarsest = CONIC_MOST_DEPTH;
   for (size_t i = 0; i < n; i++) {
     uint32_t face = mesh->faces[begin + i];
-    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face), (uint32_t)s->n_places};
+    int depth = s->depth[i];
+    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), (uint32_t)s->n_places};
+    s->finest = depth > s->finest ? depth : s->finest;
+    s->coarsest = depth < s->coarsest ? depth : s->coarsest;
     s->n_places += conic_lattice_places(s->lattices[i].sides);
     conic_patch_face_normal(mesh, face, s->facing[i]);
   }
@@ -97,15 +97,15 @@ static conic_status add_candidate(conic_sampler *s, uint32_t i_lattice, int i, i
   if (status != CONIC_OK)
     return status;
   uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
-  s->candidates[s->n_candidates].key = (is_first ? 0 : (uint64_t)1 << 21) | turn;
+  uint64_t rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + (uint64_t)s->depth[i_lattice];
+  s->candidates[s->n_candidates].key = rank << 21 | turn;
   s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
   s->seeds[s->n_candidates][0] = i_lattice;
   s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
   return CONIC_OK;
 }
 
-/* A place on a side that two faces of the patch share is a candidate of the one only. */
-static int is_mine(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)l->face + (size_t)corner];
     if (is_on_side(l, i, j, corner) && !conic_patch_ends_at(mesh, l->face, corner) && across / 3 < l->face)
@@ -126,53 +126,18 @@ static conic_status list_candidates(conic_sampler *s) {
         int is_first = 0;
         for (int corner = 0; corner < 3; corner++)
           is_first |= rims[corner] && is_on_side(l, i, j, corner);
-        if (is_first || is_mine(mesh, l, i, j))
+        if (is_first || conic_lattice_is_own(mesh, l, i, j))
           status = add_candidate(s, (uint32_t)k, i, j, is_first);
       }
   }
-  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 22) : status;
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 24) : status;
 }
 
 /* --- sites --- */
 
-static void cell_of(const conic_sampler *s, const double at[3], int64_t cell[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    cell[axis] = (int64_t)floor((at[axis] - s->low[axis]) / s->job->spacing);
-}
-
-static uint32_t *bucket_of(const conic_sampler *s, const int64_t cell[3]) {
-  uint64_t hash = (uint64_t)cell[0] * UINT64_C(0x9e3779b97f4a7c15) ^ (uint64_t)cell[1] * UINT64_C(0xc2b2ae3d27d4eb4f) ^
-                  (uint64_t)cell[2] * UINT64_C(0x165667b19e3779f9);
-  return &s->table[(hash ^ hash >> 29) & s->table_mask];
-}
-
-/* The nearest site within a spacing that faces as the place does, or none. */
-static uint32_t nearest_site(const conic_sampler *s, const double at[3], const double facing[3]) {
-  double least = s->job->spacing * s->job->spacing;
-  uint32_t found = none;
-  int64_t cell[3], near[3];
-  cell_of(s, at, cell);
-  for (int k = 0; k < 27; k++) {
-    near[0] = cell[0] + k % 3 - 1;
-    near[1] = cell[1] + k / 3 % 3 - 1;
-    near[2] = cell[2] + k / 9 - 1;
-    for (uint32_t i = *bucket_of(s, near); i != none; i = s->sites[i].next) {
-      const conic_site *site = &s->sites[i];
-      double x = at[0] - site->at[0], y = at[1] - site->at[1], z = at[2] - site->at[2];
-      double distance2 = (x * x + y * y) + z * z;
-      if ((distance2 < least || (distance2 == least && i < found)) && conic_dot(facing, site->facing) >= alike) {
-        least = distance2;
-        found = i;
-      }
-    }
-  }
-  return found;
-}
-
 static conic_status add_site(conic_sampler *s, uint32_t i_lattice, const double bary[3], const double at[3],
                              uint32_t *added) {
   void *sites = s->sites;
-  int64_t cell[3];
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   s->sites = sites;
   if (status != CONIC_OK)
@@ -182,29 +147,18 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, const double 
   memcpy(site->at, at, sizeof site->at);
   memcpy(site->bary, bary, sizeof site->bary);
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
+  site->first_support = CONIC_NO_SUPPORT;
   site->face = s->lattices[i_lattice].face;
-  cell_of(s, at, cell);
-  uint32_t *bucket = bucket_of(s, cell);
-  site->next = *bucket;
-  *added = *bucket = (uint32_t)s->n_sites++;
-  return CONIC_OK;
-}
-
-static conic_status clear_table(conic_sampler *s) {
-  size_t wanted = (size_t)1 << (conic_bits_below(s->n_candidates / 4 + 16) + 1);
-  void *table = s->table;
-  conic_status status = conic_sampler_grow(s, &table, 0, wanted, &s->table_room, sizeof *s->table);
-  s->table = table;
-  if (status != CONIC_OK)
-    return status;
-  s->table_mask = wanted - 1;
-  memset(s->table, 0xFF, wanted * sizeof *s->table);
-  conic_patch_place(s->job->mesh, s->lattices[0].face, (const double[3]){1.0, 0.0, 0.0}, s->low);
-  return CONIC_OK;
+  site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
+  *added = (uint32_t)s->n_sites++;
+  return conic_site_table_add(s->context, &s->table, at, s->facing[i_lattice], s->depth[i_lattice]);
 }
 
 static conic_status choose_sites(conic_sampler *s) {
-  conic_status status = clear_table(s);
+  double low[3];
+  conic_patch_place(s->job->mesh, s->lattices[0].face, (const double[3]){1.0, 0.0, 0.0}, low);
+  conic_status status =
+      conic_site_table_clear(s->context, &s->table, low, s->job->spacing, s->coarsest, s->finest, s->n_candidates / 4);
   s->n_sites = 0;
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
@@ -213,7 +167,7 @@ static conic_status choose_sites(conic_sampler *s) {
     uint32_t added;
     conic_lattice_bary(l, (int)(seed[1] >> 16), (int)(seed[1] & 0xFFFF), bary);
     conic_patch_place(s->job->mesh, l->face, bary, at);
-    if (nearest_site(s, at, s->facing[seed[0]]) == none)
+    if (!conic_site_table_has(&s->table, at, s->facing[seed[0]], s->depth[seed[0]]))
       status = add_site(s, seed[0], bary, at, &added);
   }
   return status;
@@ -229,8 +183,8 @@ static conic_status find_owners(conic_sampler *s) {
         double bary[3], at[3];
         conic_lattice_bary(l, i, j, bary);
         conic_patch_place(s->job->mesh, l->face, bary, at);
-        uint32_t owner = nearest_site(s, at, s->facing[k]);
-        conic_status status = owner == none ? add_site(s, (uint32_t)k, bary, at, &owner) : CONIC_OK;
+        uint32_t owner = conic_site_table_nearest(&s->table, at, s->facing[k], s->depth[k]);
+        conic_status status = owner == CONIC_NO_SITE ? add_site(s, (uint32_t)k, bary, at, &owner) : CONIC_OK;
         if (status != CONIC_OK)
           return status;
         s->owner[conic_lattice_place(l, i, j)] = owner;

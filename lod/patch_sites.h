@@ -5,6 +5,7 @@
 #include "core/ellipse.h"
 #include "lod/patch_sample.h"
 #include "lod/radix.h"
+#include "lod/site_table.h"
 
 /* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
  * between them. */
@@ -31,21 +32,28 @@ static inline void conic_lattice_bary(const conic_lattice *l, int i, int j, doub
 
 typedef struct conic_site {
   double at[3], facing[3]; /* of its face */
-  uint32_t face, next;     /* the next in its cell */
-  double bary[3];
+  uint32_t face;
+  double bary[3], spacing;
   /* Sums over what it stands for. */
-  double normal[3], color[3], area, covariance[3];
+  double normal[3], color[3], area;
   double u[3], v[3]; /* its plane */
-  double middle[2];  /* of what it stands for, in the plane */
   conic_ellipse ellipse;
-  double height;          /* of what it stands for above its plane, the most */
-  double low[2], high[2]; /* the box of that, in the plane */
+  double darkest[3], brightest[3], contrast; /* of the colours that it stands for */
+  uint32_t first_support;
+  double lowest, highest; /* of what it stands for, above the plane through its place */
+  double height;          /* of that, from its plane along a face's normal, the most */
+  double error;           /* conic_site_error of it, from the tolerance on */
+  uint32_t end_faces[4];  /* what lies towards the ends of the ellipse's axes, in turn */
 } conic_site;
 
-/* A point that a site's ellipse must cover, in its plane. */
+#define CONIC_NO_SUPPORT UINT32_MAX
+
+/* A point that a site's ellipse must cover. */
 typedef struct conic_support {
-  uint32_t site;
-  double at[2];
+  uint32_t next; /* of the same site */
+  uint32_t face;
+  double above, cosine, slope[2]; /* its height, and how its face is tilted: the cosine, and the tangent's parts */
+  double at[2];                   /* in the plane */
 } conic_support;
 
 struct conic_sampler {
@@ -54,6 +62,9 @@ struct conic_sampler {
   size_t n_lattices, lattices_room;
   conic_lattice *lattices;
   double (*facing)[3]; /* of each lattice's face */
+  uint8_t *depth;      /* of each face of the patch: how often the spacing is halved there */
+  size_t depth_room;
+  int coarsest, finest; /* of those */
   size_t n_places, places_room;
   uint32_t *owner; /* of each place: a site */
   size_t n_candidates, candidates_room;
@@ -61,13 +72,17 @@ struct conic_sampler {
   uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
   size_t n_sites, sites_room;
   conic_site *sites;
-  size_t table_room;
-  uint32_t *table; /* first site of a cell, by its hash */
-  size_t table_mask;
-  double low[3];
+  conic_site_table table; /* of them */
   size_t n_supports, supports_room;
   conic_support *supports;
 };
+
+static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
+  return sampler->job->spacing / (double)(1 << depth);
+}
+
+/* Of a place on a side that two faces of the patch share, only the one answers other than 0. */
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *lattice, int i, int j);
 
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
 conic_status conic_patch_find_sites(conic_sampler *sampler);

@@ -243,6 +243,7 @@ static inline void seeds_hybrid(seed_set *set, conic_context *context, int is_ga
   conic_texture *texture;
   conic_hybrid_options_init(&options);
   options.phase2 = is_gathered ? 1e6 : -2.0;
+  options.most_error = 0.0;
   if (conic_triangles_allocate(context, 4, 6, CONIC_TRIANGLES_COLORS | CONIC_TRIANGLES_TEXTURE_COORDINATES, &mesh) !=
           CONIC_OK ||
       conic_image_allocate(context, 2, 2, 1u << CONIC_PLANE_RGBA, &image) != CONIC_OK)

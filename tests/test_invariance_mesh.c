@@ -51,6 +51,7 @@ static model open_model(fixture *f) {
   memset(&m, 0, sizeof m);
   m.mesh = make_mesh(f, 40);
   conic_hybrid_options_init(&options);
+  options.most_error = 0.0; /* its colours change so fast that else there would be no surfels */
   CHECK_OK(conic_hybrid_build(f->context, &given, &options, &m.hybrid, NULL));
   CHECK_OK(conic_hybrid_describe(m.hybrid, &m.info));
   f->options.near_z = m.info.near_z;
@@ -80,7 +81,7 @@ static conic_drawing choose(fixture *f, model *m, int scene) {
   if (scene == MESH || scene == MIXED)
     return (conic_drawing){scene == MIXED ? &f->splats : NULL, &m->mesh};
   conic_hybrid_view_init(&view);
-  view.error_px = scene == WITH_ERROR ? 1.5 : 0.0;
+  view.error_px = scene == WITH_ERROR ? 3.0 : 0.0;
   view.only_kind = scene == SURFELS ? CONIC_HYBRID_SURFELS : -1;
   CHECK_OK(conic_hybrid_select(m->hybrid, &f->camera, &f->options, &view, &m->selection));
   return (conic_drawing){&m->selection.splats, &m->selection.triangles};

@@ -32,6 +32,8 @@ typedef struct conic_hybrid_options {
   double most_area; /* no cluster of the first phase has a larger share of the whole area; 0: by the number of faces */
   conic_sampling sampling;
   double density;        /* surfels along the mean edge of a patch */
+  double most_error;     /* of the surfels of a patch, in distances between them, as built: else it stays triangles; 0:
+                            none does. Not for BOX */
   float cutoff;          /* F_g of the kernel that will draw */
   int has_single_levels; /* leave out what only --error needs: simpler levels, and the other kind of each patch */
 } conic_hybrid_options;

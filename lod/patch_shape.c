@@ -1,0 +1,293 @@
+#include "lod/patch_shape.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "lod/least_ellipse.h"
+#include "lod/patch_contrast.h"
+
+/* How far an ellipse reaches beyond what it must cover, and how long it may be. */
+static const double cover = 1.1;
+static const double least_ratio = 0.2;
+/* The least cosine between a surfel and a face for which it is widened; a steeper face counts as if it had this. */
+static const double steep = 0.5;
+
+/* --- the small triangles of the lattices --- */
+
+typedef struct small_triangle {
+  const conic_lattice *lattice;
+  const double *facing;
+  double at[3][3], bary[3][3];
+  uint32_t owners[3];
+  int is_between; /* two that point as the face does */
+} small_triangle;
+
+/* The corners of the small triangles at (i, j): the one that points as the face does, and the one between. */
+static const int corner_steps[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1, 1}, {0, 1}}};
+
+typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
+
+static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
+  conic_status status = CONIC_OK;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i < l->sides; i++)
+      for (int j = 0; j < l->sides - i; j++)
+        for (int between = 0; between < (i + j < l->sides - 1 ? 2 : 1) && status == CONIC_OK; between++) {
+          small_triangle t = {.lattice = l, .facing = s->facing[k], .is_between = between};
+          for (int corner = 0; corner < 3; corner++) {
+            const int *step = corner_steps[between][corner];
+            conic_lattice_bary(l, i + step[0], j + step[1], t.bary[corner]);
+            conic_patch_place(s->job->mesh, l->face, t.bary[corner], t.at[corner]);
+            t.owners[corner] = s->owner[conic_lattice_place(l, i + step[0], j + step[1])];
+          }
+          status = task(s, &t);
+        }
+  }
+  return status;
+}
+
+/* --- planes and colours --- */
+
+static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
+  double sides[2][3], cross[3];
+  for (int axis = 0; axis < 3; axis++) {
+    sides[0][axis] = t->at[1][axis] - t->at[0][axis];
+    sides[1][axis] = t->at[2][axis] - t->at[0][axis];
+  }
+  conic_cross(sides[0], sides[1], cross);
+  double share = sqrt(conic_dot(cross, cross)) / 6.0;
+  for (int corner = 0; corner < 3; corner++) {
+    conic_site *site = &s->sites[t->owners[corner]];
+    double normal[3], color[3];
+    conic_patch_normal(s->job->mesh, t->lattice->face, t->bary[corner], t->facing, normal);
+    conic_patch_color(s->job->mesh, t->lattice->face, t->bary[corner], color);
+    for (int axis = 0; axis < 3; axis++) {
+      site->normal[axis] += share * normal[axis];
+      site->color[axis] += share * color[axis];
+    }
+    site->area += share;
+  }
+  return CONIC_OK;
+}
+
+/* Where what a site stands for has no direction in the mean, its own face says. */
+static void settle_planes(conic_sampler *s) {
+  for (size_t i = 0; i < s->n_sites; i++) {
+    conic_site *site = &s->sites[i];
+    double length = sqrt(conic_dot(site->normal, site->normal));
+    for (int axis = 0; axis < 3; axis++)
+      site->normal[axis] = length > 0.0 ? site->normal[axis] / length : site->facing[axis];
+    if (!(conic_dot(site->normal, site->normal) > 0.0))
+      site->normal[2] = 1.0;
+    conic_tangent_basis(site->normal, site->u, site->v);
+  }
+}
+
+/* --- what must be covered --- */
+
+/* Notes what a site must cover of a face. */
+static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
+                                 const double facing[3]) {
+  conic_site *site = &s->sites[i_site];
+  void *supports = s->supports;
+  conic_status status =
+      conic_sampler_grow(s, &supports, s->n_supports, s->n_supports + 1, &s->supports_room, sizeof *s->supports);
+  s->supports = supports;
+  if (status != CONIC_OK)
+    return status;
+  const double d[3] = {at[0] - site->at[0], at[1] - site->at[1], at[2] - site->at[2]};
+  double cosine = conic_dot(facing, site->normal);
+  conic_support *support = &s->supports[s->n_supports];
+  support->next = site->first_support;
+  site->first_support = (uint32_t)s->n_supports++;
+  support->face = face;
+  support->cosine = cosine > steep ? cosine : steep;
+  support->above = conic_dot(d, site->normal);
+  support->at[0] = conic_dot(d, site->u);
+  support->at[1] = conic_dot(d, site->v);
+  support->slope[0] = conic_dot(facing, site->u) / support->cosine;
+  support->slope[1] = conic_dot(facing, site->v) / support->cosine;
+  site->lowest = support->above < site->lowest ? support->above : site->lowest;
+  site->highest = support->above > site->highest ? support->above : site->highest;
+  return CONIC_OK;
+}
+
+/* Where the side from one place to another passes from what is nearest to the one's owner to what is to the other's. */
+static void find_border(const conic_sampler *s, const small_triangle *t, int from, int to, double at[3]) {
+  const conic_site *a = &s->sites[t->owners[from]], *b = &s->sites[t->owners[to]];
+  double more = 0.0, slope = 0.0, share;
+  for (int axis = 0; axis < 3; axis++) {
+    double to_a = a->at[axis] - t->at[from][axis], to_b = b->at[axis] - t->at[from][axis];
+    more += 0.5 * (to_b * to_b - to_a * to_a);
+    slope += (t->at[to][axis] - t->at[from][axis]) * (to_b - to_a);
+  }
+  share = !(slope > 0.0) ? 0.5 : more <= 0.0 ? 0.0 : more < slope ? more / slope : 1.0;
+  for (int axis = 0; axis < 3; axis++)
+    at[axis] = t->at[from][axis] + share * (t->at[to][axis] - t->at[from][axis]);
+}
+
+static conic_status cover_places(conic_sampler *s) {
+  conic_status status = CONIC_OK;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
+        double bary[3], at[3];
+        conic_lattice_bary(l, i, j, bary);
+        conic_patch_place(s->job->mesh, l->face, bary, at);
+        status = note_support(s, s->owner[conic_lattice_place(l, i, j)], at, l->face, s->facing[k]);
+      }
+  }
+  return status;
+}
+
+/* Each corner's owner covers its part of the triangle: from the corner, which is noted, up to the borders on the sides,
+ * and to the middle between those where all three have others. Every side is one of a triangle that points as the face
+ * does. */
+static conic_status cover_small_triangle(conic_sampler *s, const small_triangle *t) {
+  double border[3][3], middle[3]; /* border k: on the side that begins at corner k */
+  int n_parted = 0;
+  conic_status status = CONIC_OK;
+  for (int k = 0; k < 3; k++) {
+    uint32_t owners[2] = {t->owners[k], t->owners[(k + 1) % 3]};
+    if (owners[0] == owners[1])
+      continue;
+    n_parted++;
+    find_border(s, t, k, (k + 1) % 3, border[k]);
+    for (int end = 0; end < 2 && status == CONIC_OK && !t->is_between; end++)
+      status = note_support(s, owners[end], border[k], t->lattice->face, t->facing);
+  }
+  if (n_parted < 3)
+    return status;
+  for (int axis = 0; axis < 3; axis++)
+    middle[axis] = (border[0][axis] + border[1][axis] + border[2][axis]) / 3.0;
+  for (int corner = 0; corner < 3 && status == CONIC_OK; corner++)
+    status = note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
+  return status;
+}
+
+/* --- ellipses --- */
+
+/* Half of the directions, in turn about the plane, in which a site's farthest supports are looked for. */
+static const double looks[CONIC_LEAST_ELLIPSE_POINTS / 2][2] = {
+    {1.0, 0.0}, {0.7071, 0.7071}, {0.0, 1.0}, {-0.7071, 0.7071}};
+
+/* Lays the plane halfway between the lowest and the highest that it stands for, and finds where the supports come to
+ * lie in it: along the face's normal, so that what is seen straight on the face is covered. */
+static void settle_height(conic_sampler *s, conic_site *site) {
+  double lift = 0.5 * (site->lowest + site->highest);
+  for (int axis = 0; axis < 3; axis++)
+    site->at[axis] += lift * site->normal[axis];
+  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
+    conic_support *support = &s->supports[k];
+    double above = support->above - lift, way = fabs(above / support->cosine);
+    for (int i = 0; i < 2; i++)
+      support->at[i] -= above * support->slope[i];
+    site->height = way > site->height ? way : site->height;
+  }
+}
+
+/* The supports that lie farthest out, one in each of the directions. */
+static int find_farthest(const conic_sampler *s, const conic_site *site,
+                         double farthest[CONIC_LEAST_ELLIPSE_POINTS][2]) {
+  double most[CONIC_LEAST_ELLIPSE_POINTS];
+  const int n = CONIC_LEAST_ELLIPSE_POINTS / 2;
+  for (int i = 0; i < 2 * n; i++)
+    most[i] = -HUGE_VAL;
+  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
+    const double *at = s->supports[k].at;
+    for (int i = 0; i < n; i++) {
+      double along = at[0] * looks[i][0] + at[1] * looks[i][1];
+      if (along > most[i]) {
+        most[i] = along;
+        memcpy(farthest[i], at, sizeof farthest[i]);
+      }
+      if (-along > most[n + i]) {
+        most[n + i] = -along;
+        memcpy(farthest[n + i], at, sizeof farthest[n + i]);
+      }
+    }
+  }
+  return most[0] > -HUGE_VAL ? 2 * n : 0;
+}
+
+/* Where a surfel is measured, in its half axes: sixteen places of its outline in turn, and four within. */
+static const double ends[][2] = {{1.0, 0.0},  {0.92388, 0.38268},   {0.70711, 0.70711},   {0.38268, 0.92388},
+                                 {0.0, 1.0},  {-0.38268, 0.92388},  {-0.70711, 0.70711},  {-0.92388, 0.38268},
+                                 {-1.0, 0.0}, {-0.92388, -0.38268}, {-0.70711, -0.70711}, {-0.38268, -0.92388},
+                                 {0.0, -1.0}, {0.38268, -0.92388},  {0.70711, -0.70711},  {0.92388, -0.38268},
+                                 {0.5, 0.0},  {0.0, 0.5},           {-0.5, 0.0},          {0.0, -0.5}};
+
+/* Makes the ellipse large enough for all supports. Notes for each of the four ends of its axes on which face the
+ * support lies that is farthest that way. */
+static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
+  double most[4] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  const double *major = site->ellipse.major;
+  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
+    double x = s->supports[k].at[0] - center[0], y = s->supports[k].at[1] - center[1];
+    double along = x * major[0] + y * major[1], across = y * major[0] - x * major[1];
+    const double ways[4] = {along, across, -along, -across};
+    conic_ellipse_cover(&site->ellipse, x, y);
+    for (int i = 0; i < 4; i++)
+      if (ways[i] > most[i]) {
+        most[i] = ways[i];
+        site->end_faces[i] = s->supports[k].face;
+      }
+  }
+}
+
+/* A plane that lies off what it stands for is seen beside it, and may leave a gap to its neighbours: the outline grows
+ * by as much. */
+static void widen(conic_site *site) {
+  conic_ellipse *e = &site->ellipse;
+  conic_ellipse_overlap(e, site->area, cover, 0.0, HUGE_VAL);
+  double minor = e->ratio * e->reach + site->height;
+  e->reach += site->height;
+  e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
+}
+
+double conic_site_error(const conic_sampler *s, const conic_site *site, double known) {
+  const conic_ellipse *e = &site->ellipse;
+  double smear = site->contrast * e->reach;
+  known = site->height > known ? site->height : known;
+  known = smear > known ? smear : known;
+  for (int k = 0; k < 20; k++) {
+    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio, at[3];
+    double x = along * e->major[0] - across * e->major[1], y = along * e->major[1] + across * e->major[0];
+    for (int axis = 0; axis < 3; axis++)
+      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
+    known = conic_face_tree_farther_by(s->job->tree, at, site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16], known);
+  }
+  return known;
+}
+
+static void shape_site(conic_sampler *s, conic_site *site) {
+  double farthest[CONIC_LEAST_ELLIPSE_POINTS][2], center[2] = {0.0, 0.0}, covariance[3];
+  settle_height(s, site);
+  int n = find_farthest(s, site, farthest);
+  if (n == 0)
+    return;
+  conic_least_ellipse((const double(*)[2])farthest, n, center, covariance);
+  site->ellipse = conic_ellipse_shape(covariance, least_ratio);
+  cover_supports(s, site, center);
+  for (int axis = 0; axis < 3; axis++)
+    site->at[axis] += center[0] * site->u[axis] + center[1] * site->v[axis];
+  widen(site);
+  site->error = conic_site_error(s, site, s->job->tolerance);
+}
+
+conic_status conic_patch_shape_sites(conic_sampler *s) {
+  s->n_supports = 0;
+  conic_status status = do_small_triangles(s, add_to_sums);
+  if (status != CONIC_OK)
+    return status;
+  settle_planes(s);
+  conic_patch_find_contrasts(s);
+  status = cover_places(s);
+  if (status == CONIC_OK)
+    status = do_small_triangles(s, cover_small_triangle);
+  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
+    shape_site(s, &s->sites[i]);
+  return status;
+}

@@ -1,0 +1,15 @@
+/* A plane for what each site stands for, and an ellipse that covers it. */
+#ifndef LOD_PATCH_SHAPE_H
+#define LOD_PATCH_SHAPE_H
+
+#include "lod/patch_sites.h"
+
+/* Fills in the sites' sums, planes, ellipses and errors. Errors: MEMORY. */
+conic_status conic_patch_shape_sites(conic_sampler *sampler);
+
+/* How far what the site stands for is from its plane, along the faces' normals, or its outline from the mesh, as
+ * measured at twenty places; or how far it smears colours: the share of black and white by which they differ, of
+ * its longest half axis. Where that is more than `known`; else `known`. */
+double conic_site_error(const conic_sampler *sampler, const conic_site *site, double known);
+
+#endif
