@@ -128,8 +128,8 @@ static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const 
   return least2;
 }
 
-/* As conic_face_tree_farther, where least2 is a squared distance that is known to be there. Nearer children first; done
- * where something is near enough. */
+/* The least squared distance, where least2 is one that is known to be there. Nearer children first; done where something
+ * is near enough. */
 static double search(const conic_face_tree *tree, const double at[3], double least2, double known) {
   size_t stack[64];
   double distances2[64], known2 = known * known;
@@ -151,15 +151,17 @@ static double search(const conic_face_tree *tree, const double at[3], double lea
     stack[n] = 2 * i + !farther;
     distances2[n++] = farther ? first2 : second2;
   }
-  return least2 > known2 && least2 < HUGE_VAL ? sqrt(least2) : known;
+  return least2;
 }
 
 double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known) {
-  return search(tree, at, HUGE_VAL, known);
+  double least2 = search(tree, at, HUGE_VAL, known);
+  return least2 > known * known && least2 < HUGE_VAL ? sqrt(least2) : known;
 }
 
 /* A face without area may have no distance. */
-double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
+double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough) {
   double guessed2 = distance2_to_face(tree, guess, at);
-  return search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, known);
+  double least2 = search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, enough);
+  return least2 < HUGE_VAL ? sqrt(least2) : enough;
 }

@@ -49,6 +49,14 @@ void conic_surfels_release(conic_context *context, conic_surfels *surfels) {
 
 /* --- surfels --- */
 
+/* The error of a site where that is more than `known`; else `known`. Much of that is known from the site's making. */
+static double larger_error(const conic_sampler *s, const conic_site *site, double known) {
+  double bound;
+  if (site->error > s->job->tolerance)
+    return site->error > known ? site->error : known;
+  return site->error_bound > known ? conic_site_error(s, site, known, &bound) : known;
+}
+
 static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels *surfels) {
   conic_status status = conic_surfels_reserve(s->context, surfels);
   if (status != CONIC_OK)
@@ -64,7 +72,7 @@ static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels
     surfel->color[axis] = (float)(own * texel[axis]);
   }
   surfels->n++;
-  surfels->error = conic_site_error(s, site, surfels->error);
+  surfels->error = larger_error(s, site, surfels->error);
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
   return CONIC_OK;
 }

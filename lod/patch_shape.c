@@ -247,18 +247,52 @@ static void widen(conic_site *site) {
   e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
 }
 
-double conic_site_error(const conic_sampler *s, const conic_site *site, double known) {
+enum { N_ENDS = 20 };
+
+static void find_ends(const conic_site *site, double at[N_ENDS][3]) {
   const conic_ellipse *e = &site->ellipse;
-  double smear = site->contrast * e->reach;
-  known = site->height > known ? site->height : known;
-  known = smear > known ? smear : known;
-  for (int k = 0; k < 20; k++) {
-    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio, at[3];
+  for (int k = 0; k < N_ENDS; k++) {
+    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio;
     double x = along * e->major[0] - across * e->major[1], y = along * e->major[1] + across * e->major[0];
     for (int axis = 0; axis < 3; axis++)
-      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-    known = conic_face_tree_farther_by(s->job->tree, at, site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16], known);
+      at[k][axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
   }
+}
+
+/* No place is farther from the mesh than another is, and the way to that. More than rounding takes is added. */
+static void bound_by(const double at[N_ENDS][3], int from, double distance, double bounds[N_ENDS]) {
+  for (int k = 0; k < N_ENDS; k++) {
+    double x = at[k][0] - at[from][0], y = at[k][1] - at[from][1], z = at[k][2] - at[from][2];
+    double bound = (distance + sqrt((x * x + y * y) + z * z)) * (1.0 + 1e-9);
+    bounds[k] = bound < bounds[k] ? bound : bounds[k];
+  }
+  bounds[from] = distance;
+}
+
+static int largest_of(const double bounds[N_ENDS]) {
+  int largest = 0;
+  for (int k = 1; k < N_ENDS; k++)
+    largest = bounds[k] > bounds[largest] ? k : largest;
+  return largest;
+}
+
+/* The place that may be farthest is measured first: that is soon far enough from those before, or near enough to them,
+ * for the others to need no look. */
+double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
+  double smear = site->contrast * site->ellipse.reach, at[N_ENDS][3], bounds[N_ENDS], least;
+  least = smear > site->height ? smear : site->height;
+  known = least > known ? least : known;
+  find_ends(site, at);
+  for (int k = 0; k < N_ENDS; k++)
+    bounds[k] = HUGE_VAL;
+  int k = 0;
+  for (; bounds[k] > known; k = largest_of(bounds)) {
+    uint32_t guess = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
+    double distance = conic_face_tree_bound(s->job->tree, at[k], guess, known);
+    known = distance > known ? distance : known;
+    bound_by((const double(*)[3])at, k, distance, bounds);
+  }
+  *bound = bounds[k] > least ? bounds[k] : least;
   return known;
 }
 
@@ -274,7 +308,7 @@ static void shape_site(conic_sampler *s, conic_site *site) {
   for (int axis = 0; axis < 3; axis++)
     site->at[axis] += center[0] * site->u[axis] + center[1] * site->v[axis];
   widen(site);
-  site->error = conic_site_error(s, site, s->job->tolerance);
+  site->error = conic_site_error(s, site, s->job->tolerance, &site->error_bound);
 }
 
 conic_status conic_patch_shape_sites(conic_sampler *s) {

@@ -43,6 +43,7 @@ typedef struct conic_site {
   double lowest, highest; /* of what it stands for, above the plane through its place */
   double height;          /* of that, from its plane along a face's normal, the most */
   double error;           /* conic_site_error of it, from the tolerance on */
+  double error_bound;     /* no less than that error, also below the tolerance */
   uint32_t end_faces[4];  /* what lies towards the ends of the ellipse's axes, in turn */
 } conic_site;
 
