@@ -128,8 +128,8 @@ static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const 
   return least2;
 }
 
-/* The least squared distance, where least2 is one that is known to be there. Nearer children first; done where something
- * is near enough. */
+/* The least squared distance, where least2 is one that is known to be there. Nearer children first; done where
+ * something is near enough. */
 static double search(const conic_face_tree *tree, const double at[3], double least2, double known) {
   size_t stack[64];
   double distances2[64], known2 = known * known;

@@ -1,6 +1,7 @@
 #include "lod/patch.h"
 
 #include <math.h>
+#include <string.h>
 
 double conic_patch_edge_length(const conic_patch_mesh *mesh, uint32_t patch) {
   size_t begin = mesh->starts[patch], end = mesh->starts[patch + 1];
@@ -52,7 +53,11 @@ void conic_patch_normal(const conic_patch_mesh *mesh, uint32_t face, const doubl
                         double normal[3]) {
   const conic_triangles *t = mesh->triangles;
   double sum[3] = {0.0, 0.0, 0.0};
-  int is_good = t->normal[0] != NULL;
+  int is_good = 1;
+  if (!t->normal[0]) {
+    memcpy(normal, facing, 3 * sizeof *normal);
+    return;
+  }
   for (int corner = 0; corner < 3 && is_good; corner++) {
     uint32_t i = t->normal_corners ? t->normal_corners[face][corner] : t->corners[face][corner];
     const double n[3] = {(double)t->normal[0][i], (double)t->normal[1][i], (double)t->normal[2][i]};

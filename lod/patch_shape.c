@@ -17,7 +17,8 @@ static const double steep = 0.5;
 typedef struct small_triangle {
   const conic_lattice *lattice;
   const double *facing;
-  double at[3][3], bary[3][3];
+  const double *at[3];
+  double bary[3][3];
   uint32_t owners[3];
   int is_between; /* two that point as the face does */
 } small_triangle;
@@ -37,9 +38,10 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
           small_triangle t = {.lattice = l, .facing = s->facing[k], .is_between = between};
           for (int corner = 0; corner < 3; corner++) {
             const int *step = corner_steps[between][corner];
+            uint32_t place = conic_lattice_place(l, i + step[0], j + step[1]);
             conic_lattice_bary(l, i + step[0], j + step[1], t.bary[corner]);
-            conic_patch_place(s->job->mesh, l->face, t.bary[corner], t.at[corner]);
-            t.owners[corner] = s->owner[conic_lattice_place(l, i + step[0], j + step[1])];
+            t.at[corner] = s->places[place];
+            t.owners[corner] = s->owner[place];
           }
           status = task(s, &t);
         }
@@ -86,21 +88,26 @@ static void settle_planes(conic_sampler *s) {
 
 /* --- what must be covered --- */
 
-/* Notes what a site must cover of a face. */
-static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
-                                 const double facing[3]) {
-  conic_site *site = &s->sites[i_site];
+static conic_status grow_supports(conic_sampler *s) {
   void *supports = s->supports;
   conic_status status =
       conic_sampler_grow(s, &supports, s->n_supports, s->n_supports + 1, &s->supports_room, sizeof *s->supports);
   s->supports = supports;
+  return status;
+}
+
+/* Notes what a site must cover of a face. */
+static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
+                                 const double facing[3]) {
+  conic_site *site = &s->sites[i_site];
+  conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
   if (status != CONIC_OK)
     return status;
   const double d[3] = {at[0] - site->at[0], at[1] - site->at[1], at[2] - site->at[2]};
   double cosine = conic_dot(facing, site->normal);
-  conic_support *support = &s->supports[s->n_supports];
-  support->next = site->first_support;
-  site->first_support = (uint32_t)s->n_supports++;
+  conic_support *support = &s->supports[s->n_supports++];
+  site->n_supports++;
+  support->site = i_site;
   support->face = face;
   support->cosine = cosine > steep ? cosine : steep;
   support->above = conic_dot(d, site->normal);
@@ -131,13 +138,9 @@ static conic_status cover_places(conic_sampler *s) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
-    for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
-        double bary[3], at[3];
-        conic_lattice_bary(l, i, j, bary);
-        conic_patch_place(s->job->mesh, l->face, bary, at);
-        status = note_support(s, s->owner[conic_lattice_place(l, i, j)], at, l->face, s->facing[k]);
-      }
+    size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
+    for (size_t i = begin; i < end && status == CONIC_OK; i++)
+      status = note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
   return status;
 }
@@ -167,6 +170,26 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
   return status;
 }
 
+/* Lists the supports site by site, what was noted last first. */
+static conic_status sort_supports(conic_sampler *s) {
+  void *of_sites = s->of_sites, *points = s->points;
+  size_t begin = 0, most = 0;
+  for (size_t i = 0; i < s->n_sites; i++) {
+    conic_site *site = &s->sites[i];
+    most = site->n_supports > most ? site->n_supports : most;
+    begin += site->n_supports;
+    site->first_support = begin;
+  }
+  conic_status status = conic_sampler_grow(s, &of_sites, 0, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
+  s->of_sites = of_sites;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points);
+  s->points = points;
+  for (size_t i = 0; i < s->n_supports && status == CONIC_OK; i++)
+    s->of_sites[--s->sites[s->supports[i].site].first_support] = (uint32_t)i;
+  return status;
+}
+
 /* --- ellipses --- */
 
 /* Half of the directions, in turn about the plane, in which a site's farthest supports are looked for. */
@@ -179,11 +202,11 @@ static void settle_height(conic_sampler *s, conic_site *site) {
   double lift = 0.5 * (site->lowest + site->highest);
   for (int axis = 0; axis < 3; axis++)
     site->at[axis] += lift * site->normal[axis];
-  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
-    conic_support *support = &s->supports[k];
+  for (size_t k = 0; k < site->n_supports; k++) {
+    const conic_support *support = &s->supports[s->of_sites[site->first_support + k]];
     double above = support->above - lift, way = fabs(above / support->cosine);
     for (int i = 0; i < 2; i++)
-      support->at[i] -= above * support->slope[i];
+      s->points[k][i] = support->at[i] - above * support->slope[i];
     site->height = way > site->height ? way : site->height;
   }
 }
@@ -195,8 +218,8 @@ static int find_farthest(const conic_sampler *s, const conic_site *site,
   const int n = CONIC_LEAST_ELLIPSE_POINTS / 2;
   for (int i = 0; i < 2 * n; i++)
     most[i] = -HUGE_VAL;
-  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
-    const double *at = s->supports[k].at;
+  for (size_t k = 0; k < site->n_supports; k++) {
+    const double *at = s->points[k];
     for (int i = 0; i < n; i++) {
       double along = at[0] * looks[i][0] + at[1] * looks[i][1];
       if (along > most[i]) {
@@ -223,18 +246,21 @@ static const double ends[][2] = {{1.0, 0.0},  {0.92388, 0.38268},   {0.70711, 0.
  * support lies that is farthest that way. */
 static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
   double most[4] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  size_t farthest[4] = {0, 0, 0, 0};
   const double *major = site->ellipse.major;
-  for (uint32_t k = site->first_support; k != CONIC_NO_SUPPORT; k = s->supports[k].next) {
-    double x = s->supports[k].at[0] - center[0], y = s->supports[k].at[1] - center[1];
+  for (size_t k = 0; k < site->n_supports; k++) {
+    double x = s->points[k][0] - center[0], y = s->points[k][1] - center[1];
     double along = x * major[0] + y * major[1], across = y * major[0] - x * major[1];
     const double ways[4] = {along, across, -along, -across};
     conic_ellipse_cover(&site->ellipse, x, y);
     for (int i = 0; i < 4; i++)
       if (ways[i] > most[i]) {
         most[i] = ways[i];
-        site->end_faces[i] = s->supports[k].face;
+        farthest[i] = k;
       }
   }
+  for (int i = 0; i < 4; i++)
+    site->end_faces[i] = s->supports[s->of_sites[site->first_support + farthest[i]]].face;
 }
 
 /* A plane that lies off what it stands for is seen beside it, and may leave a gap to its neighbours: the outline grows
@@ -321,6 +347,8 @@ conic_status conic_patch_shape_sites(conic_sampler *s) {
   status = cover_places(s);
   if (status == CONIC_OK)
     status = do_small_triangles(s, cover_small_triangle);
+  if (status == CONIC_OK)
+    status = sort_supports(s);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     shape_site(s, &s->sites[i]);
   return status;

@@ -63,10 +63,27 @@ static conic_status lay_lattices(conic_sampler *s) {
     s->n_places += conic_lattice_places(s->lattices[i].sides);
     conic_patch_face_normal(mesh, face, s->facing[i]);
   }
-  void *owner = s->owner;
-  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->places_room, sizeof *s->owner);
+  size_t owner_room = s->places_room;
+  void *owner = s->owner, *places = s->places;
+  status = conic_sampler_grow(s, &owner, 0, s->n_places, &owner_room, sizeof *s->owner);
   s->owner = owner;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &places, 0, s->n_places, &s->places_room, sizeof *s->places);
+  s->places = places;
   return status;
+}
+
+static void find_places(conic_sampler *s) {
+  size_t place = 0;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i; j++) {
+        double bary[3];
+        conic_lattice_bary(l, i, j, bary);
+        conic_patch_place(s->job->mesh, l->face, bary, s->places[place++]);
+      }
+  }
 }
 
 /* --- candidates --- */
@@ -135,8 +152,9 @@ static conic_status list_candidates(conic_sampler *s) {
 
 /* --- sites --- */
 
-static conic_status add_site(conic_sampler *s, uint32_t i_lattice, const double bary[3], const double at[3],
-                             uint32_t *added) {
+static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, uint32_t *added) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  const double *at = s->places[conic_lattice_place(l, i, j)];
   void *sites = s->sites;
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   s->sites = sites;
@@ -145,30 +163,25 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, const double 
   conic_site *site = &s->sites[s->n_sites];
   memset(site, 0, sizeof *site);
   memcpy(site->at, at, sizeof site->at);
-  memcpy(site->bary, bary, sizeof site->bary);
+  conic_lattice_bary(l, i, j, site->bary);
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
-  site->first_support = CONIC_NO_SUPPORT;
-  site->face = s->lattices[i_lattice].face;
+  site->face = l->face;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
   *added = (uint32_t)s->n_sites++;
   return conic_site_table_add(s->context, &s->table, at, s->facing[i_lattice], s->depth[i_lattice]);
 }
 
 static conic_status choose_sites(conic_sampler *s) {
-  double low[3];
-  conic_patch_place(s->job->mesh, s->lattices[0].face, (const double[3]){1.0, 0.0, 0.0}, low);
-  conic_status status =
-      conic_site_table_clear(s->context, &s->table, low, s->job->spacing, s->coarsest, s->finest, s->n_candidates / 4);
+  conic_status status = conic_site_table_clear(s->context, &s->table, s->places[s->lattices[0].first], s->job->spacing,
+                                               s->coarsest, s->finest, s->n_candidates / 4);
   s->n_sites = 0;
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
-    const conic_lattice *l = &s->lattices[seed[0]];
-    double bary[3], at[3];
+    int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
+    const double *at = s->places[conic_lattice_place(&s->lattices[seed[0]], i, j)];
     uint32_t added;
-    conic_lattice_bary(l, (int)(seed[1] >> 16), (int)(seed[1] & 0xFFFF), bary);
-    conic_patch_place(s->job->mesh, l->face, bary, at);
     if (!conic_site_table_has(&s->table, at, s->facing[seed[0]], s->depth[seed[0]]))
-      status = add_site(s, seed[0], bary, at, &added);
+      status = add_site(s, seed[0], i, j, &added);
   }
   return status;
 }
@@ -176,18 +189,17 @@ static conic_status choose_sites(conic_sampler *s) {
 /* Every place of the lattices belongs to the nearest site; where there is none near (a place that was no candidate and
  * lies in a fold), it becomes one. */
 static conic_status find_owners(conic_sampler *s) {
+  uint32_t owner = CONIC_NO_SITE; /* that of the place before is a good guess */
+  size_t place = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
     for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i; j++) {
-        double bary[3], at[3];
-        conic_lattice_bary(l, i, j, bary);
-        conic_patch_place(s->job->mesh, l->face, bary, at);
-        uint32_t owner = conic_site_table_nearest(&s->table, at, s->facing[k], s->depth[k]);
-        conic_status status = owner == CONIC_NO_SITE ? add_site(s, (uint32_t)k, bary, at, &owner) : CONIC_OK;
+      for (int j = 0; j <= l->sides - i; j++, place++) {
+        owner = conic_site_table_nearest(&s->table, s->places[place], s->facing[k], s->depth[k], owner);
+        conic_status status = owner == CONIC_NO_SITE ? add_site(s, (uint32_t)k, i, j, &owner) : CONIC_OK;
         if (status != CONIC_OK)
           return status;
-        s->owner[conic_lattice_place(l, i, j)] = owner;
+        s->owner[place] = owner;
       }
   }
   return CONIC_OK;
@@ -195,8 +207,10 @@ static conic_status find_owners(conic_sampler *s) {
 
 conic_status conic_patch_find_sites(conic_sampler *s) {
   conic_status status = lay_lattices(s);
-  if (status == CONIC_OK)
-    status = list_candidates(s);
+  if (status != CONIC_OK)
+    return status;
+  find_places(s);
+  status = list_candidates(s);
   if (status == CONIC_OK)
     status = choose_sites(s);
   return status == CONIC_OK ? find_owners(s) : status;

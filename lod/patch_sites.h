@@ -39,20 +39,17 @@ typedef struct conic_site {
   double u[3], v[3]; /* its plane */
   conic_ellipse ellipse;
   double darkest[3], brightest[3], contrast; /* of the colours that it stands for */
-  uint32_t first_support;
-  double lowest, highest; /* of what it stands for, above the plane through its place */
-  double height;          /* of that, from its plane along a face's normal, the most */
-  double error;           /* conic_site_error of it, from the tolerance on */
-  double error_bound;     /* no less than that error, also below the tolerance */
-  uint32_t end_faces[4];  /* what lies towards the ends of the ellipse's axes, in turn */
+  size_t n_supports, first_support;          /* in the sampler's `of_sites` */
+  double lowest, highest;                    /* of what it stands for, above the plane through its place */
+  double height;                             /* of that, from its plane along a face's normal, the most */
+  double error;                              /* conic_site_error of it, from the tolerance on */
+  double error_bound;                        /* no less than that error, also below the tolerance */
+  uint32_t end_faces[4];                     /* what lies towards the ends of the ellipse's axes, in turn */
 } conic_site;
-
-#define CONIC_NO_SUPPORT UINT32_MAX
 
 /* A point that a site's ellipse must cover. */
 typedef struct conic_support {
-  uint32_t next; /* of the same site */
-  uint32_t face;
+  uint32_t site, face;
   double above, cosine, slope[2]; /* its height, and how its face is tilted: the cosine, and the tangent's parts */
   double at[2];                   /* in the plane */
 } conic_support;
@@ -67,7 +64,8 @@ struct conic_sampler {
   size_t depth_room;
   int coarsest, finest; /* of those */
   size_t n_places, places_room;
-  uint32_t *owner; /* of each place: a site */
+  double (*places)[3]; /* where they are */
+  uint32_t *owner;     /* of each place: a site */
   size_t n_candidates, candidates_room;
   conic_radix_item *candidates; /* key: when its turn is; value: its number */
   uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
@@ -76,6 +74,9 @@ struct conic_sampler {
   conic_site_table table; /* of them */
   size_t n_supports, supports_room;
   conic_support *supports;
+  uint32_t *of_sites; /* supports, site by site */
+  size_t of_sites_room, points_room;
+  double (*points)[2]; /* of one site's supports, where they come to lie in its plane */
 };
 
 static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {

@@ -13,11 +13,16 @@ static double cell_size(const conic_site_table *t, int depth) {
   return 2.0 * t->spacing / (double)(1 << depth);
 }
 
+/* A cell's hash is the sum of those of its places along the axes. */
+static uint64_t hash_along(int axis, int64_t cell) {
+  static const uint64_t factors[3] = {UINT64_C(0x9e3779b97f4a7c15), UINT64_C(0xc2b2ae3d27d4eb4f),
+                                      UINT64_C(0x165667b19e3779f9)};
+  return (uint64_t)cell * factors[axis];
+}
+
 /* Of the cells that hold the sites of a depth, or those that are deeper. */
-static uint32_t *bucket_of(const conic_site_table *t, int depth, int is_deeper, const int64_t cell[3]) {
+static uint32_t *bucket_of(const conic_site_table *t, int depth, int is_deeper, uint64_t hash) {
   size_t kind = (size_t)(2 * (depth - t->coarsest) + is_deeper);
-  uint64_t hash = (uint64_t)cell[0] * UINT64_C(0x9e3779b97f4a7c15) ^ (uint64_t)cell[1] * UINT64_C(0xc2b2ae3d27d4eb4f) ^
-                  (uint64_t)cell[2] * UINT64_C(0x165667b19e3779f9);
   return &t->buckets[kind * (t->mask + 1) + ((hash ^ hash >> 29) & t->mask)];
 }
 
@@ -57,10 +62,10 @@ conic_status conic_site_table_add(conic_context *context, conic_site_table *tabl
   memcpy(place->at, at, sizeof place->at);
   memcpy(place->facing, facing, sizeof place->facing);
   for (int d = table->coarsest; d <= depth; d++) {
-    int64_t cell[3];
+    uint64_t hash = 0;
     for (int axis = 0; axis < 3; axis++)
-      cell[axis] = (int64_t)floor((at[axis] - table->low[axis]) / cell_size(table, d));
-    uint32_t *bucket = bucket_of(table, d, d < depth, cell);
+      hash += hash_along(axis, (int64_t)floor((at[axis] - table->low[axis]) / cell_size(table, d)));
+    uint32_t *bucket = bucket_of(table, d, d < depth, hash);
     place->next[d] = *bucket;
     *bucket = (uint32_t)table->n_places;
   }
@@ -73,31 +78,49 @@ typedef struct nearness {
   uint32_t site;
 } nearness;
 
-/* With `is_any` the first that is near enough will do. */
+/* Notes the site where it faces alike and is nearer, or as near and an earlier one. */
+static void look_at_site(const conic_site_table *t, uint32_t i, const double at[3], const double facing[3],
+                         nearness *found) {
+  const conic_site_place *place = &t->places[i];
+  double x = at[0] - place->at[0], y = at[1] - place->at[1], z = at[2] - place->at[2];
+  double distance2 = (x * x + y * y) + z * z;
+  if (!(distance2 < found->distance2 || (distance2 == found->distance2 && i < found->site)))
+    return;
+  double cosine = (facing[0] * place->facing[0] + facing[1] * place->facing[1]) + facing[2] * place->facing[2];
+  if (cosine >= alike)
+    *found = (nearness){distance2, i};
+}
+
+/* The cell that the place lies in, then those beside it, unless they are farther than what is found. With `is_any` the
+ * first that is near enough will do. */
 static void look_in_cells(const conic_site_table *t, const double at[3], const double facing[3], int depth,
                           int is_deeper, int is_any, nearness *found) {
-  int64_t low[3], cell[3];
-  for (int axis = 0; axis < 3; axis++)
-    low[axis] = (int64_t)floor((at[axis] - t->low[axis]) / cell_size(t, depth) - 0.5);
+  double size = cell_size(t, depth), gaps2[3];
+  uint64_t hashes[3][2];
+  for (int axis = 0; axis < 3; axis++) {
+    double cells = (at[axis] - t->low[axis]) / size, own = floor(cells), within = cells - own;
+    int is_below = within < 0.5;
+    double gap = (is_below ? within : 1.0 - within) * size;
+    gaps2[axis] = gap * gap * (1.0 - 1e-9); /* more than rounding takes */
+    hashes[axis][0] = hash_along(axis, (int64_t)own);
+    hashes[axis][1] = hash_along(axis, (int64_t)own + (is_below ? -1 : 1));
+  }
   for (int k = 0; k < 8 && !(is_any && found->site != CONIC_NO_SITE); k++) {
-    cell[0] = low[0] + (k & 1);
-    cell[1] = low[1] + (k >> 1 & 1);
-    cell[2] = low[2] + (k >> 2);
-    for (uint32_t i = *bucket_of(t, depth, is_deeper, cell); i != CONIC_NO_SITE; i = t->places[i].next[depth]) {
-      const conic_site_place *place = &t->places[i];
-      double x = at[0] - place->at[0], y = at[1] - place->at[1], z = at[2] - place->at[2];
-      double distance2 = (x * x + y * y) + z * z;
-      double cosine = (facing[0] * place->facing[0] + facing[1] * place->facing[1]) + facing[2] * place->facing[2];
-      int is_nearer = distance2 < found->distance2 || (distance2 == found->distance2 && i < found->site);
-      if (is_nearer && cosine >= alike)
-        *found = (nearness){distance2, i};
-    }
+    int x = k & 1, y = k >> 1 & 1, z = k >> 2;
+    if ((x ? gaps2[0] : 0.0) + (y ? gaps2[1] : 0.0) + (z ? gaps2[2] : 0.0) > found->distance2)
+      continue;
+    uint64_t hash = hashes[0][x] + hashes[1][y] + hashes[2][z];
+    for (uint32_t i = *bucket_of(t, depth, is_deeper, hash); i != CONIC_NO_SITE; i = t->places[i].next[depth])
+      look_at_site(t, i, at, facing, found);
   }
 }
 
-static uint32_t look(const conic_site_table *table, const double at[3], const double facing[3], int depth, int is_any) {
+static uint32_t look(const conic_site_table *table, const double at[3], const double facing[3], int depth,
+                     uint32_t guess, int is_any) {
   double spacing = 0.5 * cell_size(table, depth);
   nearness found = {spacing * spacing, CONIC_NO_SITE};
+  if (guess != CONIC_NO_SITE)
+    look_at_site(table, guess, at, facing, &found);
   for (int d = depth; d >= table->coarsest; d--)
     look_in_cells(table, at, facing, d, 0, is_any, &found);
   if (depth < table->finest)
@@ -105,13 +128,13 @@ static uint32_t look(const conic_site_table *table, const double at[3], const do
   return found.site;
 }
 
-uint32_t conic_site_table_nearest(const conic_site_table *table, const double at[3], const double facing[3],
-                                  int depth) {
-  return look(table, at, facing, depth, 0);
+uint32_t conic_site_table_nearest(const conic_site_table *table, const double at[3], const double facing[3], int depth,
+                                  uint32_t guess) {
+  return look(table, at, facing, depth, guess, 0);
 }
 
 int conic_site_table_has(const conic_site_table *table, const double at[3], const double facing[3], int depth) {
-  return look(table, at, facing, depth, 1) != CONIC_NO_SITE;
+  return look(table, at, facing, depth, CONIC_NO_SITE, 1) != CONIC_NO_SITE;
 }
 
 void conic_site_table_release(conic_context *context, conic_site_table *table) {

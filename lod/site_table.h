@@ -37,8 +37,10 @@ conic_status conic_site_table_clear(conic_context *context, conic_site_table *ta
 conic_status conic_site_table_add(conic_context *context, conic_site_table *table, const double at[3],
                                   const double facing[3], int depth);
 
-/* The nearest site, the first of several, that is nearer than the spacing at that depth and faces alike; or NO_SITE. */
-uint32_t conic_site_table_nearest(const conic_site_table *table, const double at[3], const double facing[3], int depth);
+/* The nearest site, the first of several, that is nearer than the spacing at that depth and faces alike; or NO_SITE.
+ * Sooner where `guess`, a site or NO_SITE, is near. */
+uint32_t conic_site_table_nearest(const conic_site_table *table, const double at[3], const double facing[3], int depth,
+                                  uint32_t guess);
 
 /* Whether there is one. */
 int conic_site_table_has(const conic_site_table *table, const double at[3], const double facing[3], int depth);

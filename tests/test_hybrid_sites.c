@@ -66,7 +66,9 @@ static void check_nearest(conic_context *context, int coarsest, int finest) {
       int depth = coarsest + i % (finest - coarsest + 1);
       spread_site place = random_site(&state);
       uint32_t wanted = nearest_of_all(sites, SITES, &place, spacing / (double)(1 << depth));
-      CHECK(conic_site_table_nearest(&table, place.at, place.facing, depth) == wanted);
+      const uint32_t guesses[] = {CONIC_NO_SITE, (uint32_t)i, wanted};
+      for (int k = 0; k < 3; k++)
+        CHECK(conic_site_table_nearest(&table, place.at, place.facing, depth, guesses[k]) == wanted);
       CHECK(conic_site_table_has(&table, place.at, place.facing, depth) == (wanted != CONIC_NO_SITE));
       n_found += wanted != CONIC_NO_SITE;
     }
