@@ -91,28 +91,35 @@ static void look_at_site(const conic_site_table *t, uint32_t i, const double at[
     *found = (nearness){distance2, i};
 }
 
-/* The cell that the place lies in, then those beside it, unless they are farther than what is found. With `is_any` the
- * first that is near enough will do. */
+static void look_in_cell(const conic_site_table *t, const uint32_t *bucket, const double at[3], const double facing[3],
+                         int depth, nearness *found) {
+  for (uint32_t i = *bucket; i != CONIC_NO_SITE; i = t->places[i].next[depth])
+    look_at_site(t, i, at, facing, found);
+}
+
+/* The cell that the place lies in, then those beside it that are no farther than what is found. With `is_any` the
+ * first that is near enough will do. Without branches where chance would decide them. */
 static void look_in_cells(const conic_site_table *t, const double at[3], const double facing[3], int depth,
                           int is_deeper, int is_any, nearness *found) {
-  double size = cell_size(t, depth), gaps2[3];
-  uint64_t hashes[3][2];
+  double size = cell_size(t, depth), gaps2[3][2];
+  uint64_t hashes[3][2], near[8];
+  size_t n_near = 0;
   for (int axis = 0; axis < 3; axis++) {
-    double cells = (at[axis] - t->low[axis]) / size, own = floor(cells), within = cells - own;
-    int is_below = within < 0.5;
-    double gap = (is_below ? within : 1.0 - within) * size;
-    gaps2[axis] = gap * gap * (1.0 - 1e-9); /* more than rounding takes */
+    double cells = (at[axis] - t->low[axis]) / size, own = floor(cells), below = cells - own, above = 1.0 - below;
+    double gap = (below < above ? below : above) * size;
+    gaps2[axis][0] = 0.0;
+    gaps2[axis][1] = gap * gap * (1.0 - 1e-9); /* more than rounding takes */
     hashes[axis][0] = hash_along(axis, (int64_t)own);
-    hashes[axis][1] = hash_along(axis, (int64_t)own + (is_below ? -1 : 1));
+    hashes[axis][1] = hash_along(axis, (int64_t)own + 1 - 2 * (int64_t)(below < above));
   }
-  for (int k = 0; k < 8 && !(is_any && found->site != CONIC_NO_SITE); k++) {
+  look_in_cell(t, bucket_of(t, depth, is_deeper, hashes[0][0] + hashes[1][0] + hashes[2][0]), at, facing, depth, found);
+  for (int k = 1; k < 8; k++) {
     int x = k & 1, y = k >> 1 & 1, z = k >> 2;
-    if ((x ? gaps2[0] : 0.0) + (y ? gaps2[1] : 0.0) + (z ? gaps2[2] : 0.0) > found->distance2)
-      continue;
-    uint64_t hash = hashes[0][x] + hashes[1][y] + hashes[2][z];
-    for (uint32_t i = *bucket_of(t, depth, is_deeper, hash); i != CONIC_NO_SITE; i = t->places[i].next[depth])
-      look_at_site(t, i, at, facing, found);
+    near[n_near] = hashes[0][x] + hashes[1][y] + hashes[2][z];
+    n_near += (size_t)((gaps2[0][x] + gaps2[1][y]) + gaps2[2][z] <= found->distance2);
   }
+  for (size_t i = 0; i < n_near && !(is_any && found->site != CONIC_NO_SITE); i++)
+    look_in_cell(t, bucket_of(t, depth, is_deeper, near[i]), at, facing, depth, found);
 }
 
 static uint32_t look(const conic_site_table *table, const double at[3], const double facing[3], int depth,
