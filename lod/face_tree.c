@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/random.h"
 #include "lod/distance.h"
 #include "lod/radix.h"
 
@@ -17,6 +18,57 @@ static uint64_t spread(uint64_t bits) {
   return (bits | bits << 2) & UINT64_C(0x9249249);
 }
 
+/* --- faces --- */
+
+/* The places of a face's corners, the lowest first, whatever corner it begins with and however it is wound. */
+static void sorted_places(const conic_mesh *mesh, const conic_adjacency *adjacency, size_t face, uint32_t places[3]) {
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t place = adjacency->place[mesh->faces[face][corner]];
+    int k = corner;
+    for (; k > 0 && places[k - 1] > place; k--)
+      places[k] = places[k - 1];
+    places[k] = place;
+  }
+}
+
+/* Where in a table a face's places are, or would be. */
+static size_t slot_of(const conic_mesh *mesh, const conic_adjacency *adjacency, const uint32_t *table, size_t room,
+                      const uint32_t places[3]) {
+  uint64_t hash = conic_random_mix(conic_random_mix((uint64_t)places[0] << 32 | places[1]) + places[2]);
+  size_t slot = (size_t)hash & (room - 1);
+  for (; table[slot] != UINT32_MAX; slot = (slot + 1) & (room - 1)) {
+    uint32_t there[3];
+    sorted_places(mesh, adjacency, table[slot], there);
+    if (memcmp(there, places, sizeof there) == 0)
+      break;
+  }
+  return slot;
+}
+
+/* The faces of use, without those that lie where one before them does: they are as far from everywhere, so that no box
+ * would keep a search from looking at all of them. */
+static conic_status list_faces(conic_context *context, const conic_adjacency *adjacency, conic_face_tree *tree) {
+  const conic_mesh *mesh = tree->mesh;
+  size_t room = (size_t)1 << (conic_bits_below(mesh->n_faces) + 1);
+  uint32_t *table = conic_memory_allocate(context, room, sizeof *table);
+  if (!table)
+    return CONIC_ERROR_MEMORY;
+  memset(table, 0xFF, room * sizeof *table);
+  for (size_t i = 0; i < mesh->n_faces; i++) {
+    uint32_t places[3];
+    if (!adjacency->side[i])
+      continue;
+    sorted_places(mesh, adjacency, i, places);
+    size_t slot = slot_of(mesh, adjacency, table, room, places);
+    if (table[slot] != UINT32_MAX)
+      continue;
+    table[slot] = (uint32_t)i;
+    tree->faces[tree->n_faces++] = (uint32_t)i;
+  }
+  conic_memory_release(context, table);
+  return CONIC_OK;
+}
+
 static void middle_of(const conic_mesh *mesh, size_t face, double middle[3]) {
   middle[0] = middle[1] = middle[2] = 0.0;
   for (int corner = 0; corner < 3; corner++)
@@ -24,25 +76,22 @@ static void middle_of(const conic_mesh *mesh, size_t face, double middle[3]) {
       middle[axis] += (double)mesh->position[axis][mesh->faces[face][corner]] / 3.0;
 }
 
-/* The faces in the order of a space-filling curve. */
-static conic_status order_faces(conic_context *context, const conic_adjacency *adjacency, conic_face_tree *tree) {
+/* Puts the faces in the order of a space-filling curve. */
+static conic_status order_faces(conic_context *context, conic_face_tree *tree) {
   const conic_mesh *mesh = tree->mesh;
-  conic_radix_item *items = conic_memory_allocate(context, mesh->n_faces, sizeof *items);
+  conic_radix_item *items = conic_memory_allocate(context, tree->n_faces + 1, sizeof *items);
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, middle[3];
   if (!items)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < mesh->n_faces; i++) {
-    if (!adjacency->side[i])
-      continue;
-    middle_of(mesh, i, middle);
+  for (size_t i = 0; i < tree->n_faces; i++) {
+    middle_of(mesh, tree->faces[i], middle);
     for (int axis = 0; axis < 3; axis++) {
       low[axis] = middle[axis] < low[axis] ? middle[axis] : low[axis];
       high[axis] = middle[axis] > high[axis] ? middle[axis] : high[axis];
     }
-    items[tree->n_faces++].value = (uint32_t)i;
   }
   for (size_t i = 0; i < tree->n_faces; i++) {
-    items[i].key = 0;
+    items[i] = (conic_radix_item){.key = 0, .value = tree->faces[i]};
     middle_of(mesh, items[i].value, middle);
     for (int axis = 0; axis < 3; axis++) {
       double side = high[axis] - low[axis], share = side > 0.0 ? (middle[axis] - low[axis]) / side : 0.0;
@@ -55,6 +104,8 @@ static conic_status order_faces(conic_context *context, const conic_adjacency *a
   conic_memory_release(context, items);
   return status;
 }
+
+/* --- boxes --- */
 
 static void add_to_box(conic_face_box *box, const conic_face_box *more) {
   for (int axis = 0; axis < 3; axis++) {
@@ -87,7 +138,9 @@ conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mes
   tree->n_leaves = (size_t)1 << conic_bits_below((mesh->n_faces + LEAF_FACES - 1) / LEAF_FACES);
   tree->faces = conic_memory_allocate(context, mesh->n_faces, sizeof *tree->faces);
   tree->boxes = conic_memory_allocate(context, 2 * tree->n_leaves, sizeof *tree->boxes);
-  conic_status status = tree->faces && tree->boxes ? order_faces(context, adjacency, tree) : CONIC_ERROR_MEMORY;
+  conic_status status = tree->faces && tree->boxes ? list_faces(context, adjacency, tree) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = order_faces(context, tree);
   if (status == CONIC_OK)
     fill_boxes(tree);
   else

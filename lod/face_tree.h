@@ -15,7 +15,8 @@ typedef struct conic_face_tree {
   conic_face_box *boxes;    /* of node i, whose children are 2i and 2i + 1, from 1; leaves from n_leaves */
 } conic_face_tree;
 
-/* Of the faces that are of use; the mesh must outlive the tree. Errors: MEMORY. */
+/* Of the faces that are of use, of several at the same places the first; the mesh must outlive the tree. Errors:
+ * MEMORY. */
 conic_status conic_face_tree_build(conic_context *context, const conic_mesh *mesh, const conic_adjacency *adjacency,
                                    conic_face_tree *tree);
 void conic_face_tree_release(conic_context *context, conic_face_tree *tree);
