@@ -7,8 +7,9 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "lod/radix.h"
 
-enum { PATCHES_A_TASK = 4 };
+enum { PATCHES_A_PORTION = 256 };
 
 static double seconds_now(void) {
   struct timespec now;
@@ -162,7 +163,8 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
 
 typedef struct ways_pass {
   conic_ways_job *job;
-  void **workers; /* a sampler for each thread */
+  uint32_t *order; /* of the patches, the largest first: none of them is begun when the others are done */
+  void **workers;  /* a sampler for each thread */
   conic_status *statuses;
   size_t first;
 } ways_pass;
@@ -180,27 +182,39 @@ static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
 
 static void ways_task(void *data, size_t i_task, int i_thread) {
   ways_pass *pass = data;
-  size_t begin = pass->first + i_task * PATCHES_A_TASK, end = begin + PATCHES_A_TASK;
-  size_t n = pass->job->mesh->clusters->n_clusters;
-  for (size_t i = begin; i < end && i < n; i++)
-    if (pass->statuses[i_thread] == CONIC_OK)
-      pass->statuses[i_thread] = do_patch(pass, (uint32_t)i, i_thread);
+  if (pass->statuses[i_thread] == CONIC_OK)
+    pass->statuses[i_thread] = do_patch(pass, pass->order[pass->first + i_task], i_thread);
 }
 
 /* In portions, so that progress is told. */
 static conic_status run_pass(ways_pass *pass, double from, double to) {
   conic_context *context = pass->job->context;
-  size_t n = pass->job->mesh->clusters->n_clusters, portion = 64 * (size_t)PATCHES_A_TASK;
+  size_t n = pass->job->mesh->clusters->n_clusters;
   int n_threads = conic_context_threads(context);
   conic_status status = CONIC_OK;
-  for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += portion) {
-    size_t n_now = n - pass->first < portion ? n - pass->first : portion;
-    conic_parallel_for(context, (n_now + PATCHES_A_TASK - 1) / PATCHES_A_TASK, ways_task, pass);
+  for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += PATCHES_A_PORTION) {
+    size_t n_now = n - pass->first < PATCHES_A_PORTION ? n - pass->first : PATCHES_A_PORTION;
+    conic_parallel_for(context, n_now, ways_task, pass);
     for (int i = 0; i < n_threads; i++)
       status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
     if (status == CONIC_OK)
       status = conic_progress(context, "sample", from + (to - from) * (double)(pass->first + n_now) / (double)n);
   }
+  return status;
+}
+
+static conic_status order_by_size(ways_pass *pass) {
+  const conic_patch_mesh *mesh = pass->job->mesh;
+  size_t n = mesh->clusters->n_clusters;
+  conic_radix_item *items = conic_memory_allocate(pass->job->context, n, sizeof *items);
+  if (!items)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    items[i] = (conic_radix_item){UINT32_MAX - (mesh->starts[i + 1] - mesh->starts[i]), (uint32_t)i};
+  conic_status status = conic_radix_sort(pass->job->context, items, n, 32);
+  for (size_t i = 0; i < n; i++)
+    pass->order[i] = items[i].value;
+  conic_memory_release(pass->job->context, items);
   return status;
 }
 
@@ -221,18 +235,23 @@ static conic_status run_passes(ways_pass *pass) {
 
 conic_status conic_find_ways(conic_ways_job *job) {
   size_t n_threads = (size_t)conic_context_threads(job->context);
+  size_t n = job->mesh->clusters->n_clusters;
   ways_pass pass = {.job = job,
+                    .order = conic_memory_allocate(job->context, n, sizeof *pass.order),
                     .workers = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.workers),
                     .statuses = conic_memory_allocate_zeroed(job->context, n_threads, sizeof *pass.statuses)};
   conic_status status = CONIC_ERROR_MEMORY;
-  if (pass.workers && pass.statuses)
+  if (pass.order && pass.workers && pass.statuses)
+    status = order_by_size(&pass);
+  if (status == CONIC_OK)
     status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
   if (status == CONIC_OK) {
-    for (size_t i = 0; i < job->mesh->clusters->n_clusters; i++)
+    for (size_t i = 0; i < n; i++)
       job->ways[i].area = patch_area(job->mesh, (uint32_t)i);
     status = run_passes(&pass);
   }
   conic_face_tree_release(job->context, &job->tree);
+  conic_memory_release(job->context, pass.order);
   conic_memory_release(job->context, pass.workers);
   conic_memory_release(job->context, pass.statuses);
   return status;
