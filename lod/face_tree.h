@@ -28,4 +28,7 @@ double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], 
  * most. Sooner where `guess` is a face that is near. */
 double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough);
 
+/* How far the place is from that face of the mesh: infinite where the face has no area and no distance. */
+double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double at[3]);
+
 #endif

@@ -52,15 +52,7 @@ void conic_surfels_release(conic_context *context, conic_surfels *surfels) {
 
 /* --- surfels --- */
 
-/* The error of a site where that is more than `known`; else `known`. Much of that is known from the site's making. */
-static double larger_error(const conic_sampler *s, const conic_site *site, double known) {
-  double bound;
-  if (site->error > s->job->tolerance)
-    return site->error > known ? site->error : known;
-  return site->error_bound > known ? conic_site_error(s, site, known, &bound) : known;
-}
-
-static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels *surfels) {
+static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surfels) {
   conic_status status = conic_surfels_reserve(s->context, surfels);
   if (status != CONIC_OK)
     return status;
@@ -75,9 +67,30 @@ static conic_status emit(conic_sampler *s, const conic_site *site, conic_surfels
     surfel->color[axis] = (float)(own * texel[axis]);
   }
   surfels->n++;
-  surfels->error = larger_error(s, site, surfels->error);
+  site->is_drawn = 1;
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
   return CONIC_OK;
+}
+
+/* The greater of `known` and the largest error of what is drawn. Most are known well enough from the sites' making:
+ * beginning with the site that may have the largest, few are measured again. */
+static double largest_error(const conic_sampler *s, double known) {
+  const conic_site *worst = NULL;
+  double bound;
+  for (size_t i = 0; i < s->n_sites; i++) {
+    const conic_site *site = &s->sites[i];
+    double least = site->error > s->job->tolerance ? site->error : site->least_error;
+    if (!site->is_drawn)
+      continue;
+    known = least > known ? least : known;
+    worst = !worst || site->error_bound > worst->error_bound ? site : worst;
+  }
+  if (worst && worst->error_bound > known)
+    known = conic_site_error(s, worst, known, &bound);
+  for (size_t i = 0; i < s->n_sites; i++)
+    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
+      known = conic_site_error(s, &s->sites[i], known, &bound);
+  return known;
 }
 
 /* --- closer where it must be --- */
@@ -144,5 +157,6 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
+  surfels->error = largest_error(s, surfels->error);
   return status;
 }

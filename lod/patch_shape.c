@@ -302,28 +302,50 @@ static int largest_of(const double bounds[N_ENDS]) {
   return largest;
 }
 
+/* The face of the support that is nearest to the place. */
+static uint32_t face_near(const conic_sampler *s, const conic_site *site, const double at[3]) {
+  const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
+  double x = conic_dot(d, site->u), y = conic_dot(d, site->v), z = conic_dot(d, site->normal), least2 = HUGE_VAL;
+  const uint32_t *of_site = &s->of_sites[site->first_support];
+  uint32_t nearest = 0;
+  for (size_t k = 0; k < site->n_supports; k++) {
+    const conic_support *support = &s->supports[of_site[k]];
+    double dx = x - support->at[0], dy = y - support->at[1], dz = z - support->above;
+    double distance2 = (dx * dx + dy * dy) + dz * dz;
+    nearest = distance2 < least2 ? of_site[k] : nearest;
+    least2 = distance2 < least2 ? distance2 : least2;
+  }
+  return s->supports[nearest].face;
+}
+
+/* As conic_face_tree_bound for place k of a site. Most are near enough to what lies at the nearest end of an axis. */
+static double end_distance(const conic_sampler *s, const conic_site *site, int k, const double at[3], double enough) {
+  uint32_t end_face = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
+  double distance = conic_face_distance(&s->job->mesh->mesh, end_face, at);
+  return distance <= enough ? distance : conic_face_tree_bound(s->job->tree, at, face_near(s, site, at), enough);
+}
+
 /* The place that may be farthest is measured first: that is soon far enough from those before, or near enough to them,
  * for the others to need no look. */
 double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
-  double smear = site->contrast * site->ellipse.reach, at[N_ENDS][3], bounds[N_ENDS], least;
-  least = smear > site->height ? smear : site->height;
-  known = least > known ? least : known;
-  find_ends(site, at);
-  for (int k = 0; k < N_ENDS; k++)
-    bounds[k] = HUGE_VAL;
+  double at[N_ENDS][3], bounds[N_ENDS];
   int k = 0;
+  known = site->least_error > known ? site->least_error : known;
+  find_ends(site, at);
+  for (int i = 0; i < N_ENDS; i++)
+    bounds[i] = HUGE_VAL;
   for (; bounds[k] > known; k = largest_of(bounds)) {
-    uint32_t guess = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
-    double distance = conic_face_tree_bound(s->job->tree, at[k], guess, known);
+    double distance = end_distance(s, site, k, at[k], known);
     known = distance > known ? distance : known;
     bound_by((const double(*)[3])at, k, distance, bounds);
   }
-  *bound = bounds[k] > least ? bounds[k] : least;
+  *bound = bounds[k] > site->least_error ? bounds[k] : site->least_error;
   return known;
 }
 
 static void shape_site(conic_sampler *s, conic_site *site) {
   double farthest[CONIC_LEAST_ELLIPSE_POINTS][2], center[2] = {0.0, 0.0}, covariance[3];
+  memcpy(site->foot, site->at, sizeof site->foot);
   settle_height(s, site);
   int n = find_farthest(s, site, farthest);
   if (n == 0)
@@ -334,6 +356,8 @@ static void shape_site(conic_sampler *s, conic_site *site) {
   for (int axis = 0; axis < 3; axis++)
     site->at[axis] += center[0] * site->u[axis] + center[1] * site->v[axis];
   widen(site);
+  double smear = site->contrast * site->ellipse.reach;
+  site->least_error = smear > site->height ? smear : site->height;
   site->error = conic_site_error(s, site, s->job->tolerance, &site->error_bound);
 }
 
