@@ -8,7 +8,7 @@
 #include "lod/distance.h"
 #include "lod/radix.h"
 
-enum { LEAF_FACES = 4, CODE_BITS = 10 };
+enum { LEAF_FACES = 2, CODE_BITS = 10 };
 
 /* Two zeros between each of the 10 bits. */
 static uint64_t spread(uint64_t bits) {
