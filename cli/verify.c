@@ -174,8 +174,6 @@ static void print_unstable(const verify_job *job) {
          100.0 * (double)verdict->unstable_pixels / covered);
   if (job->scene.samples > 1)
     printf(", %zu of %zu samples", job->reference.unstable_samples, job->reference.covered_samples);
-  if (is_too_unstable(job))
-    printf(", at most %g %% may be  FAILED", 100.0 * verdict->unstable_limit);
   const char *separator = ": ";
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
     if (job->reference.unstable_by_reason[i]) {
@@ -183,6 +181,8 @@ static void print_unstable(const verify_job *job) {
              job->reference.unstable_by_reason[i]);
       separator = ", ";
     }
+  if (is_too_unstable(job))
+    printf("; at most %g %% may be  FAILED", 100.0 * verdict->unstable_limit);
   putchar('\n');
 }
 
