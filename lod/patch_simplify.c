@@ -36,6 +36,7 @@ void conic_simplifier_destroy(conic_simplifier *s) {
     return;
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     conic_memory_release(s->context, s->memory[i]);
+  conic_memory_release(s->context, s->borders);
   conic_memory_release(s->context, s->number);
   conic_memory_release(s->context, s);
 }
@@ -230,11 +231,26 @@ static void fill_queue(conic_simplifier *s) {
     }
 }
 
-static conic_status simplify(conic_simplifier *s, conic_patch_levels *levels) {
-  conic_status status = CONIC_OK;
-  size_t wanted = s->n_triangles / 2, n_last = s->n_triangles;
+conic_status conic_region_begin(conic_simplifier *s, conic_patch_chains *chains, uint32_t begin, uint32_t end,
+                                conic_patch_levels *levels) {
+  s->chains = chains;
+  s->begin = begin;
+  s->end = end;
+  s->levels = levels;
+  s->is_to_take = s->is_over = 0;
+  memset(levels, 0, (end - begin) * sizeof *levels);
+  conic_status status = conic_simplifier_load(s);
+  if (status != CONIC_OK)
+    return status;
+  s->n_wanted = s->n_triangles / 2;
+  s->n_last = s->n_triangles;
   fill_queue(s);
-  while (s->queue.n > 0 && s->stage < CONIC_MOST_TRIANGLE_LEVELS && status == CONIC_OK) {
+  return CONIC_OK;
+}
+
+/* Draws edges together until the next stage is there. */
+static conic_status simplify(conic_simplifier *s) {
+  while (s->queue.n > 0 && s->stage < CONIC_MOST_TRIANGLE_LEVELS) {
     uint32_t u = conic_heap_pop(&s->queue);
     if (s->vertices[u].is_old) {
       find_target(s, u);
@@ -243,28 +259,27 @@ static conic_status simplify(conic_simplifier *s, conic_patch_levels *levels) {
       continue;
     }
     draw_together(s, u, s->vertices[u].target);
-    if (s->n_alive > wanted)
-      continue;
-    uint32_t last_stage = s->stage;
-    status = conic_simplifier_take(s, levels);
-    if (s->stage == last_stage) /* what comes after would not fit either */
-      return status;
-    n_last = s->n_alive;
-    wanted = s->n_alive / 2;
+    if (s->n_alive <= s->n_wanted)
+      return conic_simplifier_begin_stage(s);
   }
-  int is_worth_it = 4 * s->n_alive <= 3 * n_last && s->stage < CONIC_MOST_TRIANGLE_LEVELS;
-  return status == CONIC_OK && is_worth_it ? conic_simplifier_take(s, levels) : status;
+  int is_worth_it = 4 * s->n_alive <= 3 * s->n_last && s->stage < CONIC_MOST_TRIANGLE_LEVELS;
+  s->is_over = !is_worth_it;
+  return is_worth_it ? conic_simplifier_begin_stage(s) : CONIC_OK;
 }
 
-conic_status conic_region_simplify(conic_simplifier *s, conic_patch_chains *chains, uint32_t begin, uint32_t end,
-                                   conic_patch_levels *levels) {
-  s->chains = chains;
-  s->begin = begin;
-  s->end = end;
-  memset(levels, 0, (end - begin) * sizeof *levels);
-  conic_status status = conic_simplifier_load(s);
-  if (status == CONIC_OK)
-    status = simplify(s, levels);
-  conic_simplifier_unload(s);
+conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_patches) {
+  conic_status status = CONIC_OK;
+  if (s->is_to_take) {
+    status = conic_simplifier_take(s);
+    s->n_last = s->n_alive;
+    s->n_wanted = s->n_alive / 2;
+  }
+  if (status == CONIC_OK && !s->is_over)
+    status = simplify(s);
+  *n_patches = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
   return status;
+}
+
+void conic_region_end(conic_simplifier *s) {
+  conic_simplifier_unload(s);
 }

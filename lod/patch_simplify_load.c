@@ -16,6 +16,8 @@ static void release(conic_simplifier *s) {
     conic_memory_release(s->context, s->memory[i]);
     s->memory[i] = NULL;
   }
+  conic_memory_release(s->context, s->borders);
+  s->borders = NULL;
 }
 
 /* Edges have a point each, and at most two on a border; they are at most three a face. */
@@ -30,6 +32,10 @@ static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_f
   s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->errors2);
   s->memory[6] = s->queue.keys = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.keys);
   s->memory[7] = s->queue.slots = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.slots);
+  for (int i = 0; i < 2; i++)
+    s->memory[8 + i] = s->point_starts[i] =
+        conic_memory_allocate(s->context, n_patches + 1, sizeof *s->point_starts[i]);
+  s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_patches + 1, sizeof *s->border_starts);
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
@@ -83,7 +89,7 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
   triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
-  t->face = face;
+  t->face = t->near[0] = t->near[1] = t->near[2] = t->near[3] = face;
   t->patch = patch;
   t->is_alive = 1;
   s->alive[patch]++;
@@ -155,10 +161,18 @@ static void add_planes(conic_simplifier *s, const triangle *t) {
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }
 
+static void treat_triangle(conic_simplifier *s, const triangle *t) {
+  for (int corner = 0; corner < 3; corner++)
+    treat_border(s, t, corner);
+  add_planes(s, t);
+}
+
 conic_status conic_simplifier_load(conic_simplifier *s) {
   const conic_patch_mesh *mesh = s->mesh;
+  const size_t *starts = mesh->starts + s->begin;
+  uint32_t n_patches = s->end - s->begin;
   number_places(s);
-  conic_status status = make_room(s, s->n_vertices, mesh->starts[s->end] - mesh->starts[s->begin]);
+  conic_status status = make_room(s, s->n_vertices, starts[n_patches] - starts[0]);
   if (status != CONIC_OK)
     return status;
   s->n_triangles = s->n_points = s->queue.n = 0;
@@ -166,15 +180,19 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   memset(s->vertices, 0, s->n_vertices * sizeof *s->vertices);
   for (size_t i = 0; i < s->n_vertices; i++)
     s->vertices[i].original = s->vertices[i].ring = s->vertices[i].target = CONIC_NONE;
-  for (uint32_t patch = s->begin; patch < s->end; patch++)
-    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++)
-      add_triangle(s, patch - s->begin, mesh->faces[i]);
-  memcpy(s->taken, s->alive, (s->end - s->begin) * sizeof *s->taken);
-  s->n_alive = s->n_triangles;
-  for (size_t i = 0; i < s->n_triangles; i++) {
-    for (int corner = 0; corner < 3; corner++)
-      treat_border(s, &s->triangles[i], corner);
-    add_planes(s, &s->triangles[i]);
+  for (uint32_t patch = 0; patch < n_patches; patch++) {
+    s->point_starts[0][patch] = s->n_points;
+    for (size_t i = starts[patch]; i < starts[patch + 1]; i++)
+      add_triangle(s, patch, mesh->faces[i]);
   }
+  s->point_starts[0][n_patches] = s->n_points;
+  memcpy(s->taken, s->alive, n_patches * sizeof *s->taken);
+  s->n_alive = s->n_triangles;
+  for (uint32_t patch = 0; patch < n_patches; patch++) {
+    s->point_starts[1][patch] = s->n_points;
+    for (size_t i = starts[patch] - starts[0]; i < starts[patch + 1] - starts[0]; i++)
+      treat_triangle(s, &s->triangles[i]);
+  }
+  s->point_starts[1][n_patches] = s->n_points;
   return CONIC_OK;
 }
