@@ -45,6 +45,15 @@ typedef struct conic_simplifier_point {
   uint32_t patch;  /* from the region's first */
 } conic_simplifier_point;
 
+/* From a vertex that is to go to a neighbour. */
+typedef struct conic_simplifier_spoke {
+  uint32_t vertex;
+  uint32_t before,
+      slot; /* of its triangle, if it has one: the corner before the vertex that is to go, and that one's */
+  int is_common;
+  double cost;
+} conic_simplifier_spoke;
+
 /* Along it, vertices were left out. */
 typedef struct conic_simplifier_border {
   conic_hybrid_border of; /* the triangle's number is that in the region */
@@ -71,8 +80,9 @@ struct conic_simplifier {
   uint32_t stage;                   /* the last one that is taken, or is to be */
   size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
   int is_to_take, is_over;
-  conic_patch_levels *levels; /* of the region's patches */
-  void *memory[11];           /* all of these, but for the borders */
+  conic_patch_levels *levels;     /* of the region's patches */
+  conic_simplifier_spoke *spokes; /* room for those of any vertex */
+  void *memory[12];               /* all of these, but for the borders */
   conic_heap queue;
 };
 
@@ -94,6 +104,9 @@ static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint3
 /* Fills in vertices, triangles and points of the region [begin, end), with room for what is done with them. Errors:
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
+
+/* Sets the vertex's target and its key, or neither where it may be drawn onto no neighbour. */
+void conic_simplifier_find_target(conic_simplifier *s, uint32_t vertex);
 
 /* The region is left: no place has a number any more. */
 void conic_simplifier_unload(conic_simplifier *s);

@@ -36,6 +36,7 @@ static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_f
     s->memory[8 + i] = s->point_starts[i] =
         conic_memory_allocate(s->context, n_patches + 1, sizeof *s->point_starts[i]);
   s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_patches + 1, sizeof *s->border_starts);
+  s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
