@@ -27,14 +27,13 @@ typedef struct conic_simplifier_vertex {
   conic_quadric quadric;
 } conic_simplifier_vertex;
 
+/* As long as a line of the cache; what walks do not ask for lies elsewhere. */
 typedef struct conic_simplifier_triangle {
-  uint32_t corners[3];   /* vertices */
-  uint32_t originals[3]; /* of the mesh: with their attributes */
-  uint32_t next[3];      /* slots in the rings */
+  double normal[3];    /* of the mesh's face */
+  uint32_t corners[3]; /* vertices */
+  uint32_t next[3];    /* slots in the rings */
   uint32_t face;
-  uint32_t near[4]; /* faces of the mesh that were near the middles of its edges, and near its own */
-  uint32_t patch;   /* from the region's first */
-  double normal[3]; /* of the mesh's face */
+  uint32_t patch; /* from the region's first */
   int is_alive;
 } conic_simplifier_triangle;
 
@@ -70,6 +69,8 @@ struct conic_simplifier {
   size_t n_vertices, n_triangles, n_points, n_borders, n_alive;
   conic_simplifier_vertex *vertices;
   conic_simplifier_triangle *triangles;
+  uint32_t (*originals)[3]; /* the triangles' vertices in the mesh: with their attributes */
+  uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
   conic_simplifier_point *points;
   conic_simplifier_border *borders; /* of the stage that is to be taken */
   size_t *point_starts[2];          /* of each patch, and an end: its own, and those of its borders, after all own */
@@ -82,7 +83,7 @@ struct conic_simplifier {
   int is_to_take, is_over;
   conic_patch_levels *levels;     /* of the region's patches */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
-  void *memory[12];               /* all of these, but for the borders */
+  void *memory[14];               /* all of these, but for the borders */
   conic_heap queue;
 };
 

@@ -66,7 +66,7 @@ static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
       s->n_alive--;
     } else {
       t->corners[slot % 3] = v;
-      t->originals[slot % 3] = s->vertices[v].original;
+      s->originals[slot / 3][slot % 3] = s->vertices[v].original;
       t->next[slot % 3] = s->vertices[v].ring;
       s->vertices[v].ring = slot;
     }

@@ -37,6 +37,8 @@ static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_f
         conic_memory_allocate(s->context, n_patches + 1, sizeof *s->point_starts[i]);
   s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_patches + 1, sizeof *s->border_starts);
   s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
+  s->memory[12] = s->originals = conic_memory_allocate(s->context, n_faces, sizeof *s->originals);
+  s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
@@ -90,15 +92,15 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
   triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
-  t->face = t->near[0] = t->near[1] = t->near[2] = t->near[3] = face;
+  t->face = s->near[i][0] = s->near[i][1] = s->near[i][2] = s->near[i][3] = face;
   t->patch = patch;
   t->is_alive = 1;
   s->alive[patch]++;
   conic_patch_face_normal(s->mesh, face, t->normal);
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;
-    t->originals[corner] = s->mesh->mesh.faces[face][corner];
-    uint32_t k = use_vertex(s, patch, t->originals[corner], materials ? materials[face] : 0);
+    s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
+    uint32_t k = use_vertex(s, patch, s->originals[i][corner], materials ? materials[face] : 0);
     vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;

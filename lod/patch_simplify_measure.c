@@ -125,14 +125,14 @@ static double measure_back(const conic_simplifier *s, uint32_t patch, double mos
   size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + patch] - first,
          end = s->mesh->starts[s->begin + patch + 1] - first;
   for (size_t i = begin; i < end; i++) {
-    triangle *t = &s->triangles[i];
+    const triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
     const double *const corners[4] = {s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
                                       s->vertices[t->corners[2]].at, s->vertices[t->corners[0]].at};
-    most = farther(s, corners, 3, &t->near[3], most);
+    most = farther(s, corners, 3, &s->near[i][3], most);
     for (int k = 0; k < 3; k++)
-      most = farther(s, corners + k, 2, &t->near[k], most);
+      most = farther(s, corners + k, 2, &s->near[i][k], most);
   }
   return most;
 }
@@ -159,7 +159,7 @@ static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *
   const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
   const double *corners[3] = {opposite, slot_at(s, border->from), NULL};
   uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */
-  uint32_t near = t->near[border->edge % 4];
+  uint32_t near = s->near[border->edge / 4][border->edge % 4];
   for (uint32_t slot = border->from + step;; slot += step) {
     if (slot != border->to && s->chains->slots[slot].stage < stage)
       continue;

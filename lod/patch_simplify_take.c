@@ -126,7 +126,7 @@ static conic_status take_patch(const conic_simplifier *s, uint32_t patch, conic_
       level->borders[level->n_borders] = borders[level->n_borders].of;
       level->borders[level->n_borders].edge = 4 * (uint32_t)level->n + borders[level->n_borders].of.edge % 4;
     }
-    memcpy(level->corners[level->n], t->originals, sizeof t->originals);
+    memcpy(level->corners[level->n], s->originals[i], sizeof s->originals[i]);
     level->face[level->n++] = t->face;
   }
   level->stage = s->stage;
