@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/hybrid_mesh.h"
 #include "cli/json.h"
+#include "cli/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
 
@@ -30,6 +31,10 @@ static conic_status build(hybrid_job *job) {
   job->work_seconds = built - read;
   if (status == CONIC_OK)
     status = conic_hybrid_describe(job->hybrid, &job->info);
+  if (status == CONIC_OK && !cli_is_in_reach(job->info.minimum, job->info.maximum)) {
+    cli_error(CLI_INPUT, "%s: a point is farther out than 1e20", job->input);
+    status = CONIC_ERROR_INPUT;
+  }
   if (status == CONIC_OK)
     status = conic_hybrid_write(job->hybrid, job->output);
   job->write_seconds = cli_seconds() - built;

@@ -2,22 +2,15 @@
 #include <string.h>
 
 #include "cli/hybrid_mesh.h"
+#include "cli/reach.h"
 #include "cli/render_job.h"
-
-/* Whether the box can be framed: the camera's numbers then stay well within those that drawing takes. */
-static int is_in_reach(const double low[3], const double high[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    if (!(low[axis] > -1e20 && high[axis] < 1e20))
-      return 0;
-  return 1;
-}
 
 static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
   double low[3], high[3];
   const char *why = NULL;
   if (conic_splats_bounds(&model->points, low, high) == 0)
     why = model->points.count ? "no point is finite" : "it holds no points";
-  else if (!job->camera_path && !is_in_reach(low, high))
+  else if (!job->camera_path && !cli_is_in_reach(low, high))
     why = "a point is farther out than 1e20";
   if (!why)
     return CONIC_OK;
@@ -244,7 +237,7 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
     conic_drawing_bounds(&drawing, low, high);
   }
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  if (!is_in_reach(low, high)) { /* what was read point by point was asked before */
+  if (!cli_is_in_reach(low, high)) { /* what was read point by point was asked before */
     cli_error(CLI_INPUT, "%s: cannot be drawn: a point is farther out than 1e20", job->inputs[0]);
     return CONIC_ERROR_INPUT;
   }
