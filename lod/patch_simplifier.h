@@ -41,15 +41,13 @@ typedef struct conic_simplifier_triangle {
 typedef struct conic_simplifier_point {
   double at[3];
   uint32_t vertex; /* that it was near at first */
-  uint32_t patch;  /* from the region's first */
 } conic_simplifier_point;
 
 /* From a vertex that is to go to a neighbour. */
 typedef struct conic_simplifier_spoke {
   uint32_t vertex;
-  uint32_t before,
-      slot; /* of its triangle, if it has one: the corner before the vertex that is to go, and that one's */
-  int is_common;
+  uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
+  int is_common;         /* whether it neighbours the vertex that is looked at, too */
   double cost;
 } conic_simplifier_spoke;
 
@@ -108,9 +106,6 @@ conic_status conic_simplifier_load(conic_simplifier *s);
 
 /* Sets the vertex's target and its key, or neither where it may be drawn onto no neighbour. */
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t vertex);
-
-/* The region is left: no place has a number any more. */
-void conic_simplifier_unload(conic_simplifier *s);
 
 /* Whether a patch has become so much simpler that this stage is a level of it. */
 static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t patch) {

@@ -140,7 +140,3 @@ conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_patches) {
   *n_patches = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
   return status;
 }
-
-void conic_region_end(conic_simplifier *s) {
-  conic_simplifier_unload(s);
-}

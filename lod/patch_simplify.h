@@ -47,6 +47,7 @@ conic_status conic_region_advance(conic_simplifier *simplifier, uint32_t *n_patc
 /* Measures one of them, the region's i-th. Patches may be measured at the same time. */
 void conic_region_measure(conic_simplifier *simplifier, uint32_t patch);
 
+/* The region is left: no place has a number any more. */
 void conic_region_end(conic_simplifier *simplifier);
 
 void conic_patch_levels_release(conic_context *context, conic_patch_levels *levels);

@@ -57,22 +57,21 @@ static void number_places(conic_simplifier *s) {
     }
 }
 
-void conic_simplifier_unload(conic_simplifier *s) {
+void conic_region_end(conic_simplifier *s) {
   const conic_patch_mesh *mesh = s->mesh;
   for (size_t i = mesh->starts[s->begin]; i < mesh->starts[s->end]; i++)
     for (int corner = 0; corner < 3; corner++)
       s->number[mesh->adjacency->place[mesh->mesh.faces[mesh->faces[i]][corner]]] = CONIC_NONE;
 }
 
-static void add_point(conic_simplifier *s, uint32_t patch, uint32_t i_vertex, const double at[3]) {
+static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3]) {
   conic_simplifier_point *p = &s->points[s->n_points++];
   memcpy(p->at, at, sizeof p->at);
   p->vertex = i_vertex;
-  p->patch = patch;
 }
 
 /* The region's number of a mesh's vertex. */
-static uint32_t use_vertex(conic_simplifier *s, uint32_t patch, uint32_t original, uint32_t material) {
+static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
   uint32_t i = s->number[s->mesh->adjacency->place[original]];
   vertex *v = &s->vertices[i];
   if (v->original == CONIC_NONE) {
@@ -80,7 +79,7 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t patch, uint32_t origina
     v->material = material;
     for (int axis = 0; axis < 3; axis++)
       v->at[axis] = (double)s->mesh->mesh.position[axis][original];
-    add_point(s, patch, i, v->at);
+    add_point(s, i, v->at);
   } else if (v->original != original || v->material != material) {
     v->kind = CONIC_VERTEX_LOCKED;
     v->is_seam = 1;
@@ -100,7 +99,7 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;
     s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
-    uint32_t k = use_vertex(s, patch, s->originals[i][corner], materials ? materials[face] : 0);
+    uint32_t k = use_vertex(s, s->originals[i][corner], materials ? materials[face] : 0);
     vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
@@ -108,13 +107,13 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
     for (int axis = 0; axis < 3; axis++)
       middle[axis] += v->at[axis] / 3.0;
   }
-  add_point(s, patch, t->corners[0], middle);
+  add_point(s, t->corners[0], middle);
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
     const double *a = s->vertices[t->corners[corner]].at, *b = s->vertices[t->corners[(corner + 1) % 3]].at;
     const double half[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
     if (conic_patch_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
-      add_point(s, patch, t->corners[corner], half);
+      add_point(s, t->corners[corner], half);
   }
 }
 
@@ -141,7 +140,7 @@ static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
   vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
   if (!conic_patch_ends_at(s->mesh, t->face, corner))
     return;
-  add_point(s, t->patch, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
+  add_point(s, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
   for (int k = 0; k < 2; k++) {
     uint32_t place = s->mesh->adjacency->place[ends[k]->original];
     uint8_t kind = across == CONIC_OPEN_EDGE                      ? CONIC_VERTEX_BORDER
