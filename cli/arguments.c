@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/suggest.h"
@@ -218,6 +219,8 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
     for (int i = 0; i < set->counts[table]; i++)
       if (set->tables[table][i].name[1])
         nearest = cli_nearer_word(name, nearest, set->tables[table][i].name);
+  if (access(argument, F_OK) == 0)
+    return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
   if (nearest)
     return cli_usage("%s: unknown option %s; did you mean --%s?", session->command, argument, nearest);
   return cli_usage("%s: unknown option %s; see conic help %s", session->command, argument, session->command);
@@ -305,11 +308,12 @@ void cli_print_options(FILE *to, const cli_option *options, int n_options) {
   int is_help;
   cli_option common[N_COMMON];
   list_common(&session, &is_help, common);
-  fputs("options:\n", to);
+  if (n_options)
+    fputs("options:\n", to);
   for (int i = 0; i < n_options; i++)
     if (options[i].help)
       print_option(to, &options[i]);
-  fputs("\noptions of every command:\n", to);
+  fprintf(to, "%soptions of every command:\n", n_options ? "\n" : "");
   for (int i = 0; i < N_COMMON; i++)
     if (common[i].help)
       print_option(to, &common[i]);

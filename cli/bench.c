@@ -113,6 +113,8 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = parse(session, argc, argv, job);
   session->draws_many_frames = 1;
   if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
+  if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE)
     exit_code = measure(session, job);

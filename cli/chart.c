@@ -357,10 +357,13 @@ static conic_status write_tables(const chart_job *job) {
 
 static int draw_charts(const chart_job *job) {
   int is_drawn = 1;
-  if (job->only != ONLY_METHODS && !cli_mesh_chart_write_script(job->folder, &job->mesh))
-    return cli_error(CLI_RESOURCE, "%s/representations.gp: cannot write: %s", job->folder, strerror(errno));
-  if (job->only != ONLY_REPRESENTATIONS && !cli_chart_write_script(job->folder, job->points, job->n_points))
-    return cli_error(CLI_RESOURCE, "%s/chart.gp: cannot write: %s", job->folder, strerror(errno));
+  conic_status status = CONIC_OK;
+  if (job->only != ONLY_METHODS)
+    status = cli_mesh_chart_write_script(job->session, job->folder, &job->mesh);
+  if (status == CONIC_OK && job->only != ONLY_REPRESENTATIONS)
+    status = cli_chart_write_script(job->session, job->folder, job->points, job->n_points);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
   if (job->only != ONLY_METHODS)
     is_drawn = cli_chart_plot(job->folder, "representations.gp");
   if (is_drawn && job->only != ONLY_REPRESENTATIONS)
@@ -400,14 +403,22 @@ static int write_statistics(const chart_job *job, double seconds) {
   return cli_json_finish(file);
 }
 
+static int make_folder(const char *path) {
+  struct stat found;
+  if (mkdir(path, 0777) == 0 || (errno == EEXIST && stat(path, &found) == 0 && S_ISDIR(found.st_mode)))
+    return CLI_DONE;
+  return cli_error(CLI_RESOURCE, "%s: cannot make the folder: %s", path, strerror(errno));
+}
+
 static int chart(chart_job *job) {
   double start = cli_seconds();
   job->session->draws_many_frames = 1;
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  if (mkdir(job->folder, 0777) != 0 && errno != EEXIST)
-    return cli_error(CLI_RESOURCE, "%s: cannot make the folder: %s", job->folder, strerror(errno));
+  exit_code = make_folder(job->folder);
+  if (exit_code != CLI_DONE)
+    return exit_code;
   conic_status status = measure_all(job);
   exit_code = status == CONIC_OK ? write_all(job) : cli_exit_of(status);
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
@@ -442,6 +453,8 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_usage("chart: %s is too much; see conic help chart", positional[0]);
   else if (exit_code == CLI_DONE && !job->folder)
     exit_code = cli_usage("chart: no folder; give one with -o DIR");
+  else if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
   job->size = job->is_quick ? 96 : 640;
   job->repeat = job->is_quick ? 2 : 15;
   job->mesh.is_quick = job->is_quick;

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "cli/chart_scene.h"
+#include "cli/session.h"
 
 /* How far a picture is from what it should be; of R, G, B. */
 typedef struct cli_chart_error {
@@ -33,8 +34,9 @@ const char *cli_kernel_name(conic_kernel_type type);
  * failed. */
 int cli_chart_plot(const char *folder, const char *script);
 
-/* FOLDER/chart.gp; the points are those of chart.csv. Returns 0 where it cannot be written. */
-int cli_chart_write_script(const char *folder, const cli_chart_point *points, int n_points);
+/* FOLDER/chart.gp; the points are those of chart.csv. */
+conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
+                                    int n_points);
 
 static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
   return against_truth ? &point->truth : &point->oracle;

@@ -47,7 +47,7 @@ int cli_mesh_chart_cross(const cli_mesh_chart *chart, cli_chart_model a, cli_cha
 /* What is best for its time at each size, and where the others become cheaper than triangles. */
 void cli_mesh_chart_print(const cli_mesh_chart *chart);
 
-/* FOLDER/representations.gp, for cli_chart_plot. Returns 0 where it cannot be written. */
-int cli_mesh_chart_write_script(const char *folder, const cli_mesh_chart *chart);
+/* FOLDER/representations.gp, for cli_chart_plot. */
+conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart);
 
 #endif

@@ -189,14 +189,16 @@ static void write_map(FILE *to, const int n_boxes[CLI_N_CHART_MODELS], const dou
   fputs("\nset yrange [*:*]\n", to);
 }
 
-int cli_mesh_chart_write_script(const char *folder, const cli_mesh_chart *chart) {
+conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart) {
   char path[4096];
+  conic_output *output;
   int n_boxes[CLI_N_CHART_MODELS];
   double range[2];
   snprintf(path, sizeof path, "%s/representations.gp", folder);
-  FILE *to = fopen(path, "w");
-  if (!to)
-    return 0;
+  conic_status status = conic_output_open(session->context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
   find_errors(chart, range);
   for (int i = 0; i < CLI_N_CHART_MODELS; i++)
     n_boxes[i] = write_boxes(to, chart, i, range);
@@ -212,5 +214,5 @@ int cli_mesh_chart_write_script(const char *folder, const cli_mesh_chart *chart)
     write_map(to, n_boxes, range);
     fputs("unset multiplot\nset output\nset key bottom right opaque\n", to);
   }
-  return fclose(to) == 0;
+  return conic_output_commit(output);
 }

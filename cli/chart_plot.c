@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/chart.h"
+#include "core/file.h"
 
 /* A figure: a file's name, the table's column of the error, and what the error is called. */
 typedef struct figure {
@@ -94,12 +95,15 @@ static void write_panel(FILE *to, int i_figure, int i_scene) {
   fputs("\n", to);
 }
 
-int cli_chart_write_script(const char *folder, const cli_chart_point *points, int n_points) {
+conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
+                                    int n_points) {
   char path[4096];
+  conic_output *output;
   snprintf(path, sizeof path, "%s/chart.gp", folder);
-  FILE *to = fopen(path, "w");
-  if (!to)
-    return 0;
+  conic_status status = conic_output_open(session->context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *to = conic_output_stream(output);
   write_style(to);
   for (int i = 0; i < N_FIGURES; i++)
     for (int i_scene = 0; i_scene < CLI_N_CHART_SCENES; i_scene++)
@@ -117,7 +121,7 @@ int cli_chart_write_script(const char *folder, const cli_chart_point *points, in
       }
       fputs("unset multiplot\nset output\n", to);
     }
-  return fclose(to) == 0;
+  return conic_output_commit(output);
 }
 
 int cli_chart_plot(const char *folder, const char *script) {

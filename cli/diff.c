@@ -145,6 +145,8 @@ static conic_status write_heatmap(const diff_job *job) {
 static conic_status compare(diff_job *job) {
   conic_context *context = job->session->context;
   conic_status status = CONIC_OK;
+  if (job->heatmap_path)
+    status = conic_image_check_output(context, job->heatmap_path, 1u << CONIC_PLANE_RGBA);
   for (int i = 0; i < 2 && status == CONIC_OK; i++)
     status = conic_image_read(context, job->paths[i], &job->images[i]);
   if (status == CONIC_OK)
@@ -211,6 +213,8 @@ static int run(cli_session *session, int argc, char **argv) {
   if (n_positional != 2)
     return cli_usage("diff: two images are needed, not %d; see conic help diff", n_positional);
   memcpy(job.paths, positional, sizeof job.paths);
+  if (strcmp(job.paths[0], "-") == 0 || strcmp(job.paths[1], "-") == 0)
+    return cli_usage("diff: an image cannot come from standard input");
   exit_code = cli_check_outputs(session, &job.heatmap_path, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }

@@ -8,6 +8,7 @@
 #include "cli/json.h"
 #include "cli/render_job.h"
 #include "core/file.h"
+#include "core/message.h"
 
 typedef struct explain_job {
   cli_render_job scene;
@@ -292,10 +293,15 @@ static conic_status dump_projection(cli_session *session, const explain_job *job
         to);
   for (size_t i = 0; i < n_splats && status == CONIC_OK; i++) {
     conic_projection projection;
-    status = conic_contributions_project(job->contributions, i, &projection);
+    if (i % 4096 == 0)
+      status = conic_progress(session->context, "dump", (double)i / (double)n_splats);
+    if (status == CONIC_OK)
+      status = conic_contributions_project(job->contributions, i, &projection);
     if (status == CONIC_OK)
       write_row(to, &projection);
   }
+  if (status == CONIC_OK)
+    status = conic_progress(session->context, "dump", 1.0);
   if (status == CONIC_OK)
     return conic_output_commit(output);
   conic_output_abandon(output);

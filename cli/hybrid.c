@@ -144,7 +144,9 @@ static int run(cli_session *session, int argc, char **argv) {
   job.input = positional[0];
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
-  exit_code = cli_check_outputs(session, &job.output, 1);
+  exit_code = cli_check_ending(job.output, "chy");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

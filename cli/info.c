@@ -61,6 +61,8 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   if (n_positional != 1)
     return cli_usage("info: one file is needed; see conic help info");
   job->path = positional[0];
+  if (conic_layers_is_url(job->path))
+    return cli_usage("info: %s is on a web server; it takes a file", job->path);
   return CLI_DONE;
 }
 

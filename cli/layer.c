@@ -146,7 +146,8 @@ static int check_arguments(layer_job *job) {
   job->options.quantum = job->quantum.value;
   job->options.quantum_in_spacings = job->quantum.is_in_spacings;
   job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
-  return cli_check_outputs(job->session, &job->output, 1);
+  int exit_code = cli_check_ending(job->output, "lpc");
+  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -60,6 +60,8 @@ static int check_arguments(const cli_session *session, const char *const *scenes
   int exit_code = find_scene(scenes[0], &job->scene.type);
   if (exit_code == CLI_DONE && !job->output)
     exit_code = cli_usage("make: where to? It needs -o OUT.ply");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_ending(job->output, "ply");
   return exit_code == CLI_DONE ? cli_check_outputs(session, &job->output, 1) : exit_code;
 }
 

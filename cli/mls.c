@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/mls_cells.h"
+#include "core/message.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
 
@@ -46,7 +47,12 @@ static conic_status read_points(mls_job *job) {
   if (status != CONIC_OK)
     return status;
   conic_splats *points = &job->model.points;
+  double low[3], high[3];
   job->n_in = points->count;
+  if (conic_splats_bounds(points, low, high) == 0) {
+    cli_error(CLI_INPUT, "%s: %s", job->input, points->count ? "no point is finite" : "it holds no points");
+    return CONIC_ERROR_INPUT;
+  }
   if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
     conic_estimate_options estimate;
     conic_estimate_options_init(&estimate);
@@ -131,6 +137,21 @@ static conic_status work(mls_job *job) {
   job->n_out = job->result.count;
   job->work_seconds = cli_seconds() - start;
   return status;
+}
+
+/* Points that have no surface about them are left out: some always are, many mean that h is too small. */
+static void tell(const mls_job *job) {
+  const size_t *outcomes = job->report.outcomes;
+  size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
+  if (job->session->is_verbose)
+    fprintf(stderr, "conic: %zu points in, %zu out\n", job->n_in, job->n_out);
+  if (n_lost > job->n_in / 10)
+    conic_log(
+        job->session->context, CONIC_LOG_WARNING,
+        "%s: %zu of %zu points are left out: %zu too few neighbours, %zu no minimum, %zu ill-conditioned; a larger "
+        "--h reaches more",
+        job->input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
+        outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
 }
 
 static int write_points(mls_job *job) {
@@ -231,6 +252,8 @@ static int run_job(mls_job *job) {
     status = work(job);
   exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
   if (exit_code == CLI_DONE)
+    tell(job);
+  if (exit_code == CLI_DONE)
     exit_code = write_statistics(job, cli_seconds() - start);
   conic_splats_release(job->session->context, &job->result);
   conic_surface_destroy(job->surface);
@@ -266,7 +289,8 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
                      name);
   job->input = positional[1];
-  return cli_check_outputs(job->session, &job->output, 1);
+  int exit_code = cli_check_ending(job->output, "ply");
+  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -127,7 +127,9 @@ static int run(cli_session *session, int argc, char **argv) {
     return cli_usage("octree: no output given (-o OUT.cot)");
   job.input = positional[0];
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
-  exit_code = cli_check_outputs(session, &job.output, 1);
+  exit_code = cli_check_ending(job.output, "cot");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -178,7 +178,9 @@ static int run(cli_session *session, int argc, char **argv) {
   if (!job.output)
     return cli_usage("prepare: no output given (-o OUT.ply)");
   job.input = positional[0];
-  exit_code = cli_check_outputs(session, &job.output, 1);
+  exit_code = cli_check_ending(job.output, "ply");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

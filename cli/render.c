@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/render_job.h"
+#include "core/message.h"
 
 static int compare_frames(const void *a, const void *b) {
   const conic_render_statistics *first = a, *second = b;
@@ -164,6 +165,21 @@ static conic_status draw(cli_session *session, cli_render_job *job, const conic_
   return status;
 }
 
+/* A picture without anything in it is more often a mistaken camera than what was wanted. */
+static void warn_of_empty(cli_session *session, cli_render_job *job) {
+  const conic_render_statistics *s = &job->statistics;
+  uint64_t skipped = s->splats_skipped + s->triangles_skipped;
+  if (s->pixels_covered || job->is_warned)
+    return;
+  job->is_warned = 1;
+  if (skipped)
+    conic_log(session->context, CONIC_LOG_WARNING,
+              "%s: the picture is empty: %llu cannot be drawn, all else is out of sight", job->inputs[0],
+              (unsigned long long)skipped);
+  else
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
                                  conic_renderer *renderer, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
@@ -176,6 +192,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
+  warn_of_empty(session, job);
   describe(job, &camera, image);
   status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -219,6 +236,18 @@ static int render_scene(cli_session *session, cli_render_job *job, const conic_s
   return exit_code;
 }
 
+/* What cannot be written is said before anything is read. */
+static conic_status check_formats(const cli_session *session, const cli_render_job *job) {
+  const char *const maps[] = {job->overdraw_path, job->clusters_path};
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++)
+    status = conic_image_check_output(session->context, job->outputs[i], job->planes);
+  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+    if (maps[i])
+      status = conic_image_check_output(session->context, maps[i], 1u << CONIC_PLANE_RGBA);
+  return status;
+}
+
 static int run(cli_session *session, int argc, char **argv) {
   cli_render_job job;
   conic_splats splats;
@@ -230,7 +259,10 @@ static int run(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
-    conic_status status = cli_scene_read(session, &job, &splats);
+    conic_status status = check_formats(session, &job);
+    memset(&splats, 0, sizeof splats);
+    if (status == CONIC_OK)
+      status = cli_scene_read(session, &job, &splats);
     if (status == CONIC_OK)
       status = cli_scene_measure(session, &job, &splats);
     exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
@@ -240,5 +272,8 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
-                                "conic render IN… -o OUT [options]", run};
+const cli_command cli_render = {
+    "render", "draws splats, points or meshes into pictures",
+    "conic render IN… -o OUT [options]\n"
+    "       IN: PLY, OBJ, LAS, XYZ, PTS, .cot, .chy, .lpc or its http:// URL; - is standard input",
+    run};

@@ -19,7 +19,7 @@ typedef struct raw_options {
   int size[2], is_size_given, is_framing_given;
   int isa;
   double cutoff, prefilter;
-  int is_passes_given, passes;
+  int passes, is_patch_given;
 } raw_options;
 
 static int parse_output(const char *text, void *value) {
@@ -184,6 +184,8 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
   if (job->is_smooth && job->as != CLI_AS_MESH)
     return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
+  if (!job->is_patch && raw->is_patch_given)
+    return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
   if (raw->passes != 1 && raw->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
@@ -347,10 +349,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = parse_planes},
-      {"degree", CLI_INT, &job->degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE},
+      {"degree", CLI_INT, &job->degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE,
+       .is_given = &raw.is_patch_given},
       {"h", CLI_PARSED, &job->h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
-       .parse = cli_parse_length, .dashes = "--"},
-      {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from", 6, 64},
+       .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
+      {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6,
+       64},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},

@@ -41,6 +41,7 @@ typedef struct cli_render_job {
   int is_up_given;
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
+  int is_warned; /* that a picture is empty */
   int repeat;
   int samples;     /* N × N a pixel */
   unsigned planes; /* bits 1 << conic_plane */

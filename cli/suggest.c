@@ -34,7 +34,7 @@ const char *cli_nearer_word(const char *word, const char *best, const char *cand
   int distance = cli_word_distance(word, candidate);
   if (strlen(word) >= 3 && strncmp(word, candidate, strlen(word)) == 0)
     distance = 1; /* an abbreviation */
-  if (distance > tolerated || distance >= (int)strlen(candidate))
-    return best;
+  if (distance > tolerated || distance >= (int)strlen(candidate) || distance >= (int)strlen(word))
+    return best; /* too far, or not a letter in common */
   return best && cli_word_distance(word, best) <= distance ? best : candidate;
 }

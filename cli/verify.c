@@ -158,6 +158,15 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   return cli_json_finish(file);
 }
 
+/* Too much is in doubt for the rest to say anything. */
+static int is_too_unstable(const verify_job *job) {
+  const conic_oracle_verdict *verdict = &job->verdict;
+  int has_samples = job->scene.samples > 1;
+  size_t unstable = has_samples ? job->reference.unstable_samples : verdict->unstable_pixels;
+  size_t covered = has_samples ? job->reference.covered_samples : verdict->covered_pixels;
+  return job->question == CONIC_ORACLE_METHOD && (double)unstable > verdict->unstable_limit * (double)covered;
+}
+
 static void print_unstable(const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
@@ -172,6 +181,8 @@ static void print_unstable(const verify_job *job) {
              job->reference.unstable_by_reason[i]);
       separator = ", ";
     }
+  if (is_too_unstable(job))
+    printf("; at most %g %% may be  FAILED", 100.0 * verdict->unstable_limit);
   putchar('\n');
 }
 
@@ -234,6 +245,8 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE && job.scene.planes & 1u << CONIC_PLANE_CLUSTER)
     exit_code = cli_usage("verify: the plane cluster holds names; the oracle knows what is drawn");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)
     exit_code = verify(session, &job);
   free(job.scene.inputs);

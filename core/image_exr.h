@@ -8,6 +8,9 @@
 
 #include "conic/image.h"
 
+/* Whether this build writes EXR; it holds every plane. Errors: UNSUPPORTED. */
+conic_status conic_exr_check(conic_context *context, const char *path);
+
 /* Errors: ARGUMENT (an attribute that the format refuses), UNSUPPORTED, MEMORY, IO. */
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image);
 

@@ -231,7 +231,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
   int has_alpha = 0;
   exr_result_t result = exr_get_storage(reader->file, 0, &reader->storage);
   if (result == EXR_ERR_SUCCESS && reader->storage != EXR_STORAGE_SCANLINE && reader->storage != EXR_STORAGE_TILED)
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: it is a deep image", reader->stream.path);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a deep image", reader->stream.path);
   if (result == EXR_ERR_SUCCESS)
     result = read_layout(reader);
   if (result != EXR_ERR_SUCCESS)

@@ -165,11 +165,21 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
   return conic_output_commit(output);
 }
 
+conic_status conic_exr_check(conic_context *context, const char *path) {
+  (void)context;
+  (void)path;
+  return CONIC_OK;
+}
+
 #else
+
+conic_status conic_exr_check(conic_context *context, const char *path) {
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: this build is without OpenEXR", path);
+}
 
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image) {
   (void)image;
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: this build is without OpenEXR", path);
+  return conic_exr_check(context, path);
 }
 
 #endif

@@ -36,17 +36,35 @@ static conic_status check_image(conic_context *context, const char *path, const 
   return CONIC_OK;
 }
 
-conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image) {
+static conic_status check_name(conic_context *context, const char *path) {
   if (!path || !*path)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name to write to");
   if (strcmp(path, "-") == 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: cannot be written to standard output");
-  conic_status status = check_image(context, path, image);
+  if (!*ending_of(path))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the name needs an ending, such as .exr", path);
+  return CONIC_OK;
+}
+
+conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes) {
+  conic_status status = check_name(context, path);
   if (status != CONIC_OK)
     return status;
   const char *ending = ending_of(path);
-  if (!*ending)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the name needs an ending, such as .exr", path);
+  if (is_ending(ending, "exr"))
+    return conic_exr_check(context, path);
+  if (is_ending(ending, "pfm"))
+    return conic_pfm_check(context, path, planes);
+  return conic_foreign_check(context, path, planes);
+}
+
+conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image) {
+  conic_status status = check_name(context, path);
+  if (status == CONIC_OK)
+    status = check_image(context, path, image);
+  if (status != CONIC_OK)
+    return status;
+  const char *ending = ending_of(path);
   if (is_ending(ending, "exr"))
     return conic_exr_write(context, path, image);
   if (is_ending(ending, "pfm"))

@@ -48,21 +48,37 @@ static conic_status write_samples(conic_context *context, const conic_bridge *br
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
 }
 
-conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+/* The format that PATH's ending means, if it holds one of these planes. */
+static conic_status find_writer(conic_context *context, const char *path, unsigned planes, const conic_bridge **bridge,
+                                conic_bridge_writer *writer) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
-  conic_bridge_writer writer;
-  const conic_bridge *bridge = conic_bridge_load(message);
-  if (!bridge)
+  *bridge = conic_bridge_load(message);
+  if (!*bridge)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
-  conic_bridge_result result = bridge->find_writer(path, &writer, message);
+  conic_bridge_result result = (*bridge)->find_writer(path, writer, message);
   if (result == CONIC_BRIDGE_MEMORY)
     return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
   if (result != CONIC_BRIDGE_OK)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: %s", path, message);
-  const float *rgba = image->planes[CONIC_PLANE_RGBA];
-  if (!rgba)
+  if (!(planes & 1u << CONIC_PLANE_RGBA))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
                       path);
+  return CONIC_OK;
+}
+
+conic_status conic_foreign_check(conic_context *context, const char *path, unsigned planes) {
+  const conic_bridge *bridge;
+  conic_bridge_writer writer;
+  return find_writer(context, path, planes, &bridge, &writer);
+}
+
+conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+  const conic_bridge *bridge;
+  conic_bridge_writer writer;
+  conic_status status = find_writer(context, path, conic_image_planes(image), &bridge, &writer);
+  if (status != CONIC_OK)
+    return status;
+  const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_samples_layout layout = choose_layout(&writer);
   conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
                                   layout.is_straight};
@@ -71,7 +87,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   if (!samples)
     return CONIC_ERROR_MEMORY;
   conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
-  conic_status status = write_samples(context, bridge, path, &picture, samples);
+  status = write_samples(context, bridge, path, &picture, samples);
   conic_memory_release(context, samples);
   return status;
 }

@@ -27,15 +27,26 @@ static conic_status write_rows(conic_context *context, FILE *stream, const conic
   return CONIC_OK;
 }
 
+/* The plane of these that goes into the file. */
+static conic_plane choose_plane(unsigned planes) {
+  if (planes & 1u << CONIC_PLANE_RGBA)
+    return CONIC_PLANE_RGBA;
+  return planes & 1u << CONIC_PLANE_Z ? CONIC_PLANE_Z : CONIC_PLANE_WEIGHT;
+}
+
+conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes) {
+  conic_plane plane = choose_plane(planes);
+  if (plane != CONIC_PLANE_RGBA && planes != 1u << plane)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a PFM holds rgba, or a lone Z or weight", path);
+  return CONIC_OK;
+}
+
 conic_status conic_pfm_write(conic_context *context, const char *path, const conic_image *image) {
-  conic_plane plane = CONIC_PLANE_RGBA;
-  if (!image->planes[plane]) {
-    plane = image->planes[CONIC_PLANE_Z] ? CONIC_PLANE_Z : CONIC_PLANE_WEIGHT;
-    if (conic_image_planes(image) != 1u << plane)
-      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a PFM holds rgba, or a lone Z or weight", path);
-  }
+  conic_plane plane = choose_plane(conic_image_planes(image));
   conic_output *output;
-  conic_status status = conic_output_open(context, path, &output);
+  conic_status status = conic_pfm_check(context, path, conic_image_planes(image));
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);

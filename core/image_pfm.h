@@ -8,6 +8,9 @@
 
 #include "conic/image.h"
 
+/* Whether one of these planes (bits) can be written. Errors: ARGUMENT. */
+conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes);
+
 /* Errors: ARGUMENT (no plane that it can hold), MEMORY, IO. */
 conic_status conic_pfm_write(conic_context *context, const char *path, const conic_image *image);
 

@@ -37,13 +37,11 @@ typedef struct signature {
 
 /* Files that are easily taken for models, or given by mistake. */
 static const signature other_kinds[] = {
-    {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
-    {"a PNG image", "\x89PNG", 4},
-    {"a JPEG image", "\xff\xd8\xff", 3},
-    {"a binary glTF file", "glTF", 4},
-    {"a gzip archive", "\x1f\x8b", 2},
-    {"a ZIP archive", "PK\x03\x04", 4},
-    {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
+    {"a point-octree", "CONICOT\n", 8}, {"a layered point cloud", "CONICLP\n", 8},
+    {"a hybrid model", "CONICHY\n", 8}, {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
+    {"a PNG image", "\x89PNG", 4},      {"a JPEG image", "\xff\xd8\xff", 3},
+    {"a binary glTF file", "glTF", 4},  {"a gzip archive", "\x1f\x8b", 2},
+    {"a ZIP archive", "PK\x03\x04", 4}, {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
     {"an STL file", "solid ", 6},
 };
 

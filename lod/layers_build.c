@@ -180,7 +180,8 @@ static conic_status make_plan(conic_layers_builder *builder) {
 static conic_status check_samples(const conic_layers_builder *builder) {
   const conic_layers_intake *intake = &builder->intake;
   if (intake->n_samples == 0)
-    return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: no sample that can be drawn", builder->path);
+    return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: not written: there is no sample that can be drawn",
+                      builder->path);
   if (intake->n_bright > 0)
     conic_log(builder->context, CONIC_LOG_WARNING, "%s: %llu colours are brighter than white, and are kept as white",
               builder->path, (unsigned long long)intake->n_bright);

@@ -50,6 +50,11 @@ grep -q 'CURL' out || fail "it is not said whether libcurl is in"
 run_wrong 2 'did you mean render?' rendr
 run_wrong 2 'did you mean prepare?' help prepar
 run_wrong 2 'did you mean --version?' --versoin
+run_wrong 2 'unknown option -o; see conic help' explain -o a.png # and not: did you mean --fov?
+: > ./-a.ply
+run_wrong 2 'is ./-a.ply' info -a.ply
+run_wrong 2 'standard input' diff - -
+run_wrong 2 'web server' info http://localhost/a.lpc
 run_wrong 2 'unknown command xyzzy' xyzzy
 for command in make prepare render diff verify info explain chart bench; do
   run_wrong 2 'did you mean --quiet?' $command --quite
@@ -67,6 +72,17 @@ run_wrong 2 'standard output' render absent.ply -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
 run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
 run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
+run_wrong 2 'a lone Z' render absent.ply -o outputs/a.pfm --aov Z,N
+run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
+run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
+run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
+for command in prepare octree layer hybrid 'mls project'; do # $command is one or two words
+  case $command in octree) ending=cot ;; layer) ending=lpc ;; hybrid) ending=chy ;; *) ending=ply ;; esac
+  run_wrong 4 'outputs/none/a: cannot write' $command absent.ply -o outputs/none/a
+  run_wrong 4 'outputs: cannot write: it is a directory' $command absent.ply -o outputs
+  run_wrong 2 "give the name the ending .$ending" $command absent.ply -o outputs/a.PNG
+done
+run_wrong 4 'cannot make the folder' chart -o "$conic" --quick
 no_files_but
 
 # Inputs that cannot be used
@@ -114,6 +130,12 @@ for scene in a b c; do
   run 0 render $scene.ply -o $scene.pfm --size 64x48
   [[ ! -s out && ! -s err ]] || fail "render says something without a terminal: $(head -c 300 err)"
 done
+run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6
+[[ $(cat err) == 'conic: warning: a.ply: the picture is empty: all is out of sight' ]] || fail "nothing is said of an empty picture"
+run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6 --quiet
+[[ ! -s err ]] || fail "a quiet run speaks of an empty picture"
+run 0 octree a.ply -o a.cot
+run_wrong 3 'this is a point-octree' prepare a.cot -o outputs/a.ply
 run 0 diff b.pfm c.pfm
 run 1 diff a.pfm b.pfm
 run 1 diff a.pfm b.pfm --max-abs 0.0001

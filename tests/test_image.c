@@ -158,6 +158,12 @@ static void test_wrong_arguments(conic_context *context) {
   CHECK(conic_image_write(context, in_folder("a.term"), &image) == unknown);
   CHECK(conic_image_write(context, in_folder("a.null"), &image) == unknown);
   CHECK(conic_image_write(context, in_folder("a.png"), &normals) == unknown);
+  CHECK(conic_image_check_output(context, "-", 1u << CONIC_PLANE_RGBA) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_image_check_output(context, "noending", 1u << CONIC_PLANE_RGBA) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_image_check_output(context, "a.pfm", 1u << CONIC_PLANE_NORMAL) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_image_check_output(context, "a.nosuchformat", 1u << CONIC_PLANE_RGBA) == unknown);
+  CHECK(conic_image_check_output(context, "a.png", 1u << CONIC_PLANE_NORMAL) == unknown);
+  CHECK_OK(conic_image_check_output(context, "a.pfm", 1u << CONIC_PLANE_Z));
   CHECK(empty_test_folder() == 0);
   conic_image_release(context, &image);
   conic_image_release(context, &normals);

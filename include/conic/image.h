@@ -83,6 +83,10 @@ CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane)
  * UNSUPPORTED (not in this build), MEMORY, IO. */
 CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
 
+/* Whether conic_image_write could write an image with these planes (bits) under that name, as far as the name tells: to
+ * be asked before the work. Errors: ARGUMENT, UNSUPPORTED, MEMORY, with the message of the writing. */
+CONIC_API conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes);
+
 /* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns
  * *image. Errors: INPUT, UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
