@@ -104,8 +104,8 @@ static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint3
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
 
-/* Sets the vertex's target and its key, or neither where it may be drawn onto no neighbour. */
-void conic_simplifier_find_target(conic_simplifier *s, uint32_t vertex);
+/* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
+void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
 
 /* Whether a patch has become so much simpler that this stage is a level of it. */
 static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t patch) {
