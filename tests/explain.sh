@@ -22,7 +22,7 @@ n_outside=$(grep -c '"verdict": "outside"' out)
 [[ $n_visible -gt 1 && $n_hidden -gt 1 && $n_outside -gt 1 ]] || fail "not all verdicts: $n_visible $n_hidden $n_outside"
 [[ $(number_of count) == "$n_visible" ]] || fail "count is not the number of visible splats"
 [[ $(number_of visible) == "$n_visible" && $(number_of hidden) == "$n_hidden" ]] || fail "wrong counts"
-grep -A 12 '"verdict": "visible"' out | grep -q "\"splat\": $(number_of id),$" || fail "the id is not visible"
+grep -A 12 '"verdict": "visible"' out | grep "\"splat\": $(number_of id),$" > seen || fail "the id is not visible"
 if command -v python3 > /dev/null; then
   python3 - out << 'END' || fail "the JSON does not add up"
 import json, sys
