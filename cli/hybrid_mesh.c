@@ -21,21 +21,27 @@ static int has_face(const conic_triangles *mesh) {
   return 0;
 }
 
+conic_status cli_mesh_check(const char *path, const conic_triangles *triangles) {
+  if (has_face(triangles))
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: no face has three finite corners at three places", path);
+  return CONIC_ERROR_INPUT;
+}
+
 conic_status cli_mesh_read(cli_session *session, const char *path, const char *texture_path,
                            conic_triangles *triangles) {
   conic_texture *texture;
   conic_status status = conic_triangles_read(session->context, path, triangles);
   if (status != CONIC_OK)
     return status;
-  if (!has_face(triangles)) {
-    cli_error(CLI_INPUT, "%s: no face has three finite corners at three places", path);
-    status = CONIC_ERROR_INPUT;
-  } else if (!texture_path)
+  status = cli_mesh_check(path, triangles);
+  if (status == CONIC_OK && !texture_path)
     return CONIC_OK;
-  else if (!triangles->texture_coordinate[0]) {
+  if (status == CONIC_OK && !triangles->texture_coordinate[0]) {
     cli_error(CLI_INPUT, "%s: the mesh has no texture coordinates for it", texture_path);
     status = CONIC_ERROR_INPUT;
-  } else
+  }
+  if (status == CONIC_OK)
     status = conic_texture_read(session->context, texture_path, CONIC_WRAP_REPEAT, &texture);
   if (status == CONIC_OK) {
     status = conic_triangles_texture(session->context, triangles, texture);

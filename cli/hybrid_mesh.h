@@ -1,4 +1,4 @@
-/* A mesh that becomes a hybrid model, for the commands that make one. */
+/* Meshes: those that become hybrid models, for the commands that make them, and what any mesh must have. */
 #ifndef CLI_HYBRID_MESH_H
 #define CLI_HYBRID_MESH_H
 
@@ -8,5 +8,8 @@
  * *triangles. */
 conic_status cli_mesh_read(cli_session *session, const char *path, const char *texture_path,
                            conic_triangles *triangles);
+
+/* Refuses a mesh of which nothing could be drawn, by name: INPUT. */
+conic_status cli_mesh_check(const char *path, const conic_triangles *triangles);
 
 #endif

@@ -1,6 +1,7 @@
 /* A scene as the commands that draw one take it: read, given axes, measured, framed. */
 #include <string.h>
 
+#include "cli/hybrid_mesh.h"
 #include "cli/reach.h"
 #include "cli/render_job.h"
 
@@ -55,9 +56,11 @@ static conic_status read_layers(cli_session *session, const cli_render_job *job,
 }
 
 /* A model's faces become triangles. */
-static conic_status take_triangles(cli_session *session, cli_render_job *job, conic_model *model) {
+static conic_status take_triangles(cli_session *session, cli_render_job *job, const char *path, conic_model *model) {
   conic_triangles triangles;
   conic_status status = conic_triangles_take(session->context, model, &triangles);
+  if (status == CONIC_OK)
+    status = cli_mesh_check(path, &triangles);
   if (status == CONIC_OK)
     status = conic_triangles_append(session->context, &job->triangles, &triangles);
   conic_triangles_release(session->context, &triangles);
@@ -88,7 +91,7 @@ static conic_status read_input(cli_session *session, cli_render_job *job, const 
   double start = cli_seconds();
   status = check_extent(job, path, &model);
   if (status == CONIC_OK && read_options.keeps_faces && model.n_triangles) {
-    status = take_triangles(session, job, &model);
+    status = take_triangles(session, job, path, &model);
     conic_model_release(session->context, &model);
     return status;
   }

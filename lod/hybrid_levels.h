@@ -33,7 +33,7 @@ conic_status conic_find_ways(conic_ways_job *job);
 void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways);
 
 /* Simpler triangles of all patches, region by region, which depend on the mesh alone. Errors: MEMORY, CANCELLED. */
-conic_status conic_find_simpler(conic_ways_job *job);
+conic_status conic_find_simpler(conic_ways_job *ways);
 
 /* A sphere and a cone for a patch's faces. */
 conic_hybrid_bound conic_patch_bound(const conic_patch_mesh *mesh, uint32_t patch);

@@ -304,18 +304,22 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
+static conic_status check_view(conic_context *context, const conic_hybrid_view *view) {
+  if (!(view->error_px >= 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "an error on the screen is 0 or more, and a kind one that there is");
+  if (view->error_px > 0.0 && view->budget)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
+  return CONIC_OK;
+}
+
+/* On success there is scratch. */
 static conic_status begin(selecting *s, const conic_camera *camera, const conic_render_options *render) {
-  conic_context *context = s->hybrid->context;
   scratch *kept = s->selection->scratch;
   conic_render_options known = *render;
   conic_hybrid_info info;
-  if (!(s->view->error_px >= 0.0) || s->view->only_kind > CONIC_HYBRID_SURFELS)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "an error on the screen is 0 or more, and a kind one that there is");
-  if (s->view->error_px > 0.0 && s->view->budget)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
   if (!kept) {
-    kept = conic_memory_allocate_zeroed(context, 1, sizeof *kept);
+    kept = conic_memory_allocate_zeroed(s->hybrid->context, 1, sizeof *kept);
     if (!kept)
       return CONIC_ERROR_MEMORY;
   }
@@ -333,7 +337,9 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
                                  const conic_render_options *render, const conic_hybrid_view *view,
                                  conic_hybrid_selection *selection) {
   selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
-  conic_status status = begin(&s, camera, render);
+  conic_status status = check_view(hybrid->context, view);
+  if (status == CONIC_OK)
+    status = begin(&s, camera, render);
   if (status == CONIC_OK)
     status = choose_all(&s);
   if (status == CONIC_OK && is_together(view))

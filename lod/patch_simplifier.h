@@ -27,13 +27,13 @@ typedef struct conic_simplifier_vertex {
   conic_quadric quadric;
 } conic_simplifier_vertex;
 
+/* As long as a line of the cache; what walks do not ask for lies elsewhere. */
 typedef struct conic_simplifier_triangle {
-  uint32_t corners[3];   /* vertices */
-  uint32_t originals[3]; /* of the mesh: with their attributes */
-  uint32_t next[3];      /* slots in the rings */
+  double normal[3];    /* of the mesh's face */
+  uint32_t corners[3]; /* vertices */
+  uint32_t next[3];    /* slots in the rings */
   uint32_t face;
-  uint32_t patch;   /* from the region's first */
-  double normal[3]; /* of the mesh's face */
+  uint32_t patch; /* from the region's first */
   int is_alive;
 } conic_simplifier_triangle;
 
@@ -41,8 +41,21 @@ typedef struct conic_simplifier_triangle {
 typedef struct conic_simplifier_point {
   double at[3];
   uint32_t vertex; /* that it was near at first */
-  uint32_t patch;  /* from the region's first */
 } conic_simplifier_point;
+
+/* From a vertex that is to go to a neighbour. */
+typedef struct conic_simplifier_spoke {
+  uint32_t vertex;
+  uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
+  int is_common;         /* whether it neighbours the vertex that is looked at, too */
+  double cost;
+} conic_simplifier_spoke;
+
+/* Along it, vertices were left out. */
+typedef struct conic_simplifier_border {
+  conic_hybrid_border of; /* the triangle's number is that in the region */
+  uint32_t patch;         /* from the region's first */
+} conic_simplifier_border;
 
 struct conic_simplifier {
   conic_context *context;
@@ -51,15 +64,24 @@ struct conic_simplifier {
   conic_patch_chains *chains;
   uint32_t *number; /* of each place of the mesh, while its region is worked on; else none */
   uint32_t begin, end;
-  size_t n_vertices, n_triangles, n_points, n_alive;
+  size_t n_vertices, n_triangles, n_points, n_borders, n_alive;
   conic_simplifier_vertex *vertices;
   conic_simplifier_triangle *triangles;
+  uint32_t (*originals)[3]; /* the triangles' vertices in the mesh: with their attributes */
+  uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
   conic_simplifier_point *points;
-  uint32_t *alive; /* triangles of each patch */
-  uint32_t *taken; /* of each patch: triangles of its last level */
-  double *errors2; /* of each patch, squared, so far */
-  uint32_t stage;  /* the last one that is taken */
-  void *memory[8]; /* all of these */
+  conic_simplifier_border *borders; /* of the stage that is to be taken */
+  size_t *point_starts[2];          /* of each patch, and an end: its own, and those of its borders, after all own */
+  size_t *border_starts;            /* likewise */
+  uint32_t *alive;                  /* triangles of each patch */
+  uint32_t *taken;                  /* of each patch: triangles of its last level */
+  double *errors2;                  /* of each patch, squared, so far */
+  uint32_t stage;                   /* the last one that is taken, or is to be */
+  size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
+  int is_to_take, is_over;
+  conic_patch_levels *levels;     /* of the region's patches */
+  conic_simplifier_spoke *spokes; /* room for those of any vertex */
+  void *memory[14];               /* all of these, but for the borders */
   conic_heap queue;
 };
 
@@ -82,10 +104,22 @@ static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint3
  * MEMORY. */
 conic_status conic_simplifier_load(conic_simplifier *s);
 
-/* The region is left: no place has a number any more. */
-void conic_simplifier_unload(conic_simplifier *s);
+/* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
+void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
 
-/* Takes what is alive as the levels of one more stage. Errors: MEMORY. */
-conic_status conic_simplifier_take(conic_simplifier *s, conic_patch_levels *levels);
+/* Whether a patch has become so much simpler that this stage is a level of it. */
+static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t patch) {
+  return 4 * (size_t)s->alive[patch] <= 3 * (size_t)s->taken[patch];
+}
+
+/* Makes what is alive one more stage, to be measured and then taken, if patches would fit; else it is over. Errors:
+ * MEMORY. */
+conic_status conic_simplifier_begin_stage(conic_simplifier *s);
+
+/* The target of each vertex that is gone becomes what it is now. */
+void conic_simplifier_shorten_ways(conic_simplifier *s);
+
+/* Takes what is alive as the levels of the stage. Errors: MEMORY. */
+conic_status conic_simplifier_take(conic_simplifier *s);
 
 #endif

@@ -35,9 +35,21 @@ void conic_simplifier_destroy(conic_simplifier *simplifier);
  * has a level of it where that is much simpler than its last. Vertices between the ends of chains may go along them,
  * and their slots then tell the last stage that has them; those on an open border along that, held by planes that stand
  * on its edges (§3.2.4). Vertices of another region stay, and of no patch all triangles go. Region: the patches
- * [begin, end), whose levels are levels[0 …]. The caller releases the levels, on failure too. Errors: MEMORY. */
-conic_status conic_region_simplify(conic_simplifier *simplifier, conic_patch_chains *chains, uint32_t begin,
-                                   uint32_t end, conic_patch_levels *levels);
+ * [begin, end), whose levels are levels[0 …], filled in by what follows. The caller ends the region, and releases the
+ * levels, on failure too. Errors: MEMORY. */
+conic_status conic_region_begin(conic_simplifier *simplifier, conic_patch_chains *chains, uint32_t begin, uint32_t end,
+                                conic_patch_levels *levels);
+
+/* Takes the stage that was measured, if any, as levels, and goes on to the next: n_patches are to be measured before it
+ * is taken. None where all is done. Errors: MEMORY. */
+conic_status conic_region_advance(conic_simplifier *simplifier, uint32_t *n_patches);
+
+/* Measures one of them, the region's i-th. Patches may be measured at the same time. */
+void conic_region_measure(conic_simplifier *simplifier, uint32_t patch);
+
+/* The region is left: no place has a number any more. */
+void conic_region_end(conic_simplifier *simplifier);
+
 void conic_patch_levels_release(conic_context *context, conic_patch_levels *levels);
 
 #endif

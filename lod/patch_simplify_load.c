@@ -16,6 +16,8 @@ static void release(conic_simplifier *s) {
     conic_memory_release(s->context, s->memory[i]);
     s->memory[i] = NULL;
   }
+  conic_memory_release(s->context, s->borders);
+  s->borders = NULL;
 }
 
 /* Edges have a point each, and at most two on a border; they are at most three a face. */
@@ -30,6 +32,13 @@ static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_f
   s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->errors2);
   s->memory[6] = s->queue.keys = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.keys);
   s->memory[7] = s->queue.slots = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.slots);
+  for (int i = 0; i < 2; i++)
+    s->memory[8 + i] = s->point_starts[i] =
+        conic_memory_allocate(s->context, n_patches + 1, sizeof *s->point_starts[i]);
+  s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_patches + 1, sizeof *s->border_starts);
+  s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
+  s->memory[12] = s->originals = conic_memory_allocate(s->context, n_faces, sizeof *s->originals);
+  s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
     if (!s->memory[i])
       return CONIC_ERROR_MEMORY;
@@ -48,22 +57,21 @@ static void number_places(conic_simplifier *s) {
     }
 }
 
-void conic_simplifier_unload(conic_simplifier *s) {
+void conic_region_end(conic_simplifier *s) {
   const conic_patch_mesh *mesh = s->mesh;
   for (size_t i = mesh->starts[s->begin]; i < mesh->starts[s->end]; i++)
     for (int corner = 0; corner < 3; corner++)
       s->number[mesh->adjacency->place[mesh->mesh.faces[mesh->faces[i]][corner]]] = CONIC_NONE;
 }
 
-static void add_point(conic_simplifier *s, uint32_t patch, uint32_t i_vertex, const double at[3]) {
+static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3]) {
   conic_simplifier_point *p = &s->points[s->n_points++];
   memcpy(p->at, at, sizeof p->at);
   p->vertex = i_vertex;
-  p->patch = patch;
 }
 
 /* The region's number of a mesh's vertex. */
-static uint32_t use_vertex(conic_simplifier *s, uint32_t patch, uint32_t original, uint32_t material) {
+static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
   uint32_t i = s->number[s->mesh->adjacency->place[original]];
   vertex *v = &s->vertices[i];
   if (v->original == CONIC_NONE) {
@@ -71,7 +79,7 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t patch, uint32_t origina
     v->material = material;
     for (int axis = 0; axis < 3; axis++)
       v->at[axis] = (double)s->mesh->mesh.position[axis][original];
-    add_point(s, patch, i, v->at);
+    add_point(s, i, v->at);
   } else if (v->original != original || v->material != material) {
     v->kind = CONIC_VERTEX_LOCKED;
     v->is_seam = 1;
@@ -83,15 +91,15 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
   triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
-  t->face = face;
+  t->face = s->near[i][0] = s->near[i][1] = s->near[i][2] = s->near[i][3] = face;
   t->patch = patch;
   t->is_alive = 1;
   s->alive[patch]++;
   conic_patch_face_normal(s->mesh, face, t->normal);
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;
-    t->originals[corner] = s->mesh->mesh.faces[face][corner];
-    uint32_t k = use_vertex(s, patch, t->originals[corner], materials ? materials[face] : 0);
+    s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
+    uint32_t k = use_vertex(s, s->originals[i][corner], materials ? materials[face] : 0);
     vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
@@ -99,13 +107,13 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
     for (int axis = 0; axis < 3; axis++)
       middle[axis] += v->at[axis] / 3.0;
   }
-  add_point(s, patch, t->corners[0], middle);
+  add_point(s, t->corners[0], middle);
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
     const double *a = s->vertices[t->corners[corner]].at, *b = s->vertices[t->corners[(corner + 1) % 3]].at;
     const double half[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
     if (conic_patch_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
-      add_point(s, patch, t->corners[corner], half);
+      add_point(s, t->corners[corner], half);
   }
 }
 
@@ -132,7 +140,7 @@ static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
   vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
   if (!conic_patch_ends_at(s->mesh, t->face, corner))
     return;
-  add_point(s, t->patch, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
+  add_point(s, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
   for (int k = 0; k < 2; k++) {
     uint32_t place = s->mesh->adjacency->place[ends[k]->original];
     uint8_t kind = across == CONIC_OPEN_EDGE                      ? CONIC_VERTEX_BORDER
@@ -155,10 +163,18 @@ static void add_planes(conic_simplifier *s, const triangle *t) {
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }
 
+static void treat_triangle(conic_simplifier *s, const triangle *t) {
+  for (int corner = 0; corner < 3; corner++)
+    treat_border(s, t, corner);
+  add_planes(s, t);
+}
+
 conic_status conic_simplifier_load(conic_simplifier *s) {
   const conic_patch_mesh *mesh = s->mesh;
+  const size_t *starts = mesh->starts + s->begin;
+  uint32_t n_patches = s->end - s->begin;
   number_places(s);
-  conic_status status = make_room(s, s->n_vertices, mesh->starts[s->end] - mesh->starts[s->begin]);
+  conic_status status = make_room(s, s->n_vertices, starts[n_patches] - starts[0]);
   if (status != CONIC_OK)
     return status;
   s->n_triangles = s->n_points = s->queue.n = 0;
@@ -166,15 +182,19 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   memset(s->vertices, 0, s->n_vertices * sizeof *s->vertices);
   for (size_t i = 0; i < s->n_vertices; i++)
     s->vertices[i].original = s->vertices[i].ring = s->vertices[i].target = CONIC_NONE;
-  for (uint32_t patch = s->begin; patch < s->end; patch++)
-    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++)
-      add_triangle(s, patch - s->begin, mesh->faces[i]);
-  memcpy(s->taken, s->alive, (s->end - s->begin) * sizeof *s->taken);
-  s->n_alive = s->n_triangles;
-  for (size_t i = 0; i < s->n_triangles; i++) {
-    for (int corner = 0; corner < 3; corner++)
-      treat_border(s, &s->triangles[i], corner);
-    add_planes(s, &s->triangles[i]);
+  for (uint32_t patch = 0; patch < n_patches; patch++) {
+    s->point_starts[0][patch] = s->n_points;
+    for (size_t i = starts[patch]; i < starts[patch + 1]; i++)
+      add_triangle(s, patch, mesh->faces[i]);
   }
+  s->point_starts[0][n_patches] = s->n_points;
+  memcpy(s->taken, s->alive, n_patches * sizeof *s->taken);
+  s->n_alive = s->n_triangles;
+  for (uint32_t patch = 0; patch < n_patches; patch++) {
+    s->point_starts[1][patch] = s->n_points;
+    for (size_t i = starts[patch] - starts[0]; i < starts[patch + 1] - starts[0]; i++)
+      treat_triangle(s, &s->triangles[i]);
+  }
+  s->point_starts[1][n_patches] = s->n_points;
   return CONIC_OK;
 }

@@ -154,10 +154,16 @@ printf 'v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > infinite.obj
 for name in nan flat infinite; do
   wrong_mesh $name.obj ': no face has three finite corners at three places$'
 done
+for name in nan flat; do
+  run_wrong 3 $name.obj ': no face has three finite corners at three places$' render $name.obj --as mesh -o outputs/a.pfm
+done
 printf "${corners}v nan 1 1\nf 1 2 3\nf 1 2 4\n" > partly.obj # one face is sound, and the other one counted
 run 0 hybrid partly.obj -o partly.chy --json -
 grep -q '"nan": 1' out || fail "a face that is not finite is not counted: $(grep nan out)"
 run 0 render partly.chy -o partly.pfm --size 16x16
+run 0 render partly.obj --as mesh -o partly.pfm --size 16x16 --json -
+grep -q '"triangles_skipped": 1' out || fail "a face that is not finite is not counted: $(grep triangles out)"
+grep -q '"triangles_drawn": 1' out || fail "the sound face is not drawn: $(grep triangles out)"
 printf 'v 1e30 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > distant.obj
 run_wrong 3 distant.obj ': a point is farther out than 1e20$' hybrid distant.obj -o outputs/a.chy
 run_wrong 3 distant.obj 'farther out than 1e20$' render distant.obj --as hybrid -o outputs/a.pfm

@@ -1,5 +1,6 @@
 /* Patches at any levels side by side fit to the bit: each edge of the triangles that are drawn has its like on the
- * other side, or is the mesh's own border; and no place of the mesh is farther from them than their errors allow. */
+ * other side, or is the mesh's own border; and no place of the mesh is farther from them than their errors allow, nor
+ * they from it. */
 #include "lod/distance.h"
 #include "lod/hybrid_stitch.h"
 #include "tests/hybrid_fixture.h"
@@ -22,7 +23,7 @@ typedef struct borders_scene {
   conic_triangles drawn;
   uint32_t *drawn_place;
   size_t n_put, n_edges, n_single;
-  double farthest; /* over the error that is allowed */
+  double farthest, farthest_back; /* over the error that is allowed */
 } borders_scene;
 
 static int compare_edges(const void *x, const void *y) {
@@ -195,6 +196,42 @@ static void check_distances(borders_scene *s, uint64_t *state) {
   CHECK(s->farthest <= 1.0);
 }
 
+/* The middles of a triangle and of one of its edges, by the error of its level. */
+static void check_triangle(borders_scene *s, const conic_hybrid_level *level, size_t triangle) {
+  const conic_hybrid *h = s->hybrid;
+  for (int n = 2; n <= 3; n++) {
+    double at[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < n; k++)
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] +=
+            (double)h->position[axis][h->listed[level->first_vertex + h->corners[level->first + triangle][k]]] / n;
+    double distance = distance_of(s, at);
+    CHECK(distance <= (double)level->error);
+    if (level->error > 0.0f && distance > s->farthest_back * (double)level->error)
+      s->farthest_back = distance / (double)level->error;
+  }
+}
+
+/* Nor are simpler triangles farther from the mesh, to which all patches are drawn, than their errors. */
+static void check_back(borders_scene *s, size_t room) {
+  const conic_hybrid *h = s->hybrid;
+  size_t n = 0;
+  CHECK_OK(conic_triangles_allocate(s->context, room, 3 * room, CONIC_TRIANGLES_CLUSTERS, &s->drawn));
+  s->drawn.count = s->drawn.n_vertices = 0;
+  for (size_t i = 0; i < h->n_patches; i++)
+    s->levels[i] = s->stages[i] = 0;
+  for (size_t i = 0; i < h->n_patches; i++)
+    put_patch(s, i);
+  for (size_t i = 0; i < h->n_patches; i++)
+    for (uint32_t k = 1; k < h->patches[i].n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[h->patches[i].first_level + k];
+      for (size_t t = 0; t < level->count && level->kind == CONIC_HYBRID_TRIANGLES; t++)
+        if (n++ % 16 == 0)
+          check_triangle(s, level, t);
+    }
+  conic_triangles_release(s->context, &s->drawn);
+}
+
 static void find_border(borders_scene *s) {
   const conic_hybrid *h = s->hybrid;
   size_t n = 0;
@@ -259,8 +296,10 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   find_border(&s);
   for (int run = 0; run < n_runs; run++)
     draw_and_check(&s, &state, room, 0);
-  fprintf(stderr, "%s: %zu patches, %zu edges, %zu vertices put in, farthest %.2f of the error\n", name, n_patches,
-          s.n_edges, s.n_put, s.farthest);
+  check_back(&s, room);
+  CHECK(s.farthest_back > 0.5); /* errors are no larger than need be */
+  fprintf(stderr, "%s: %zu patches, %zu edges, %zu vertices put in, farthest %.2f of the error, back %.2f\n", name,
+          n_patches, s.n_edges, s.n_put, s.farthest, s.farthest_back);
   CHECK(s.n_put > 100);
   CHECK(s.n_single == 0);
   draw_and_check(&s, &state, room, 1);
