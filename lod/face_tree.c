@@ -217,6 +217,11 @@ double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double a
   return distance2 >= 0.0 ? sqrt(distance2) : HUGE_VAL;
 }
 
+double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
+  double bound = conic_face_tree_bound(tree, at, guess, known);
+  return bound > known ? bound : known;
+}
+
 double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough) {
   double guessed2 = distance2_to_face(tree->mesh, guess, at);
   double least2 = search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, enough);

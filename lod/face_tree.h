@@ -24,6 +24,9 @@ void conic_face_tree_release(conic_context *context, conic_face_tree *tree);
 /* How far the place is from the nearest face, where that is more than `known`; else `known`. */
 double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known);
 
+/* The same, sooner where `guess` is a face that is near. */
+double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known);
+
 /* How far the place is from the nearest face, where that is more than `enough`; else no less than that, and `enough` at
  * most. Sooner where `guess` is a face that is near. */
 double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough);

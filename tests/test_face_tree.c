@@ -58,6 +58,7 @@ static void check_place(const conic_face_tree *tree, const double at[3], uint32_
     int is_farther = enough < distance;
     double found = conic_face_tree_farther(tree, at, enough), bound = conic_face_tree_bound(tree, at, guess, enough);
     CHECK_NEAR(found, is_farther ? distance : enough, 1e-12);
+    CHECK_NEAR(conic_face_tree_farther_by(tree, at, guess, enough), is_farther ? distance : enough, 1e-12);
     CHECK(bound >= distance - 1e-12 && bound <= (is_farther ? distance + 1e-12 : enough));
   }
 }
