@@ -17,8 +17,8 @@ void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t 
  * stays as it was. */
 conic_status conic_memory_grow(conic_context *context, void **pointer, size_t used, size_t count, size_t size);
 
-/* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be used
- * from end to end. Where the system has none, nothing happens. Thread-safe. */
+/* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be
+ * used from end to end. Where the system has none, nothing happens. Thread-safe. */
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
 
 /* Releases what allocate gave; null is allowed. */

@@ -152,8 +152,8 @@ static void report_oddities(building *b, const conic_triangles *mesh) {
 
 static conic_status check_options(conic_context *context, const conic_hybrid_options *o) {
   int is_good = o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 && o->most_area >= 0.0 &&
-                o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 && o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
-                (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
+                o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 && o->cutoff >= 0.25f &&
+                o->cutoff <= 5.0f && (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
   return is_good ? CONIC_OK
                  : conic_fail(context, CONIC_ERROR_ARGUMENT, "an option of the hybrid model is out of range");
 }
