@@ -3,21 +3,7 @@
 #define TESTS_DEEP_FILE_H
 
 #include "tests/fixture.h"
-
-/* A whole file; the caller frees. */
-static inline unsigned char *deep_read(const char *path, size_t *n_bytes) {
-  FILE *file = fopen(path, "rb");
-  *n_bytes = 0;
-  if (!file)
-    return NULL;
-  fseek(file, 0, SEEK_END);
-  size_t n = (size_t)ftell(file);
-  rewind(file);
-  unsigned char *bytes = malloc(n);
-  *n_bytes = bytes ? fread(bytes, 1, n, file) : 0;
-  fclose(file);
-  return bytes;
-}
+#include "tests/image_fixture.h"
 
 /* Steps over the attributes of an EXR's header; `most` becomes maxSamplesPerPixel. Returns where the table of the
  * lines' places begins. */
@@ -107,7 +93,7 @@ static inline int deep_check(const fixture *f, const conic_drawing *drawing, con
     fixture_close(&other);
     if (status != CONIC_OK)
       continue;
-    bytes[i] = deep_read(path, &n_bytes[i]);
+    bytes[i] = read_bytes(path, &n_bytes[i]);
     remove(path);
   }
   if (status == CONIC_ERROR_UNSUPPORTED)
