@@ -159,7 +159,7 @@ static double mixing(const planning *p) {
     if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
       n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->patches[p->patches[i]]);
   n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
-  return CONIC_HYBRID_BOTH_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
+  return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
 }
 
 /* What all takes; with what a picture of both kinds must promise to be preferred. */
