@@ -257,6 +257,52 @@ static void check_memory(spending *s) {
   CHECK_OK(select_with(s, -1, 0.0, 1000));
 }
 
+static void check_numbers(const spending *s) {
+  const conic_splats *splats = &s->selection.splats;
+  for (size_t i = 0; i < splats->count; i++)
+    for (int axis = 0; axis < 3; axis++)
+      CHECK(isfinite(splats->position[axis][i]) && isfinite(splats->tangent_u[axis][i]) &&
+            isfinite(splats->tangent_v[axis][i]));
+}
+
+/* The eye is in the spheres of nodes: their points cannot be drawn, and are not chosen, however few there may be. */
+static void check_within(spending *s) {
+  int n_kept = 0;
+  for (size_t budget = 1; budget < 3000; budget *= 2)
+    if (select_with(s, -1, 0.0, budget) == CONIC_OK) {
+      CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
+      check_numbers(s);
+      n_kept++;
+    }
+  CHECK(n_kept > 0);
+  for (int only_kind = -1; only_kind < 2; only_kind += 2) {
+    CHECK_OK(select_with(s, only_kind, HUGE_VAL, 0));
+    CHECK(n_selected(s) > 0 && s->selection.n_joined < s->info.n_patches);
+    check_numbers(s);
+  }
+}
+
+/* Of a model without points none is drawn, whatever the error. */
+static void check_without_points(conic_context *context) {
+  spending s = {.context = context};
+  conic_hybrid_options how;
+  conic_triangles mesh;
+  conic_hybrid_options_init(&how);
+  conic_render_options_init(&s.options);
+  how.has_single_levels = 1;
+  hybrid_terrain(context, 12, &mesh);
+  CHECK_OK(conic_hybrid_build(context, &mesh, &how, &s.hybrid, NULL));
+  CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
+  s.options.near_z = s.info.near_z;
+  look(&s, 30.0, 1.0);
+  for (int only_kind = -1; only_kind < 2; only_kind += 2) {
+    CHECK_OK(select_with(&s, only_kind, HUGE_VAL, 0));
+    CHECK(s.selection.n_joined == 0 && s.selection.n_points == 0 && n_selected(&s) >= s.info.n_patches);
+  }
+  conic_hybrid_selection_release(context, &s.selection);
+  conic_hybrid_destroy(s.hybrid);
+}
+
 int main(void) {
   conic_context_options options;
   conic_hybrid_options how;
@@ -294,6 +340,8 @@ int main(void) {
   check_budget(&s, -1, 20000);
   check_budget(&s, -1, 3000);
   check_budget(&s, CONIC_HYBRID_SURFELS, 3000);
+  check_within(&s);
+  check_without_points(s.context);
   conic_hybrid_selection_release(s.context, &s.selection);
   conic_hybrid_destroy(s.hybrid);
   free(s.is_seen);
