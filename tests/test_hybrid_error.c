@@ -263,21 +263,24 @@ static double disc_off_mesh(const comparison *c, const disc *d, double known) {
   return known;
 }
 
-/* No less than how far a place is from the disc. */
-static double off_disc(const disc *d, const double at[3]) {
-  double way[3], x, y, size;
+/* No less than how far a place is from the disc; `size` becomes how far from its middle it lies over it, in half axes.
+ */
+static double off_disc(const disc *d, const double at[3], double *size) {
+  double way[3], x, y;
   for (int axis = 0; axis < 3; axis++)
     way[axis] = at[axis] - d->at[axis];
   x = conic_hybrid_dot(way, d->u) / conic_hybrid_dot(d->u, d->u);
   y = conic_hybrid_dot(way, d->v) / conic_hybrid_dot(d->v, d->v);
-  size = sqrt(x * x + y * y) > 1.0 ? sqrt(x * x + y * y) : 1.0;
+  *size = sqrt(x * x + y * y);
   for (int axis = 0; axis < 3; axis++)
-    way[axis] -= (x * d->u[axis] + y * d->v[axis]) / size;
+    way[axis] -= (x * d->u[axis] + y * d->v[axis]) / fmax(*size, 1.0);
   return sqrt(conic_hybrid_dot(way, way));
 }
 
-/* How far the vertices of a node's faces are from the discs of one of its levels. */
-static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node, const conic_hybrid_level *level) {
+/* How far the vertices of a node's faces are from the discs of one of its levels; and how many there are of them, and
+ * how many that no disc covers. */
+static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node, const conic_hybrid_level *level,
+                           long counts[2]) {
   double farthest = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
@@ -285,15 +288,46 @@ static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node,
       uint32_t vertex = h->listed[faces->first_vertex + k];
       const double at[3] = {(double)h->position[0][vertex], (double)h->position[1][vertex],
                             (double)h->position[2][vertex]};
-      double nearest = HUGE_VAL;
+      double nearest = HUGE_VAL, least = HUGE_VAL, size;
       for (uint32_t m = level->first; m < level->first + level->count; m++) {
         disc d = disc_of(h, m);
-        nearest = fmin(nearest, off_disc(&d, at));
+        double off = off_disc(&d, at, &size);
+        nearest = fmin(nearest, off);
+        least = off <= (double)level->error ? fmin(least, size) : least;
       }
       farthest = fmax(farthest, nearest);
+      counts[0]++;
+      counts[1] += !(least <= 1.0);
     }
   }
   return farthest;
+}
+
+/* These meshes have one colour, and so have nodes. */
+static void check_colors(const conic_hybrid *h, const conic_hybrid_node *node) {
+  for (int channel = 0; channel < 3; channel++) {
+    float color = h->surfels[9 + channel][0];
+    CHECK(fabsf(node->point.color[channel] - color) < 1e-5f);
+    for (uint32_t k = 0; k < node->n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[node->first_level + k];
+      for (uint32_t i = level->first; i < level->first + level->count; i++)
+        CHECK(fabsf(h->surfels[9 + channel][i] - color) < 1e-5f);
+    }
+  }
+}
+
+/* The greatest error of the finest surfels of a node's patches. */
+static double finest_error(const conic_hybrid *h, const conic_hybrid_node *node) {
+  double greatest = 0.0;
+  for (uint32_t i = node->begin; i < node->end; i++) {
+    const conic_hybrid_patch *patch = &h->patches[i];
+    for (uint32_t k = 0, is_found = 0; k < patch->n_levels && !is_found; k++) {
+      const conic_hybrid_level *level = &h->levels[patch->first_level + k];
+      is_found = level->kind == CONIC_HYBRID_SURFELS;
+      greatest = is_found ? fmax(greatest, (double)level->error) : greatest;
+    }
+  }
+  return greatest;
 }
 
 /* What is said of nodes' errors, held against the mesh itself: of surfels what is said is measured, and so may be off
@@ -301,26 +335,29 @@ static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node,
 static void check_said(const comparison *c, const char *name) {
   const conic_hybrid *h = c->hybrid;
   double discs = 0.0, vertices = 0.0;
+  long counts[2] = {0, 0};
   for (size_t i = 0; i < h->n_nodes; i++) {
     const conic_hybrid_node *node = &h->nodes[i];
     const double center[3] = {(double)node->bound.center[0], (double)node->bound.center[1],
                               (double)node->bound.center[2]};
     double off = conic_face_tree_farther(&c->tree, center, 0.0);
     CHECK(node->point.radius > 0.0f && (double)node->point.error >= (double)node->point.radius + off);
+    check_colors(h, node);
     for (uint32_t k = 0; k < node->n_levels; k++) {
       const conic_hybrid_level *level = &h->levels[node->first_level + k];
       double error = (double)level->error, farthest = 0.0;
+      CHECK(error >= finest_error(h, node));
       for (uint32_t m = level->first; m < level->first + level->count; m++) {
         disc d = disc_of(h, m);
         farthest = disc_off_mesh(c, &d, farthest);
       }
       discs = fmax(discs, farthest / error);
-      vertices = fmax(vertices, vertices_off(h, node, level) / error);
+      vertices = fmax(vertices, vertices_off(h, node, level, counts) / error);
     }
   }
-  fprintf(stderr, "%s: of what nodes say, surfels are %.3f off the mesh and the mesh %.3f off them\n", name, discs,
-          vertices);
-  CHECK(discs <= 1.1 && vertices <= 1.0);
+  fprintf(stderr, "%s: of what nodes say, surfels are %.3f off the mesh and the mesh %.3f off them, %ld of %ld bare\n",
+          name, discs, vertices, counts[1], counts[0]);
+  CHECK(discs <= 1.1 && vertices <= 1.0 && counts[0] > 100 && counts[1] == 0);
 }
 
 static void check_model(conic_context *context, const limits *limit, const char *path) {
