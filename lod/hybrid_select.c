@@ -230,14 +230,12 @@ static conic_status make_stages(selecting *s) {
   return CONIC_OK;
 }
 
-/* Where each choice's parts go, and room for all. */
-static conic_status make_room(selecting *s) {
+/* Where each choice's parts go, and how many there are of all. */
+static void place_parts(selecting *s) {
   scratch *kept = s->scratch;
-  conic_context *context = s->hybrid->context;
   size_t n_splats = 0, n_triangles = 0, n_vertices = 0;
   for (size_t i = 0; i < kept->n_choices; i++) {
     choice *c = &kept->choices[i];
-    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
@@ -245,6 +243,7 @@ static conic_status make_room(selecting *s) {
       n_splats++;
       continue;
     }
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
     c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
     n_vertices += level->n_vertices + c->n_put;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
@@ -252,35 +251,53 @@ static conic_status make_room(selecting *s) {
   s->selection->splats.count = n_splats;
   s->selection->triangles.count = n_triangles;
   s->selection->triangles.n_vertices = n_vertices;
-  if (n_vertices > UINT32_MAX)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
-  if (!kept->splats || n_splats > kept->splats_room) {
-    conic_memory_release(context, kept->splats);
-    conic_memory_release(context, kept->splat_cluster);
-    kept->splats_room = 0;
-    kept->splats = conic_memory_allocate(context, n_splats, SPLAT_ARRAYS * sizeof(float));
-    kept->splat_cluster = conic_memory_allocate(context, n_splats, sizeof *kept->splat_cluster);
-    if (!kept->splats || !kept->splat_cluster)
-      return CONIC_ERROR_MEMORY;
-    kept->splats_room = n_splats;
-  }
-  if (!kept->vertices || n_vertices > kept->vertices_room) {
-    conic_memory_release(context, kept->vertices);
-    kept->vertices_room = 0;
-    kept->vertices = conic_memory_allocate(context, n_vertices, VERTEX_ARRAYS * sizeof(float));
-    if (!kept->vertices)
-      return CONIC_ERROR_MEMORY;
-    kept->vertices_room = n_vertices;
-  }
-  if (!kept->triangles || n_triangles > kept->triangles_room) {
-    conic_memory_release(context, kept->triangles);
-    kept->triangles_room = 0;
-    kept->triangles = conic_memory_allocate(context, n_triangles, 5 * sizeof *kept->triangles);
-    if (!kept->triangles)
-      return CONIC_ERROR_MEMORY;
-    kept->triangles_room = n_triangles;
-  }
+}
+
+static conic_status make_splats(conic_context *context, scratch *kept, size_t n) {
+  if (kept->splats && kept->splat_cluster && n <= kept->splats_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->splats);
+  conic_memory_release(context, kept->splat_cluster);
+  kept->splats_room = 0;
+  kept->splats = conic_memory_allocate(context, n, SPLAT_ARRAYS * sizeof *kept->splats);
+  kept->splat_cluster = conic_memory_allocate(context, n, sizeof *kept->splat_cluster);
+  if (!kept->splats || !kept->splat_cluster)
+    return CONIC_ERROR_MEMORY;
+  kept->splats_room = n;
   return CONIC_OK;
+}
+
+static conic_status make_vertices(conic_context *context, scratch *kept, size_t n) {
+  if (kept->vertices && n <= kept->vertices_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->vertices);
+  kept->vertices_room = 0;
+  kept->vertices = conic_memory_allocate(context, n, VERTEX_ARRAYS * sizeof *kept->vertices);
+  kept->vertices_room = kept->vertices ? n : 0;
+  return kept->vertices ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static conic_status make_triangles(conic_context *context, scratch *kept, size_t n) {
+  if (kept->triangles && n <= kept->triangles_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->triangles);
+  kept->triangles_room = 0;
+  kept->triangles = conic_memory_allocate(context, n, 5 * sizeof *kept->triangles);
+  kept->triangles_room = kept->triangles ? n : 0;
+  return kept->triangles ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* Room for all parts of the choices. */
+static conic_status make_room(selecting *s) {
+  conic_context *context = s->hybrid->context;
+  const conic_hybrid_selection *selection = s->selection;
+  place_parts(s);
+  if (selection->triangles.n_vertices > UINT32_MAX)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
+  conic_status status = make_splats(context, s->scratch, selection->splats.count);
+  if (status == CONIC_OK)
+    status = make_vertices(context, s->scratch, selection->triangles.n_vertices);
+  return status == CONIC_OK ? make_triangles(context, s->scratch, selection->triangles.count) : status;
 }
 
 /* Points the selection's arrays into what is kept. */

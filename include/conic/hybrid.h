@@ -112,8 +112,9 @@ typedef struct conic_hybrid_view {
 
 CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
 
-/* What is drawn in one picture. With an error or a budget, a node of the tree may stand for all of its patches, by a
- * few surfels or by one splat that faces the camera. Zero before the first use; the memory is kept from call to call.
+/* What is drawn in one picture. With an error or a budget, a node of the tree that does not reach the near distance
+ * may stand for all of its patches, by a few surfels or by one splat that faces the camera. Zero before the first use;
+ * the memory is kept from call to call.
  */
 typedef struct conic_hybrid_selection {
   conic_splats splats;
