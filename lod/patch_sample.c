@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "lod/patch_error.h"
 #include "lod/patch_shape.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
@@ -157,6 +158,7 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
-  surfels->error = largest_error(s, surfels->error);
+  if (surfels->n <= job->useful)
+    surfels->error = largest_error(s, surfels->error);
   return status;
 }

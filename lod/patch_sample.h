@@ -27,6 +27,7 @@ typedef struct conic_sampling_job {
   double spacing;   /* no two surfels that face alike are nearer than this, but where the surface needs closer ones */
   double tolerance; /* surfels whose error is larger are made of closer ones, */
   size_t most;      /* as long as there are no more than these */
+  size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
   int is_coarser;   /* the job before was the same patch's, at half the spacing */
   double cutoff;    /* standard deviations at which a splat ends */
 } conic_sampling_job;

@@ -5,6 +5,7 @@
 
 #include "lod/least_ellipse.h"
 #include "lod/patch_contrast.h"
+#include "lod/patch_error.h"
 
 /* How far an ellipse reaches beyond what it must cover, and how long it may be. */
 static const double cover = 1.1;
@@ -235,13 +236,6 @@ static int find_farthest(const conic_sampler *s, const conic_site *site,
   return most[0] > -HUGE_VAL ? 2 * n : 0;
 }
 
-/* Where a surfel is measured, in its half axes: sixteen places of its outline in turn, and four within. */
-static const double ends[][2] = {{1.0, 0.0},  {0.92388, 0.38268},   {0.70711, 0.70711},   {0.38268, 0.92388},
-                                 {0.0, 1.0},  {-0.38268, 0.92388},  {-0.70711, 0.70711},  {-0.92388, 0.38268},
-                                 {-1.0, 0.0}, {-0.92388, -0.38268}, {-0.70711, -0.70711}, {-0.38268, -0.92388},
-                                 {0.0, -1.0}, {0.38268, -0.92388},  {0.70711, -0.70711},  {0.92388, -0.38268},
-                                 {0.5, 0.0},  {0.0, 0.5},           {-0.5, 0.0},          {0.0, -0.5}};
-
 /* Makes the ellipse large enough for all supports. Notes for each of the four ends of its axes on which face the
  * support lies that is farthest that way. */
 static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
@@ -271,76 +265,6 @@ static void widen(conic_site *site) {
   double minor = e->ratio * e->reach + site->height;
   e->reach += site->height;
   e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
-}
-
-enum { N_ENDS = 20 };
-
-static void find_ends(const conic_site *site, double at[N_ENDS][3]) {
-  const conic_ellipse *e = &site->ellipse;
-  for (int k = 0; k < N_ENDS; k++) {
-    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio;
-    double x = along * e->major[0] - across * e->major[1], y = along * e->major[1] + across * e->major[0];
-    for (int axis = 0; axis < 3; axis++)
-      at[k][axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-  }
-}
-
-/* No place is farther from the mesh than another is, and the way to that. More than rounding takes is added. */
-static void bound_by(const double at[N_ENDS][3], int from, double distance, double bounds[N_ENDS]) {
-  for (int k = 0; k < N_ENDS; k++) {
-    double x = at[k][0] - at[from][0], y = at[k][1] - at[from][1], z = at[k][2] - at[from][2];
-    double bound = (distance + sqrt((x * x + y * y) + z * z)) * (1.0 + 1e-9);
-    bounds[k] = bound < bounds[k] ? bound : bounds[k];
-  }
-  bounds[from] = distance;
-}
-
-static int largest_of(const double bounds[N_ENDS]) {
-  int largest = 0;
-  for (int k = 1; k < N_ENDS; k++)
-    largest = bounds[k] > bounds[largest] ? k : largest;
-  return largest;
-}
-
-/* The face of the support that is nearest to the place. */
-static uint32_t face_near(const conic_sampler *s, const conic_site *site, const double at[3]) {
-  const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
-  double x = conic_dot(d, site->u), y = conic_dot(d, site->v), z = conic_dot(d, site->normal), least2 = HUGE_VAL;
-  const uint32_t *of_site = &s->of_sites[site->first_support];
-  uint32_t nearest = 0;
-  for (size_t k = 0; k < site->n_supports; k++) {
-    const conic_support *support = &s->supports[of_site[k]];
-    double dx = x - support->at[0], dy = y - support->at[1], dz = z - support->above;
-    double distance2 = (dx * dx + dy * dy) + dz * dz;
-    nearest = distance2 < least2 ? of_site[k] : nearest;
-    least2 = distance2 < least2 ? distance2 : least2;
-  }
-  return s->supports[nearest].face;
-}
-
-/* As conic_face_tree_bound for place k of a site. Most are near enough to what lies at the nearest end of an axis. */
-static double end_distance(const conic_sampler *s, const conic_site *site, int k, const double at[3], double enough) {
-  uint32_t end_face = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
-  double distance = conic_face_distance(&s->job->mesh->mesh, end_face, at);
-  return distance <= enough ? distance : conic_face_tree_bound(s->job->tree, at, face_near(s, site, at), enough);
-}
-
-/* The place that may be farthest is measured first: that is soon far enough from those before, or near enough to them,
- * for the others to need no look. */
-double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
-  double at[N_ENDS][3], bounds[N_ENDS];
-  int k = 0;
-  known = site->least_error > known ? site->least_error : known;
-  find_ends(site, at);
-  for (int i = 0; i < N_ENDS; i++)
-    bounds[i] = HUGE_VAL;
-  for (; bounds[k] > known; k = largest_of(bounds)) {
-    double distance = end_distance(s, site, k, at[k], known);
-    known = distance > known ? distance : known;
-    bound_by((const double(*)[3])at, k, distance, bounds);
-  }
-  *bound = bounds[k] > site->least_error ? bounds[k] : site->least_error;
-  return known;
 }
 
 static void shape_site(conic_sampler *s, conic_site *site) {
