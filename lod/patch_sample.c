@@ -23,11 +23,12 @@ void conic_sampler_destroy(conic_sampler *sampler) {
   conic_memory_release(sampler->context, sampler->facing);
   conic_memory_release(sampler->context, sampler->depth);
   conic_memory_release(sampler->context, sampler->places);
+  conic_memory_release(sampler->context, sampler->lattice_of);
   conic_memory_release(sampler->context, sampler->owner);
   conic_memory_release(sampler->context, sampler->candidates);
   conic_memory_release(sampler->context, sampler->seeds);
   conic_memory_release(sampler->context, sampler->sites);
-  conic_site_table_release(sampler->context, &sampler->table);
+  conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release(sampler->context, sampler->supports);
   conic_memory_release(sampler->context, sampler->of_sites);
   conic_memory_release(sampler->context, sampler->points);

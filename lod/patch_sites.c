@@ -63,10 +63,13 @@ static conic_status lay_lattices(conic_sampler *s) {
     s->n_places += conic_lattice_places(s->lattices[i].sides);
     conic_patch_face_normal(mesh, face, s->facing[i]);
   }
-  size_t owner_room = s->places_room;
-  void *owner = s->owner, *places = s->places;
+  size_t owner_room = s->places_room, lattice_room = s->places_room;
+  void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
   status = conic_sampler_grow(s, &owner, 0, s->n_places, &owner_room, sizeof *s->owner);
   s->owner = owner;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
+  s->lattice_of = lattice_of;
   if (status == CONIC_OK)
     status = conic_sampler_grow(s, &places, 0, s->n_places, &s->places_room, sizeof *s->places);
   s->places = places;
@@ -81,6 +84,7 @@ static void find_places(conic_sampler *s) {
       for (int j = 0; j <= l->sides - i; j++) {
         double bary[3];
         conic_lattice_bary(l, i, j, bary);
+        s->lattice_of[place] = (uint32_t)k;
         conic_patch_place(s->job->mesh, l->face, bary, s->places[place++]);
       }
   }
@@ -152,7 +156,8 @@ static conic_status list_candidates(conic_sampler *s) {
 
 /* --- sites --- */
 
-static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, uint32_t *added) {
+/* Becomes the owner of what it is nearest to, of the places from number `first` on. */
+static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
   const conic_lattice *l = &s->lattices[i_lattice];
   const double *at = s->places[conic_lattice_place(l, i, j)];
   void *sites = s->sites;
@@ -167,42 +172,51 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
   site->face = l->face;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
-  *added = (uint32_t)s->n_sites++;
-  return conic_site_table_add(s->context, &s->table, at, s->facing[i_lattice], s->depth[i_lattice]);
+  conic_place_table_put(&s->table, (uint32_t)s->n_sites++, at, s->facing[i_lattice], first);
+  return CONIC_OK;
 }
 
+static conic_status fill_table(conic_sampler *s) {
+  const conic_places places = {.n = s->n_places,
+                               .at = (const double(*)[3])s->places,
+                               .group = s->lattice_of,
+                               .facing = (const double(*)[3])s->facing,
+                               .depth = s->depth,
+                               .spacing = s->job->spacing,
+                               .coarsest = s->coarsest,
+                               .finest = s->finest};
+  return conic_place_table_fill(s->context, &s->table, &places, s->owner);
+}
+
+/* A candidate that lies near no site becomes one. */
 static conic_status choose_sites(conic_sampler *s) {
-  conic_status status = conic_site_table_clear(s->context, &s->table, s->places[s->lattices[0].first], s->job->spacing,
-                                               s->coarsest, s->finest, s->n_candidates / 4);
+  conic_status status = CONIC_OK;
   s->n_sites = 0;
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
     int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
-    const double *at = s->places[conic_lattice_place(&s->lattices[seed[0]], i, j)];
-    uint32_t added;
-    if (!conic_site_table_has(&s->table, at, s->facing[seed[0]], s->depth[seed[0]]))
-      status = add_site(s, seed[0], i, j, &added);
+    if (s->owner[conic_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
+      status = add_site(s, seed[0], i, j, 0);
   }
   return status;
 }
 
-/* Every place of the lattices belongs to the nearest site; where there is none near (a place that was no candidate and
- * lies in a fold), it becomes one. */
-static conic_status find_owners(conic_sampler *s) {
-  uint32_t owner = CONIC_NO_SITE; /* that of the place before is a good guess */
+/* Every place of the lattices belongs to the nearest site by now; where there is none near (a place that was no
+ * candidate and lies in a fold), it becomes one, for itself and those after it. */
+static conic_status choose_in_folds(conic_sampler *s) {
+  conic_status status = CONIC_OK;
   size_t place = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
     for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i; j++, place++) {
-        owner = conic_site_table_nearest(&s->table, s->places[place], s->facing[k], s->depth[k], owner);
-        conic_status status = owner == CONIC_NO_SITE ? add_site(s, (uint32_t)k, i, j, &owner) : CONIC_OK;
-        if (status != CONIC_OK)
-          return status;
-        s->owner[place] = owner;
-      }
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++, place++)
+        if (s->owner[place] == CONIC_NO_SITE) {
+          uint32_t own = (uint32_t)s->n_sites;
+          status = add_site(s, (uint32_t)k, i, j, place);
+          s->owner[place] = own; /* also where its face has no area and faces nothing */
+        }
   }
-  return CONIC_OK;
+  return status;
 }
 
 conic_status conic_patch_find_sites(conic_sampler *s) {
@@ -212,6 +226,8 @@ conic_status conic_patch_find_sites(conic_sampler *s) {
   find_places(s);
   status = list_candidates(s);
   if (status == CONIC_OK)
+    status = fill_table(s);
+  if (status == CONIC_OK)
     status = choose_sites(s);
-  return status == CONIC_OK ? find_owners(s) : status;
+  return status == CONIC_OK ? choose_in_folds(s) : status;
 }

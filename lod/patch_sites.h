@@ -4,8 +4,8 @@
 
 #include "core/ellipse.h"
 #include "lod/patch_sample.h"
+#include "lod/place_table.h"
 #include "lod/radix.h"
-#include "lod/site_table.h"
 
 /* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
  * between them. */
@@ -67,14 +67,15 @@ struct conic_sampler {
   size_t depth_room;
   int coarsest, finest; /* of those */
   size_t n_places, places_room;
-  double (*places)[3]; /* where they are */
-  uint32_t *owner;     /* of each place: a site */
+  double (*places)[3];  /* where they are */
+  uint32_t *lattice_of; /* of each place: its lattice */
+  uint32_t *owner;      /* of each place: a site */
   size_t n_candidates, candidates_room;
   conic_radix_item *candidates; /* key: when its turn is; value: its number */
   uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
   size_t n_sites, sites_room;
   conic_site *sites;
-  conic_site_table table; /* of them */
+  conic_place_table table; /* of the places */
   size_t n_supports, supports_room;
   conic_support *supports;
   uint32_t *of_sites; /* supports, site by site */
