@@ -31,7 +31,8 @@ void conic_sampler_destroy(conic_sampler *sampler) {
   conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release(sampler->context, sampler->supports);
   conic_memory_release(sampler->context, sampler->of_sites);
-  conic_memory_release(sampler->context, sampler->points);
+  for (int i = 0; i < 2; i++)
+    conic_memory_release(sampler->context, sampler->points[i]);
   conic_memory_release(sampler->context, sampler);
 }
 

@@ -173,7 +173,7 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
 
 /* Lists the supports site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
-  void *of_sites = s->of_sites, *points = s->points;
+  void *of_sites = s->of_sites;
   size_t begin = 0, most = 0;
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
@@ -183,9 +183,13 @@ static conic_status sort_supports(conic_sampler *s) {
   }
   conic_status status = conic_sampler_grow(s, &of_sites, 0, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
   s->of_sites = of_sites;
-  if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points);
-  s->points = points;
+  size_t points_room = s->points_room;
+  for (int i = 0; i < 2 && status == CONIC_OK; i++) {
+    void *points = s->points[i];
+    s->points_room = points_room;
+    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points[i]);
+    s->points[i] = points;
+  }
   for (size_t i = 0; i < s->n_supports && status == CONIC_OK; i++)
     s->of_sites[--s->sites[s->supports[i].site].first_support] = (uint32_t)i;
   return status;
@@ -194,8 +198,8 @@ static conic_status sort_supports(conic_sampler *s) {
 /* --- ellipses --- */
 
 /* Half of the directions, in turn about the plane, in which a site's farthest supports are looked for. */
-static const double looks[CONIC_LEAST_ELLIPSE_POINTS / 2][2] = {
-    {1.0, 0.0}, {0.7071, 0.7071}, {0.0, 1.0}, {-0.7071, 0.7071}};
+enum { N_LOOKS = CONIC_LEAST_ELLIPSE_POINTS / 2 };
+static const double looks[N_LOOKS][2] = {{1.0, 0.0}, {0.7071, 0.7071}, {0.0, 1.0}, {-0.7071, 0.7071}};
 
 /* Lays the plane halfway between the lowest and the highest that it stands for, and finds where the supports come to
  * lie in it: along the face's normal, so that what is seen straight on the face is covered. */
@@ -207,52 +211,60 @@ static void settle_height(conic_sampler *s, conic_site *site) {
     const conic_support *support = &s->supports[s->of_sites[site->first_support + k]];
     double above = support->above - lift, way = fabs(above / support->cosine);
     for (int i = 0; i < 2; i++)
-      s->points[k][i] = support->at[i] - above * support->slope[i];
+      s->points[i][k] = support->at[i] - above * support->slope[i];
     site->height = way > site->height ? way : site->height;
   }
+}
+
+/* The farthest of a site's points along a direction and against it: of several as far the first. */
+typedef struct extent {
+  double most, least;
+  size_t at_most, at_least;
+} extent;
+
+static const extent no_extent = {-HUGE_VAL, HUGE_VAL, 0, 0};
+
+/* Chance decides whether it grows: without branches. */
+static inline void extend(extent *e, double along, size_t i) {
+  e->at_most = along > e->most ? i : e->at_most;
+  e->most = along > e->most ? along : e->most;
+  e->at_least = along < e->least ? i : e->at_least;
+  e->least = along < e->least ? along : e->least;
 }
 
 /* The supports that lie farthest out, one in each of the directions. */
 static int find_farthest(const conic_sampler *s, const conic_site *site,
                          double farthest[CONIC_LEAST_ELLIPSE_POINTS][2]) {
-  double most[CONIC_LEAST_ELLIPSE_POINTS];
-  const int n = CONIC_LEAST_ELLIPSE_POINTS / 2;
-  for (int i = 0; i < 2 * n; i++)
-    most[i] = -HUGE_VAL;
-  for (size_t k = 0; k < site->n_supports; k++) {
-    const double *at = s->points[k];
-    for (int i = 0; i < n; i++) {
-      double along = at[0] * looks[i][0] + at[1] * looks[i][1];
-      if (along > most[i]) {
-        most[i] = along;
-        memcpy(farthest[i], at, sizeof farthest[i]);
-      }
-      if (-along > most[n + i]) {
-        most[n + i] = -along;
-        memcpy(farthest[n + i], at, sizeof farthest[n + i]);
-      }
+  extent extents[N_LOOKS] = {no_extent, no_extent, no_extent, no_extent};
+  for (size_t k = 0; k < site->n_supports; k++)
+    for (int i = 0; i < N_LOOKS; i++)
+      extend(&extents[i], s->points[0][k] * looks[i][0] + s->points[1][k] * looks[i][1], k);
+  if (!(extents[0].most > -HUGE_VAL))
+    return 0;
+  for (int i = 0; i < N_LOOKS; i++)
+    for (int axis = 0; axis < 2; axis++) {
+      farthest[i][axis] = s->points[axis][extents[i].at_most];
+      farthest[N_LOOKS + i][axis] = s->points[axis][extents[i].at_least];
     }
-  }
-  return most[0] > -HUGE_VAL ? 2 * n : 0;
+  return 2 * N_LOOKS;
 }
 
 /* Makes the ellipse large enough for all supports. Notes for each of the four ends of its axes on which face the
  * support lies that is farthest that way. */
 static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
-  double most[4] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  size_t farthest[4] = {0, 0, 0, 0};
-  const double *major = site->ellipse.major;
+  extent major = no_extent, minor = no_extent;
+  double reach2 = 0.0;
+  const double *direction = site->ellipse.major, ratio = site->ellipse.ratio;
   for (size_t k = 0; k < site->n_supports; k++) {
-    double x = s->points[k][0] - center[0], y = s->points[k][1] - center[1];
-    double along = x * major[0] + y * major[1], across = y * major[0] - x * major[1];
-    const double ways[4] = {along, across, -along, -across};
-    conic_ellipse_cover(&site->ellipse, x, y);
-    for (int i = 0; i < 4; i++)
-      if (ways[i] > most[i]) {
-        most[i] = ways[i];
-        farthest[i] = k;
-      }
+    double x = s->points[0][k] - center[0], y = s->points[1][k] - center[1];
+    double along = x * direction[0] + y * direction[1], across = y * direction[0] - x * direction[1];
+    double wide = across / ratio, needed2 = along * along + wide * wide; /* as conic_ellipse_cover */
+    reach2 = needed2 > reach2 ? needed2 : reach2;
+    extend(&major, along, k);
+    extend(&minor, across, k);
   }
+  const size_t farthest[4] = {major.at_most, minor.at_most, major.at_least, minor.at_least};
+  site->ellipse.reach = sqrt(reach2);
   for (int i = 0; i < 4; i++)
     site->end_faces[i] = s->supports[s->of_sites[site->first_support + farthest[i]]].face;
 }

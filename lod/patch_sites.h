@@ -80,7 +80,7 @@ struct conic_sampler {
   conic_support *supports;
   uint32_t *of_sites; /* supports, site by site */
   size_t of_sites_room, points_room;
-  double (*points)[2]; /* of one site's supports, where they come to lie in its plane */
+  double *points[2]; /* of one site's supports, where they come to lie in its plane */
 };
 
 static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {

@@ -9,7 +9,7 @@
 static const double alike = 0.7;
 
 /* The side of a depth's cells, in spacings. */
-static const double cell_side = 1.0;
+static const double cell_side = 2.0;
 
 static double spacing_of(const conic_place_table *t, int depth) {
   return t->places.spacing / (double)(1 << depth);
