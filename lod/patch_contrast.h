@@ -4,8 +4,9 @@
 
 #include "lod/patch_sites.h"
 
-/* Fills in the sites' contrasts: the greatest difference in a channel among the places that they own, as it is shown
- * (1: black and white). Details that are finer than the lattices count as what they are in the mean. */
+/* Fills in the contrasts of the sites that are not settled: the greatest difference in a channel among the places that
+ * they own, as it is shown (1: black and white). Details that are finer than the lattices count as what they are in the
+ * mean. */
 void conic_patch_find_contrasts(conic_sampler *sampler);
 
 #endif

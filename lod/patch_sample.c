@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "lod/patch_error.h"
+#include "lod/patch_reuse.h"
 #include "lod/patch_shape.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
@@ -19,6 +20,9 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
+  conic_memory_release(sampler->context, sampler->last.lattices);
+  conic_memory_release(sampler->context, sampler->last.owner);
+  conic_memory_release(sampler->context, sampler->last.sites);
   conic_memory_release(sampler->context, sampler->lattices);
   conic_memory_release(sampler->context, sampler->facing);
   conic_memory_release(sampler->context, sampler->depth);
@@ -150,9 +154,14 @@ static conic_status begin_depths(conic_sampler *s) {
 
 conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
   s->job = job;
+  s->n_supports = s->n_sorted = 0;
   conic_status status = begin_depths(s);
   for (int pass = 1; status == CONIC_OK; pass++) {
+    if (pass > 1)
+      conic_patch_end_pass(s);
     status = conic_patch_find_sites(s);
+    if (status == CONIC_OK && pass > 1)
+      conic_patch_settle_sites(s);
     if (status == CONIC_OK)
       status = conic_patch_shape_sites(s);
     if (status != CONIC_OK || pass == MOST_PASSES || !refine_faces(s, error_to_part(s)))
@@ -160,7 +169,7 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
-  if (surfels->n <= job->useful)
+  if (status == CONIC_OK && surfels->n <= job->useful)
     surfels->error = largest_error(s, surfels->error);
   return status;
 }

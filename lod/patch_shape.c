@@ -29,10 +29,20 @@ static const int corner_steps[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1,
 
 typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
 
+/* Whether something of a face's belongs to a site that is not settled. */
+static int has_work(const conic_sampler *s, const conic_lattice *l) {
+  uint32_t n = conic_lattice_places(l->sides), i = 0;
+  while (i < n && s->sites[s->owner[l->first + i]].is_settled)
+    i++;
+  return i < n;
+}
+
 static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
+    if (!has_work(s, l))
+      continue;
     for (int i = 0; i < l->sides; i++)
       for (int j = 0; j < l->sides - i; j++)
         for (int between = 0; between < (i + j < l->sides - 1 ? 2 : 1) && status == CONIC_OK; between++) {
@@ -63,6 +73,8 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
   for (int corner = 0; corner < 3; corner++) {
     conic_site *site = &s->sites[t->owners[corner]];
     double normal[3], color[3];
+    if (site->is_settled)
+      continue;
     conic_patch_normal(s->job->mesh, t->lattice->face, t->bary[corner], t->facing, normal);
     conic_patch_color(s->job->mesh, t->lattice->face, t->bary[corner], color);
     for (int axis = 0; axis < 3; axis++) {
@@ -78,6 +90,8 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 static void settle_planes(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
+    if (site->is_settled)
+      continue;
     double length = sqrt(conic_dot(site->normal, site->normal));
     for (int axis = 0; axis < 3; axis++)
       site->normal[axis] = length > 0.0 ? site->normal[axis] / length : site->facing[axis];
@@ -101,10 +115,12 @@ static conic_status grow_supports(conic_sampler *s) {
 static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
                                  const double facing[3]) {
   conic_site *site = &s->sites[i_site];
+  if (site->is_settled)
+    return CONIC_OK;
   conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
   if (status != CONIC_OK)
     return status;
-  const double d[3] = {at[0] - site->at[0], at[1] - site->at[1], at[2] - site->at[2]};
+  const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
   double cosine = conic_dot(facing, site->normal);
   conic_support *support = &s->supports[s->n_supports++];
   site->n_supports++;
@@ -126,7 +142,7 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
   const conic_site *a = &s->sites[t->owners[from]], *b = &s->sites[t->owners[to]];
   double more = 0.0, slope = 0.0, share;
   for (int axis = 0; axis < 3; axis++) {
-    double to_a = a->at[axis] - t->at[from][axis], to_b = b->at[axis] - t->at[from][axis];
+    double to_a = a->foot[axis] - t->at[from][axis], to_b = b->foot[axis] - t->at[from][axis];
     more += 0.5 * (to_b * to_b - to_a * to_a);
     slope += (t->at[to][axis] - t->at[from][axis]) * (to_b - to_a);
   }
@@ -140,6 +156,8 @@ static conic_status cover_places(conic_sampler *s) {
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
     size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
+    if (!has_work(s, l))
+      continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
       status = note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
@@ -171,17 +189,20 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
   return status;
 }
 
-/* Lists the supports site by site, what was noted last first. */
+/* Lists the supports of this pass site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
   void *of_sites = s->of_sites;
-  size_t begin = 0, most = 0;
+  size_t begin = s->n_sorted, most = 0;
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
+    if (site->is_settled)
+      continue;
     most = site->n_supports > most ? site->n_supports : most;
     begin += site->n_supports;
     site->first_support = begin;
   }
-  conic_status status = conic_sampler_grow(s, &of_sites, 0, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
+  conic_status status =
+      conic_sampler_grow(s, &of_sites, s->n_sorted, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
   s->of_sites = of_sites;
   size_t points_room = s->points_room;
   for (int i = 0; i < 2 && status == CONIC_OK; i++) {
@@ -190,8 +211,8 @@ static conic_status sort_supports(conic_sampler *s) {
     status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points[i]);
     s->points[i] = points;
   }
-  for (size_t i = 0; i < s->n_supports && status == CONIC_OK; i++)
-    s->of_sites[--s->sites[s->supports[i].site].first_support] = (uint32_t)i;
+  for (; s->n_sorted < s->n_supports && status == CONIC_OK; s->n_sorted++)
+    s->of_sites[--s->sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;
   return status;
 }
 
@@ -281,7 +302,6 @@ static void widen(conic_site *site) {
 
 static void shape_site(conic_sampler *s, conic_site *site) {
   double farthest[CONIC_LEAST_ELLIPSE_POINTS][2], center[2] = {0.0, 0.0}, covariance[3];
-  memcpy(site->foot, site->at, sizeof site->foot);
   settle_height(s, site);
   int n = find_farthest(s, site, farthest);
   if (n == 0)
@@ -298,7 +318,6 @@ static void shape_site(conic_sampler *s, conic_site *site) {
 }
 
 conic_status conic_patch_shape_sites(conic_sampler *s) {
-  s->n_supports = 0;
   conic_status status = do_small_triangles(s, add_to_sums);
   if (status != CONIC_OK)
     return status;
@@ -310,6 +329,7 @@ conic_status conic_patch_shape_sites(conic_sampler *s) {
   if (status == CONIC_OK)
     status = sort_supports(s);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    shape_site(s, &s->sites[i]);
+    if (!s->sites[i].is_settled)
+      shape_site(s, &s->sites[i]);
   return status;
 }

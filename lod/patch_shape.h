@@ -4,7 +4,7 @@
 
 #include "lod/patch_sites.h"
 
-/* Fills in the sites' sums, planes, ellipses and errors. Errors: MEMORY. */
+/* Fills in the sums, planes, ellipses and errors of the sites that are not settled. Errors: MEMORY. */
 conic_status conic_patch_shape_sites(conic_sampler *sampler);
 
 #endif

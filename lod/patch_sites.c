@@ -41,12 +41,11 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 static conic_status lay_lattices(conic_sampler *s) {
   const conic_patch_mesh *mesh = s->job->mesh;
   size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
-  size_t facing_room = s->lattices_room;
   void *lattices = s->lattices, *facing = s->facing;
   conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
   s->lattices = lattices;
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &facing, 0, n, &facing_room, sizeof *s->facing);
+    status = conic_sampler_grow(s, &facing, 0, n, &s->facing_room, sizeof *s->facing);
   s->facing = facing;
   if (status != CONIC_OK)
     return status;
@@ -57,15 +56,15 @@ static conic_status lay_lattices(conic_sampler *s) {
   for (size_t i = 0; i < n; i++) {
     uint32_t face = mesh->faces[begin + i];
     int depth = s->depth[i];
-    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), (uint32_t)s->n_places};
+    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
     s->finest = depth > s->finest ? depth : s->finest;
     s->coarsest = depth < s->coarsest ? depth : s->coarsest;
     s->n_places += conic_lattice_places(s->lattices[i].sides);
     conic_patch_face_normal(mesh, face, s->facing[i]);
   }
-  size_t owner_room = s->places_room, lattice_room = s->places_room;
+  size_t lattice_room = s->places_room;
   void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
-  status = conic_sampler_grow(s, &owner, 0, s->n_places, &owner_room, sizeof *s->owner);
+  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
   s->owner = owner;
   if (status == CONIC_OK)
     status = conic_sampler_grow(s, &lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
@@ -159,7 +158,8 @@ static conic_status list_candidates(conic_sampler *s) {
 /* Becomes the owner of what it is nearest to, of the places from number `first` on. */
 static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
   const conic_lattice *l = &s->lattices[i_lattice];
-  const double *at = s->places[conic_lattice_place(l, i, j)];
+  uint32_t place = conic_lattice_place(l, i, j);
+  const double *at = s->places[place];
   void *sites = s->sites;
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   s->sites = sites;
@@ -168,9 +168,12 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   conic_site *site = &s->sites[s->n_sites];
   memset(site, 0, sizeof *site);
   memcpy(site->at, at, sizeof site->at);
+  memcpy(site->foot, at, sizeof site->foot);
   conic_lattice_bary(l, i, j, site->bary);
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
   site->face = l->face;
+  site->place = place;
+  site->last = CONIC_NO_SITE;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
   conic_place_table_put(&s->table, (uint32_t)s->n_sites++, at, s->facing[i_lattice], first);
   return CONIC_OK;
