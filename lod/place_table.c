@@ -109,12 +109,28 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
   }
 }
 
+/* Of so many places at a time distances are found, then whose are near enough, without branches, then who is claimed.
+ */
+enum { AT_A_TIME = 64 };
+
 static void claim_in_bucket(conic_place_table *t, const newcomer *n, size_t bucket) {
-  for (size_t i = t->starts[bucket]; i < t->starts[bucket + 1]; i++) {
-    double x = t->at[0][i] - n->at[0], y = t->at[1][i] - n->at[1], z = t->at[2][i] - n->at[2];
-    double distance2 = (x * x + y * y) + z * z;
-    if (distance2 <= t->nearest2[i])
-      claim(t, n, i, distance2);
+  size_t end = t->starts[bucket + 1], count;
+  for (size_t begin = t->starts[bucket]; begin < end; begin += count) {
+    const double *at_x = t->at[0] + begin, *at_y = t->at[1] + begin, *at_z = t->at[2] + begin;
+    const double *nearest2 = t->nearest2 + begin, to_x = n->at[0], to_y = n->at[1], to_z = n->at[2];
+    double distances2[AT_A_TIME];
+    uint32_t near[AT_A_TIME + 1], n_near = 0;
+    count = end - begin < AT_A_TIME ? end - begin : AT_A_TIME;
+    for (size_t i = 0; i < count; i++) {
+      double x = at_x[i] - to_x, y = at_y[i] - to_y, z = at_z[i] - to_z;
+      distances2[i] = (x * x + y * y) + z * z;
+    }
+    for (size_t i = 0; i < count; i++) {
+      near[n_near] = (uint32_t)i;
+      n_near += distances2[i] <= nearest2[i];
+    }
+    for (uint32_t i = 0; i < n_near; i++)
+      claim(t, n, begin + near[i], distances2[near[i]]);
   }
 }
 
