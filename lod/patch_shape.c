@@ -19,7 +19,7 @@ typedef struct small_triangle {
   const conic_lattice *lattice;
   const double *facing;
   const double *at[3];
-  double bary[3][3];
+  int steps[3][2];
   uint32_t owners[3];
   int is_between; /* two that point as the face does */
 } small_triangle;
@@ -46,11 +46,14 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
     for (int i = 0; i < l->sides; i++)
       for (int j = 0; j < l->sides - i; j++)
         for (int between = 0; between < (i + j < l->sides - 1 ? 2 : 1) && status == CONIC_OK; between++) {
-          small_triangle t = {.lattice = l, .facing = s->facing[k], .is_between = between};
+          small_triangle t;
+          t.lattice = l;
+          t.facing = s->facing[k];
+          t.is_between = between;
           for (int corner = 0; corner < 3; corner++) {
-            const int *step = corner_steps[between][corner];
-            uint32_t place = conic_lattice_place(l, i + step[0], j + step[1]);
-            conic_lattice_bary(l, i + step[0], j + step[1], t.bary[corner]);
+            t.steps[corner][0] = i + corner_steps[between][corner][0];
+            t.steps[corner][1] = j + corner_steps[between][corner][1];
+            uint32_t place = conic_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
             t.at[corner] = s->places[place];
             t.owners[corner] = s->owner[place];
           }
@@ -62,8 +65,19 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
 
 /* --- planes and colours --- */
 
+/* The normal and the colour at a corner. */
+static void look_at_corner(const conic_sampler *s, const small_triangle *t, int corner, double normal[3],
+                           double color[3]) {
+  double bary[3];
+  conic_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
+  conic_patch_normal(s->job->mesh, t->lattice->face, bary, t->facing, normal);
+  conic_patch_color(s->job->mesh, t->lattice->face, bary, color);
+}
+
 static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
-  double sides[2][3], cross[3];
+  const conic_triangles *triangles = s->job->mesh->triangles;
+  int varies = triangles->normal[0] || triangles->color[0], is_known = 0; /* over a face */
+  double sides[2][3], cross[3], normal[3], color[3];
   for (int axis = 0; axis < 3; axis++) {
     sides[0][axis] = t->at[1][axis] - t->at[0][axis];
     sides[1][axis] = t->at[2][axis] - t->at[0][axis];
@@ -72,11 +86,11 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
   double share = sqrt(conic_dot(cross, cross)) / 6.0;
   for (int corner = 0; corner < 3; corner++) {
     conic_site *site = &s->sites[t->owners[corner]];
-    double normal[3], color[3];
     if (site->is_settled)
       continue;
-    conic_patch_normal(s->job->mesh, t->lattice->face, t->bary[corner], t->facing, normal);
-    conic_patch_color(s->job->mesh, t->lattice->face, t->bary[corner], color);
+    if (varies || !is_known)
+      look_at_corner(s, t, corner, normal, color);
+    is_known = 1;
     for (int axis = 0; axis < 3; axis++) {
       site->normal[axis] += share * normal[axis];
       site->color[axis] += share * color[axis];

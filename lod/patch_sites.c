@@ -75,79 +75,90 @@ static conic_status lay_lattices(conic_sampler *s) {
   return status;
 }
 
-static void find_places(conic_sampler *s) {
-  size_t place = 0;
-  for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
-    for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i; j++) {
-        double bary[3];
-        conic_lattice_bary(l, i, j, bary);
-        s->lattice_of[place] = (uint32_t)k;
-        conic_patch_place(s->job->mesh, l->face, bary, s->places[place++]);
-      }
-  }
+/* As conic_patch_place of each. */
+static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  double corners[3][3], shares[MOST_SIDES + 1];
+  uint32_t place = l->first;
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(&s->job->mesh->mesh, l->face, corner, corners[corner]);
+  for (int i = 0; i <= l->sides; i++)
+    shares[i] = (double)i / (double)l->sides;
+  for (int i = 0; i <= l->sides; i++)
+    for (int j = 0; j <= l->sides - i; j++, place++) {
+      double a = shares[l->sides - i - j], b = shares[i], c = shares[j];
+      s->lattice_of[place] = i_lattice;
+      for (int axis = 0; axis < 3; axis++)
+        s->places[place][axis] = (a * corners[0][axis] + b * corners[1][axis]) + c * corners[2][axis];
+    }
 }
 
 /* --- candidates --- */
 
-/* Which side of its face a place lies on, as the corner where that begins; -1 inside; corners count for either side. */
-static int is_on_side(const conic_lattice *l, int i, int j, int corner) {
-  return corner == 0 ? j == 0 : corner == 1 ? i + j == l->sides : i == 0;
+/* Sides of a face, as bits by the corner where each begins: those that a place lies on. */
+static int sides_at(const conic_lattice *l, int i, int j) {
+  return (j == 0) | (i + j == l->sides) << 1 | (i == 0) << 2;
 }
 
-/* Whether the surfels must reach to that side by themselves: what lies across is no surfels, or nothing. */
-static int is_rim(const conic_patch_mesh *mesh, uint32_t face, int corner) {
-  uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-  if (!conic_patch_ends_at(mesh, face, corner))
-    return 0;
-  return !conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]];
+/* Those that the surfels must reach to by themselves: what lies across is no surfels, or nothing. */
+static int rims_of(const conic_patch_mesh *mesh, uint32_t face) {
+  int rims = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    int is_rim = conic_patch_ends_at(mesh, face, corner) &&
+                 (!conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]]);
+    rims |= is_rim << corner;
+  }
+  return rims;
 }
 
-static conic_status add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
+/* Those whose places are another face's of the patch, too, which answers for them. */
+static int sides_of_others(const conic_patch_mesh *mesh, uint32_t face) {
+  int sides = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    sides |= (!conic_patch_ends_at(mesh, face, corner) && across / 3 < face) << corner;
+  }
+  return sides;
+}
+
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+  return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
+}
+
+/* There is room for it. */
+static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
   const conic_lattice *l = &s->lattices[i_lattice];
-  size_t room = s->candidates_room;
-  void *candidates = s->candidates, *seeds = s->seeds;
-  conic_status status =
-      conic_sampler_grow(s, &candidates, s->n_candidates, s->n_candidates + 1, &room, sizeof *s->candidates);
-  s->candidates = candidates;
-  if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &seeds, s->n_candidates, s->n_candidates + 1, &s->candidates_room, sizeof *s->seeds);
-  s->seeds = seeds;
-  if (status != CONIC_OK)
-    return status;
   uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
-  uint64_t rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + (uint64_t)s->depth[i_lattice];
+  uint64_t rank = (uint64_t)((is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth);
   s->candidates[s->n_candidates].key = rank << 21 | turn;
   s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
   s->seeds[s->n_candidates][0] = i_lattice;
   s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
-  return CONIC_OK;
 }
 
-int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
-  for (int corner = 0; corner < 3; corner++) {
-    uint32_t across = mesh->adjacency->across[3 * (size_t)l->face + (size_t)corner];
-    if (is_on_side(l, i, j, corner) && !conic_patch_ends_at(mesh, l->face, corner) && across / 3 < l->face)
-      return 0;
-  }
-  return 1;
+static conic_status make_room_for_candidates(conic_sampler *s) {
+  size_t room = s->candidates_room;
+  void *candidates = s->candidates, *seeds = s->seeds;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &room, sizeof *s->candidates);
+  s->candidates = candidates;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->candidates_room, sizeof *s->seeds);
+  s->seeds = seeds;
+  return status;
 }
 
 static conic_status list_candidates(conic_sampler *s) {
-  const conic_patch_mesh *mesh = s->job->mesh;
-  conic_status status = CONIC_OK;
+  conic_status status = make_room_for_candidates(s);
   s->n_candidates = 0;
-  for (size_t k = 0; k < s->n_lattices; k++) {
+  for (size_t k = 0; k < s->n_lattices && status == CONIC_OK; k++) {
     const conic_lattice *l = &s->lattices[k];
-    int rims[3] = {is_rim(mesh, l->face, 0), is_rim(mesh, l->face, 1), is_rim(mesh, l->face, 2)};
+    int rims = rims_of(s->job->mesh, l->face), others = sides_of_others(s->job->mesh, l->face);
     for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
-        int is_first = 0;
-        for (int corner = 0; corner < 3; corner++)
-          is_first |= rims[corner] && is_on_side(l, i, j, corner);
-        if (is_first || conic_lattice_is_own(mesh, l, i, j))
-          status = add_candidate(s, (uint32_t)k, i, j, is_first);
+      for (int j = 0; j <= l->sides - i; j++) {
+        int sides = sides_at(l, i, j);
+        if ((sides & rims) || !(sides & others))
+          add_candidate(s, (uint32_t)k, i, j, (sides & rims) != 0);
       }
   }
   return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 24) : status;
@@ -226,7 +237,8 @@ conic_status conic_patch_find_sites(conic_sampler *s) {
   conic_status status = lay_lattices(s);
   if (status != CONIC_OK)
     return status;
-  find_places(s);
+  for (size_t k = 0; k < s->n_lattices; k++)
+    find_places_of(s, (uint32_t)k);
   status = list_candidates(s);
   if (status == CONIC_OK)
     status = fill_table(s);
