@@ -161,7 +161,8 @@ static double distance2_to_box(const conic_face_box *box, const double at[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double below = (double)box->low[axis] - at[axis], above = at[axis] - (double)box->high[axis];
     double out = below > above ? below : above;
-    sum += out > 0.0 ? out * out : 0.0;
+    out = out > 0.0 ? out : 0.0; /* no branch: chance would decide it */
+    sum += out * out;
   }
   return sum;
 }

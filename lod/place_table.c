@@ -9,7 +9,7 @@
 static const double alike = 0.7;
 
 /* The side of a depth's cells, in spacings. */
-static const double cell_side = 2.0;
+static const double cell_side = 1.4;
 
 static double spacing_of(const conic_place_table *t, int depth) {
   return t->places.spacing / (double)(1 << depth);
@@ -20,15 +20,14 @@ static int64_t cell_along(double way, double cells_a_length) {
   return (int64_t)(way * cells_a_length);
 }
 
-/* A cell's hash is the sum of those of its places along the axes. */
-static uint64_t hash_along(int axis, int64_t cell) {
-  static const uint64_t factors[3] = {UINT64_C(0x9e3779b97f4a7c15), UINT64_C(0xc2b2ae3d27d4eb4f),
-                                      UINT64_C(0x165667b19e3779f9)};
-  return (uint64_t)cell * factors[axis];
+/* Cells that follow each other along x lie in buckets that do so, too, but for the last of a depth's and its first. */
+static uint64_t row_hash(int64_t y, int64_t z) {
+  uint64_t hash = (uint64_t)y * UINT64_C(0xc2b2ae3d27d4eb4f) + (uint64_t)z * UINT64_C(0x165667b19e3779f9);
+  return hash ^ hash >> 29;
 }
 
-static size_t bucket_of(const conic_place_table *t, int depth, uint64_t hash) {
-  return (size_t)(depth - t->places.coarsest) * (t->mask + 1) + ((hash ^ hash >> 29) & t->mask);
+static size_t bucket_of(const conic_place_table *t, int depth, uint64_t row, int64_t x) {
+  return (size_t)(depth - t->places.coarsest) * (t->mask + 1) + (size_t)((row + (uint64_t)x) & t->mask);
 }
 
 static conic_status make_room(conic_context *context, conic_place_table *t, size_t n_places, size_t n_starts) {
@@ -53,10 +52,10 @@ static conic_status make_room(conic_context *context, conic_place_table *t, size
 
 static size_t bucket_of_place(const conic_place_table *t, size_t place, int depth) {
   double cells_a_length = 1.0 / (cell_side * spacing_of(t, depth));
-  uint64_t hash = 0;
+  int64_t cell[3];
   for (int axis = 0; axis < 3; axis++)
-    hash += hash_along(axis, cell_along(t->places.at[place][axis] - t->places.at[0][axis], cells_a_length));
-  return bucket_of(t, depth, hash);
+    cell[axis] = cell_along(t->places.at[place][axis] - t->places.at[0][axis], cells_a_length);
+  return bucket_of(t, depth, row_hash(cell[1], cell[2]), cell[0]);
 }
 
 /* Sorts by counting: the buckets wait where owners will be. */
@@ -113,9 +112,8 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
  */
 enum { AT_A_TIME = 64 };
 
-static void claim_in_bucket(conic_place_table *t, const newcomer *n, size_t bucket) {
-  size_t end = t->starts[bucket + 1], count;
-  for (size_t begin = t->starts[bucket]; begin < end; begin += count) {
+static void claim_among(conic_place_table *t, const newcomer *n, size_t begin, size_t end) {
+  for (size_t count; begin < end; begin += count) {
     const double *at_x = t->at[0] + begin, *at_y = t->at[1] + begin, *at_z = t->at[2] + begin;
     const double *nearest2 = t->nearest2 + begin, to_x = n->at[0], to_y = n->at[1], to_z = n->at[2];
     double distances2[AT_A_TIME];
@@ -134,6 +132,16 @@ static void claim_in_bucket(conic_place_table *t, const newcomer *n, size_t buck
   }
 }
 
+/* In the cells of a row, from one to another. */
+static void claim_in_row(conic_place_table *t, const newcomer *n, int depth, uint64_t row, int64_t low, int64_t high) {
+  for (int64_t x = low, last; x <= high; x = last + 1) {
+    size_t first = bucket_of(t, depth, row, x), bucket = first;
+    for (last = x; last < high && bucket_of(t, depth, row, last + 1) == bucket + 1; last++)
+      bucket++;
+    claim_among(t, n, t->starts[first], t->starts[bucket + 1]);
+  }
+}
+
 static void claim_at_depth(conic_place_table *t, const newcomer *n, int depth) {
   double spacing = spacing_of(t, depth), cells_a_length = 1.0 / (cell_side * spacing);
   double reach = spacing * (1.0 + 1e-6); /* more than rounding takes */
@@ -145,8 +153,7 @@ static void claim_at_depth(conic_place_table *t, const newcomer *n, int depth) {
   }
   for (int64_t z = low[2]; z <= high[2]; z++)
     for (int64_t y = low[1]; y <= high[1]; y++)
-      for (int64_t x = low[0]; x <= high[0]; x++)
-        claim_in_bucket(t, n, bucket_of(t, depth, hash_along(0, x) + hash_along(1, y) + hash_along(2, z)));
+      claim_in_row(t, n, depth, row_hash(y, z), low[0], high[0]);
 }
 
 void conic_place_table_put(conic_place_table *table, uint32_t site, const double at[3], const double facing[3],
