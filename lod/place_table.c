@@ -108,27 +108,23 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
   }
 }
 
-/* Of so many places at a time distances are found, then whose are near enough, without branches, then who is claimed.
- */
+/* Of so many places at a time those are found that are near enough, without branches, then who of them is claimed. */
 enum { AT_A_TIME = 64 };
 
 static void claim_among(conic_place_table *t, const newcomer *n, size_t begin, size_t end) {
-  for (size_t count; begin < end; begin += count) {
-    const double *at_x = t->at[0] + begin, *at_y = t->at[1] + begin, *at_z = t->at[2] + begin;
-    const double *nearest2 = t->nearest2 + begin, to_x = n->at[0], to_y = n->at[1], to_z = n->at[2];
-    double distances2[AT_A_TIME];
-    uint32_t near[AT_A_TIME + 1], n_near = 0;
-    count = end - begin < AT_A_TIME ? end - begin : AT_A_TIME;
-    for (size_t i = 0; i < count; i++) {
-      double x = at_x[i] - to_x, y = at_y[i] - to_y, z = at_z[i] - to_z;
-      distances2[i] = (x * x + y * y) + z * z;
+  const double *at_x = t->at[0], *at_y = t->at[1], *at_z = t->at[2];
+  const double to_x = n->at[0], to_y = n->at[1], to_z = n->at[2];
+  for (size_t i = begin; i < end;) {
+    size_t last = end - i < AT_A_TIME ? end : i + AT_A_TIME, near[AT_A_TIME + 1], n_near = 0;
+    double distances2[AT_A_TIME + 1];
+    for (; i < last; i++) {
+      double x = at_x[i] - to_x, y = at_y[i] - to_y, z = at_z[i] - to_z, distance2 = (x * x + y * y) + z * z;
+      near[n_near] = i;
+      distances2[n_near] = distance2;
+      n_near += distance2 <= t->nearest2[i];
     }
-    for (size_t i = 0; i < count; i++) {
-      near[n_near] = (uint32_t)i;
-      n_near += distances2[i] <= nearest2[i];
-    }
-    for (uint32_t i = 0; i < n_near; i++)
-      claim(t, n, begin + near[i], distances2[near[i]]);
+    for (size_t k = 0; k < n_near; k++)
+      claim(t, n, near[k], distances2[k]);
   }
 }
 
