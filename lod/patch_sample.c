@@ -79,25 +79,40 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
   return CONIC_OK;
 }
 
-/* The greater of `known` and the largest error of what is drawn. Most are known well enough from the sites' making:
- * beginning with the site that may have the largest, few are measured again. */
-static double largest_error(const conic_sampler *s, double known) {
-  const conic_site *worst = NULL;
-  double bound;
+/* The sites that are drawn and may err by more than is known, the one that may by the most first: in the place of the
+ * candidates, which have had their turn. */
+static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
+  void *candidates = s->candidates;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
+  s->candidates = candidates;
+  *n = 0;
+  for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
+    float bound = (float)s->sites[i].error_bound;
+    uint32_t bits;
+    memcpy(&bits, &bound, sizeof bits); /* of positive numbers these are in the numbers' order */
+    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
+      s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
+  }
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, *n, 32) : status;
+}
+
+/* Raises *known to the largest error of what is drawn. Most are known well enough from the sites' making; beginning
+ * with the site that may have the largest, few are measured again. */
+static conic_status find_largest_error(conic_sampler *s, double *known) {
+  size_t n;
   for (size_t i = 0; i < s->n_sites; i++) {
     const conic_site *site = &s->sites[i];
     double least = site->error > s->job->tolerance ? site->error : site->least_error;
-    if (!site->is_drawn)
-      continue;
-    known = least > known ? least : known;
-    worst = !worst || site->error_bound > worst->error_bound ? site : worst;
+    *known = site->is_drawn && least > *known ? least : *known;
   }
-  if (worst && worst->error_bound > known)
-    known = conic_site_error(s, worst, known, &bound);
-  for (size_t i = 0; i < s->n_sites; i++)
-    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
-      known = conic_site_error(s, &s->sites[i], known, &bound);
-  return known;
+  conic_status status = order_by_bound(s, *known, &n);
+  for (size_t k = 0; k < n && status == CONIC_OK; k++) {
+    const conic_site *site = &s->sites[s->candidates[k].value];
+    double bound;
+    if (site->error_bound > *known)
+      *known = conic_site_error(s, site, *known, &bound);
+  }
+  return status;
 }
 
 /* --- closer where it must be --- */
@@ -170,6 +185,6 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
   if (status == CONIC_OK && surfels->n <= job->useful)
-    surfels->error = largest_error(s, surfels->error);
+    status = find_largest_error(s, &surfels->error);
   return status;
 }

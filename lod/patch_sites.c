@@ -138,12 +138,11 @@ static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, in
 }
 
 static conic_status make_room_for_candidates(conic_sampler *s) {
-  size_t room = s->candidates_room;
   void *candidates = s->candidates, *seeds = s->seeds;
-  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &room, sizeof *s->candidates);
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &s->candidates_room, sizeof *s->candidates);
   s->candidates = candidates;
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->candidates_room, sizeof *s->seeds);
+    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->seeds_room, sizeof *s->seeds);
   s->seeds = seeds;
   return status;
 }

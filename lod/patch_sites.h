@@ -81,7 +81,7 @@ struct conic_sampler {
   double (*places)[3];  /* where they are */
   uint32_t *lattice_of; /* of each place: its lattice */
   uint32_t *owner;      /* of each place: a site */
-  size_t n_candidates, candidates_room;
+  size_t n_candidates, candidates_room, seeds_room;
   conic_radix_item *candidates; /* key: when its turn is; value: its number */
   uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
   size_t n_sites, sites_room;
