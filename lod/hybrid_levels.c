@@ -156,7 +156,7 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
       status = conic_patch_sample(sampler, &sampling, surfels);
     if (i == 0)
       ways->is_surfels = is_gathered && is_surfels(job->options, surfels, sampling.spacing);
-    int is_last = surfels->n <= 2;
+    int is_last = surfels->n <= 2 || surfels->is_coarsest;
     keep_level(job->context, ways);
     if (is_last)
       break;

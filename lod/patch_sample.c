@@ -167,6 +167,33 @@ static conic_status begin_depths(conic_sampler *s) {
   return CONIC_OK;
 }
 
+static int has_texture(const conic_triangles *t) {
+  int is_any = 0;
+  for (size_t i = 0; i < t->n_materials; i++)
+    is_any |= t->materials[i].texture != NULL;
+  return is_any;
+}
+
+/* Whether a wider spacing would give the same sites: faces have no places but their corners, each of which is near
+ * every other, and nothing is to be parted. (Of textures a wider one sees less.) */
+static int is_coarsest(const conic_sampler *s) {
+  double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
+  int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);
+  for (size_t k = 0; k < s->n_lattices && is_plain; k++)
+    is_plain = s->lattices[k].sides == 1;
+  for (size_t i = 0; i < s->n_sites && is_plain; i++)
+    is_plain = s->sites[i].error <= s->job->tolerance;
+  for (size_t i = 0; i < s->n_places && is_plain; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      double at = s->places[i][axis];
+      low[axis] = at < low[axis] ? at : low[axis];
+      high[axis] = at > high[axis] ? at : high[axis];
+    }
+  for (int axis = 0; axis < 3; axis++)
+    square += (high[axis] - low[axis]) * (high[axis] - low[axis]);
+  return is_plain && square < 0.999 * s->job->spacing * s->job->spacing;
+}
+
 conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
   s->job = job;
   s->n_supports = s->n_sorted = 0;
@@ -184,6 +211,7 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
+  surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
   if (status == CONIC_OK && surfels->n <= job->useful)
     status = find_largest_error(s, &surfels->error);
   return status;

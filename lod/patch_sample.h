@@ -17,7 +17,8 @@ typedef struct conic_surfels {
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
    * measured at twenty places. */
   double error;
-  double reach; /* the longest half axis of an outline */
+  double reach;    /* the longest half axis of an outline */
+  int is_coarsest; /* no wider spacing gives fewer */
 } conic_surfels;
 
 typedef struct conic_sampling_job {
