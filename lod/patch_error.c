@@ -1,6 +1,7 @@
 #include "lod/patch_error.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { N_ENDS = 20 };
 
@@ -70,6 +71,11 @@ static int largest_of(const double bounds[N_ENDS]) {
   return largest;
 }
 
+/* Of place k of a site, the end of an axis that is nearest. */
+static int end_of(int k) {
+  return k < 16 ? (k + 2) / 4 % 4 : k - 16;
+}
+
 /* The face of the support that is nearest to the place. */
 static uint32_t face_near(const conic_sampler *s, const conic_site *site, const double at[3]) {
   const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
@@ -86,11 +92,15 @@ static uint32_t face_near(const conic_sampler *s, const conic_site *site, const 
   return s->supports[nearest].face;
 }
 
-/* As conic_face_tree_bound for place k of a site. Most are near enough to what lies at the nearest end of an axis. */
-static double end_distance(const conic_sampler *s, const conic_site *site, int k, const double at[3], double enough) {
-  uint32_t end_face = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
-  double distance = conic_face_distance(&s->job->mesh->mesh, end_face, at);
-  return distance <= enough ? distance : conic_face_tree_bound(s->job->tree, at, face_near(s, site, at), enough);
+/* As conic_face_tree_bound. Most places are near enough to the face that is tried first, many others to that of the
+ * support that is nearest. */
+static double measure(const conic_sampler *s, const conic_site *site, const double at[3], uint32_t *near,
+                      double enough) {
+  double distance = conic_face_distance(&s->job->mesh->mesh, *near, at);
+  if (distance <= enough)
+    return distance;
+  *near = face_near(s, site, at);
+  return conic_face_tree_bound(s->job->tree, at, near, enough);
 }
 
 /* That of any place of the ellipse from the site's foot, which lies on the mesh. */
@@ -100,17 +110,20 @@ static double greatest_way(const conic_site *site) {
 }
 
 /* Where neither the foot nor the supports say that all places are near enough, the one that may be farthest is measured
- * first: that is soon far enough from those before, or near enough to them, for the others to need no look. */
+ * first: that is soon far enough from those before, or near enough to them, for the others to need no look. Most are
+ * near the face that was nearest to one before, or on which the support lies that is farthest that way. */
 double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
   double at[N_ENDS][3], bounds[N_ENDS], farthest = greatest_way(site);
   known = site->least_error > known ? site->least_error : known;
   if (farthest > known) {
+    uint32_t near[4];
+    memcpy(near, site->end_faces, sizeof near);
     bound_by_supports(s, site, farthest, bounds);
     int k = largest_of(bounds);
     if (bounds[k] > known)
       find_ends(site, at);
     for (; bounds[k] > known; k = largest_of(bounds)) {
-      double distance = end_distance(s, site, k, at[k], known);
+      double distance = measure(s, site, at[k], &near[end_of(k)], known);
       known = distance > known ? distance : known;
       bound_by((const double(*)[3])at, k, distance, bounds);
     }
