@@ -103,32 +103,40 @@ static double measure(const conic_sampler *s, const conic_site *site, const doub
   return conic_face_tree_bound(s->job->tree, at, near, enough);
 }
 
-/* That of any place of the ellipse from the site's foot, which lies on the mesh. */
+/* That of any place of the ellipse from the site's foot. */
 static double greatest_way(const conic_site *site) {
   const double d[3] = {site->at[0] - site->foot[0], site->at[1] - site->foot[1], site->at[2] - site->foot[2]};
   return (sqrt(conic_dot(d, d)) + site->ellipse.reach) * rounding;
 }
 
-/* Where neither the foot nor the supports say that all places are near enough, the one that may be farthest is measured
- * first: that is soon far enough from those before, or near enough to them, for the others to need no look. Most are
- * near the face that was nearest to one before, or on which the support lies that is farthest that way. */
+/* What is known without a look at the mesh: the foot lies on it, and so do the supports, of which nobody asks where the
+ * foot is near enough. */
+static void begin_bounds(const conic_sampler *s, const conic_site *site, double enough, double bounds[N_ENDS]) {
+  double way = s->job->is_off_mesh ? HUGE_VAL : greatest_way(site);
+  for (int i = 0; i < N_ENDS; i++)
+    bounds[i] = way;
+  if (way > enough && !s->job->is_off_mesh)
+    bound_by_supports(s, site, way, bounds);
+}
+
+/* Of the places that are not known to be near enough, the one that may be farthest is measured first: that is soon far
+ * enough from those before, or near enough to them, for the others to need no look. Most are near the face that was
+ * nearest to one before, or on which the support lies that is farthest that way. */
 double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
-  double at[N_ENDS][3], bounds[N_ENDS], farthest = greatest_way(site);
+  double at[N_ENDS][3], bounds[N_ENDS];
+  uint32_t near[4];
   known = site->least_error > known ? site->least_error : known;
-  if (farthest > known) {
-    uint32_t near[4];
+  begin_bounds(s, site, known, bounds);
+  int k = largest_of(bounds);
+  if (bounds[k] > known) {
     memcpy(near, site->end_faces, sizeof near);
-    bound_by_supports(s, site, farthest, bounds);
-    int k = largest_of(bounds);
-    if (bounds[k] > known)
-      find_ends(site, at);
-    for (; bounds[k] > known; k = largest_of(bounds)) {
-      double distance = measure(s, site, at[k], &near[end_of(k)], known);
-      known = distance > known ? distance : known;
-      bound_by((const double(*)[3])at, k, distance, bounds);
-    }
-    farthest = bounds[k];
+    find_ends(site, at);
   }
-  *bound = farthest > site->least_error ? farthest : site->least_error;
+  for (; bounds[k] > known; k = largest_of(bounds)) {
+    double distance = measure(s, site, at[k], &near[end_of(k)], known);
+    known = distance > known ? distance : known;
+    bound_by((const double(*)[3])at, k, distance, bounds);
+  }
+  *bound = bounds[k] > site->least_error ? bounds[k] : site->least_error;
   return known;
 }

@@ -9,6 +9,7 @@ typedef struct conic_surfel {
   float position[3]; /* from the mesh's origin */
   float tangent_u[3], tangent_v[3];
   float color[3];
+  uint32_t face; /* of the mesh, near it */
 } conic_surfel;
 
 typedef struct conic_surfels {
@@ -30,6 +31,7 @@ typedef struct conic_sampling_job {
   size_t most;      /* as long as there are no more than these */
   size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
   int is_coarser;   /* the job before was the same patch's, at half the spacing */
+  int is_off_mesh;  /* what sites stand for lies near the mesh, but not on it */
   double cutoff;    /* standard deviations at which a splat ends */
 } conic_sampling_job;
 

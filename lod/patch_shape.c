@@ -101,7 +101,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 }
 
 /* Where what a site stands for has no direction in the mean, its own face says. */
-static void settle_planes(conic_sampler *s) {
+void conic_patch_settle_planes(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
     if (site->is_settled)
@@ -125,16 +125,15 @@ static conic_status grow_supports(conic_sampler *s) {
   return status;
 }
 
-/* Notes what a site must cover of a face. */
-static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
-                                 const double facing[3]) {
+conic_status conic_patch_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
+                                      const double facing[3]) {
   conic_site *site = &s->sites[i_site];
   if (site->is_settled)
     return CONIC_OK;
   conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
   if (status != CONIC_OK)
     return status;
-  const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
+  const double d[3] = {at[0] - site->at[0], at[1] - site->at[1], at[2] - site->at[2]};
   double cosine = conic_dot(facing, site->normal);
   conic_support *support = &s->supports[s->n_supports++];
   site->n_supports++;
@@ -173,7 +172,7 @@ static conic_status cover_places(conic_sampler *s) {
     if (!has_work(s, l))
       continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
-      status = note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
+      status = conic_patch_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
   return status;
 }
@@ -192,14 +191,14 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
     n_parted++;
     find_border(s, t, k, (k + 1) % 3, border[k]);
     for (int end = 0; end < 2 && status == CONIC_OK && !t->is_between; end++)
-      status = note_support(s, owners[end], border[k], t->lattice->face, t->facing);
+      status = conic_patch_note_support(s, owners[end], border[k], t->lattice->face, t->facing);
   }
   if (n_parted < 3)
     return status;
   for (int axis = 0; axis < 3; axis++)
     middle[axis] = (border[0][axis] + border[1][axis] + border[2][axis]) / 3.0;
   for (int corner = 0; corner < 3 && status == CONIC_OK; corner++)
-    status = note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
+    status = conic_patch_note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
   return status;
 }
 
@@ -316,6 +315,7 @@ static void widen(conic_site *site) {
 
 static void shape_site(conic_sampler *s, conic_site *site) {
   double farthest[CONIC_LEAST_ELLIPSE_POINTS][2], center[2] = {0.0, 0.0}, covariance[3];
+  memcpy(site->foot, site->at, sizeof site->foot);
   settle_height(s, site);
   int n = find_farthest(s, site, farthest);
   if (n == 0)
@@ -331,19 +331,22 @@ static void shape_site(conic_sampler *s, conic_site *site) {
   site->error = conic_site_error(s, site, s->job->tolerance, &site->error_bound);
 }
 
-conic_status conic_patch_shape_sites(conic_sampler *s) {
-  conic_status status = do_small_triangles(s, add_to_sums);
-  if (status != CONIC_OK)
-    return status;
-  settle_planes(s);
-  conic_patch_find_contrasts(s);
-  status = cover_places(s);
-  if (status == CONIC_OK)
-    status = do_small_triangles(s, cover_small_triangle);
-  if (status == CONIC_OK)
-    status = sort_supports(s);
+conic_status conic_patch_shape_supported(conic_sampler *s) {
+  conic_status status = sort_supports(s);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     if (!s->sites[i].is_settled)
       shape_site(s, &s->sites[i]);
   return status;
+}
+
+conic_status conic_patch_shape_sites(conic_sampler *s) {
+  conic_status status = do_small_triangles(s, add_to_sums);
+  if (status != CONIC_OK)
+    return status;
+  conic_patch_settle_planes(s);
+  conic_patch_find_contrasts(s);
+  status = cover_places(s);
+  if (status == CONIC_OK)
+    status = do_small_triangles(s, cover_small_triangle);
+  return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
 }

@@ -5,9 +5,6 @@
 #include "core/memory.h"
 #include "lod/radix.h"
 
-/* The least cosine between two faces that may have a surfel in common. */
-static const double alike = 0.7;
-
 /* The side of a depth's cells, in spacings. */
 static const double cell_side = 1.4;
 
@@ -102,7 +99,7 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
   const double *facing = t->places.facing[t->places.group[place]];
   int is_nearer = distance2 < t->nearest2[slot] || t->owner[place] == CONIC_NO_SITE;
   double cosine = (facing[0] * n->facing[0] + facing[1] * n->facing[1]) + facing[2] * n->facing[2];
-  if (is_nearer && place >= n->first && cosine >= alike) {
+  if (is_nearer && place >= n->first && cosine >= CONIC_SITES_ALIKE) {
     t->nearest2[slot] = distance2;
     t->owner[place] = n->site;
   }

@@ -12,6 +12,9 @@ enum { CONIC_MOST_DEPTH = 3 };
 
 #define CONIC_NO_SITE UINT32_MAX
 
+/* The least cosine between two faces that may have a surfel in common. */
+#define CONIC_SITES_ALIKE 0.7
+
 /* The places that sites are to be found for, by groups that face alike and ask for sites of one spacing. */
 typedef struct conic_places {
   size_t n;
