@@ -515,6 +515,7 @@ conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *s
     status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .hiding = hiding, .window = whole_of(camera)};
+  frame f = {.renderer = renderer, .splats = splats, .window = whole_of(camera)};
+  f.hiding = hiding;
   return render(&f, &alone, camera, options, NULL);
 }

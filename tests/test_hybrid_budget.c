@@ -215,10 +215,10 @@ int main(void) {
   CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
   s.options.near_z = s.info.near_z;
   s.is_seen = malloc(s.info.n_patches);
-  s.chosen = malloc(s.info.n_patches * sizeof *s.chosen);
+  s.chosen = malloc(s.info.n_patches * sizeof *s.chosen); /* NOLINT(bugprone-sizeof-expression): pointers */
   s.stages = malloc(s.info.n_patches * sizeof *s.stages);
   if (!s.is_seen || !s.chosen || !s.stages)
-    return 1;
+    exit(1);
   look(&s, 30.0, 1.0);
   for (int only_kind = -1; only_kind < 2; only_kind++)
     check_view(&s, only_kind);
