@@ -1,4 +1,6 @@
 /* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
+#include <stdatomic.h>
+
 #include "lod/hybrid_choose.h"
 #include "lod/hybrid_stitch.h"
 #include "tests/hybrid_fixture.h"
@@ -174,11 +176,11 @@ static void check_errors(spending *s) {
   CHECK(select_with(s, -1, 1.0, 1000) == CONIC_ERROR_ARGUMENT);
 }
 
-static int n_left = 1 << 30;
+static atomic_int n_left = 1 << 30; /* any thread asks */
 
 static void *allocate_few(void *cookie, size_t bytes) {
   (void)cookie;
-  return n_left-- > 0 ? malloc(bytes) : NULL;
+  return atomic_fetch_sub(&n_left, 1) > 0 ? malloc(bytes) : NULL;
 }
 
 static void release_any(void *cookie, void *pointer) {
