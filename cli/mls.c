@@ -37,6 +37,18 @@ typedef struct mls_job {
   double read_seconds, estimate_seconds, work_seconds, write_seconds;
 } mls_job;
 
+/* Where a length is in spacings: the median one of the points. */
+static conic_status find_unit(mls_job *job) {
+  if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
+      !job->hole.is_in_spacings)
+    return CONIC_OK;
+  conic_status status = conic_splats_spacing(job->session->context, &job->model.points, &job->unit);
+  if (status != CONIC_OK || job->unit > 0.0)
+    return status;
+  cli_error(CLI_INPUT, "%s: no two points are apart, so that a length in spacings has no meaning", job->input);
+  return CONIC_ERROR_INPUT;
+}
+
 /* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
 static conic_status read_points(mls_job *job) {
   conic_context *context = job->session->context;
@@ -58,9 +70,8 @@ static conic_status read_points(mls_job *job) {
     conic_estimate_options_init(&estimate);
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
-  if (status == CONIC_OK && (job->h.is_in_spacings || job->max_error.is_in_spacings || job->spacing.is_in_spacings ||
-                             job->hole.is_in_spacings))
-    status = conic_splats_spacing(context, points, &job->unit);
+  if (status == CONIC_OK)
+    status = find_unit(job);
   job->estimate_seconds = cli_seconds() - read;
   return status;
 }
