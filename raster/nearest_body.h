@@ -66,8 +66,8 @@ CONIC_INLINE void nearest_in_strip(const ellipse_columns *columns, const sources
 CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
                                   uint32_t strip_rows, conic_nearest *kept, index_lanes *n_covered) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t rows = strip_rows, begin = conic_word_first(entry->word) * rows,
-               end = (conic_word_last(entry->word) + 1) * rows, stride = rows * CONIC_STRIP_COLUMNS;
+  const size_t n_rows = strip_rows, begin = conic_word_first(entry->word) * n_rows,
+               end = (conic_word_last(entry->word) + 1) * n_rows, stride = n_rows * CONIC_STRIP_COLUMNS;
   const uint32_t first = conic_word_first_row(entry->word) / strip_rows,
                  last = conic_word_last_row(entry->word) / strip_rows;
   for (size_t at = begin; at < end; at += CONIC_LANES) {
@@ -85,8 +85,8 @@ static __attribute__((noinline)) unsigned nearest_special(const sources *from, c
                                                           const conic_tile_entry *entry, uint32_t strip_rows,
                                                           conic_nearest *kept) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t rows = strip_rows, begin = conic_word_first(entry->word) * rows,
-               end = (conic_word_last(entry->word) + 1) * rows, stride = rows * CONIC_STRIP_COLUMNS;
+  const size_t n_rows = strip_rows, begin = conic_word_first(entry->word) * n_rows,
+               end = (conic_word_last(entry->word) + 1) * n_rows, stride = n_rows * CONIC_STRIP_COLUMNS;
   const uint32_t last = conic_word_last_row(entry->word) / strip_rows;
   unsigned n_covered = 0;
   fragments f;
