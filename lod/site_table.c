@@ -19,8 +19,8 @@ static uint64_t hash_along(int axis, int64_t cell) {
 
 /* Of the cells that hold the sites of a depth, or those that are deeper. */
 static uint32_t *bucket_of(const conic_site_table *t, int depth, int is_deeper, uint64_t hash) {
-  size_t kind = (size_t)(2 * (depth - t->coarsest) + is_deeper);
-  return &t->buckets[kind * (t->mask + 1) + ((hash ^ hash >> 29) & t->mask)];
+  int kind = 2 * (depth - t->coarsest) + is_deeper;
+  return &t->buckets[(size_t)kind * (t->mask + 1) + ((hash ^ hash >> 29) & t->mask)];
 }
 
 conic_status conic_site_table_clear(conic_context *context, conic_site_table *table, const double low[3],
