@@ -147,6 +147,15 @@ static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bo
   return seen;
 }
 
+/* Tiles are mostly this wide. */
+static const double tile_px = 64.0;
+
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch) {
+  sight seen = look_well_at(view, &patch->bound);
+  double side = sqrt((double)patch->area * seen.scale2 * seen.facing) + tile_px;
+  return side * side;
+}
+
 conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                                            const conic_hybrid_node *node, double error_px) {
   const conic_hybrid_level *levels = hybrid->levels + node->first_level;

@@ -30,8 +30,14 @@ double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid
 /* What one of the narrow triangles takes that fit patches to each other, in nanoseconds of one core. */
 #define CONIC_HYBRID_STITCH_NS 70.0
 
-/* What a picture of both kinds takes more than its parts, for each of its pixels. */
-#define CONIC_HYBRID_BOTH_NS 0.5
+/* What a picture of both kinds takes more than its parts: at all, for each of its pixels, and for each of those in
+ * tiles that have triangles. */
+#define CONIC_HYBRID_BOTH_NS 30000.0
+#define CONIC_HYBRID_BOTH_PIXEL_NS 0.2
+#define CONIC_HYBRID_BOTH_TILE_NS 0.5
+
+/* How many pixels the tiles have, about, that a patch's faces meet: of a square of its size, wherever it lies. */
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch);
 
 /* What a round splat may take that faces the camera, in nanoseconds of one core; `radius_px2` is its squared radius,
  * without the prefilter. */

@@ -34,7 +34,6 @@ typedef struct planning {
   size_t n_links;
   link *links;
   uint8_t *kinds; /* what was found before */
-  double both_ns; /* what a picture of both kinds takes more than its parts */
   const conic_hybrid_camera *view;
   double error_px;
   double *amounts, *below; /* of each patch of the model, and of each node, for cutting */
@@ -153,8 +152,20 @@ static int is_mixed(const planning *p) {
   return 0;
 }
 
+/* What a picture of both kinds takes more than its parts; patches share tiles, of which there are no more than all. */
+static double mixing(const planning *p) {
+  double n_pixels = 0.0;
+  for (size_t i = 0; i < p->n; i++)
+    if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
+      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->patches[p->patches[i]]);
+  n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
+  return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
+}
+
+/* What all takes; with what a picture of both kinds must promise to be preferred. */
 static double total(const planning *p) {
-  double sum = is_mixed(p) ? p->both_ns : 0.0;
+  int is_both = is_mixed(p);
+  double sum = is_both ? mixing(p) : 0.0;
   for (size_t i = 0; i < p->n; i++) {
     const candidate *c = &p->candidates[i];
     sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : c->offers[CONIC_HYBRID_TRIANGLES].amount;
@@ -162,7 +173,8 @@ static double total(const planning *p) {
       if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
         sum += p->links[c->first_link + k].own_ns;
   }
-  return sum - cut(p);
+  sum -= cut(p);
+  return is_both ? sum / margin : sum;
 }
 
 /* All of one kind, where that is good enough. */
@@ -204,7 +216,7 @@ static void keep_if_less(planning *p, double sum, double *least) {
 static void settle(planning *p) {
   double least = HUGE_VAL;
   improve(p);
-  keep_if_less(p, total(p) / margin, &least);
+  keep_if_less(p, total(p), &least);
   for (uint8_t kind = 0; kind < 2; kind++) {
     take_kind(p, kind);
     keep_if_less(p, total(p), &least);
@@ -213,10 +225,10 @@ static void settle(planning *p) {
     p->candidates[i].kind = p->kinds[i];
 }
 
-/* Whether all of one kind takes no more than the cheaper of both for each patch, with what a picture of both kinds
- * takes more: then no better one has to be looked for. */
+/* Whether all of one kind takes hardly more than the cheaper of both for each patch: then no better one has to be
+ * looked for. */
 static int is_settled(planning *p) {
-  double sums[2] = {0.0, 0.0}, least = p->both_ns;
+  double sums[2] = {0.0, 0.0}, least = 0.0;
   for (size_t i = 0; i < p->n; i++) {
     const candidate *c = &p->candidates[i];
     least += c->offers[c->kind].amount;
@@ -270,13 +282,7 @@ static conic_status begin(planning *p) {
 conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
                                int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes) {
   conic_context *context = hybrid->context;
-  planning p = {.hybrid = hybrid,
-                .n = n,
-                .patches = patches,
-                .both_ns = view->n_pixels * CONIC_HYBRID_BOTH_NS,
-                .view = view,
-                .error_px = error_px,
-                .nodes = nodes};
+  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px, .nodes = nodes};
   conic_status status = begin(&p);
   if (status == CONIC_OK) {
     ask(&p);
