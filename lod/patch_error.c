@@ -121,22 +121,27 @@ static void begin_bounds(const conic_sampler *s, const conic_site *site, double 
 
 /* Of the places that are not known to be near enough, the one that may be farthest is measured first: that is soon far
  * enough from those before, or near enough to them, for the others to need no look. Most are near the face that was
- * nearest to one before, or on which the support lies that is farthest that way. */
-double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
-  double at[N_ENDS][3], bounds[N_ENDS];
+ * nearest to one before, or on which the support lies that is farthest that way. Returns the largest distance, or
+ * `known`. */
+static double measure_ends(const conic_sampler *s, const conic_site *site, double known, double bounds[N_ENDS]) {
+  double at[N_ENDS][3];
   uint32_t near[4];
-  known = site->least_error > known ? site->least_error : known;
-  begin_bounds(s, site, known, bounds);
-  int k = largest_of(bounds);
-  if (bounds[k] > known) {
-    memcpy(near, site->end_faces, sizeof near);
-    find_ends(site, at);
-  }
-  for (; bounds[k] > known; k = largest_of(bounds)) {
+  memcpy(near, site->end_faces, sizeof near);
+  find_ends(site, at);
+  for (int k = largest_of(bounds); bounds[k] > known; k = largest_of(bounds)) {
     double distance = measure(s, site, at[k], &near[end_of(k)], known);
     known = distance > known ? distance : known;
     bound_by((const double(*)[3])at, k, distance, bounds);
   }
-  *bound = bounds[k] > site->least_error ? bounds[k] : site->least_error;
+  return known;
+}
+
+double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
+  double bounds[N_ENDS];
+  known = site->least_error > known ? site->least_error : known;
+  begin_bounds(s, site, known, bounds);
+  known = bounds[largest_of(bounds)] > known ? measure_ends(s, site, known, bounds) : known;
+  double farthest = bounds[largest_of(bounds)];
+  *bound = farthest > site->least_error ? farthest : site->least_error;
   return known;
 }

@@ -130,8 +130,8 @@ int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, i
 static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
   const conic_lattice *l = &s->lattices[i_lattice];
   uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
-  uint64_t rank = (uint64_t)((is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth);
-  s->candidates[s->n_candidates].key = rank << 21 | turn;
+  int rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth;
+  s->candidates[s->n_candidates].key = (uint64_t)rank << 21 | turn;
   s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
   s->seeds[s->n_candidates][0] = i_lattice;
   s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;

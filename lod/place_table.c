@@ -106,19 +106,20 @@ static void claim(conic_place_table *t, const newcomer *n, size_t slot, double d
 }
 
 /* Of so many places at a time those are found that are near enough, without branches, then who of them is claimed. */
-enum { AT_A_TIME = 64 };
+enum { AT_A_TIME = 32 };
 
 static void claim_among(conic_place_table *t, const newcomer *n, size_t begin, size_t end) {
-  const double *at_x = t->at[0], *at_y = t->at[1], *at_z = t->at[2];
+  const double *at_x = t->at[0], *at_y = t->at[1], *at_z = t->at[2], *nearest2 = t->nearest2;
   const double to_x = n->at[0], to_y = n->at[1], to_z = n->at[2];
-  for (size_t i = begin; i < end;) {
-    size_t last = end - i < AT_A_TIME ? end : i + AT_A_TIME, near[AT_A_TIME + 1], n_near = 0;
-    double distances2[AT_A_TIME + 1];
-    for (; i < last; i++) {
+  uint32_t near[AT_A_TIME + 1] = {0};
+  double distances2[AT_A_TIME + 1] = {0.0};
+  for (size_t first = begin; first < end; first += AT_A_TIME) {
+    size_t last = end - first < AT_A_TIME ? end : first + AT_A_TIME, n_near = 0;
+    for (size_t i = first; i < last; i++) {
       double x = at_x[i] - to_x, y = at_y[i] - to_y, z = at_z[i] - to_z, distance2 = (x * x + y * y) + z * z;
-      near[n_near] = i;
+      near[n_near] = (uint32_t)i;
       distances2[n_near] = distance2;
-      n_near += distance2 <= t->nearest2[i];
+      n_near += distance2 <= nearest2[i];
     }
     for (size_t k = 0; k < n_near; k++)
       claim(t, n, near[k], distances2[k]);
@@ -151,7 +152,7 @@ static void claim_at_depth(conic_place_table *t, const newcomer *n, int depth) {
 
 void conic_place_table_put(conic_place_table *table, uint32_t site, const double at[3], const double facing[3],
                            size_t first) {
-  newcomer n = {site, at, facing, first};
+  newcomer n = {.site = site, .at = at, .facing = facing, .first = first};
   for (int depth = table->places.coarsest; depth <= table->places.finest; depth++)
     claim_at_depth(table, &n, depth);
 }
