@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/hybrid_mesh.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "cli/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
@@ -147,6 +148,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "chy");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -11,6 +11,7 @@
 #include "cli/json.h"
 #include "cli/layers_info.h"
 #include "cli/octree_info.h"
+#include "cli/outputs.h"
 #include "core/clip.h"
 
 /* What in a model cannot be drawn as it stands. */
@@ -63,7 +64,8 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   job->path = positional[0];
   if (conic_layers_is_url(job->path))
     return cli_usage("info: %s is on a web server; it takes a file", job->path);
-  return CLI_DONE;
+  exit_code = cli_check_outputs(session, NULL, 0);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(session, &job->path, 1, NULL, 0) : exit_code;
 }
 
 /* Told by content, so that a wrong ending does not mislead. A pipe, which can be read only once, is a model. */

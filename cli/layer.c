@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "conic/layers.h"
 
 typedef struct layer_job {
@@ -147,7 +148,10 @@ static int check_arguments(layer_job *job) {
   job->options.quantum_in_spacings = job->quantum.is_in_spacings;
   job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
   int exit_code = cli_check_ending(job->output, "lpc");
-  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(job->session, job->inputs, job->n_inputs, &job->output, 1)
+                               : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -3,8 +3,10 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/device.h"
 #include "cli/json.h"
 #include "cli/mls_cells.h"
+#include "cli/outputs.h"
 #include "core/message.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
@@ -290,7 +292,11 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
                      name);
   job->input = positional[1];
   int exit_code = cli_check_ending(job->output, "ply");
-  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it appears when all is read */
+    exit_code = cli_check_inputs_stay(job->session, &job->input, 1, NULL, 0);
+  return exit_code == CLI_DONE ? cli_isa_check(job->session, (conic_isa)job->isa) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -4,6 +4,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 
 typedef struct octree_job {
   cli_session *session;
@@ -130,6 +131,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "cot");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "core/memory.h"
 
 typedef struct prepare_job {
@@ -181,6 +182,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "ply");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it is read whole before */
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, NULL, 0);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -148,15 +148,14 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
 
 /* One picture; where what is drawn is chosen for it, that counts among the frame's time. */
 static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                         const conic_camera *camera, conic_renderer *renderer, conic_image *image,
-                         conic_render_statistics *statistics) {
+                         const conic_camera *camera, conic_image *image, conic_render_statistics *statistics) {
   double lod_ms;
   conic_drawing drawing;
   if (job->layers.file)
-    return cli_layers_draw(session, job, camera, renderer, image, statistics);
+    return cli_layers_draw(session, job, camera, image, statistics);
   conic_status status = cli_scene_select(job, camera, splats, &drawing, &lod_ms);
   if (status == CONIC_OK)
-    status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
+    status = conic_render_drawing(session->context, job->renderer, &drawing, camera, &job->options, job->samples, image,
                                   statistics);
   if (status == CONIC_OK)
     cli_scene_name(job, image);
@@ -180,15 +179,14 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
-static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                                 conic_renderer *renderer, int i_frame, conic_image *image,
-                                 conic_render_statistics *repeats) {
+static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats, int i_frame,
+                                 conic_image *image, conic_render_statistics *repeats) {
   conic_camera camera;
   conic_status status = cli_scene_camera(session, job, splats, i_frame, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = draw(session, job, splats, &camera, renderer, image, &repeats[i]);
+    status = draw(session, job, splats, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
@@ -216,14 +214,13 @@ static void print_summary(const cli_session *session, const cli_render_job *job)
 }
 
 static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
-  conic_renderer *renderer = NULL;
   conic_image image;
   int exit_code = CLI_DONE;
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
-  conic_status status = repeats ? cli_device_open(session, &job->device, &renderer) : CONIC_ERROR_MEMORY;
+  conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (int i = 0; i < job->n_frames && status == CONIC_OK; i++)
-    status = render_frame(session, job, splats, renderer, i, &image, repeats);
+    status = render_frame(session, job, splats, i, &image, repeats);
   job->total_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK) {
     print_summary(session, job);
@@ -231,7 +228,6 @@ static int render_scene(cli_session *session, cli_render_job *job, const conic_s
   } else
     exit_code = cli_exit_of(status);
   conic_image_release(session->context, &image);
-  conic_renderer_destroy(renderer);
   free(repeats);
   return exit_code;
 }
@@ -261,6 +257,8 @@ static int run(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     memset(&splats, 0, sizeof splats);
+    if (status == CONIC_OK)
+      status = cli_scene_begin(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_read(session, &job, &splats);
     if (status == CONIC_OK)

@@ -1,5 +1,7 @@
 /* A scene as the commands that draw one take it: read, given axes, measured, framed. */
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/hybrid_mesh.h"
 #include "cli/reach.h"
@@ -131,6 +133,19 @@ static conic_status dress_triangles(cli_session *session, cli_render_job *job) {
   return status == CONIC_OK && job->texture_path && job->triangles.count ? lay_texture(session, job) : status;
 }
 
+conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
+  if (cli_isa_check(session, job->options.isa) != CLI_DONE)
+    return CONIC_ERROR_UNSUPPORTED;
+  if (job->texture_path && access(job->texture_path, R_OK) != 0) {
+    cli_error(CLI_INPUT, "%s: cannot read: %s", job->texture_path, strerror(errno));
+    return CONIC_ERROR_INPUT;
+  }
+  conic_status status = cli_device_open(session, &job->device, &job->renderer);
+  if (status == CONIC_OK && job->camera_path)
+    status = conic_camera_read(session->context, job->camera_path, &job->camera);
+  return status;
+}
+
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats) {
   double start = cli_seconds(), estimate_seconds = 0.0;
   int n_las = 0;
@@ -161,6 +176,8 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 }
 
 void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats) {
+  conic_renderer_destroy(job->renderer);
+  job->renderer = NULL;
   cli_patch_close(job); /* it refers to the splats */
   cli_lod_close(session, job);
   cli_layers_close(job);
@@ -221,8 +238,10 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
                               conic_camera *camera) {
   double low[3], high[3];
   conic_framing framing = job->framing;
-  if (job->camera_path)
-    return conic_camera_read(session->context, job->camera_path, camera);
+  if (job->camera_path) {
+    *camera = job->camera;
+    return CONIC_OK;
+  }
   if (job->layers.file) {
     memcpy(low, job->layers.scale.minimum, sizeof low);
     memcpy(high, job->layers.scale.maximum, sizeof high);

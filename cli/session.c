@@ -7,10 +7,8 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -83,61 +81,6 @@ int cli_exit_of(conic_status status) {
     break;
   }
   return CLI_RESOURCE;
-}
-
-/* Whether there is a folder that PATH can be written in; devices and pipes stand where they are. */
-static int check_folder(const char *path) {
-  char folder[4096];
-  struct stat found;
-  if (strcmp(path, "-") == 0 || (stat(path, &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode)))
-    return CLI_DONE;
-  if (stat(path, &found) == 0 && S_ISDIR(found.st_mode))
-    return cli_error(CLI_RESOURCE, "%s: cannot write: it is a directory", path);
-  const char *slash = strrchr(path, '/');
-  int n = slash ? slash == path ? 1 : (int)(slash - path) : 0;
-  if (n >= (int)sizeof folder)
-    return CLI_DONE; /* whoever opens it will say so */
-  snprintf(folder, sizeof folder, "%.*s", n, path);
-  if (access(n ? folder : ".", W_OK | X_OK) != 0)
-    return cli_error(CLI_RESOURCE, "%s: cannot write: %s", path, strerror(errno));
-  return CLI_DONE;
-}
-
-/* What cannot be written is said before the work. */
-static int check_folders(const cli_session *session, const char *const *paths, int n_paths) {
-  int exit_code = CLI_DONE;
-  for (int i = 0; i <= n_paths && exit_code == CLI_DONE; i++) {
-    const char *path = i < n_paths ? paths[i] : session->json_path;
-    if (path)
-      exit_code = check_folder(path);
-  }
-  return exit_code;
-}
-
-int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths) {
-  for (int i = 0; i < n_paths; i++) {
-    for (int j = i + 1; j <= n_paths; j++) {
-      const char *first = paths[i], *second = j < n_paths ? paths[j] : session->json_path;
-      if (!first || !second || strcmp(first, second) != 0 || strncmp(first, "/dev/", 5) == 0)
-        continue;
-      if (strcmp(first, "-") == 0)
-        return cli_usage("%s: two outputs cannot both go to standard output", session->command);
-      return cli_usage("%s: two outputs cannot both go to %s", session->command, first);
-    }
-  }
-  return check_folders(session, paths, n_paths);
-}
-
-int cli_check_ending(const char *path, const char *ending) {
-  static const char *const known[] = {"ply", "obj", "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy",
-                                      "exr", "png", "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
-  const char *slash = path ? strrchr(path, '/') : NULL, *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
-  if (!dot || strcasecmp(dot + 1, ending) == 0)
-    return CLI_DONE;
-  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-    if (strcasecmp(dot + 1, known[i]) == 0)
-      return cli_usage("%s: what is written is no .%s; give the name the ending .%s", path, known[i], ending);
-  return CLI_DONE;
 }
 
 static void erase_bar(cli_session *session) {

@@ -34,15 +34,6 @@ int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Asked before the work. Wrong usage where two of the run's outputs (null entries are fine), --json's included, go to
- * standard output or to the same file; CLI_RESOURCE where the folder that one would stand in is not there or may not be
- * written to. Returns CLI_DONE, or one of these after a message. */
-int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths);
-
-/* Wrong usage where the ending of an output's name (null is fine) is that of another kind of file than `ending`, say a
- * picture's: what stands there was hardly meant to be written over. Returns CLI_DONE, or CLI_USAGE after a message. */
-int cli_check_ending(const char *path, const char *ending);
-
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);
 /* The process's peak resident set. */

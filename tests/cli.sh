@@ -83,6 +83,37 @@ for command in prepare octree layer hybrid 'mls project'; do # $command is one o
   run_wrong 2 "give the name the ending .$ending" $command absent.ply -o outputs/a.PNG
 done
 run_wrong 4 'cannot make the folder' chart -o "$conic" --quick
+# Nor is what the work would be done with
+absent_isa=neon
+[[ $(uname -m) == x86_64 ]] || absent_isa=avx2
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' 'mls project -o outputs/a.ply' bench; do
+  # shellcheck disable=SC2086 # the options are words
+  run_wrong 4 "no $absent_isa" $command absent.ply --isa $absent_isa
+done
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' bench; do
+  # shellcheck disable=SC2086
+  run_wrong 4 'opencl' $command absent.ply --device opencl:77.0
+  # shellcheck disable=SC2086
+  run_wrong 3 'absent.json' $command absent.ply --camera absent.json
+done
+run_wrong 3 'absent.png' render absent.obj -o outputs/a.pfm --as mesh --texture absent.png
+# A file has many names: none of the outputs is another one, or what the work begins with
+mkdir linked
+: > linked/there.pfm
+: > linked/there.ply
+ln -s linked elsewhere
+ln -s linked/there.pfm linked.pfm
+ln linked/there.ply twin.ply
+for pair in 'outputs/a.pfm ./outputs/a.pfm' "outputs/a.pfm $work/outputs/a.pfm" 'linked/a.pfm elsewhere/a.pfm' \
+  'linked/there.pfm linked.pfm' 'a.pfm ./a.pfm'; do
+  run_wrong 2 'two outputs' render absent.ply -o "${pair% *}" -o "${pair#* }"
+done
+for name in linked/there.ply elsewhere/there.ply twin.ply; do
+  run_wrong 2 "$name is an input" render ./linked/there.ply -o outputs/a.pfm --json $name
+  run_wrong 2 "$name is an input" info ./linked/there.ply --json $name
+done
+run_wrong 2 'is an input' diff linked.pfm outputs/a.pfm --heatmap linked/there.pfm
+run_wrong 2 'is an input' layer linked/there.ply -o twin.lpc --json twin.ply
 no_files_but
 
 # Inputs that cannot be used
