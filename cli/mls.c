@@ -102,6 +102,7 @@ static conic_status clean_cells(mls_job *job) {
   conic_clean_options options;
   conic_clean_options_init(&options);
   options.surface = job->options;
+  options.name = job->input;
   options.memory_bytes = (size_t)job->memory_mib << 20;
   options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
   double start = cli_seconds();

@@ -136,6 +136,7 @@ typedef struct conic_clean_options {
   conic_surface_options surface; /* with h, and without clusters */
   size_t memory_bytes;           /* what may be taken at a time; 0: whatever it takes */
   const char *scratch;           /* beside this path what does not fit is put, in files without a name; null: nowhere */
+  const char *name;              /* of what the points are read from, for messages; null: "surface" */
 } conic_clean_options;
 
 /* The surface's defaults, for which h is still to be set. */
