@@ -6,7 +6,9 @@
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/outputs.h"
+#include "cli/tell.h"
 #include "conic/layers.h"
+#include "core/message.h"
 
 typedef struct layer_job {
   cli_session *session;
@@ -54,6 +56,8 @@ static conic_status read_whole(layer_job *job, const conic_read_options *options
   if (status != CONIC_OK)
     return status;
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
+  if (status == CONIC_OK)
+    cli_tell_repairs(job->session, job->input, &repairs);
   if (status == CONIC_OK)
     status = conic_layers_builder_append(job->builder, &model.points);
   conic_model_release(context, &model);
@@ -119,6 +123,23 @@ static int write_statistics(layer_job *job, double total_seconds) {
   return cli_json_finish(file);
 }
 
+static void tell(const layer_job *job, double total_seconds) {
+  const conic_layers_statistics *s = &job->statistics;
+  const cli_stage stages[] = {{"read", s->read_seconds}, {"work", s->work_seconds}, {"write", s->write_seconds}};
+  conic_log(job->session->context, CONIC_LOG_INFO,
+            "%s: %llu points in; %llu samples in %llu clouds and %d levels out, %.1f MiB; a sample every %.4g, in "
+            "steps of %.4g",
+            job->output, (unsigned long long)s->n_in, (unsigned long long)s->n_samples, (unsigned long long)s->n_clouds,
+            s->n_levels, (double)s->n_bytes / 1048576.0, s->spacing, s->quantum);
+  if (s->n_in > s->n_samples || s->n_zero)
+    conic_log(job->session->context, CONIC_LOG_INFO,
+              "%s: left out %llu points, %llu of them not finite or farther out than 1e15; %llu without a normal or "
+              "size got one",
+              job->output, (unsigned long long)(s->n_in - s->n_samples), (unsigned long long)s->n_nan,
+              (unsigned long long)s->n_zero);
+  cli_tell_run(job->session, stages, 3, total_seconds);
+}
+
 static int run_job(layer_job *job) {
   double start = cli_seconds();
   int exit_code = cli_session_open(job->session);
@@ -132,7 +153,11 @@ static int run_job(layer_job *job) {
     status = conic_layers_builder_finish(job->builder, &job->statistics);
   else
     conic_layers_builder_abandon(job->builder);
-  return status == CONIC_OK ? write_statistics(job, cli_seconds() - start) : cli_exit_of(status);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
+  double total_seconds = cli_seconds() - start;
+  tell(job, total_seconds);
+  return write_statistics(job, total_seconds);
 }
 
 static int check_arguments(layer_job *job) {

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/render_job.h"
+#include "cli/tell.h"
 #include "core/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -200,17 +201,28 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
-static void print_summary(const cli_session *session, const cli_render_job *job) {
+static void tell(cli_session *session, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
-  if (!session->is_verbose)
-    return;
+  const conic_render_milliseconds *ms = &s->ms;
+  const cli_stage of_frame[] = {{"choose", ms->lod > 0.0 ? 1e-3 * ms->lod : -1.0},
+                                {"set up", 1e-3 * ms->setup},
+                                {"bin", 1e-3 * ms->bin},
+                                {"visibility", 1e-3 * ms->visibility},
+                                {"accumulate", 1e-3 * ms->accumulate},
+                                {"resolve", 1e-3 * ms->resolve}};
+  const cli_stage stages[] = {
+      {"read", 1e-3 * job->read_ms}, {"estimate", 1e-3 * job->estimate_ms}, {"write", 1e-3 * job->write_ms}};
+  conic_context *context = session->context;
   if (s->triangles_in)
-    fprintf(stderr, "conic: %llu triangles: %llu drawn, %llu culled, %llu skipped\n",
-            (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
-            (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
-  fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
-          (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
-          (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);
+    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
+              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
+  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
+            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
+            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
+  cli_tell_stages(session, of_frame, 6, job->n_frames * job->repeat > 1 ? "a frame" : "for the frame",
+                  1e-3 * ms->frame);
+  cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
 }
 
 static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
@@ -219,11 +231,14 @@ static int render_scene(cli_session *session, cli_render_job *job, const conic_s
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++)
+  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
+    if (job->is_turntable)
+      cli_session_part(session, "frame", i + 1, job->n_frames);
     status = render_frame(session, job, splats, i, &image, repeats);
+  }
   job->total_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK) {
-    print_summary(session, job);
+    tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);

@@ -6,15 +6,12 @@
 #include "cli/hybrid_mesh.h"
 #include "cli/reach.h"
 #include "cli/render_job.h"
+#include "cli/tell.h"
 
 static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
   double low[3], high[3];
-  const char *why = NULL;
-  if (conic_splats_bounds(&model->points, low, high) == 0)
-    why = model->points.count ? "no point is finite" : "it holds no points";
-  else if (!job->camera_path && !cli_is_in_reach(low, high))
-    why = "a point is farther out than 1e20";
-  if (!why)
+  const char *why = cli_why_out_of_reach(&model->points);
+  if (!why || (job->camera_path && conic_splats_bounds(&model->points, low, high)))
     return CONIC_OK;
   cli_error(CLI_INPUT, "%s: cannot be drawn: %s", path, why);
   return CONIC_ERROR_INPUT;
@@ -99,6 +96,8 @@ static conic_status read_input(cli_session *session, cli_render_job *job, const 
   }
   if (status == CONIC_OK)
     status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
+  if (status == CONIC_OK)
+    cli_tell_repairs(session, path, &repairs);
   if (status == CONIC_OK && splats->count == 0) {
     *splats = model.points; /* the first input's arrays are taken over, not copied */
     memset(&model.points, 0, sizeof model.points);

@@ -14,6 +14,7 @@
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
+static int bar_is_shown;
 
 /* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
 static atomic_llong interrupted_at_ms;
@@ -40,6 +41,12 @@ unsigned long long cli_peak_rss_bytes(void) {
   return kibibytes * 1024;
 }
 
+static void erase_bar(void) {
+  if (bar_is_shown)
+    fputs("\r\033[K", stderr);
+  bar_is_shown = 0;
+}
+
 /* One line, whatever the names in it hold. */
 static void print_message(const char *label, const char *format, va_list arguments) {
   char message[2048];
@@ -47,7 +54,10 @@ static void print_message(const char *label, const char *format, va_list argumen
   for (char *c = message; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7F)
       *c = '?';
+  pthread_mutex_lock(&screen);
+  erase_bar();
   fprintf(stderr, "conic: %s%s\n", label, message);
+  pthread_mutex_unlock(&screen);
 }
 
 int cli_usage(const char *format, ...) {
@@ -83,16 +93,10 @@ int cli_exit_of(conic_status status) {
   return CLI_RESOURCE;
 }
 
-static void erase_bar(cli_session *session) {
-  if (session->bar_is_shown)
-    fputs("\r\033[K", stderr);
-  session->bar_is_shown = 0;
-}
-
 static int bar_cells(void) {
   struct winsize window;
   int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col ? window.ws_col : 80;
-  int cells = columns - 36;
+  int cells = columns - 42;
   return cells < 0 ? 0 : cells > 40 ? 40 : cells;
 }
 
@@ -107,23 +111,43 @@ static void draw_bar(cli_session *session, double fraction, double now) {
     if (seconds < 359999.0)
       snprintf(remaining, sizeof remaining, "  ETA %d:%02d", (int)seconds / 60, (int)seconds % 60);
   }
-  fprintf(stderr, "\r%-10.16s %s %3d %%%s\033[K", session->task, bar, (int)(100.0 * fraction), remaining);
+  fprintf(stderr, "\r%-10.22s %s %3d %%%s\033[K", session->task, bar, (int)(100.0 * fraction), remaining);
   fflush(stderr);
-  session->bar_is_shown = 1;
+  bar_is_shown = 1;
   session->drawn_seconds = now;
+}
+
+void cli_session_part(cli_session *session, const char *name, int i_part, int n_parts) {
+  session->part = name;
+  session->i_part = i_part;
+  session->n_parts = n_parts;
+  session->part_share = 0.0;
+  snprintf(session->task, sizeof session->task, "%s %d/%d", name, i_part, n_parts);
+  if (i_part == 1)
+    session->task_seconds = cli_seconds();
+}
+
+/* Of the whole, where a part has done so much of one of its tasks: a bar does not go back. */
+static double share_of_parts(cli_session *session, double fraction) {
+  if (session->part_share < fraction)
+    session->part_share = fraction;
+  return ((double)session->i_part - 1.0 + session->part_share) / (double)session->n_parts;
 }
 
 static void show_progress(cli_session *session, const char *task, double fraction) {
   const double refresh_seconds = 1.0 / 6.0;
   double now = cli_seconds();
   fraction = fraction > 0.0 ? fraction < 1.0 ? fraction : 1.0 : 0.0;
-  if (strncmp(session->task, task, sizeof session->task - 1) != 0) {
+  if (session->part)
+    fraction = share_of_parts(session, fraction);
+  else if (strncmp(session->task, task, sizeof session->task - 1) != 0) {
     snprintf(session->task, sizeof session->task, "%s", task);
     session->task_seconds = now;
   }
   if (fraction >= 1.0) {
-    erase_bar(session);
-    session->task[0] = '\0';
+    erase_bar();
+    if (!session->part)
+      session->task[0] = '\0';
   } else if (now - session->drawn_seconds >= refresh_seconds)
     draw_bar(session, fraction, now);
 }
@@ -144,7 +168,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
-  erase_bar(session);
+  erase_bar();
   fprintf(stderr, "conic: %s%s\n", label, message);
   pthread_mutex_unlock(&screen);
 }
@@ -195,7 +219,7 @@ int cli_session_open(cli_session *session) {
 }
 
 void cli_session_close(cli_session *session) {
-  erase_bar(session);
+  erase_bar();
   conic_context_destroy(session->context);
   session->context = NULL;
 }

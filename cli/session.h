@@ -16,7 +16,9 @@ typedef struct cli_session {
   char task[32];         /* what the progress bar is about; empty: nothing yet */
   double task_seconds;   /* when that began */
   double drawn_seconds;  /* when the bar was last drawn */
-  int bar_is_shown;
+  const char *part;      /* cli_session_part; null: none */
+  int i_part, n_parts;
+  double part_share;      /* of the part, what is done */
   int draws_many_frames;  /* of the same model: set before cli_session_open */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
@@ -25,6 +27,10 @@ typedef struct cli_session {
 int cli_session_open(cli_session *session);
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
+
+/* Says that what follows is part `i_part` of `n_parts`, from 1, of one long work, say a turntable's frame 3 of 36: the
+ * progress bar then is about all of them. `name` is to stay. */
+void cli_session_part(cli_session *session, const char *name, int i_part, int n_parts);
 
 /* The exit code that stands for a status; the message has been printed by the context's log. */
 int cli_exit_of(conic_status status);
