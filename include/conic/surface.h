@@ -59,7 +59,7 @@ typedef struct conic_surface conic_surface;
 /* Prepares the surface of the points of `points`; normals (of either kind: normals, or those of the axes) and colours
  * are used where it has them. The set is copied. On success the caller owns *surface, which must not outlive the
  * context. Errors: ARGUMENT (options out of range; APSS without normals), INPUT (no finite point), UNSUPPORTED (the
- * instruction set), MEMORY. */
+ * instruction set), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_surface_create(conic_context *context, const conic_splats *points,
                                             const conic_surface_options *options, conic_surface **surface);
 CONIC_API void conic_surface_destroy(conic_surface *surface);
