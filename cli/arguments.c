@@ -292,15 +292,35 @@ static int text_width(const char *text) {
   return width;
 }
 
+enum { HELP_COLUMN = 28, LAST_COLUMN = 100 };
+
+/* The words from HELP_COLUMN on, where the first line already is, in as many lines as they need. */
+static void print_words(FILE *to, const char *words) {
+  int column = HELP_COLUMN;
+  while (*words) {
+    int length = (int)strcspn(words, " ");
+    char word[128];
+    snprintf(word, sizeof word, "%.*s", length, words);
+    int width = text_width(word);
+    if (column > HELP_COLUMN && column + 1 + width > LAST_COLUMN) {
+      fprintf(to, "\n%*s", HELP_COLUMN, "");
+      column = HELP_COLUMN;
+    }
+    column += fprintf(to, "%s%s", column > HELP_COLUMN ? " " : "", word) - (int)strlen(word) + width;
+    words += length + (words[length] == ' ');
+  }
+  fputc('\n', to);
+}
+
 static void print_option(FILE *to, const cli_option *option) {
-  const int help_column = 28;
   const char *argument = option->argument ? option->argument : "";
   int width = fprintf(to, "  %s%s%s%s", dashes(option), option->name, *argument ? " " : "", argument);
   width += text_width(argument) - (int)strlen(argument);
-  if (width > help_column - 2)
-    fprintf(to, "\n%*s%s\n", help_column, "", option->help);
+  if (width > HELP_COLUMN - 2)
+    fprintf(to, "\n%*s", HELP_COLUMN, "");
   else
-    fprintf(to, "%*s%s\n", help_column - width, "", option->help);
+    fprintf(to, "%*s", HELP_COLUMN - width, "");
+  print_words(to, option->help);
 }
 
 void cli_print_options(FILE *to, const cli_option *options, int n_options) {

@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/tell.h"
 #include "conic/layers.h"
+#include "core/memory.h"
 #include "core/message.h"
 
 typedef struct layer_job {
@@ -25,12 +26,37 @@ typedef struct layer_job {
   conic_layers_statistics statistics;
   const char *input; /* that is being read */
   int may_read_again, has_begun, is_raw, is_counting;
+  int has_points, has_colors; /* of all inputs up to here */
   uint64_t n_points;
   conic_repairs repairs;
 } layer_job;
 
 /* Estimating from the whole file takes about so much. */
 static const double estimate_bytes_a_point = 250.0;
+
+/* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
+static conic_status append(layer_job *job, const conic_splats *batch) {
+  conic_context *context = job->session->context;
+  if (!job->has_points)
+    job->has_colors = batch->color[0] != NULL;
+  job->has_points = 1;
+  if (!batch->color[0] == !job->has_colors)
+    return conic_layers_builder_append(job->builder, batch);
+  if (!job->has_colors)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: has colours, and what comes before it has none: name it first",
+                      job->input);
+  float *white = conic_memory_allocate(context, batch->count, sizeof *white);
+  if (!white)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < batch->count; i++)
+    white[i] = 1.0f;
+  conic_splats colored = *batch;
+  for (int channel = 0; channel < 3; channel++)
+    colored.color[channel] = white;
+  conic_status status = conic_layers_builder_append(job->builder, &colored);
+  conic_memory_release(context, white);
+  return status;
+}
 
 /* Points without normals and axes: where the whole file fits into memory, they are estimated from it, as elsewhere; the
  * others get their normals while the cloud is built. */
@@ -45,7 +71,7 @@ static conic_status take_batch(void *cookie, const conic_splats *batch) {
     return CONIC_ERROR_CANCELLED;
   }
   job->has_begun = 1;
-  return conic_layers_builder_append(job->builder, batch);
+  return append(job, batch);
 }
 
 static conic_status read_whole(layer_job *job, const conic_read_options *options) {
@@ -59,7 +85,7 @@ static conic_status read_whole(layer_job *job, const conic_read_options *options
   if (status == CONIC_OK)
     cli_tell_repairs(job->session, job->input, &repairs);
   if (status == CONIC_OK)
-    status = conic_layers_builder_append(job->builder, &model.points);
+    status = append(job, &model.points);
   conic_model_release(context, &model);
   return status;
 }

@@ -7,6 +7,7 @@
 #include "cli/reach.h"
 #include "cli/render_job.h"
 #include "cli/tell.h"
+#include "core/message.h"
 
 static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
   double low[3], high[3];
@@ -127,6 +128,9 @@ static conic_status lay_texture(cli_session *session, cli_render_job *job) {
 /* What the options say of triangles. */
 static conic_status dress_triangles(cli_session *session, cli_render_job *job) {
   conic_status status = CONIC_OK;
+  if (job->as == CLI_AS_MESH && job->triangles.count == 0)
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: there are no faces to draw as a mesh; the points are drawn",
+              job->inputs[0]);
   if (job->is_smooth && job->triangles.count)
     status = conic_triangles_smooth(session->context, &job->triangles);
   return status == CONIC_OK && job->texture_path && job->triangles.count ? lay_texture(session, job) : status;

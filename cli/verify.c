@@ -22,8 +22,8 @@ typedef struct verify_job {
 
 static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
                               const conic_camera *camera) {
-  if (job->image_path)
-    return conic_image_read(session->context, job->image_path, &job->image);
+  if (job->image_path) /* it was read before the scene */
+    return CONIC_OK;
   conic_status status =
       conic_image_allocate(session->context, camera->width, camera->height, job->scene.planes, &job->image);
   if (status != CONIC_OK)
@@ -217,6 +217,8 @@ static int verify(cli_session *session, verify_job *job) {
     return exit_code;
   memset(&splats, 0, sizeof splats);
   conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK && job->image_path)
+    status = conic_image_read(session->context, job->image_path, &job->image);
   if (status == CONIC_OK)
     status = cli_scene_read(session, &job->scene, &splats);
   if (status == CONIC_OK)
