@@ -168,6 +168,7 @@ static int store(const cli_session *session, const cli_option *option, const cha
     break;
   case CLI_TEXT:
     *(const char **)option->value = text;
+    is_understood = *text != '\0'; /* as of a shell's variable that was never set */
     break;
   case CLI_CHOICE:
     is_understood = parse_choice(text, option->choices, option->value);
@@ -276,6 +277,8 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
   for (int i = 1; i < argc && exit_code == CLI_DONE; i++) {
     if (!is_over && strcmp(argv[i], "--") == 0)
       is_over = 1;
+    else if (argv[i][0] == '\0')
+      exit_code = cli_usage("%s: an argument is empty", session->command);
     else if (is_over || argv[i][0] != '-' || argv[i][1] == '\0')
       positional[(*n_positional)++] = argv[i];
     else

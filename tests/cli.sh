@@ -67,6 +67,10 @@ run_wrong 2 '' make sphere -n 10
 run_wrong 2 '' render
 run_wrong 2 '' diff one.pfm
 run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|a.ply|-o|outputs/a.pfm|--json|"; do
+  IFS='|' read -ra words <<< "$arguments" # as from a variable that was never set
+  run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
+done
 # What cannot be written is said before anything is read
 run_wrong 2 'standard output' render absent.ply -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
