@@ -44,6 +44,9 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "triangle_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_TRIANGLES]);
     cli_json_count(json, "surfel_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_SURFELS]);
     cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
+    cli_json_count(json, "joined_patches", job->hybrid_selection.n_joined);
+    cli_json_count(json, "nodes", job->hybrid_selection.n_nodes);
+    cli_json_count(json, "points", job->hybrid_selection.n_points);
   }
   cli_json_close(json);
   if (job->layers.file)

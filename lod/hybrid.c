@@ -144,7 +144,30 @@ static const char *wrong_patches(const conic_hybrid *h) {
     }
     next += patch->n_levels;
   }
-  return next == h->n_levels ? NULL : "levels of no patch";
+  return NULL;
+}
+
+/* The nodes' levels come after those of the patches, in their order. */
+static const char *wrong_node_levels(const conic_hybrid *h) {
+  const conic_hybrid_patch *last = &h->patches[h->n_patches - 1];
+  size_t next = (size_t)last->first_level + last->n_levels;
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    const conic_hybrid_point *point = &node->point;
+    if (node->first_level != next || node->n_levels > h->n_levels - next)
+      return "a node without its levels";
+    for (size_t k = 0; k < node->n_levels; k++) {
+      if (h->levels[next + k].kind != CONIC_HYBRID_SURFELS)
+        return "a node's level that is not surfels";
+      const char *wrong = wrong_level(h, &h->levels[next + k], 0);
+      if (wrong)
+        return wrong;
+    }
+    if (!(point->radius >= 0.0f && point->radius < HUGE_VALF) || !(point->error >= 0.0f && point->error < HUGE_VALF))
+      return "a node's point out of range";
+    next += node->n_levels;
+  }
+  return next == h->n_levels ? NULL : "levels of no patch or node";
 }
 
 /* A walk goes from a node to the one after it, or past its subtree; and what is left of the patches is always what the
@@ -154,7 +177,7 @@ static const char *wrong_nodes(const conic_hybrid *h) {
   for (size_t i = 0; i < h->n_nodes; i++) {
     const conic_hybrid_node *node = &h->nodes[i];
     if (node->next <= i || node->next > h->n_nodes || node->begin >= node->end || node->end > h->n_patches ||
-        node->zero || !is_bound(&node->bound))
+        !is_bound(&node->bound))
       return "a node that is none";
     if (node->begin != next_patch)
       return "nodes out of order";
@@ -173,6 +196,8 @@ const char *conic_hybrid_structure(const conic_hybrid *h) {
   const char *wrong = wrong_patches(h);
   if (!wrong)
     wrong = wrong_nodes(h);
+  if (!wrong)
+    wrong = wrong_node_levels(h);
   for (size_t i = 0; i < h->n_listed && !wrong; i++)
     if (h->listed[i] >= h->n_vertices)
       wrong = "a vertex out of range";

@@ -7,7 +7,7 @@
 
 /* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
 
-/* One way to draw a patch. */
+/* One way to draw a patch, or a node. */
 typedef struct conic_hybrid_level {
   uint32_t kind;         /* conic_hybrid_kind */
   uint32_t first, count; /* of its triangles or surfels among all */
@@ -47,12 +47,20 @@ typedef struct conic_hybrid_patch {
   uint32_t built;                 /* which level is drawn where no error is asked for, from first_level */
 } conic_hybrid_patch;
 
+/* All that a node holds as one disc that faces the camera, about the centre of its sphere. */
+typedef struct conic_hybrid_point {
+  float radius; /* of the faces alone, without what surfels stand out; 0: there is no point */
+  float error;  /* as of a level */
+  float color[3];
+} conic_hybrid_point;
+
 /* In preorder: the root first. */
 typedef struct conic_hybrid_node {
   conic_hybrid_bound bound;
-  uint32_t begin, end; /* patches */
-  uint32_t next;       /* the node after the subtree: this one + 1 where it has no children */
-  uint32_t zero;
+  uint32_t begin, end;            /* patches */
+  uint32_t next;                  /* the node after the subtree: this one + 1 where it has no children */
+  uint32_t first_level, n_levels; /* surfels that stand for all of its patches, of growing error; may be none */
+  conic_hybrid_point point;
 } conic_hybrid_node;
 
 struct conic_hybrid {

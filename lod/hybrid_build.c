@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "lod/flat_mesh.h"
+#include "lod/hybrid_nodes.h"
 #include "lod/hybrid_pack.h"
 #include "lod/hybrid_tree.h"
 
@@ -177,8 +178,9 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   b->report->sample_seconds = ways.sample_seconds;
   b->report->simplify_seconds = ways.simplify_seconds;
   if (status == CONIC_OK)
-    status = conic_hybrid_pack(b->context, &b->mesh, b->ways, &ways.chains, b->options->cutoff, hybrid);
+    status = conic_hybrid_pack(&ways, hybrid);
   conic_patch_chains_release(b->context, &ways.chains);
+  conic_nodes_release(&ways);
   return status;
 }
 

@@ -59,6 +59,28 @@ static void check_patch(const conic_hybrid *h, const conic_hybrid_patch *patch, 
   found->levels += (size_t)is_wrong;
 }
 
+/* A node's levels are of growing error, and the disc of its point holds the faces of all of its patches. */
+static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
+  const conic_hybrid_bound point = {.center = {node->bound.center[0], node->bound.center[1], node->bound.center[2]}};
+  int is_out = 0, is_wrong = 0;
+  for (uint32_t k = 1; k < node->n_levels; k++)
+    is_wrong |= !(h->levels[node->first_level + k].error >= h->levels[node->first_level + k - 1].error);
+  for (uint32_t i = node->begin; i < node->end && node->point.radius > 0.0f; i++) {
+    const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
+    for (uint32_t k = 0; k < faces->n_vertices; k++) {
+      double at[3];
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] = (double)h->position[axis][h->listed[faces->first_vertex + k]];
+      is_out |= !(distance_of(&point, at) <= (double)node->point.radius * (1.0 + hair));
+    }
+  }
+  is_wrong |= node->point.radius > 0.0f && !(node->point.error >= node->point.radius);
+  found->spheres += (size_t)is_out;
+  found->levels += (size_t)is_wrong;
+  for (int channel = 0; channel < 3; channel++)
+    found->values += !is_number(node->point.color[channel]);
+}
+
 /* All that is drawn of a node's patches lies in its sphere, and their cones in its cone. */
 static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   int is_out = 0, is_turned = 0;
@@ -103,7 +125,9 @@ conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *def
     defects->values += count_wrong(h->surfels[k], h->n_surfels);
   for (size_t i = 0; i < h->n_patches; i++)
     check_patch(h, &h->patches[i], defects);
-  for (size_t i = 0; i < h->n_nodes; i++)
+  for (size_t i = 0; i < h->n_nodes; i++) {
     check_node(h, &h->nodes[i], defects);
+    check_joined(h, &h->nodes[i], defects);
+  }
   return CONIC_OK;
 }

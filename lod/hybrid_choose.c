@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/trigonometry.h"
+#include "lod/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
@@ -95,13 +96,18 @@ static double pixels_a_unit(const conic_hybrid_camera *view, const sight *seen, 
   return front > view->near_z ? view->focal_px * (seen->distance + radius) / (front * front) : HUGE_VAL;
 }
 
+double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
+  sight seen = look_at(view, bound);
+  return pixels_a_unit(view, &seen, reach);
+}
+
 static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
   return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
 }
 
-double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
+double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level) {
-  sight seen = look_at(view, &patch->bound);
+  sight seen = look_at(view, bound);
   return error_px_of(view, &seen, level);
 }
 
@@ -128,40 +134,60 @@ static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybri
   return n * surfel_ns + n_pixels * surfel_pixel_ns;
 }
 
+double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2) {
+  return surfel_ns + surfel_pixel_ns * CONIC_PI * (radius_px2 + view->margin_px2);
+}
+
+/* With what it takes to know costs. */
+static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
+  sight seen = look_at(view, bound);
+  double z = seen.z > view->near_z ? seen.z : view->near_z;
+  seen.scale2 = view->focal_px * view->focal_px / (z * z);
+  seen.facing = facing_of(view, bound, &seen);
+  return seen;
+}
+
+/* Tiles are mostly this wide. */
+static const double tile_px = 64.0;
+
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch) {
+  sight seen = look_well_at(view, &patch->bound);
+  double side = sqrt((double)patch->area * seen.scale2 * seen.facing) + tile_px;
+  return side * side;
+}
+
+conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                                           const conic_hybrid_node *node, double error_px) {
+  const conic_hybrid_level *levels = hybrid->levels + node->first_level;
+  sight seen = look_well_at(view, &node->bound);
+  conic_hybrid_offer best = {0, HUGE_VAL};
+  if (conic_hybrid_point_error_px(view, node) <= error_px)
+    best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
+  for (uint32_t k = 0; k < node->n_levels && error_px_of(view, &seen, &levels[k]) <= error_px; k++) {
+    double cost = cost_of_surfels(view, &levels[k], &seen);
+    if (cost < best.amount)
+      best = (conic_hybrid_offer){k, cost};
+  }
+  return best;
+}
+
 void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
                          double error_px, conic_hybrid_offer offers[2]) {
   const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  sight seen = look_at(view, &patch->bound);
-  double z = seen.z > view->near_z ? seen.z : view->near_z;
-  seen.scale2 = view->focal_px * view->focal_px / (z * z);
-  seen.facing = facing_of(view, &patch->bound, &seen);
+  sight seen = look_well_at(view, &patch->bound);
   offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
   for (uint32_t k = 0; k < patch->n_levels; k++) {
     conic_hybrid_offer *offer = &offers[levels[k].kind];
     double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(patch, &levels[k], &seen)
                                                            : cost_of_surfels(view, &levels[k], &seen);
-    if (cost < offer->cost_ns && error_px_of(view, &seen, &levels[k]) <= error_px)
+    if (cost < offer->amount && error_px_of(view, &seen, &levels[k]) <= error_px)
       *offer = (conic_hybrid_offer){k, cost};
   }
 }
 
-/* The finest of that kind, which is the first; or the first of all. */
-static uint32_t first_of_kind(const conic_hybrid_level *levels, uint32_t n, int kind) {
-  for (uint32_t k = 0; k < n; k++)
-    if (levels[k].kind == (uint32_t)kind)
+uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_patch *patch, int only_kind) {
+  for (uint32_t k = 0; k < patch->n_levels; k++)
+    if (hybrid->levels[patch->first_level + k].kind == (uint32_t)only_kind)
       return k;
   return 0;
-}
-
-uint32_t conic_hybrid_choose(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                             const conic_hybrid_patch *patch, double error_px, int only_kind) {
-  const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  conic_hybrid_offer offers[2];
-  if (!(error_px > 0.0))
-    return only_kind < 0 ? patch->built : first_of_kind(levels, patch->n_levels, only_kind);
-  conic_hybrid_offers(hybrid, view, patch, error_px, offers);
-  if (only_kind < 0)
-    return offers[offers[CONIC_HYBRID_SURFELS].cost_ns < offers[CONIC_HYBRID_TRIANGLES].cost_ns].level;
-  return offers[only_kind].cost_ns < HUGE_VAL ? offers[only_kind].level
-                                              : first_of_kind(levels, patch->n_levels, only_kind);
 }

@@ -144,8 +144,9 @@ static const char *check_header(const header *h) {
       return "counts that do not go together";
   if (h->flags & ~(uint32_t)CONIC_CHY_ALL_FLAGS || h->zero)
     return "unknown flags";
-  if (h->n_patches < 1 || h->n_levels < h->n_patches || h->n_nodes < 1 || h->n_nodes >= 2 * h->n_patches ||
-      ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) || (h->n_texels && h->n_materials < 1))
+  if (h->n_patches < 1 || h->n_patches + h->n_nodes > UINT32_MAX || h->n_levels < h->n_patches || h->n_nodes < 1 ||
+      h->n_nodes >= 2 * h->n_patches || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
+      (h->n_texels && h->n_materials < 1))
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
     return "a cutoff or length out of range";

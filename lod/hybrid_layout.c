@@ -12,7 +12,7 @@ _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
 _Static_assert(sizeof(conic_hybrid_slot) == 8, "slots of 8 bytes");
 _Static_assert(sizeof(conic_hybrid_border) == 16, "borders of 16 bytes");
 _Static_assert(sizeof(conic_hybrid_patch) == 48, "patches of 48 bytes");
-_Static_assert(sizeof(conic_hybrid_node) == 48, "nodes of 48 bytes");
+_Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 
 conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {

@@ -4,7 +4,7 @@
 
 #include "lod/hybrid.h"
 
-enum { CONIC_CHY_HEADER_BYTES = 256, CONIC_CHY_VERSION = 2 };
+enum { CONIC_CHY_HEADER_BYTES = 256, CONIC_CHY_VERSION = 3 };
 
 enum {
   CONIC_CHY_NORMALS = 1,

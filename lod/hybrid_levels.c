@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
+#include "lod/hybrid_nodes.h"
 #include "lod/radix.h"
 
 enum { PATCHES_A_PORTION = 256 };
@@ -225,6 +226,8 @@ static conic_status run_passes(ways_pass *pass) {
   conic_status status = run_pass(pass, 0.0, 0.5);
   for (int i = 0; i < n_threads; i++)
     conic_sampler_destroy(pass->workers[i]);
+  if (status == CONIC_OK)
+    status = conic_find_nodes(job);
   double sampled = seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
@@ -246,8 +249,10 @@ conic_status conic_find_ways(conic_ways_job *job) {
   if (status == CONIC_OK)
     status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
   if (status == CONIC_OK) {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
       job->ways[i].area = patch_area(job->mesh, (uint32_t)i);
+      job->ways[i].bound = conic_patch_bound(job->mesh, (uint32_t)i);
+    }
     status = run_passes(&pass);
   }
   conic_face_tree_release(job->context, &job->tree);

@@ -17,13 +17,23 @@ typedef struct conic_patch_ways {
   double area;
 } conic_patch_ways;
 
+enum { CONIC_MOST_NODE_LEVELS = 3 };
+
+typedef struct conic_node_ways {
+  int n_surfels;
+  conic_surfels surfels[CONIC_MOST_NODE_LEVELS];
+} conic_node_ways;
+
 typedef struct conic_ways_job {
   conic_context *context;
   const conic_patch_mesh *mesh;
   const conic_hybrid_options *options;
-  conic_face_tree tree;      /* private */
-  conic_patch_ways *ways;    /* of each patch; zero before */
-  conic_patch_chains chains; /* between simpler triangles of patches; the caller's to release, on failure too */
+  conic_face_tree tree;   /* private */
+  conic_patch_ways *ways; /* of each patch; zero before */
+  size_t n_nodes;
+  conic_hybrid_node *nodes; /* over the patches, with their points but not yet with levels; the caller's to release, */
+  conic_node_ways *node_ways; /* by conic_nodes_release, and these; null where nodes have none */
+  conic_patch_chains chains;  /* between simpler triangles of patches; the caller's to release, on failure too */
   double sample_seconds, simplify_seconds;
 } conic_ways_job;
 

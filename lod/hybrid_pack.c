@@ -8,7 +8,6 @@
 #include "core/message.h"
 #include "core/texture.h"
 #include "lod/hybrid_layout.h"
-#include "lod/hybrid_tree.h"
 
 typedef struct packing {
   conic_context *context;
@@ -16,13 +15,13 @@ typedef struct packing {
   const conic_triangles *flat; /* the same mesh */
   const conic_patch_ways *ways;
   const conic_patch_chains *chains;
+  const conic_ways_job *job;
   size_t n_patches;
   float cutoff;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
   conic_chy_header header;
   conic_chy_layout layout;
   unsigned char *bytes;
-  float *reach; /* of each patch: the longest half axis of its surfels */
 } packing;
 
 /* --- sizes --- */
@@ -58,6 +57,13 @@ static void count_patch(packing *p, uint32_t patch) {
   h->n_levels += (uint64_t)(1 + ways->triangles.n + ways->n_surfels);
 }
 
+static void count_node(packing *p, size_t node) {
+  const conic_node_ways *ways = &p->job->node_ways[node];
+  for (int i = 0; i < ways->n_surfels; i++)
+    p->header.n_surfels += ways->surfels[i].n;
+  p->header.n_levels += (uint64_t)ways->n_surfels;
+}
+
 static void measure_box(const packing *p, conic_chy_header *h) {
   for (int axis = 0; axis < 3; axis++) {
     h->low[axis] = HUGE_VALF;
@@ -80,7 +86,7 @@ static conic_status allocate_body(packing *p) {
   h->cutoff = p->cutoff;
   h->n_vertices = p->flat->n_vertices;
   h->n_patches = p->n_patches;
-  h->n_nodes = conic_hybrid_count_nodes(p->n_patches);
+  h->n_nodes = p->job->n_nodes;
   h->n_slots = p->chains->n_slots;
   h->n_materials = p->flat->n_materials;
   h->flags = (p->flat->normal[0] ? CONIC_CHY_NORMALS : 0u) | (p->flat->color[0] ? CONIC_CHY_COLORS : 0u) |
@@ -93,6 +99,8 @@ static conic_status allocate_body(packing *p) {
   }
   for (uint32_t i = 0; i < p->n_patches; i++)
     count_patch(p, i);
+  for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
+    count_node(p, i);
   if (h->n_triangles > UINT32_MAX / 4 || h->n_surfels > UINT32_MAX / 4 || h->n_texels > UINT32_MAX / 4)
     return conic_fail(p->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
   measure_box(p, h);
@@ -177,7 +185,7 @@ static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mes
   conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
   const conic_patch_ways *ways = &p->ways[i];
   double error = 0.0;
-  patches[i] = (conic_hybrid_patch){.bound = conic_patch_bound(p->mesh, i),
+  patches[i] = (conic_hybrid_patch){.bound = ways->bound,
                                     .area = (float)ways->area,
                                     .first_level = (uint32_t)at->level,
                                     .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
@@ -193,11 +201,18 @@ static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mes
     level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
     put_triangles(p, at, &level);
   }
-  for (int k = 0; k < ways->n_surfels; k++) {
+  for (int k = 0; k < ways->n_surfels; k++)
     put_surfels(p, at, &ways->surfels[k]);
-    float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));
-    p->reach[i] = reach > p->reach[i] ? reach : p->reach[i];
-  }
+}
+
+static void put_node(packing *p, cursor *at, size_t i) {
+  conic_hybrid_node *node = (conic_hybrid_node *)array_at(p, CONIC_CHY_NODES) + i;
+  const conic_node_ways *ways = p->job->node_ways ? &p->job->node_ways[i] : NULL;
+  *node = p->job->nodes[i];
+  node->first_level = (uint32_t)at->level;
+  node->n_levels = ways ? (uint32_t)ways->n_surfels : 0;
+  for (uint32_t k = 0; k < node->n_levels; k++)
+    put_surfels(p, at, &ways->surfels[k]);
 }
 
 static void put_vertices(packing *p) {
@@ -274,6 +289,8 @@ static conic_status fill_body(packing *p) {
   int is_there = mesh.corners && mesh.face;
   for (uint32_t i = 0; i < p->n_patches && is_there; i++)
     put_patch(p, &at, i, &mesh);
+  for (size_t i = 0; i < p->job->n_nodes && is_there; i++)
+    put_node(p, &at, i);
   conic_memory_release(p->context, mesh.corners);
   conic_memory_release(p->context, mesh.face);
   if (!is_there)
@@ -282,7 +299,6 @@ static conic_status fill_body(packing *p) {
     memcpy(array_at(p, CONIC_CHY_SLOTS), p->chains->slots, p->chains->n_slots * sizeof *p->chains->slots);
   put_vertices(p);
   put_materials(p);
-  conic_hybrid_fill_nodes(array_at(p, CONIC_CHY_PATCHES), p->reach, p->n_patches, array_at(p, CONIC_CHY_NODES));
   return measure_surfels(p);
 }
 
@@ -332,25 +348,22 @@ static conic_status pack(packing *p, conic_hybrid **hybrid) {
   return status == CONIC_OK ? conic_chy_make_materials(made) : status;
 }
 
-conic_status conic_hybrid_pack(conic_context *context, const conic_patch_mesh *mesh, const conic_patch_ways *ways,
-                               const conic_patch_chains *chains, float cutoff, conic_hybrid **hybrid) {
-  size_t n_patches = mesh->clusters->n_clusters;
-  packing p = {.context = context,
-               .mesh = mesh,
-               .flat = mesh->triangles,
-               .ways = ways,
-               .chains = chains,
-               .n_patches = n_patches,
-               .cutoff = cutoff,
-               .local = conic_memory_allocate(context, mesh->triangles->n_vertices, sizeof *p.local),
-               .reach = conic_memory_allocate_zeroed(context, n_patches, sizeof *p.reach)};
-  conic_status status = CONIC_ERROR_MEMORY;
+conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid) {
+  const conic_triangles *flat = ways->mesh->triangles;
+  packing p = {.context = ways->context,
+               .mesh = ways->mesh,
+               .flat = flat,
+               .ways = ways->ways,
+               .chains = &ways->chains,
+               .job = ways,
+               .n_patches = ways->mesh->clusters->n_clusters,
+               .cutoff = ways->options->cutoff,
+               .local = conic_memory_allocate(ways->context, flat->n_vertices, sizeof *p.local)};
   *hybrid = NULL;
-  if (p.local && p.reach) {
-    memset(p.local, 0xFF, mesh->triangles->n_vertices * sizeof *p.local);
-    status = pack(&p, hybrid);
-  }
-  conic_memory_release(context, p.reach);
-  conic_memory_release(context, p.local);
+  if (!p.local)
+    return CONIC_ERROR_MEMORY;
+  memset(p.local, 0xFF, flat->n_vertices * sizeof *p.local);
+  conic_status status = pack(&p, hybrid);
+  conic_memory_release(ways->context, p.local);
   return status;
 }

@@ -12,7 +12,8 @@ static const double margin = 0.97;
 
 /* A patch in sight. Infinite costs are of a kind that is not good enough. */
 typedef struct candidate {
-  conic_hybrid_offer offers[2]; /* by kind */
+  conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
+  double alone_ns;              /* of its own surfels */
   uint32_t first_link, n_links;
   uint8_t kind;
 } candidate;
@@ -33,7 +34,10 @@ typedef struct planning {
   size_t n_links;
   link *links;
   uint8_t *kinds; /* what was found before */
-  double both_ns; /* what a picture of both kinds takes more than its parts */
+  const conic_hybrid_camera *view;
+  double error_px;
+  double *amounts, *below; /* of each patch of the model, and of each node, for cutting */
+  uint32_t *nodes;
 } planning;
 
 static const conic_hybrid_level *triangles_of(const planning *p, size_t i) {
@@ -41,13 +45,28 @@ static const conic_hybrid_level *triangles_of(const planning *p, size_t i) {
   return &p->hybrid->levels[patch->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
 }
 
-static void ask(planning *p, const conic_hybrid_camera *view, double error_px) {
+static void ask(planning *p) {
   for (size_t i = 0; i < p->n; i++) {
-    const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
     candidate *c = &p->candidates[i];
-    conic_hybrid_offers(p->hybrid, view, patch, error_px, c->offers);
-    c->kind = c->offers[CONIC_HYBRID_SURFELS].cost_ns < c->offers[CONIC_HYBRID_TRIANGLES].cost_ns;
+    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->patches[p->patches[i]], p->error_px, c->offers);
+    c->alone_ns = c->offers[CONIC_HYBRID_SURFELS].amount;
   }
+}
+
+static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
+  const planning *p = data;
+  return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
+}
+
+/* Lets nodes stand for patches that are surfels now. Returns how much less these take by that. */
+static double cut(const planning *p) {
+  const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
+  for (size_t i = 0; i < p->n; i++) {
+    const candidate *c = &p->candidates[i];
+    int is_free = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
+    p->amounts[p->patches[i]] = is_free ? c->alone_ns : NAN;
+  }
+  return conic_hybrid_cut(&cutting, p->nodes);
 }
 
 /* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
@@ -83,12 +102,8 @@ static void match_links(planning *p) {
 
 static conic_status find_links(planning *p) {
   size_t n_borders = 0;
-  for (size_t i = 0; i < p->hybrid->n_patches; i++)
-    p->of_patch[i] = (uint32_t)p->n;
-  for (size_t i = 0; i < p->n; i++) {
-    p->of_patch[p->patches[i]] = (uint32_t)i;
+  for (size_t i = 0; i < p->n; i++)
     n_borders += triangles_of(p, i)->n_borders;
-  }
   uint32_t *last = conic_memory_allocate_zeroed(p->hybrid->context, p->n, sizeof *last);
   p->links = conic_memory_allocate(p->hybrid->context, n_borders, sizeof *p->links);
   if (last && p->links) {
@@ -102,8 +117,8 @@ static conic_status find_links(planning *p) {
 
 /* What a candidate takes as one kind and as the other, its neighbours being what they are. */
 static void weigh(const planning *p, const candidate *c, double costs[2]) {
-  costs[0] = c->offers[0].cost_ns;
-  costs[1] = c->offers[1].cost_ns;
+  costs[0] = c->offers[0].amount;
+  costs[1] = c->offers[1].amount;
   for (size_t k = 0; k < c->n_links; k++) {
     const link *l = &p->links[c->first_link + k];
     if (p->candidates[l->candidate].kind == CONIC_HYBRID_SURFELS)
@@ -137,22 +152,56 @@ static int is_mixed(const planning *p) {
   return 0;
 }
 
+/* What a picture of both kinds takes more than its parts; patches share tiles, of which there are no more than all. */
+static double mixing(const planning *p) {
+  double n_pixels = 0.0;
+  for (size_t i = 0; i < p->n; i++)
+    if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
+      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->patches[p->patches[i]]);
+  n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
+  return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
+}
+
+/* What all takes; with what a picture of both kinds must promise to be preferred. */
 static double total(const planning *p) {
-  double sum = is_mixed(p) ? p->both_ns : 0.0;
+  int is_both = is_mixed(p);
+  double sum = is_both ? mixing(p) : 0.0;
   for (size_t i = 0; i < p->n; i++) {
     const candidate *c = &p->candidates[i];
-    sum += c->offers[c->kind].cost_ns;
+    sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : c->offers[CONIC_HYBRID_TRIANGLES].amount;
     for (size_t k = 0; k < c->n_links && c->kind == CONIC_HYBRID_TRIANGLES; k++)
       if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
         sum += p->links[c->first_link + k].own_ns;
   }
-  return sum;
+  sum -= cut(p);
+  return is_both ? sum / margin : sum;
 }
 
 /* All of one kind, where that is good enough. */
 static void take_kind(planning *p, uint8_t kind) {
   for (size_t i = 0; i < p->n; i++)
-    p->candidates[i].kind = p->candidates[i].offers[kind].cost_ns < HUGE_VAL ? kind : !kind;
+    p->candidates[i].kind = p->candidates[i].offers[kind].amount < HUGE_VAL ? kind : !kind;
+}
+
+/* What each patch's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
+static void share(planning *p) {
+  take_kind(p, CONIC_HYBRID_SURFELS);
+  if (cut(p) > 0.0)
+    for (size_t i = 0; i < p->hybrid->n_nodes; i++) {
+      const conic_hybrid_node *node = &p->hybrid->nodes[i];
+      double sum = 0.0;
+      if (p->nodes[i] == CONIC_HYBRID_NO_NODE)
+        continue;
+      for (uint32_t k = node->begin; k < node->end; k++)
+        sum += p->amounts[k];
+      for (uint32_t k = node->begin; k < node->end; k++)
+        if (p->amounts[k] > 0.0)
+          p->candidates[p->of_patch[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
+    }
+  for (size_t i = 0; i < p->n; i++) {
+    candidate *c = &p->candidates[i];
+    c->kind = c->offers[CONIC_HYBRID_SURFELS].amount < c->offers[CONIC_HYBRID_TRIANGLES].amount;
+  }
 }
 
 static void keep_if_less(planning *p, double sum, double *least) {
@@ -167,7 +216,7 @@ static void keep_if_less(planning *p, double sum, double *least) {
 static void settle(planning *p) {
   double least = HUGE_VAL;
   improve(p);
-  keep_if_less(p, total(p) / margin, &least);
+  keep_if_less(p, total(p), &least);
   for (uint8_t kind = 0; kind < 2; kind++) {
     take_kind(p, kind);
     keep_if_less(p, total(p), &least);
@@ -176,15 +225,15 @@ static void settle(planning *p) {
     p->candidates[i].kind = p->kinds[i];
 }
 
-/* Whether all of one kind takes no more than the cheaper of both for each patch, with what a picture of both kinds
- * takes more: then no better one has to be looked for. */
+/* Whether all of one kind takes hardly more than the cheaper of both for each patch: then no better one has to be
+ * looked for. */
 static int is_settled(planning *p) {
-  double sums[2] = {0.0, 0.0}, least = p->both_ns;
+  double sums[2] = {0.0, 0.0}, least = 0.0;
   for (size_t i = 0; i < p->n; i++) {
     const candidate *c = &p->candidates[i];
-    least += c->offers[c->kind].cost_ns;
+    least += c->offers[c->kind].amount;
     for (int kind = 0; kind < 2; kind++)
-      sums[kind] += c->offers[kind].cost_ns;
+      sums[kind] += c->offers[kind].amount;
   }
   uint8_t kind = sums[CONIC_HYBRID_SURFELS] < sums[CONIC_HYBRID_TRIANGLES];
   if (is_mixed(p) && !(sums[kind] <= least / margin))
@@ -193,25 +242,62 @@ static int is_settled(planning *p) {
   return 1;
 }
 
-conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               const uint32_t *patches, size_t n, uint32_t *levels) {
-  conic_context *context = hybrid->context;
-  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .both_ns = view->n_pixels * CONIC_HYBRID_BOTH_NS};
-  p.candidates = conic_memory_allocate_zeroed(context, n, sizeof *p.candidates);
-  p.of_patch = conic_memory_allocate(context, hybrid->n_patches, sizeof *p.of_patch);
-  p.kinds = conic_memory_allocate(context, n, sizeof *p.kinds);
-  conic_status status = p.candidates && p.of_patch && p.kinds ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK) {
-    ask(&p, view, error_px);
-    if (!is_settled(&p)) {
-      status = find_links(&p);
-      if (status == CONIC_OK)
-        settle(&p);
-    }
+/* The kind that is asked for; where it is good enough nowhere, its finest. */
+static void obey(planning *p, int only_kind) {
+  for (size_t i = 0; i < p->n; i++) {
+    const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
+    conic_hybrid_offer *offer = &p->candidates[i].offers[only_kind];
+    p->candidates[i].kind = (uint8_t)only_kind;
+    if (!(offer->amount < HUGE_VAL))
+      offer->level = conic_hybrid_finest(p->hybrid, patch, only_kind);
   }
+}
+
+static conic_status plan_kinds(planning *p) {
+  share(p);
+  if (is_settled(p))
+    return CONIC_OK;
+  conic_status status = find_links(p);
+  if (status == CONIC_OK)
+    settle(p);
+  return status;
+}
+
+static conic_status begin(planning *p) {
+  conic_context *context = p->hybrid->context;
+  p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
+  p->of_patch = conic_memory_allocate(context, p->hybrid->n_patches, sizeof *p->of_patch);
+  p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
+  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_patches, sizeof *p->amounts);
+  p->below = conic_memory_allocate(context, p->hybrid->n_nodes, sizeof *p->below);
+  if (!p->candidates || !p->of_patch || !p->kinds || !p->amounts || !p->below)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < p->hybrid->n_patches; i++)
+    p->of_patch[i] = (uint32_t)p->n;
+  for (size_t i = 0; i < p->n; i++)
+    p->of_patch[p->patches[i]] = (uint32_t)i;
+  return CONIC_OK;
+}
+
+conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
+                               int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes) {
+  conic_context *context = hybrid->context;
+  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px, .nodes = nodes};
+  conic_status status = begin(&p);
+  if (status == CONIC_OK) {
+    ask(&p);
+    if (only_kind < 0)
+      status = plan_kinds(&p);
+    else
+      obey(&p, only_kind);
+  }
+  if (status == CONIC_OK)
+    cut(&p);
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
   conic_memory_release(context, p.links);
+  conic_memory_release(context, p.below);
+  conic_memory_release(context, p.amounts);
   conic_memory_release(context, p.kinds);
   conic_memory_release(context, p.of_patch);
   conic_memory_release(context, p.candidates);

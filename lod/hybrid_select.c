@@ -7,6 +7,7 @@
 #include "core/threads.h"
 #include "lod/hybrid_budget.h"
 #include "lod/hybrid_plan.h"
+#include "lod/hybrid_point.h"
 #include "lod/hybrid_stitch.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
@@ -15,7 +16,8 @@ void conic_hybrid_view_init(conic_hybrid_view *view) {
   view->only_kind = -1;
 }
 
-/* A patch that is drawn, and where its parts go. */
+/* A patch that is drawn, or, after all patches by its number, a node; and where its parts go. The level is among all of
+ * the model's; a node's point is none of them. */
 typedef struct choice {
   uint32_t patch, level;
   size_t splat, triangle, vertex;
@@ -26,7 +28,8 @@ typedef struct choice {
 typedef struct scratch {
   choice *choices;
   size_t n_choices, choices_room;
-  uint32_t *stages; /* of each patch of the hybrid: that of its level */
+  uint32_t *stages;   /* of each patch of the hybrid: that of its level */
+  uint32_t *standing; /* the node that stands for it */
   size_t stages_room;
   float *splats; /* arrays of splats_room each */
   uint32_t *splat_cluster;
@@ -36,6 +39,9 @@ typedef struct scratch {
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
 } scratch;
+
+/* The level of a choice that is a node's point. */
+#define CONIC_HYBRID_POINT UINT32_MAX
 
 enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
 
@@ -52,6 +58,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   if (kept) {
     conic_memory_release(context, kept->choices);
     conic_memory_release(context, kept->stages);
+    conic_memory_release(context, kept->standing);
     conic_memory_release(context, kept->splats);
     conic_memory_release(context, kept->splat_cluster);
     conic_memory_release(context, kept->vertices);
@@ -72,7 +79,7 @@ static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
 
 /* Whether the level of a patch depends on those of others. */
 static int is_together(const conic_hybrid_view *view) {
-  return view->budget || (view->error_px > 0.0 && view->only_kind < 0);
+  return view->budget || view->error_px > 0.0;
 }
 
 static conic_status add_choice(selecting *s, uint32_t i_patch) {
@@ -87,9 +94,9 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
       return status;
     kept->choices_room = room;
   }
-  uint32_t level = 0;
-  if (!is_together(s->view))
-    level = conic_hybrid_choose(s->hybrid, &s->camera, patch, s->view->error_px, s->view->only_kind);
+  uint32_t level = patch->built;
+  if (s->view->only_kind >= 0)
+    level = conic_hybrid_finest(s->hybrid, patch, s->view->only_kind);
   kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
   return CONIC_OK;
 }
@@ -116,55 +123,110 @@ static conic_status choose_all(selecting *s) {
   return status;
 }
 
+/* A node's choice takes the place of the first of its patches; those that are left close up. */
+static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
+  const conic_hybrid *h = s->hybrid;
+  scratch *kept = s->scratch;
+  uint32_t last = CONIC_HYBRID_NO_NODE;
+  size_t n = 0;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    uint32_t node = kept->standing[kept->choices[i].patch];
+    if (node == CONIC_HYBRID_NO_NODE)
+      kept->choices[n++] = kept->choices[i];
+    else if (node != last)
+      kept->choices[n++] =
+          (choice){.patch = (uint32_t)h->n_patches + node,
+                   .level = nodes[node] < h->nodes[node].n_levels ? h->nodes[node].first_level + nodes[node]
+                                                                  : CONIC_HYBRID_POINT};
+    s->selection->n_joined += node != CONIC_HYBRID_NO_NODE;
+    last = node;
+  }
+  kept->n_choices = n;
+}
+
+/* The stages of what was chosen; all else is hidden. Nodes have all of their patches' borders. */
+static void note_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  for (size_t i = 0; i < s->hybrid->n_patches; i++) {
+    kept->stages[i] = CONIC_HYBRID_HIDDEN;
+    kept->standing[i] = CONIC_HYBRID_NO_NODE;
+  }
+  for (size_t i = 0; i < kept->n_choices; i++)
+    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+}
+
 /* Chooses for all patches in sight, for a budget or for the least time. */
 static conic_status choose_together(selecting *s) {
   const conic_hybrid *h = s->hybrid;
-  size_t n = s->scratch->n_choices;
-  uint32_t *patches = conic_memory_allocate(h->context, 2 * n, sizeof *patches);
+  const conic_hybrid_view *view = s->view;
+  scratch *kept = s->scratch;
+  size_t n = kept->n_choices;
+  uint32_t *patches = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *patches);
   if (!patches)
     return CONIC_ERROR_MEMORY;
-  uint32_t *levels = patches + n;
+  uint32_t *levels = patches + n, *nodes = levels + n;
   for (size_t i = 0; i < n; i++)
-    patches[i] = s->scratch->choices[i].patch;
+    patches[i] = kept->choices[i].patch;
   conic_status status =
-      s->view->budget ? conic_hybrid_fit_budget(h, &s->camera, s->view->only_kind, s->view->budget, patches, n, levels)
-                      : conic_hybrid_plan(h, &s->camera, s->view->error_px, patches, n, levels);
-  for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    s->scratch->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, patches, n, levels, nodes)
+                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, patches, n, levels, nodes);
+  if (status == CONIC_OK) {
+    for (size_t i = 0; i < n; i++)
+      kept->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+    note_stages(s);
+    conic_hybrid_find_standing(h, nodes, kept->standing);
+    for (size_t i = 0; i < n; i++)
+      if (kept->standing[patches[i]] != CONIC_HYBRID_NO_NODE)
+        kept->stages[patches[i]] = 0;
+    let_nodes_stand(s, nodes);
+  }
   conic_memory_release(h->context, patches);
   return status;
+}
+
+static const conic_hybrid_node *node_of(const selecting *s, const choice *c) {
+  return c->patch < s->hybrid->n_patches ? NULL : &s->hybrid->nodes[c->patch - s->hybrid->n_patches];
+}
+
+static void judge_patch(const selecting *s, const choice *c) {
+  const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
+  s->selection->n_patches[s->hybrid->levels[c->level].kind]++;
+  s->selection->n_simpler += c->level != patch->first_level + patch->built;
 }
 
 /* What the choices come to. */
 static void judge(const selecting *s) {
   conic_hybrid_selection *selection = s->selection;
+  selection->n_simpler = selection->n_joined;
   for (size_t i = 0; i < s->scratch->n_choices; i++) {
     const choice *c = &s->scratch->choices[i];
-    const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
-    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
-    double error_px = conic_hybrid_error_px(&s->camera, patch, level);
-    selection->n_patches[level->kind]++;
-    selection->n_simpler += c->level != patch->first_level + patch->built;
+    const conic_hybrid_node *node = node_of(s, c);
+    const conic_hybrid_bound *bound = node ? &node->bound : &s->hybrid->patches[c->patch].bound;
+    double error_px = c->level == CONIC_HYBRID_POINT
+                          ? conic_hybrid_point_error_px(&s->camera, node)
+                          : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
     selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
+    selection->n_nodes += node && c->level != CONIC_HYBRID_POINT;
+    selection->n_points += c->level == CONIC_HYBRID_POINT;
+    if (!node)
+      judge_patch(s, c);
   }
 }
 
-/* The stages of what was chosen; all else is hidden. */
-static conic_status note_stages(selecting *s) {
+static conic_status make_stages(selecting *s) {
   scratch *kept = s->scratch;
+  conic_context *context = s->hybrid->context;
   size_t n = s->hybrid->n_patches;
-  if (!kept->stages || n > kept->stages_room) {
-    conic_memory_release(s->hybrid->context, kept->stages);
-    kept->stages_room = 0;
-    kept->stages = conic_memory_allocate(s->hybrid->context, n, sizeof *kept->stages);
-    if (!kept->stages)
-      return CONIC_ERROR_MEMORY;
-    kept->stages_room = n;
-  }
-  for (size_t i = 0; i < n; i++)
-    kept->stages[i] = CONIC_HYBRID_HIDDEN;
-  for (size_t i = 0; i < kept->n_choices; i++)
-    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+  if (kept->stages && kept->standing && n <= kept->stages_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->stages);
+  conic_memory_release(context, kept->standing);
+  kept->stages_room = 0;
+  kept->stages = conic_memory_allocate(context, n, sizeof *kept->stages);
+  kept->standing = conic_memory_allocate(context, n, sizeof *kept->standing);
+  if (!kept->stages || !kept->standing)
+    return CONIC_ERROR_MEMORY;
+  kept->stages_room = n;
   return CONIC_OK;
 }
 
@@ -179,6 +241,10 @@ static conic_status make_room(selecting *s) {
     c->splat = n_splats;
     c->triangle = n_triangles;
     c->vertex = n_vertices;
+    if (c->level == CONIC_HYBRID_POINT) {
+      n_splats++;
+      continue;
+    }
     c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
     n_vertices += level->n_vertices + c->n_put;
     *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
@@ -253,6 +319,15 @@ static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid
     kept->splat_cluster[c->splat + i] = c->patch;
 }
 
+static void put_point(const selecting *s, const choice *c) {
+  const scratch *kept = s->scratch;
+  float values[SPLAT_ARRAYS];
+  conic_hybrid_point_splat(&s->camera, node_of(s, c), (double)s->hybrid->cutoff, values);
+  for (size_t k = 0; k < SPLAT_ARRAYS; k++)
+    kept->splats[k * kept->splats_room + c->splat] = values[k];
+  kept->splat_cluster[c->splat] = c->patch;
+}
+
 static void gather(float *to, const float *from, const uint32_t *listed, size_t n) {
   for (size_t i = 0; i < n && to; i++)
     to[i] = from[listed[i]];
@@ -296,11 +371,12 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
     const choice *c = &s->scratch->choices[i];
-    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
-    if (level->kind == CONIC_HYBRID_SURFELS)
-      copy_surfels(s, c, level);
+    if (c->level == CONIC_HYBRID_POINT)
+      put_point(s, c);
+    else if (s->hybrid->levels[c->level].kind == CONIC_HYBRID_SURFELS)
+      copy_surfels(s, c, &s->hybrid->levels[c->level]);
     else
-      copy_triangles(s, c, level);
+      copy_triangles(s, c, &s->hybrid->levels[c->level]);
   }
 }
 
@@ -341,11 +417,15 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   if (status == CONIC_OK)
     status = begin(&s, camera, render);
   if (status == CONIC_OK)
-    status = choose_all(&s);
-  if (status == CONIC_OK && is_together(view))
-    status = choose_together(&s);
+    status = make_stages(&s);
   if (status == CONIC_OK)
-    status = note_stages(&s);
+    status = choose_all(&s);
+  if (status == CONIC_OK) {
+    if (is_together(view))
+      status = choose_together(&s);
+    else
+      note_stages(&s);
+  }
   if (status == CONIC_OK)
     status = make_room(&s);
   if (status != CONIC_OK)

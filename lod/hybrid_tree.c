@@ -138,7 +138,7 @@ conic_hybrid_bound conic_hybrid_join(const conic_hybrid_bound *a, const conic_hy
 }
 
 typedef struct filling {
-  const conic_hybrid_patch *patches;
+  const conic_hybrid_bound *bounds;
   const float *reach;
   conic_hybrid_node *nodes;
   uint32_t n;
@@ -154,7 +154,7 @@ static uint32_t fill_node(filling *f, size_t begin, size_t end) {
     node->bound = conic_hybrid_join(&f->nodes[first].bound, &f->nodes[second].bound);
   } else {
     for (size_t i = begin; i < end; i++) {
-      conic_hybrid_bound bound = f->patches[i].bound;
+      conic_hybrid_bound bound = f->bounds[i];
       bound.radius = (float)(((double)bound.radius + (double)f->reach[i]) * hair);
       node->bound = i == begin ? bound : conic_hybrid_join(&node->bound, &bound);
     }
@@ -162,13 +162,13 @@ static uint32_t fill_node(filling *f, size_t begin, size_t end) {
   node->begin = (uint32_t)begin;
   node->end = (uint32_t)end;
   node->next = f->n;
-  node->zero = 0;
   return own;
 }
 
-void conic_hybrid_fill_nodes(const conic_hybrid_patch *patches, const float *reach, size_t n_patches,
+void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_patches,
                              conic_hybrid_node *nodes) {
-  filling f = {patches, reach, nodes, 0};
+  filling f = {bounds, reach, nodes, 0};
+  memset(nodes, 0, conic_hybrid_count_nodes(n_patches) * sizeof *nodes);
   if (n_patches > 0)
     fill_node(&f, 0, n_patches);
 }

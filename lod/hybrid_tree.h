@@ -18,8 +18,9 @@ size_t conic_hybrid_count_nodes(size_t n_patches);
 conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_patches,
                                 uint32_t *order);
 
-/* Fills in the nodes over ordered patches; reach[k] is how far the surfels of patch k may stand out of its sphere. */
-void conic_hybrid_fill_nodes(const conic_hybrid_patch *patches, const float *reach, size_t n_patches,
+/* Fills in the nodes, without their levels and points, over ordered patches with the given bounds; reach[k] is how far
+ * the surfels of patch k may stand out of its sphere. */
+void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_patches,
                              conic_hybrid_node *nodes);
 
 /* A sphere and a cone that hold both; a cone of more than half of all directions becomes all of them, -1. */

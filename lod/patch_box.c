@@ -49,6 +49,7 @@ static conic_status add_surfel(box_sampling *b, uint32_t face, const double bary
     surfel->tangent_v[axis] = (float)(sigma * v[axis]);
     surfel->color[axis] = (float)(color[axis] * texel[axis]);
   }
+  surfel->face = face;
   b->surfels->error = reach > b->surfels->error ? reach : b->surfels->error;
   b->surfels->reach = reach;
   return CONIC_OK;

@@ -1,12 +1,5 @@
 #include "lod/patch_contrast.h"
 
-#include <math.h>
-
-/* Pictures show about the square root of linear light; what is beyond their range they do not show. */
-static double as_shown(double linear) {
-  return linear >= 1.0 ? 1.0 : linear > 0.0 ? sqrt(linear) : 0.0;
-}
-
 /* Whether a mesh has more than one colour at all. */
 static int has_colors(const conic_triangles *t) {
   int has_texture = 0;
@@ -22,7 +15,7 @@ static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, d
   conic_patch_color(s->job->mesh, l->face, bary, color);
   conic_patch_texel(s->job->mesh, l->face, bary, side, texel);
   for (int channel = 0; channel < 3; channel++) {
-    double shown = as_shown(color[channel] * texel[channel]);
+    double shown = conic_as_shown(color[channel] * texel[channel]);
     site->darkest[channel] = shown < site->darkest[channel] ? shown : site->darkest[channel];
     site->brightest[channel] = shown > site->brightest[channel] ? shown : site->brightest[channel];
   }

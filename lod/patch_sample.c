@@ -66,6 +66,7 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
     surfel->position[axis] = (float)site->at[axis];
     surfel->color[axis] = (float)(own * texel[axis]);
   }
+  surfel->face = site->face;
   surfels->n++;
   site->is_drawn = 1;
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;

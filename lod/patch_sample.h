@@ -9,6 +9,7 @@ typedef struct conic_surfel {
   float position[3]; /* from the mesh's origin */
   float tangent_u[3], tangent_v[3];
   float color[3];
+  uint32_t face; /* of the mesh, near it */
 } conic_surfel;
 
 typedef struct conic_surfels {

@@ -74,7 +74,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 }
 
 /* Where what a site stands for has no direction in the mean, its own face says. */
-static void settle_planes(conic_sampler *s) {
+void conic_patch_settle_planes(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
     double length = sqrt(conic_dot(site->normal, site->normal));
@@ -96,9 +96,8 @@ static conic_status grow_supports(conic_sampler *s) {
   return status;
 }
 
-/* Notes what a site must cover of a face. */
-static conic_status note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
-                                 const double facing[3]) {
+conic_status conic_patch_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
+                                      const double facing[3]) {
   conic_site *site = &s->sites[i_site];
   conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
   if (status != CONIC_OK)
@@ -140,7 +139,7 @@ static conic_status cover_places(conic_sampler *s) {
     const conic_lattice *l = &s->lattices[k];
     size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
-      status = note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
+      status = conic_patch_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
   return status;
 }
@@ -159,14 +158,14 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
     n_parted++;
     find_border(s, t, k, (k + 1) % 3, border[k]);
     for (int end = 0; end < 2 && status == CONIC_OK && !t->is_between; end++)
-      status = note_support(s, owners[end], border[k], t->lattice->face, t->facing);
+      status = conic_patch_note_support(s, owners[end], border[k], t->lattice->face, t->facing);
   }
   if (n_parted < 3)
     return status;
   for (int axis = 0; axis < 3; axis++)
     middle[axis] = (border[0][axis] + border[1][axis] + border[2][axis]) / 3.0;
   for (int corner = 0; corner < 3 && status == CONIC_OK; corner++)
-    status = note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
+    status = conic_patch_note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
   return status;
 }
 
@@ -361,19 +360,22 @@ static void shape_site(conic_sampler *s, conic_site *site) {
   site->error = conic_site_error(s, site, s->job->tolerance, &site->error_bound);
 }
 
+conic_status conic_patch_shape_supported(conic_sampler *s) {
+  conic_status status = sort_supports(s);
+  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
+    shape_site(s, &s->sites[i]);
+  return status;
+}
+
 conic_status conic_patch_shape_sites(conic_sampler *s) {
   s->n_supports = 0;
   conic_status status = do_small_triangles(s, add_to_sums);
   if (status != CONIC_OK)
     return status;
-  settle_planes(s);
+  conic_patch_settle_planes(s);
   conic_patch_find_contrasts(s);
   status = cover_places(s);
   if (status == CONIC_OK)
     status = do_small_triangles(s, cover_small_triangle);
-  if (status == CONIC_OK)
-    status = sort_supports(s);
-  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    shape_site(s, &s->sites[i]);
-  return status;
+  return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
 }

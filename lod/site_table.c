@@ -6,9 +6,6 @@
 #include "core/memory.h"
 #include "lod/radix.h"
 
-/* The least cosine between two faces that may have a surfel in common. */
-static const double alike = 0.7;
-
 static double cell_size(const conic_site_table *t, int depth) {
   return 2.0 * t->spacing / (double)(1 << depth);
 }
@@ -87,7 +84,7 @@ static void look_at_site(const conic_site_table *t, uint32_t i, const double at[
   if (!(distance2 < found->distance2 || (distance2 == found->distance2 && i < found->site)))
     return;
   double cosine = (facing[0] * place->facing[0] + facing[1] * place->facing[1]) + facing[2] * place->facing[2];
-  if (cosine >= alike)
+  if (cosine >= CONIC_SITES_ALIKE)
     *found = (nearness){distance2, i};
 }
 

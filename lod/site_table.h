@@ -12,6 +12,9 @@ enum { CONIC_MOST_DEPTH = 3 };
 
 #define CONIC_NO_SITE UINT32_MAX
 
+/* The least cosine between two faces that may have a surfel in common. */
+#define CONIC_SITES_ALIKE 0.7
+
 /* What of a site is looked at for each place near it. */
 typedef struct conic_site_place {
   double at[3], facing[3];

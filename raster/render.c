@@ -219,7 +219,7 @@ static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *
   tile->hiding = f->hiding;
   conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
   conic_bins_gather(bins, i_tile, tile->scratch.entries);
-  tile->triangles = f->triangles;
+  tile->triangles = f->triangles && conic_triangle_frame_meets(f->triangles, i_tile) ? f->triangles : NULL;
   tile->triangle_tile = f->triangles ? &f->triangles->tiles[i_thread] : NULL;
   tile->i_tile = i_tile;
 }

@@ -21,7 +21,7 @@ typedef struct conic_tile {
   int keeps_indices;                  /* the image wants counts or ids */
   float *hiding;                      /* not null: no picture is drawn, but this raised (raster/part.h) */
   conic_tile_scratch scratch;
-  const conic_triangle_frame *triangles; /* null: there are none */
+  const conic_triangle_frame *triangles; /* null: there are none in it */
   conic_triangle_tile *triangle_tile;    /* what they are drawn in */
   size_t i_tile;
 } conic_tile;

@@ -214,3 +214,12 @@ void conic_triangle_frame_count(const conic_triangle_frame *frame, conic_render_
     statistics->triangles_drawn += frame->chunks[i].n_drawn;
   }
 }
+
+int conic_triangle_frame_meets(const conic_triangle_frame *frame, size_t i_tile) {
+  int has_any = 0;
+  for (size_t i = 0; i < frame->n_chunks; i++) {
+    const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
+    has_any |= begin[0] < begin[1];
+  }
+  return has_any;
+}

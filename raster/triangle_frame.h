@@ -124,4 +124,7 @@ int conic_triangle_clip(const conic_triangle_frame *frame, size_t i, conic_clip_
 /* The place of a point of camera space on the screen. */
 conic_screen_vertex conic_triangle_place(const conic_triangle_frame *frame, const double p[3]);
 
+/* Whether the box of a triangle meets the tile: else there is nothing to draw in it, nor to look for. */
+int conic_triangle_frame_meets(const conic_triangle_frame *frame, size_t i_tile);
+
 #endif

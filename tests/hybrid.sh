@@ -64,12 +64,17 @@ done
 run 0 render hill.chy -o b.pfm $picture --budget 1000 --json budget.json
 run 0 render hill.obj --as hybrid -o b.pfm $picture --budget 1k --threads 1 --isa scalar --json other.json
 [[ -n $(hashes budget.json) && $(hashes budget.json) == "$(hashes other.json)" ]] || fail "--budget: another picture"
-run 2 render hill.chy -o x.pfm --budget 10
+# Far away nodes stand for many patches, down to a point for all; of triangles there are no nodes.
+run 0 render hill.chy -o e.pfm --size 40x40 --error 6 --json error.json
+[[ $(value joined_patches error.json) -gt 1 && $(value nodes error.json) -gt 0 ]] || fail "no nodes at 6 of 40 pixels"
+run 0 render hill.chy -o b.pfm $picture --budget 1 --json budget.json
+[[ $(value points budget.json) == 1 && $(value splats_in budget.json) == 1 ]] || fail "--budget 1 is not one point"
+run 2 render hill.chy -o x.pfm --budget 10 --only triangles
 grep -q '^conic: error: hybrid: the coarsest of what is in sight are [0-9]* triangles' err || fail "no word on the budget"
 
 # The oracle draws what was chosen, splats and triangles in one picture, and agrees.
 view="--size 100x80 --zoom 2"
-for choice in "" "--error 1" "--error 4" "--budget 1000" "--only surfels" "--only triangles" "--error 2 --passes 1" \
+for choice in "" "--error 1" "--error 4" "--error 20" "--budget 20" "--budget 1000" "--only surfels" "--only triangles" "--error 2 --passes 1" \
   "--error 2 --method ray --cull back" "--error 4 --samples 2"; do
   # shellcheck disable=SC2086 # options and their values
   run 0 verify hill.chy $view $choice --json verify.json

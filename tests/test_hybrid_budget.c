@@ -1,7 +1,7 @@
 /* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
 #include <stdatomic.h>
 
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid_point.h"
 #include "lod/hybrid_stitch.h"
 #include "tests/hybrid_fixture.h"
 
@@ -13,8 +13,10 @@ typedef struct spending {
   conic_render_options options;
   conic_hybrid_selection selection;
   unsigned char *is_seen;            /* patch by patch */
-  const conic_hybrid_level **chosen; /* what the fewest are, patch by patch; null where it is not seen */
+  const conic_hybrid_level **chosen; /* what the fewest are, patch by patch; null where it is not seen or a node stands
+                                        for it */
   uint32_t *stages;                  /* theirs */
+  size_t *counts;                    /* patch by patch, of the fewest by themselves */
 } spending;
 
 static void look(spending *s, double azimuth, double zoom) {
@@ -51,13 +53,45 @@ static size_t n_selected(const spending *s) {
   return s->selection.splats.count + s->selection.triangles.count;
 }
 
-/* The patches that are drawn, by what the selection says of its parts. */
+/* The patches that are drawn, by what the selection says of its parts where no node stands for any. */
 static void mark_seen(spending *s) {
+  CHECK_OK(select_with(s, -1, 0.0, 0));
+  CHECK(s->selection.n_joined == 0);
   memset(s->is_seen, 0, s->info.n_patches);
   for (size_t i = 0; i < s->selection.splats.count; i++)
     s->is_seen[s->selection.splat_cluster[i]] = 1;
   for (size_t i = 0; i < s->selection.triangles.count; i++)
     s->is_seen[s->selection.triangles.cluster[i]] = 1;
+}
+
+static void note(double error, double error_px, double *next) {
+  *next = error > error_px && error < *next ? error : *next;
+}
+
+/* How few the patches below a node are, one by one or by nodes that stand for them. */
+static size_t fewest_below(const spending *s, const conic_hybrid_camera *view, uint32_t i, double error_px,
+                           double *next) {
+  const conic_hybrid_node *node = &s->hybrid->nodes[i];
+  size_t count = 0, own = SIZE_MAX;
+  for (uint32_t k = node->begin; k < node->end && node->next == i + 1; k++)
+    count += s->is_seen[k] ? s->counts[k] : 0;
+  for (uint32_t child = i + 1; child < node->next; child = s->hybrid->nodes[child].next)
+    count += fewest_below(s, view, child, error_px, next);
+  for (uint32_t k = 0; k <= node->n_levels; k++) {
+    const conic_hybrid_level *level = &s->hybrid->levels[node->first_level + k];
+    double error =
+        k < node->n_levels ? conic_hybrid_error_px(view, &node->bound, level) : conic_hybrid_point_error_px(view, node);
+    size_t n = k < node->n_levels ? level->count : 1;
+    note(error, error_px, next);
+    own = error <= error_px && n < own && (k < node->n_levels || node->point.radius > 0.0f) ? n : own;
+  }
+  if (own >= count)
+    return count;
+  for (uint32_t k = node->begin; k < node->end; k++) {
+    s->stages[k] = s->is_seen[k] ? 0 : CONIC_HYBRID_HIDDEN;
+    s->chosen[k] = NULL;
+  }
+  return own;
 }
 
 /* How few primitives, with those that fit them to each other, keep every seen patch's error on the screen at or below
@@ -73,7 +107,7 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
     const conic_hybrid_level *chosen = NULL, *first = NULL;
     for (uint32_t k = patch->n_levels; s->is_seen[i] && k-- > 0;) {
       const conic_hybrid_level *level = &s->hybrid->levels[patch->first_level + k];
-      double error = conic_hybrid_error_px(view, patch, level);
+      double error = conic_hybrid_error_px(view, &patch->bound, level);
       if (only_kind >= 0 && level->kind != (uint32_t)only_kind)
         continue;
       finest = level->count;
@@ -84,13 +118,16 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
           least = level->count;
           least_error = error;
         }
-      } else if (error < *next)
-        *next = error;
+      }
+      note(error, error_px, next);
     }
-    count += least < SIZE_MAX ? least : finest;
+    s->counts[i] = least < SIZE_MAX ? least : finest;
+    count += s->counts[i];
     s->chosen[i] = chosen ? chosen : first;
     s->stages[i] = s->chosen[i] ? s->chosen[i]->stage : CONIC_HYBRID_HIDDEN;
   }
+  if (only_kind != CONIC_HYBRID_TRIANGLES)
+    count = fewest_below(s, view, 0, error_px, next);
   for (size_t i = 0; i < s->info.n_patches; i++)
     count += s->chosen[i] ? conic_hybrid_count_stitches(s->hybrid, s->chosen[i], s->stages) : 0;
   return count;
@@ -120,7 +157,7 @@ static double floor_error(const spending *s, int only_kind) {
     uint32_t k = 0;
     while (only_kind >= 0 && s->hybrid->levels[patch->first_level + k].kind != (uint32_t)only_kind)
       k++;
-    double error = conic_hybrid_error_px(&view, patch, &s->hybrid->levels[patch->first_level + k]);
+    double error = conic_hybrid_error_px(&view, &patch->bound, &s->hybrid->levels[patch->first_level + k]);
     greatest = s->is_seen[i] && error > greatest ? error : greatest;
   }
   return greatest;
@@ -128,7 +165,6 @@ static double floor_error(const spending *s, int only_kind) {
 
 static void check_budget(spending *s, int only_kind, size_t budget) {
   CHECK_OK(select_with(s, only_kind, 0.0, budget));
-  mark_seen(s);
   double expected = HUGE_VAL;
   int last = only_kind < 0 ? CONIC_HYBRID_SURFELS : only_kind;
   for (int kind = only_kind; kind <= last; kind++) { /* one kind alone may be fewer */
@@ -137,7 +173,8 @@ static void check_budget(spending *s, int only_kind, size_t budget) {
       expected = fmin(expected, fmax(least, floor_error(s, kind)));
   }
   CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
-  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_culled == s->info.n_patches);
+  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_joined + s->selection.n_culled ==
+        s->info.n_patches);
   if (only_kind >= 0)
     CHECK(s->selection.n_patches[1 - only_kind] == 0);
   if (!(s->selection.error_px == expected))
@@ -145,11 +182,12 @@ static void check_budget(spending *s, int only_kind, size_t budget) {
   CHECK(s->selection.error_px == expected);
 }
 
-/* From what everything takes down to less than the coarsest takes. */
+/* From what everything takes down to a single point; of triangles to less than the coarsest take. */
 static void check_view(spending *s, int only_kind) {
   double last = 0.0;
   size_t budget = 2 * s->info.n_vertices + s->info.n_all_surfels, n_steps = 0;
-  for (; select_with(s, only_kind, 0.0, budget) == CONIC_OK; n_steps++) {
+  mark_seen(s);
+  for (; budget > 0 && select_with(s, only_kind, 0.0, budget) == CONIC_OK; n_steps++) {
     CHECK(s->selection.error_px >= last);
     last = s->selection.error_px;
     check_budget(s, only_kind, budget);
@@ -157,8 +195,30 @@ static void check_view(spending *s, int only_kind) {
   }
   printf("kind %d: %zu budgets, errors up to %g px\n", only_kind, n_steps, last);
   CHECK(n_steps > 5 && last > 0.5);
-  CHECK(select_with(s, only_kind, 0.0, budget) == CONIC_ERROR_ARGUMENT);
+  if (only_kind != CONIC_HYBRID_TRIANGLES) {
+    CHECK(n_selected(s) == 1 && s->selection.n_points == 1);
+    return;
+  }
+  CHECK(budget > 0 && select_with(s, only_kind, 0.0, budget) == CONIC_ERROR_ARGUMENT);
   CHECK(isnan(least_error(s, only_kind, budget)));
+}
+
+/* Nodes stand for patches where that is cheaper, in no more places than the error allows. */
+static void check_nodes(spending *s) {
+  CHECK_OK(select_with(s, -1, 40.0, 0));
+  CHECK(s->selection.n_joined > 1 && s->selection.n_nodes + s->selection.n_points > 0);
+  CHECK(s->selection.error_px <= 40.0);
+  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_joined + s->selection.n_culled ==
+        s->info.n_patches);
+  for (size_t i = 0; i < s->selection.splats.count; i++)
+    CHECK(s->selection.splat_cluster[i] < s->info.n_patches + s->info.n_nodes);
+  size_t n = n_selected(s);
+  CHECK_OK(select_with(s, CONIC_HYBRID_TRIANGLES, 40.0, 0));
+  CHECK(s->selection.n_joined == 0 && s->selection.splats.count == 0);
+  CHECK_OK(select_with(s, CONIC_HYBRID_SURFELS, 40.0, 0));
+  CHECK(s->selection.n_joined > 0 && s->selection.triangles.count == 0);
+  CHECK_OK(select_with(s, -1, 0.0, n)); /* as many do no worse */
+  CHECK(s->selection.error_px <= 40.0);
 }
 
 /* An error that is asked for is kept, and said. */
@@ -219,17 +279,20 @@ int main(void) {
   s.is_seen = malloc(s.info.n_patches);
   s.chosen = malloc(s.info.n_patches * sizeof *s.chosen); /* NOLINT(bugprone-sizeof-expression): pointers */
   s.stages = malloc(s.info.n_patches * sizeof *s.stages);
-  if (!s.is_seen || !s.chosen || !s.stages)
+  s.counts = malloc(s.info.n_patches * sizeof *s.counts);
+  if (!s.is_seen || !s.chosen || !s.stages || !s.counts)
     exit(1);
   look(&s, 30.0, 1.0);
   for (int only_kind = -1; only_kind < 2; only_kind++)
     check_view(&s, only_kind);
   check_errors(&s);
+  check_nodes(&s);
   check_memory(&s);
   look(&s, 200.0, 4.0); /* half of it is out of sight */
   check_view(&s, -1);
   CHECK(s.selection.n_culled > 0);
   look_from_within(&s);
+  mark_seen(&s);
   check_budget(&s, -1, 20000);
   check_budget(&s, -1, 3000);
   check_budget(&s, CONIC_HYBRID_SURFELS, 3000);
@@ -238,6 +301,7 @@ int main(void) {
   free(s.is_seen);
   free(s.chosen);
   free(s.stages);
+  free(s.counts);
   conic_context_destroy(s.context);
   return check_result();
 }

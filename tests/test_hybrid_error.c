@@ -218,6 +218,25 @@ static void check_direction(comparison *c, const limits *limit, int direction) {
   }
 }
 
+/* Where nodes stand for patches, by surfels or as points, they too keep what they promise. */
+static void check_nodes(comparison *c, const char *name) {
+  static const double far_px[] = {12.0, 40.0};
+  for (int i = 0; i < 2; i++) {
+    conic_hybrid_view view;
+    conic_hybrid_view_init(&view);
+    view.error_px = far_px[i];
+    view.only_kind = CONIC_HYBRID_SURFELS;
+    CHECK_OK(conic_hybrid_select(c->hybrid, &c->camera, &c->options, &view, &c->selection));
+    const conic_drawing drawing = {&c->selection.splats, &c->selection.triangles};
+    draw(c, &drawing, &c->fine, &c->image);
+    double off_px = off_mesh_px(c);
+    fprintf(stderr, "%s, error %.0f: %zu nodes and %zu points for %zu patches, off %.2f px\n", name, far_px[i],
+            c->selection.n_nodes, c->selection.n_points, c->selection.n_joined, off_px);
+    CHECK(off_px <= c->selection.error_px + slack_px && c->selection.error_px <= far_px[i]);
+    CHECK(c->selection.n_nodes + c->selection.n_points > 0 || i == 0);
+  }
+}
+
 static void check_model(conic_context *context, const limits *limit, const char *path) {
   static const int directions[] = {17, 9};
   comparison c = {.context = context};
@@ -238,6 +257,7 @@ static void check_model(conic_context *context, const limits *limit, const char 
   CHECK_OK(conic_renderer_create(context, &c.renderer));
   for (size_t i = 0; i < N_DIRECTIONS; i++)
     check_direction(&c, limit, directions[i]);
+  check_nodes(&c, limit->name ? limit->name : "terrain");
   conic_image_release(context, &c.reduced_truth);
   conic_image_release(context, &c.truth);
   conic_image_release(context, &c.image);

@@ -55,7 +55,7 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   hybrid_look(context, 17, 120, 1.0, info.minimum, info.maximum, &camera);
   CHECK_OK(conic_hybrid_select(hybrid, &camera, &options, &view, &selection));
-  CHECK(selection.n_patches[0] + selection.n_patches[1] + selection.n_culled == info.n_patches);
+  CHECK(selection.n_patches[0] + selection.n_patches[1] + selection.n_joined + selection.n_culled == info.n_patches);
   CHECK_OK(conic_image_allocate(context, 120, 120, CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER, &image));
   CHECK_OK(conic_renderer_create(context, &renderer));
   const conic_drawing drawing = {&selection.splats, &selection.triangles};
@@ -65,7 +65,7 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
   size_t n_covered = 0;
   for (size_t i = 0; i < 120 * 120; i++) {
     CHECK((id[i] == CONIC_NO_ID) == (cluster[i] == CONIC_NO_ID));
-    CHECK(id[i] == CONIC_NO_ID || cluster[i] < info.n_patches);
+    CHECK(id[i] == CONIC_NO_ID || cluster[i] < info.n_patches + info.n_nodes);
     n_covered += id[i] != CONIC_NO_ID;
   }
   CHECK(n_covered > 2000);
@@ -100,6 +100,7 @@ static void test_there_and_back(conic_context *context, double phase2, int with_
   check_sound(back);
   CHECK(picture(context, hybrid, 0.0) == picture(context, back, 0.0));
   CHECK(picture(context, hybrid, 1.0) == picture(context, back, 1.0));
+  CHECK(picture(context, hybrid, 15.0) == picture(context, back, 15.0)); /* by nodes */
   CHECK_OK(conic_hybrid_write(back, again));
   unsigned char *first = malloc(info.n_bytes + 1), *second = malloc(info.n_bytes + 1);
   FILE *files[2] = {fopen(path, "rb"), fopen(again, "rb")};
@@ -192,7 +193,7 @@ static void test_mended(conic_context *context) {
         memset(&selection, 0, sizeof selection);
         conic_render_options_init(&options);
         conic_hybrid_view_init(&view);
-        view.error_px = run % 2;
+        view.error_px = run % 3 == 2 ? 20.0 : (double)(run % 3);
         options.near_z = 0.01;
         hybrid_look(context, 3, 40, 1.0, low, high, &camera);
         CHECK_OK(conic_hybrid_check(hybrid, &defects));

@@ -169,7 +169,7 @@ static void test_header(conic_context *context, const sound_file *sound) {
     const char *wanted;
   } edits[] = {
       {0, "CONICHX", 7, "no .chy file (at byte 0)"},
-      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 3 of the format is not known (at byte 8)"},
+      {VERSION, &(uint32_t){CONIC_CHY_VERSION + 1}, 4, "version 4 of the format is not known (at byte 8)"},
       {FLAGS, &(uint32_t){16}, 4, flags},
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
@@ -267,16 +267,40 @@ static void test_patches(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, PATCH(1, first_level), 0, no_levels); /* whose levels are another's, too */
   check_u32(context, sound, PATCH(0, n_levels), 0, no_levels);
   check_u32(context, sound, PATCH(0, n_levels), sound->n_levels + 1, no_levels);
-  check_u32(context, sound, PATCH(last, n_levels), n_levels + 1, no_levels);
+  check_u32(context, sound, PATCH(last, n_levels), n_levels + 1, "a node without its levels");
   check_u32(context, sound, PATCH(0, built), u32_at(sound, PATCH(0, n_levels)), no_levels);
   if (u32_at(sound, PATCH(last, built)) + 1 < n_levels)
-    check_u32(context, sound, PATCH(last, n_levels), n_levels - 1, "levels of no patch");
+    check_u32(context, sound, PATCH(last, n_levels), n_levels - 1, "a node without its levels");
   check_f32(context, sound, PATCH(0, bound.center[1]), NAN, range);
   check_f32(context, sound, PATCH(0, bound.center[2]), INFINITY, range);
   check_f32(context, sound, PATCH(0, bound.axis[0]), 1.5f, range);
   check_f32(context, sound, PATCH(0, bound.radius), -1.0f, range);
   check_f32(context, sound, PATCH(0, bound.cone), -1.5f, range);
   check_f32(context, sound, PATCH(0, area), NAN, range);
+}
+
+/* Nodes have the levels after those of the patches, one node after the other. */
+static void test_joined(conic_context *context, const sound_file *sound) {
+  static const char no_levels[] = "a node without its levels", range[] = "a node's point out of range";
+  size_t last = sound->n_nodes - 1, with = 0;
+  while (with < last && u32_at(sound, NODE(with, n_levels)) == 0)
+    with++;
+  uint32_t n = u32_at(sound, NODE(with, n_levels));
+  CHECK(n > 0);
+  check_u32(context, sound, NODE(0, n_levels), UINT32_MAX, no_levels);
+  check_u32(context, sound, NODE(0, first_level), 0, no_levels);
+  check_u32(context, sound, NODE(with, first_level), u32_at(sound, NODE(with, first_level)) - 1, no_levels);
+  if (with < last)
+    check_u32(context, sound, NODE(with, n_levels), n - 1, no_levels);
+  n = u32_at(sound, NODE(last, n_levels));
+  check_u32(context, sound, NODE(last, n_levels), n + 1, no_levels);
+  if (n > 0)
+    check_u32(context, sound, NODE(last, n_levels), n - 1, "levels of no patch or node");
+  check_u32(context, sound, LEVEL(sound->n_levels - 1, kind), CONIC_HYBRID_TRIANGLES,
+            "a node's level that is not surfels");
+  check_f32(context, sound, NODE(0, point.radius), NAN, range);
+  check_f32(context, sound, NODE(0, point.radius), -1.0f, range);
+  check_f32(context, sound, NODE(last, point.error), INFINITY, range);
 }
 
 /* The tree is a walk: no node leads back, so that no file makes it go around. */
@@ -291,7 +315,6 @@ static void test_nodes(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, NODE(1, end), 0, none);
   check_u32(context, sound, NODE(0, end), sound->n_patches + 1, none);
   check_u32(context, sound, NODE(last, end), sound->n_patches + 1, within);
-  check_u32(context, sound, NODE(0, zero), 1, none);
   check_f32(context, sound, NODE(0, bound.radius), NAN, none);
   check_u32(context, sound, NODE(last, begin), u32_at(sound, NODE(last, begin)) - 1, order);
   check_u32(context, sound, NODE(0, begin), 1, order);
@@ -337,7 +360,7 @@ static void check_defect(conic_context *context, const sound_file *sound, size_t
 }
 
 static void test_defects(conic_context *context, const sound_file *sound) {
-  enum { SPHERES = 1, CONES, ERRORS };
+  enum { VALUES, SPHERES, CONES, ERRORS };
   check_defect(context, sound, LEVEL(0, error), 0.5f, ERRORS); /* the mesh itself, with an error */
   for (size_t i = 0, n = 0; i + 2 < sound->n_levels && n < 3; i++)
     if (u32_at(sound, LEVEL(i + 1, kind)) == u32_at(sound, LEVEL(i + 2, kind)) &&
@@ -348,6 +371,9 @@ static void test_defects(conic_context *context, const sound_file *sound) {
   check_defect(context, sound, PATCH(0, bound.cone), 1.0f, CONES);
   check_defect(context, sound, PATCH(0, bound.radius), 0.0f, SPHERES);
   check_defect(context, sound, NODE(1, bound.radius), 0.0f, SPHERES);
+  check_defect(context, sound, NODE(0, point.color[1]), NAN, VALUES);
+  check_defect(context, sound, NODE(0, point.error), 0.0f, ERRORS);
+  check_defect(context, sound, NODE(0, point.radius), 1e-3f, SPHERES);
 }
 
 int main(void) {
@@ -358,6 +384,7 @@ int main(void) {
   test_levels(context, &sound);
   test_patches(context, &sound);
   test_nodes(context, &sound);
+  test_joined(context, &sound);
   test_attributes(context, &sound);
   test_defects(context, &sound);
   free(sound.bytes);

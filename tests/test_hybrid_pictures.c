@@ -13,6 +13,7 @@ typedef struct watching {
   conic_render_options options;
   const char *name;
   long n_pictures, n_covered, n_holes, n_deep;
+  size_t n_joined; /* patches for which nodes stood */
 } watching;
 
 static void draw(watching *w, const conic_drawing *drawing, const conic_camera *camera, conic_image *image) {
@@ -62,6 +63,7 @@ static void watch(watching *w, int direction, const conic_camera *camera, const 
   CHECK_OK(conic_hybrid_select(w->hybrid, camera, &w->options, view, &w->selection));
   const conic_drawing drawing = {&w->selection.splats, &w->selection.triangles};
   long before = w->n_holes, deep_before = w->n_deep;
+  w->n_joined += w->selection.n_joined;
   draw(w, &drawing, camera, &image);
   compare(w, mesh, &image, (int)ceil(view->error_px), 0.05 * sqrt(square));
   if (w->n_holes > before || w->n_deep > deep_before)
@@ -70,14 +72,16 @@ static void watch(watching *w, int direction, const conic_camera *camera, const 
   conic_image_release(w->context, &image);
 }
 
+/* The largest errors, at which nodes stand for patches, only in the smallest pictures, if not for all. */
 static void watch_direction(watching *w, int direction, int size, int is_all) {
-  static const double errors[] = {0.0, 0.5, 1.0, 3.0};
+  static const double errors[] = {0.0, 0.5, 1.0, 3.0, 6.0, 16.0};
+  size_t n_errors = is_all ? 6 : size > 64 ? 4 : 5;
   conic_camera camera;
   conic_image mesh;
   const conic_drawing drawing = {NULL, &w->mesh};
   hybrid_look(w->context, direction, size, 1.0, w->info.minimum, w->info.maximum, &camera);
   draw(w, &drawing, &camera, &mesh);
-  for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+  for (size_t i = 0; i < n_errors; i++) {
     conic_hybrid_view view;
     conic_hybrid_view_init(&view);
     view.error_px = errors[i];
@@ -113,6 +117,7 @@ static void watch_mesh(conic_context *context, const char *name, const char *pat
   fprintf(stderr, "%s: %ld pictures, %ld pixels of the mesh, %ld holes, %ld looks inside\n", name, w.n_pictures,
           w.n_covered, w.n_holes, w.n_deep);
   CHECK(w.n_covered > 1000);
+  CHECK(w.n_joined > 0);
   CHECK(w.n_holes == 0);
   CHECK(w.n_deep == 0 || is_all);
   conic_hybrid_selection_release(context, &w.selection);

@@ -90,9 +90,10 @@ CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_h
 /* What of a hybrid model is not as it must be. */
 typedef struct conic_hybrid_defects {
   size_t values;  /* numbers that are not finite */
-  size_t spheres; /* patches and nodes that reach out of theirs */
+  size_t spheres; /* patches and nodes that reach out of theirs, and points that do not hide all of their node */
   size_t cones;   /* patches with a face that faces out of theirs, and nodes with such a patch */
-  size_t levels;  /* patches whose levels' errors do not grow, or that have none without an error */
+  size_t levels;  /* patches and nodes whose levels' errors do not grow, patches that have none without an error, and
+                     points whose error is less than their radius */
 } conic_hybrid_defects;
 
 /* Errors: MEMORY. */
@@ -111,12 +112,16 @@ typedef struct conic_hybrid_view {
 
 CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
 
-/* What is drawn in one picture. Zero before the first use; the memory is kept from call to call. */
+/* What is drawn in one picture. With an error or a budget, a node of the tree may stand for all of its patches, by a
+ * few surfels or by one splat that faces the camera. Zero before the first use; the memory is kept from call to call.
+ */
 typedef struct conic_hybrid_selection {
   conic_splats splats;
   conic_triangles triangles; /* the textures are the hybrid's; the clusters are patches */
-  uint32_t *splat_cluster;   /* the patch of each splat */
-  size_t n_patches[2];       /* drawn as triangles, as surfels */
+  uint32_t *splat_cluster;   /* the patch of each splat; of a node's, the node's number after those of all patches */
+  size_t n_patches[2];       /* drawn as triangles, as surfels, each by itself */
+  size_t n_joined;           /* patches in sight for which nodes stand, */
+  size_t n_nodes, n_points;  /* by so many levels of surfels, and points */
   size_t n_culled;           /* patches that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
   double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
