@@ -175,6 +175,45 @@ static void check_coarsest(conic_context *context, const one_patch *p) {
   conic_sampler_destroy(s);
 }
 
+static long n_left;
+
+static void *allocate_few(void *cookie, size_t bytes) {
+  (void)cookie;
+  return n_left-- > 0 ? malloc(bytes) : NULL;
+}
+
+static void release_any(void *cookie, void *pointer) {
+  (void)cookie;
+  free(pointer);
+}
+
+/* Memory that runs out anywhere is told, and nothing is lost. */
+static void check_memory(const one_patch *p) {
+  conic_context_options options;
+  conic_context *context;
+  conic_context_options_init(&options);
+  options.allocate = allocate_few;
+  options.release = release_any;
+  options.threads = 1;
+  n_left = 1000;
+  CHECK_OK(conic_context_create(&options, &context));
+  conic_status status = CONIC_ERROR_MEMORY;
+  long n_failed = 0;
+  for (; status == CONIC_ERROR_MEMORY; n_failed++) {
+    conic_sampler *s = NULL;
+    conic_surfels surfels = {0};
+    conic_sampling_job job = job_of(p, 0.5 * conic_patch_edge_length(&p->mesh, 0), 0.3);
+    n_left = n_failed;
+    status = conic_sampler_create(context, &s);
+    if (status == CONIC_OK)
+      status = conic_patch_sample(s, &job, &surfels);
+    conic_surfels_release(context, &surfels);
+    conic_sampler_destroy(s);
+  }
+  CHECK(status == CONIC_OK && n_failed > 20);
+  conic_context_destroy(context);
+}
+
 int main(void) {
   conic_context *context = check_context(1);
   one_patch p;
@@ -185,6 +224,9 @@ int main(void) {
   CHECK(n_kept > 5000);
   check_gains(context, &p);
   check_coarsest(context, &p);
+  release_patch(context, &p);
+  make_patch(context, 8, &p);
+  check_memory(&p);
   release_patch(context, &p);
   conic_context_destroy(context);
   return check_result();
