@@ -193,10 +193,25 @@ static const char *wrong_nodes(const conic_hybrid *h) {
              : "patches of no node";
 }
 
+/* Every subtree is made of those of its node's children. The first that is not ends the search: so none is passed
+ * twice. */
+static const char *wrong_children(const conic_hybrid *h) {
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    size_t child = i + 1;
+    while (child < h->nodes[i].next)
+      child = h->nodes[child].next;
+    if (child != h->nodes[i].next)
+      return "nodes that are not within each other";
+  }
+  return NULL;
+}
+
 const char *conic_hybrid_structure(const conic_hybrid *h) {
   const char *wrong = wrong_patches(h);
   if (!wrong)
     wrong = wrong_nodes(h);
+  if (!wrong)
+    wrong = wrong_children(h);
   if (!wrong)
     wrong = wrong_node_levels(h);
   for (size_t i = 0; i < h->n_listed && !wrong; i++)

@@ -59,7 +59,8 @@ static const double *errors_of_node(const fitting *f, const conic_hybrid_node *n
   return f->node_errors + f->first_errors[node - f->hybrid->nodes];
 }
 
-/* The way of a node that has fewest. */
+/* The way of a node that has fewest; never one whose error is infinite: what reaches near is not joined, and a point
+ * that is not there, or that the eye is in, cannot be drawn. */
 static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
   const fitting *f = data;
   const double *errors_px = errors_of_node(f, node);
@@ -67,8 +68,8 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
   double best_px = HUGE_VAL;
   for (uint32_t k = 0; k <= node->n_levels; k++) {
     double n = k < node->n_levels ? (double)f->hybrid->levels[node->first_level + k].count : 1.0;
-    int is_there = k < node->n_levels || node->point.radius > 0.0f;
-    if (is_there && errors_px[k] <= f->error_px && (n < best.amount || (n <= best.amount && errors_px[k] < best_px))) {
+    int is_better = n < best.amount || (n <= best.amount && errors_px[k] < best_px);
+    if (errors_px[k] < HUGE_VAL && errors_px[k] <= f->error_px && is_better) {
       best = (conic_hybrid_offer){k, n};
       best_px = errors_px[k];
     }

@@ -1,5 +1,6 @@
 #include "lod/hybrid_choose.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -161,6 +162,7 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
   const conic_hybrid_level *levels = hybrid->levels + node->first_level;
   sight seen = look_well_at(view, &node->bound);
   conic_hybrid_offer best = {0, HUGE_VAL};
+  error_px = error_px < HUGE_VAL ? error_px : DBL_MAX; /* what reaches near, or has no point, is never joined */
   if (conic_hybrid_point_error_px(view, node) <= error_px)
     best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
   for (uint32_t k = 0; k < node->n_levels && error_px_of(view, &seen, &levels[k]) <= error_px; k++) {

@@ -51,7 +51,7 @@ typedef struct conic_hybrid_offer {
 } conic_hybrid_offer;
 
 /* Of a node the level that costs least among those whose error is at most so many pixels, its point, n_levels, being
- * one; of infinite cost where there is none. */
+ * one; of infinite cost where there is none, or all of infinite error. */
 conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                                            const conic_hybrid_node *node, double error_px);
 

@@ -187,11 +187,34 @@ static conic_status shape_sites(worker *w) {
   return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
 }
 
-/* What the pieces are off, and the site is off from them; or its outline from the mesh, if that is more. Where that is
+/* A large surfel may lie over what the mesh leaves open, so that it is measured within too: on rings about its middle,
+ * the last its outline, at places a fortieth of a turn apart. */
+enum { RINGS = 4, PLACES_ON_RING = 40 };
+static const double turn[2] = {0.98768834, 0.15643447};
+
+static double farther_on_ring(const worker *w, const conic_site *site, double size, double known) {
+  const conic_ellipse *e = &site->ellipse;
+  double way[2] = {size * e->reach, 0.0};
+  for (int k = 0; k < PLACES_ON_RING; k++) {
+    double across = e->ratio * way[1],
+           turned[2] = {turn[0] * way[0] - turn[1] * way[1], turn[1] * way[0] + turn[0] * way[1]};
+    double x = way[0] * e->major[0] - across * e->major[1], y = way[0] * e->major[1] + across * e->major[0], at[3];
+    for (int axis = 0; axis < 3; axis++)
+      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
+    known = conic_face_tree_farther_by(w->sampler->job->tree, at, site->face, known);
+    memcpy(way, turned, sizeof way);
+  }
+  return known;
+}
+
+/* What the pieces are off, and the site is off from them; or its ellipse from the mesh, if that is more. Where it is
  * more than `known`; else `known`. */
 static double error_of(const worker *w, const conic_site *site, double known) {
-  double error = w->error + site->least_error, bound;
-  return conic_site_error(w->sampler, site, error > known ? error : known, &bound);
+  double error = w->error + site->least_error;
+  known = conic_face_tree_farther_by(w->sampler->job->tree, site->at, site->face, error > known ? error : known);
+  for (int ring = RINGS; ring > 0; ring--)
+    known = farther_on_ring(w, site, (double)ring / RINGS, known);
+  return known;
 }
 
 static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfels) {
@@ -218,7 +241,7 @@ static conic_status make_level(const nodes_pass *pass, worker *w, double spacing
   const conic_sampling_job sampling = {.mesh = job->mesh,
                                        .tree = &job->tree,
                                        .spacing = spacing,
-                                       .tolerance = HUGE_VAL, /* only the largest error counts: see emit */
+                                       .tolerance = HUGE_VAL, /* errors are found below */
                                        .is_off_mesh = 1,
                                        .cutoff = (double)job->options->cutoff};
   w->sampler->job = &sampling;

@@ -164,15 +164,19 @@ static double floor_error(const spending *s, int only_kind) {
 }
 
 static void check_budget(spending *s, int only_kind, size_t budget) {
+  conic_hybrid_camera view;
+  conic_hybrid_camera_init(s->hybrid, &s->camera, &s->options, &view);
   CHECK_OK(select_with(s, only_kind, 0.0, budget));
-  double expected = HUGE_VAL;
+  double expected = HUGE_VAL, next;
+  int is_counted = 0;
   int last = only_kind < 0 ? CONIC_HYBRID_SURFELS : only_kind;
   for (int kind = only_kind; kind <= last; kind++) { /* one kind alone may be fewer */
     double least = least_error(s, kind, budget);
     if (!isnan(least))
       expected = fmin(expected, fmax(least, floor_error(s, kind)));
+    is_counted |= !isnan(least) && fewest(s, &view, kind, least, &next) == n_selected(s);
   }
-  CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
+  CHECK(n_selected(s) > 0 && n_selected(s) <= budget && is_counted);
   CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_joined + s->selection.n_culled ==
         s->info.n_patches);
   if (only_kind >= 0)
@@ -221,6 +225,33 @@ static void check_nodes(spending *s) {
   CHECK(s->selection.error_px <= 40.0);
 }
 
+/* A point hides its node's sphere: it is seen under the same angle or a wider one. Neither it nor surfels have a bound
+ * where the sphere reaches near. */
+static void check_points(const spending *s) {
+  const conic_hybrid *h = s->hybrid;
+  conic_hybrid_camera view;
+  conic_hybrid_camera_init(h, &s->camera, &s->options, &view);
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    double way[3], axis[3], radius = (double)node->point.radius, cutoff = (double)h->cutoff;
+    float values[12];
+    conic_hybrid_point_splat(&view, node, cutoff, values);
+    for (int k = 0; k < 3; k++) {
+      way[k] = (double)node->bound.center[k] - view.eye[k];
+      axis[k] = cutoff * (double)values[3 + k];
+    }
+    double distance2 = conic_hybrid_dot(way, way), disc2 = conic_hybrid_dot(axis, axis);
+    CHECK(distance2 > radius * radius && fabs(conic_hybrid_dot(way, axis)) < 1e-6 * distance2);
+    CHECK(disc2 * distance2 >= radius * radius * (distance2 + disc2) * (1.0 - 1e-6));
+    CHECK(conic_hybrid_point_error_px(&view, node) < HUGE_VAL);
+    conic_hybrid_camera near = view;
+    near.near_z = conic_hybrid_dot(view.rotation[2], way) - 0.9 * (double)node->bound.radius;
+    CHECK(conic_hybrid_point_error_px(&near, node) == HUGE_VAL);
+    if (node->n_levels > 0)
+      CHECK(conic_hybrid_error_px(&near, &node->bound, &h->levels[node->first_level]) == HUGE_VAL);
+  }
+}
+
 /* An error that is asked for is kept, and said. */
 static void check_errors(spending *s) {
   static const double errors[] = {0.25, 1.0, 4.0};
@@ -259,6 +290,52 @@ static void check_memory(spending *s) {
   CHECK_OK(select_with(s, -1, 0.0, 1000));
 }
 
+static void check_numbers(const spending *s) {
+  const conic_splats *splats = &s->selection.splats;
+  for (size_t i = 0; i < splats->count; i++)
+    for (int axis = 0; axis < 3; axis++)
+      CHECK(isfinite(splats->position[axis][i]) && isfinite(splats->tangent_u[axis][i]) &&
+            isfinite(splats->tangent_v[axis][i]));
+}
+
+/* The eye is in the spheres of nodes: their points cannot be drawn, and are not chosen, however few there may be. */
+static void check_within(spending *s) {
+  int n_kept = 0;
+  for (size_t budget = 1; budget < 3000; budget *= 2)
+    if (select_with(s, -1, 0.0, budget) == CONIC_OK) {
+      CHECK(n_selected(s) > 0 && n_selected(s) <= budget);
+      check_numbers(s);
+      n_kept++;
+    }
+  CHECK(n_kept > 0);
+  for (int only_kind = -1; only_kind < 2; only_kind += 2) {
+    CHECK_OK(select_with(s, only_kind, HUGE_VAL, 0));
+    CHECK(n_selected(s) > 0 && s->selection.n_joined < s->info.n_patches);
+    check_numbers(s);
+  }
+}
+
+/* Of a model without points none is drawn, whatever the error. */
+static void check_without_points(conic_context *context) {
+  spending s = {.context = context};
+  conic_hybrid_options how;
+  conic_triangles mesh;
+  conic_hybrid_options_init(&how);
+  conic_render_options_init(&s.options);
+  how.has_single_levels = 1;
+  hybrid_terrain(context, 12, &mesh);
+  CHECK_OK(conic_hybrid_build(context, &mesh, &how, &s.hybrid, NULL));
+  CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
+  s.options.near_z = s.info.near_z;
+  look(&s, 30.0, 1.0);
+  for (int only_kind = -1; only_kind < 2; only_kind += 2) {
+    CHECK_OK(select_with(&s, only_kind, HUGE_VAL, 0));
+    CHECK(s.selection.n_joined == 0 && s.selection.n_points == 0 && n_selected(&s) >= s.info.n_patches);
+  }
+  conic_hybrid_selection_release(context, &s.selection);
+  conic_hybrid_destroy(s.hybrid);
+}
+
 int main(void) {
   conic_context_options options;
   conic_hybrid_options how;
@@ -287,6 +364,7 @@ int main(void) {
     check_view(&s, only_kind);
   check_errors(&s);
   check_nodes(&s);
+  check_points(&s);
   check_memory(&s);
   look(&s, 200.0, 4.0); /* half of it is out of sight */
   check_view(&s, -1);
@@ -296,6 +374,8 @@ int main(void) {
   check_budget(&s, -1, 20000);
   check_budget(&s, -1, 3000);
   check_budget(&s, CONIC_HYBRID_SURFELS, 3000);
+  check_within(&s);
+  check_without_points(s.context);
   conic_hybrid_selection_release(s.context, &s.selection);
   conic_hybrid_destroy(s.hybrid);
   free(s.is_seen);

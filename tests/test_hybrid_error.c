@@ -237,6 +237,129 @@ static void check_nodes(comparison *c, const char *name) {
   }
 }
 
+typedef struct disc {
+  double at[3], u[3], v[3]; /* half axes of the outline */
+} disc;
+
+static disc disc_of(const conic_hybrid *h, uint32_t i) {
+  disc d;
+  for (int axis = 0; axis < 3; axis++) {
+    d.at[axis] = (double)h->surfels[axis][i];
+    d.u[axis] = (double)h->cutoff * (double)h->surfels[3 + axis][i];
+    d.v[axis] = (double)h->cutoff * (double)h->surfels[6 + axis][i];
+  }
+  return d;
+}
+
+/* How far its places are from the mesh, if more than `known`; not those at which the model was measured. */
+static double disc_off_mesh(const comparison *c, const disc *d, double known) {
+  for (int ring = 0; ring < 6; ring++)
+    for (int k = 0; k < 19; k++) {
+      double at[3], way = (k + 0.3) * 2.0 * 3.14159265358979 / 19.0, size = (1.0 + ring) / 6.0;
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] = d->at[axis] + size * (cos(way) * d->u[axis] + sin(way) * d->v[axis]);
+      known = conic_face_tree_farther(&c->tree, at, known);
+    }
+  return known;
+}
+
+/* No less than how far a place is from the disc; `size` becomes how far from its middle it lies over it, in half axes.
+ */
+static double off_disc(const disc *d, const double at[3], double *size) {
+  double way[3], x, y;
+  for (int axis = 0; axis < 3; axis++)
+    way[axis] = at[axis] - d->at[axis];
+  x = conic_hybrid_dot(way, d->u) / conic_hybrid_dot(d->u, d->u);
+  y = conic_hybrid_dot(way, d->v) / conic_hybrid_dot(d->v, d->v);
+  *size = sqrt(x * x + y * y);
+  for (int axis = 0; axis < 3; axis++)
+    way[axis] -= (x * d->u[axis] + y * d->v[axis]) / fmax(*size, 1.0);
+  return sqrt(conic_hybrid_dot(way, way));
+}
+
+/* How far the vertices of a node's faces are from the discs of one of its levels; and how many there are of them, and
+ * how many that no disc covers. */
+static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node, const conic_hybrid_level *level,
+                           long counts[2]) {
+  double farthest = 0.0;
+  for (uint32_t i = node->begin; i < node->end; i++) {
+    const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
+    for (uint32_t k = 0; k < faces->n_vertices; k += 1 + faces->n_vertices / 20) {
+      uint32_t vertex = h->listed[faces->first_vertex + k];
+      const double at[3] = {(double)h->position[0][vertex], (double)h->position[1][vertex],
+                            (double)h->position[2][vertex]};
+      double nearest = HUGE_VAL, least = HUGE_VAL, size;
+      for (uint32_t m = level->first; m < level->first + level->count; m++) {
+        disc d = disc_of(h, m);
+        double off = off_disc(&d, at, &size);
+        nearest = fmin(nearest, off);
+        least = off <= (double)level->error ? fmin(least, size) : least;
+      }
+      farthest = fmax(farthest, nearest);
+      counts[0]++;
+      counts[1] += !(least <= 1.0);
+    }
+  }
+  return farthest;
+}
+
+/* These meshes have one colour, and so have nodes. */
+static void check_colors(const conic_hybrid *h, const conic_hybrid_node *node) {
+  for (int channel = 0; channel < 3; channel++) {
+    float color = h->surfels[9 + channel][0];
+    CHECK(fabsf(node->point.color[channel] - color) < 1e-5f);
+    for (uint32_t k = 0; k < node->n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[node->first_level + k];
+      for (uint32_t i = level->first; i < level->first + level->count; i++)
+        CHECK(fabsf(h->surfels[9 + channel][i] - color) < 1e-5f);
+    }
+  }
+}
+
+/* The greatest error of the finest surfels of a node's patches. */
+static double finest_error(const conic_hybrid *h, const conic_hybrid_node *node) {
+  double greatest = 0.0;
+  for (uint32_t i = node->begin; i < node->end; i++) {
+    const conic_hybrid_patch *patch = &h->patches[i];
+    for (uint32_t k = 0, is_found = 0; k < patch->n_levels && !is_found; k++) {
+      const conic_hybrid_level *level = &h->levels[patch->first_level + k];
+      is_found = level->kind == CONIC_HYBRID_SURFELS;
+      greatest = is_found ? fmax(greatest, (double)level->error) : greatest;
+    }
+  }
+  return greatest;
+}
+
+/* What is said of nodes' errors, held against the mesh itself: of surfels what is said is measured, and so may be off
+ * by a tenth; of the mesh and of points nothing. */
+static void check_said(const comparison *c, const char *name) {
+  const conic_hybrid *h = c->hybrid;
+  double discs = 0.0, vertices = 0.0;
+  long counts[2] = {0, 0};
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    const double center[3] = {(double)node->bound.center[0], (double)node->bound.center[1],
+                              (double)node->bound.center[2]};
+    double off = conic_face_tree_farther(&c->tree, center, 0.0);
+    CHECK(node->point.radius > 0.0f && (double)node->point.error >= (double)node->point.radius + off);
+    check_colors(h, node);
+    for (uint32_t k = 0; k < node->n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[node->first_level + k];
+      double error = (double)level->error, farthest = 0.0;
+      CHECK(error >= finest_error(h, node));
+      for (uint32_t m = level->first; m < level->first + level->count; m++) {
+        disc d = disc_of(h, m);
+        farthest = disc_off_mesh(c, &d, farthest);
+      }
+      discs = fmax(discs, farthest / error);
+      vertices = fmax(vertices, vertices_off(h, node, level, counts) / error);
+    }
+  }
+  fprintf(stderr, "%s: of what nodes say, surfels are %.3f off the mesh and the mesh %.3f off them, %ld of %ld bare\n",
+          name, discs, vertices, counts[1], counts[0]);
+  CHECK(discs <= 1.1 && vertices <= 1.0 && counts[0] > 100 && counts[1] == 0);
+}
+
 static void check_model(conic_context *context, const limits *limit, const char *path) {
   static const int directions[] = {17, 9};
   comparison c = {.context = context};
@@ -258,6 +381,7 @@ static void check_model(conic_context *context, const limits *limit, const char 
   for (size_t i = 0; i < N_DIRECTIONS; i++)
     check_direction(&c, limit, directions[i]);
   check_nodes(&c, limit->name ? limit->name : "terrain");
+  check_said(&c, limit->name ? limit->name : "terrain");
   conic_image_release(context, &c.reduced_truth);
   conic_image_release(context, &c.truth);
   conic_image_release(context, &c.image);

@@ -322,6 +322,12 @@ static void test_nodes(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, NODE(0, end), sound->n_patches - 1, within);
   check_u32(context, sound, NODE(last, end), u32_at(sound, NODE(last, end)) - 1, within);
   check_u32(context, sound, NODE(0, next), 1, order); /* a root without children, and more nodes */
+  uint32_t i = 1;                                     /* a node that ends where its first child's first child begins */
+  while (i + 2 < sound->n_nodes && u32_at(sound, NODE(i + 1, next)) == i + 2)
+    i++;
+  const uint32_t end_and_next[2] = {u32_at(sound, NODE(i + 1, end)), i + 2};
+  check_edit(context, sound, NODE(i, end), end_and_next, sizeof end_and_next, 1,
+             "has nodes that are not within each other (at byte 256)");
 }
 
 static void test_attributes(conic_context *context, const sound_file *sound) {
