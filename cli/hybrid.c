@@ -53,6 +53,7 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
   cli_json_count(json, "surfel_clusters", job->info.n_surfel_patches);
   cli_json_count(json, "clusters_phase1", r->n_first);
   cli_json_count(json, "levels", job->info.n_levels);
+  cli_json_count(json, "node_levels", job->info.n_node_levels);
   cli_json_count(json, "pieces", r->n_pieces);
   cli_json_count(json, "bytes", job->info.n_bytes);
 }

@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
+
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
 static int bar_is_shown;
@@ -20,9 +22,7 @@ static int bar_is_shown;
 static atomic_llong interrupted_at_ms;
 
 double cli_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+  return conic_seconds_now();
 }
 
 /* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */

@@ -81,6 +81,9 @@ run 2 mls project torus.ply -o - --json -
 run 3 mls project missing.ply -o x.ply
 run 3 mls project torus.ply -o x.ply --h 1e-9
 grep -q 'too few neighbours' err || fail "no reason given"
+printf '1 2 3\n%.0s' {1..30} > same.xyz
+run 3 mls densify same.xyz -o x.ply --spacing 1x
+grep -q '^conic: error: same.xyz: no two points are apart' err || fail "a spacing of points that are not apart: $(cat err)"
 run 4 mls project torus.ply -o /nowhere/x.ply
 printf 'nan 0 0\n0 inf 0\n' > nan.xyz
 printf '0\n' > none.pts

@@ -90,7 +90,8 @@ typedef struct conic_surface_point {
   conic_surface_outcome outcome;
 } conic_surface_point;
 
-/* Projects `count` points in world coordinates onto the surface. Errors: MEMORY, CANCELLED. */
+/* Projects `count` points in world coordinates onto the surface: points[i] is what became of positions[i]. Errors:
+ * MEMORY, CANCELLED; the points are then undefined. */
 CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
                                              conic_surface_point *points);
 
@@ -157,6 +158,7 @@ typedef struct conic_thin_options {
   int is_measured;  /* measure how far they are from each other where there is no limit, too */
 } conic_thin_options;
 
+/* Neither a count nor an error: one of them is still to be set. */
 CONIC_API void conic_thin_options_init(conic_thin_options *options);
 
 /* Removes the points that mean least, the least first: by the distance of a point from the surface of the others that
@@ -173,6 +175,7 @@ typedef struct conic_densify_options {
   size_t max_count; /* points in all; 0: 2³² - 2 */
 } conic_densify_options;
 
+/* Holes wider than h stay, any number of points; the spacing is still to be set. */
 CONIC_API void conic_densify_options_init(conic_densify_options *options);
 
 /* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a
