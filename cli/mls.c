@@ -3,8 +3,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/device.h"
 #include "cli/json.h"
 #include "cli/mls_cells.h"
+#include "cli/outputs.h"
+#include "cli/tell.h"
 #include "core/message.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
@@ -111,6 +114,7 @@ static conic_status clean_cells(mls_job *job) {
   conic_clean_options options;
   conic_clean_options_init(&options);
   options.surface = job->options;
+  options.name = job->input;
   options.memory_bytes = (size_t)job->memory_mib << 20;
   options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
   double start = cli_seconds();
@@ -151,11 +155,9 @@ static conic_status work(mls_job *job) {
 }
 
 /* Points that have no surface about them are left out: some always are, many mean that h is too small. */
-static void tell(const mls_job *job) {
+static void warn(const mls_job *job) {
   const size_t *outcomes = job->report.outcomes;
   size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
-  if (job->session->is_verbose)
-    fprintf(stderr, "conic: %zu points in, %zu out\n", job->n_in, job->n_out);
   if (n_lost > job->n_in / 10)
     conic_log(
         job->session->context, CONIC_LOG_WARNING,
@@ -163,6 +165,29 @@ static void tell(const mls_job *job) {
         "--h reaches more",
         job->input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
         outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+}
+
+static void tell(const mls_job *job, double total_seconds) {
+  conic_context *context = job->session->context;
+  const conic_surface_report *r = &job->report;
+  const cli_stage stages[] = {{"read", job->read_seconds},
+                              {"estimate", job->estimate_seconds},
+                              {"work", job->work_seconds},
+                              {"write", job->write_seconds}};
+  conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->input, job->n_in,
+            job->n_out, r->h);
+  cli_tell_repairs(job->session, job->input, &job->repairs);
+  if (job->action == MLS_PROJECT)
+    conic_log(context, CONIC_LOG_INFO,
+              "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "
+              "neighbours, %zu without a minimum, %zu ill-conditioned",
+              job->input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
+              r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
+              r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->action == MLS_THIN)
+    conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->input,
+              r->there.max > r->back.max ? r->there.max : r->back.max);
+  cli_tell_run(job->session, stages, 4, total_seconds);
 }
 
 static int write_points(mls_job *job) {
@@ -262,10 +287,12 @@ static int run_job(mls_job *job) {
   if (status == CONIC_OK)
     status = work(job);
   exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
-  if (exit_code == CLI_DONE)
-    tell(job);
-  if (exit_code == CLI_DONE)
-    exit_code = write_statistics(job, cli_seconds() - start);
+  double total_seconds = cli_seconds() - start;
+  if (exit_code == CLI_DONE) {
+    warn(job);
+    tell(job, total_seconds);
+    exit_code = write_statistics(job, total_seconds);
+  }
   conic_splats_release(job->session->context, &job->result);
   conic_surface_destroy(job->surface);
   conic_model_release(job->session->context, &job->model);
@@ -301,7 +328,11 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
                      name);
   job->input = positional[1];
   int exit_code = cli_check_ending(job->output, "ply");
-  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it appears when all is read */
+    exit_code = cli_check_inputs_stay(job->session, &job->input, 1, NULL, 0);
+  return exit_code == CLI_DONE ? cli_isa_check(job->session, (conic_isa)job->isa) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -10,6 +10,7 @@
 #include "core/trigonometry.h"
 #include "lod/hybrid_tree.h"
 #include "lod/patch_contrast.h"
+#include "lod/patch_error.h"
 #include "lod/patch_shape.h"
 
 /* The most surfels of a level, above which its node's children do as well; and how many nodes are done between two
@@ -175,7 +176,7 @@ static conic_status note_piece(conic_sampler *s, const piece *p) {
 static conic_status shape_sites(worker *w) {
   conic_sampler *s = w->sampler;
   conic_status status = CONIC_OK;
-  s->n_supports = 0;
+  s->n_supports = s->n_sorted = 0;
   for (size_t i = 0; i < w->n_pieces; i++) {
     w->pieces[i].site = nearest_alike(s, &w->pieces[i], HUGE_VAL);
     add_to_site(&s->sites[w->pieces[i].site], &w->pieces[i]);
@@ -186,10 +187,11 @@ static conic_status shape_sites(worker *w) {
   return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
 }
 
-/* What the pieces are off, and the site is off from them; or its outline from the mesh, if that is more. */
-static double error_of(const worker *w, const conic_site *site) {
-  double error = w->error + site->least_error;
-  return site->error > error ? site->error : error;
+/* What the pieces are off, and the site is off from them; or its outline from the mesh, if that is more. Where that is
+ * more than `known`; else `known`. */
+static double error_of(const worker *w, const conic_site *site, double known) {
+  double error = w->error + site->least_error, bound;
+  return conic_site_error(w->sampler, site, error > known ? error : known, &bound);
 }
 
 static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfels) {
@@ -207,8 +209,7 @@ static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfe
   surfel->face = site->face;
   surfels->n++;
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
-  double error = error_of(w, site);
-  surfels->error = error > surfels->error ? error : surfels->error;
+  surfels->error = error_of(w, site, surfels->error);
   return CONIC_OK;
 }
 
@@ -217,7 +218,8 @@ static conic_status make_level(const nodes_pass *pass, worker *w, double spacing
   const conic_sampling_job sampling = {.mesh = job->mesh,
                                        .tree = &job->tree,
                                        .spacing = spacing,
-                                       .tolerance = w->error,
+                                       .tolerance = HUGE_VAL, /* only the largest error counts: see emit */
+                                       .is_off_mesh = 1,
                                        .cutoff = (double)job->options->cutoff};
   w->sampler->job = &sampling;
   conic_status status = choose_sites(w, spacing);

@@ -59,7 +59,7 @@ typedef struct conic_surface conic_surface;
 /* Prepares the surface of the points of `points`; normals (of either kind: normals, or those of the axes) and colours
  * are used where it has them. The set is copied. On success the caller owns *surface, which must not outlive the
  * context. Errors: ARGUMENT (options out of range; APSS without normals), INPUT (no finite point), UNSUPPORTED (the
- * instruction set), MEMORY. */
+ * instruction set), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_surface_create(conic_context *context, const conic_splats *points,
                                             const conic_surface_options *options, conic_surface **surface);
 CONIC_API void conic_surface_destroy(conic_surface *surface);
@@ -137,6 +137,7 @@ typedef struct conic_clean_options {
   conic_surface_options surface; /* with h, and without clusters */
   size_t memory_bytes;           /* what may be taken at a time; 0: whatever it takes */
   const char *scratch;           /* beside this path what does not fit is put, in files without a name; null: nowhere */
+  const char *name;              /* of what the points are read from, for messages; null: "surface" */
 } conic_clean_options;
 
 /* The surface's defaults, for which h is still to be set. */
