@@ -168,6 +168,7 @@ static int store(const cli_session *session, const cli_option *option, const cha
     break;
   case CLI_TEXT:
     *(const char **)option->value = text;
+    is_understood = *text != '\0'; /* as of a shell's variable that was never set */
     break;
   case CLI_CHOICE:
     is_understood = parse_choice(text, option->choices, option->value);
@@ -276,6 +277,8 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
   for (int i = 1; i < argc && exit_code == CLI_DONE; i++) {
     if (!is_over && strcmp(argv[i], "--") == 0)
       is_over = 1;
+    else if (argv[i][0] == '\0')
+      exit_code = cli_usage("%s: an argument is empty", session->command);
     else if (is_over || argv[i][0] != '-' || argv[i][1] == '\0')
       positional[(*n_positional)++] = argv[i];
     else
@@ -292,15 +295,35 @@ static int text_width(const char *text) {
   return width;
 }
 
+enum { HELP_COLUMN = 28, LAST_COLUMN = 100 };
+
+/* The words from HELP_COLUMN on, where the first line already is, in as many lines as they need. */
+static void print_words(FILE *to, const char *words) {
+  int column = HELP_COLUMN;
+  while (*words) {
+    int length = (int)strcspn(words, " ");
+    char word[128];
+    snprintf(word, sizeof word, "%.*s", length, words);
+    int width = text_width(word);
+    if (column > HELP_COLUMN && column + 1 + width > LAST_COLUMN) {
+      fprintf(to, "\n%*s", HELP_COLUMN, "");
+      column = HELP_COLUMN;
+    }
+    column += fprintf(to, "%s%s", column > HELP_COLUMN ? " " : "", word) - (int)strlen(word) + width;
+    words += length + (words[length] == ' ');
+  }
+  fputc('\n', to);
+}
+
 static void print_option(FILE *to, const cli_option *option) {
-  const int help_column = 28;
   const char *argument = option->argument ? option->argument : "";
   int width = fprintf(to, "  %s%s%s%s", dashes(option), option->name, *argument ? " " : "", argument);
   width += text_width(argument) - (int)strlen(argument);
-  if (width > help_column - 2)
-    fprintf(to, "\n%*s%s\n", help_column, "", option->help);
+  if (width > HELP_COLUMN - 2)
+    fprintf(to, "\n%*s", HELP_COLUMN, "");
   else
-    fprintf(to, "%*s%s\n", help_column - width, "", option->help);
+    fprintf(to, "%*s", HELP_COLUMN - width, "");
+  print_words(to, option->help);
 }
 
 void cli_print_options(FILE *to, const cli_option *options, int n_options) {

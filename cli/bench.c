@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/bench_job.h"
 #include "cli/command.h"
+#include "cli/outputs.h"
 
 static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job) {
   static const char *const cull_words[] = {"none", "back", NULL};
@@ -90,13 +91,24 @@ static int report(cli_session *session, const cli_bench_job *job) {
   return cli_json_finish(file);
 }
 
+/* That the device is there is known before the minutes are spent, too. */
+static conic_status find_device(cli_session *session, cli_bench_job *job) {
+  conic_renderer *renderer;
+  conic_status status = cli_device_open(session, &job->device, &renderer);
+  if (status == CONIC_OK)
+    conic_renderer_destroy(renderer);
+  return status;
+}
+
 static int measure(cli_session *session, cli_bench_job *job) {
   if (job->old_path) { /* that it can be read is known before the minutes are spent */
     conic_status status = cli_bench_read_old(session, job->old_path, NULL, 0);
     if (status != CONIC_OK)
       return cli_exit_of(status);
   }
-  int exit_code = cli_bench_run(session, job);
+  int exit_code = cli_exit_of(find_device(session, job));
+  if (exit_code == CLI_DONE)
+    exit_code = cli_bench_run(session, job);
   if (exit_code == CLI_DONE && job->old_path)
     exit_code = cli_exit_of(cli_bench_read_old(session, job->old_path, job->lines, job->n_lines));
   if (exit_code != CLI_DONE)

@@ -5,6 +5,7 @@
 
 #include "cli/arguments.h"
 #include "cli/bench_job.h"
+#include "cli/device.h"
 #include "cli/suggest.h"
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";
@@ -78,13 +79,6 @@ static int take_method(cli_bench_job *job, const char *word) {
              : cli_usage("bench: unknown method %s; there are conic, ray, affine, point, disc, auto, nearest", word);
 }
 
-static int is_isa_here(conic_isa isa) {
-  conic_isa best = conic_isa_best();
-  if (isa == CONIC_ISA_SCALAR || isa == best)
-    return 1;
-  return best != CONIC_ISA_NEON && isa != CONIC_ISA_NEON && isa < best && best != CONIC_ISA_SCALAR;
-}
-
 static void add_isa(cli_bench_job *job, conic_isa isa) {
   if (isa == CONIC_ISA_AUTO)
     isa = conic_isa_best();
@@ -97,13 +91,13 @@ static void add_isa(cli_bench_job *job, conic_isa isa) {
 static int take_isa(cli_bench_job *job, const char *word) {
   if (strcmp(word, "all") == 0) {
     for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++)
-      if (is_isa_here((conic_isa)isa))
+      if (cli_isa_is_here((conic_isa)isa))
         add_isa(job, (conic_isa)isa);
     return CLI_DONE;
   }
   for (int isa = CONIC_ISA_AUTO; isa < CONIC_N_ISAS; isa++)
     if (strcmp(word, conic_isa_name((conic_isa)isa)) == 0) {
-      if (isa != CONIC_ISA_AUTO && !is_isa_here((conic_isa)isa))
+      if (!cli_isa_is_here((conic_isa)isa))
         return cli_error(CLI_RESOURCE, "bench: this machine or build has no %s", word);
       add_isa(job, (conic_isa)isa);
       return CLI_DONE;

@@ -121,8 +121,6 @@ static int worker_of(const bench_run *r, const cli_bench_line *line) {
 static int measure_lines(bench_run *r, int prints) {
   cli_bench_job *job = r->job;
   int n_measured = 0, exit_code = CLI_DONE;
-  if (prints && job->n_lines)
-    cli_bench_print_head();
   for (int i = 0; i < job->n_lines && exit_code == CLI_DONE; i++) {
     cli_bench_line *line = &job->lines[n_measured];
     *line = job->lines[i];
@@ -130,6 +128,8 @@ static int measure_lines(bench_run *r, int prints) {
     if (!line->device && is_repeated(r, i_worker))
       continue;
     exit_code = measure_line(r, line, &r->workers[i_worker]);
+    if (prints && exit_code == CLI_DONE && n_measured == 0)
+      cli_bench_print_head();
     if (prints && exit_code == CLI_DONE)
       cli_bench_print_line(line);
     n_measured++;

@@ -11,6 +11,7 @@
 #include "cli/chart_mesh.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "core/file.h"
 
 /* A kernel of the chart. */

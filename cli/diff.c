@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "core/message.h"
 
 typedef struct diff_job {
@@ -216,6 +217,8 @@ static int run(cli_session *session, int argc, char **argv) {
   if (strcmp(job.paths[0], "-") == 0 || strcmp(job.paths[1], "-") == 0)
     return cli_usage("diff: an image cannot come from standard input");
   exit_code = cli_check_outputs(session, &job.heatmap_path, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, job.paths, 2, &job.heatmap_path, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "cli/render_job.h"
 #include "core/file.h"
 #include "core/message.h"
@@ -309,19 +310,14 @@ static conic_status dump_projection(cli_session *session, const explain_job *job
 }
 
 static conic_status draw(cli_session *session, explain_job *job) {
-  conic_renderer *renderer;
   unsigned planes = CONIC_DRAWN_PLANES | (job->scene.hybrid ? 1u << CONIC_PLANE_CLUSTER : 0u);
   if (!job->is_pixel_given)
     return CONIC_OK;
   conic_status status =
       conic_image_allocate(session->context, job->camera.width, job->camera.height, planes, &job->image);
   if (status == CONIC_OK)
-    status = conic_renderer_create(session->context, &renderer);
-  if (status != CONIC_OK)
-    return status;
-  status = conic_render_drawing(session->context, renderer, &job->drawing, &job->camera, &job->scene.options, 1,
-                                &job->image, NULL);
-  conic_renderer_destroy(renderer);
+    status = conic_render_drawing(session->context, job->scene.renderer, &job->drawing, &job->camera,
+                                  &job->scene.options, 1, &job->image, NULL);
   if (status == CONIC_OK)
     cli_scene_name(&job->scene, &job->image);
   return status;
@@ -367,7 +363,10 @@ static int explain(cli_session *session, explain_job *job) {
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = cli_scene_read(session, &job->scene, &splats);
+  memset(&splats, 0, sizeof splats);
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK)
+    status = cli_scene_read(session, &job->scene, &splats);
   if (status == CONIC_OK)
     status = cli_scene_measure(session, &job->scene, &splats);
   exit_code = status == CONIC_OK ? answer(session, job, &splats) : cli_exit_of(status);
@@ -383,7 +382,8 @@ static int check(cli_session *session, explain_job *job) {
     return cli_usage("explain: it explains pixels, not --samples");
   if (!session->json_path && (job->is_pixel_given || job->is_splat_given))
     session->json_path = "-";
-  return cli_check_outputs(session, &job->dump_path, 1);
+  int exit_code = cli_check_outputs(session, &job->dump_path, 1);
+  return exit_code == CLI_DONE ? cli_scene_inputs_stay(session, &job->scene, &job->dump_path, 1) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

@@ -3,7 +3,10 @@
 #include "cli/command.h"
 #include "cli/hybrid_mesh.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "cli/reach.h"
+#include "cli/tell.h"
+#include "core/message.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
 
@@ -50,6 +53,7 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
   cli_json_count(json, "surfel_clusters", job->info.n_surfel_patches);
   cli_json_count(json, "clusters_phase1", r->n_first);
   cli_json_count(json, "levels", job->info.n_levels);
+  cli_json_count(json, "node_levels", job->info.n_node_levels);
   cli_json_count(json, "pieces", r->n_pieces);
   cli_json_count(json, "bytes", job->info.n_bytes);
 }
@@ -95,13 +99,38 @@ static int write_statistics(hybrid_job *job, double total_seconds) {
   return cli_json_finish(file);
 }
 
+static void tell(const hybrid_job *job, double total_seconds) {
+  conic_context *context = job->session->context;
+  const conic_hybrid_info *info = &job->info;
+  const conic_hybrid_report *r = &job->report;
+  const cli_stage stages[] = {
+      {"read", job->read_seconds},       {"cluster", r->cluster_seconds},        {"sample", r->sample_seconds},
+      {"simplify", r->simplify_seconds}, {"all of the work", job->work_seconds}, {"write", job->write_seconds}};
+  conic_log(context, CONIC_LOG_INFO,
+            "%s: %zu faces in; %zu patches of %zu triangles and %zu of %zu surfels out, with %zu levels, %.1f MiB",
+            job->input, r->n_faces, info->n_patches - info->n_surfel_patches, info->n_triangles, info->n_surfel_patches,
+            info->n_surfels, info->n_levels, (double)info->n_bytes / 1048576.0);
+  if (r->nan || r->zero)
+    conic_log(context, CONIC_LOG_INFO, "%s: left out %zu faces that are not finite, %zu that are not three places",
+              job->input, r->nan, r->zero);
+  if (r->welded || r->open || r->crowded || r->twisted || r->turned)
+    conic_log(context, CONIC_LOG_INFO,
+              "%s: taken as it is: %zu vertices at the place of another, %zu edges of one face, %zu of over two, %zu "
+              "whose faces disagree, %zu faces turned against their neighbours",
+              job->input, r->welded, r->open, r->crowded, r->twisted, r->turned);
+  cli_tell_run(job->session, stages, 6, total_seconds);
+}
+
 static int run_job(hybrid_job *job) {
   double start = cli_seconds();
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;
   conic_status status = build(job);
-  exit_code = status == CONIC_OK ? write_statistics(job, cli_seconds() - start) : cli_exit_of(status);
+  double total_seconds = cli_seconds() - start;
+  if (status == CONIC_OK)
+    tell(job, total_seconds);
+  exit_code = status == CONIC_OK ? write_statistics(job, total_seconds) : cli_exit_of(status);
   conic_hybrid_destroy(job->hybrid);
   return exit_code;
 }
@@ -147,6 +176,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "chy");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -19,6 +19,7 @@ void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects 
   printf("triangles  %zu, %zu in all levels\n", info->n_triangles, info->n_all_triangles);
   printf("surfels    %zu, %zu in all levels\n", info->n_surfels, info->n_all_surfels);
   printf("levels     %zu, %.1f a patch\n", info->n_levels, (double)info->n_levels / (double)info->n_patches);
+  printf("nodes      %zu with %zu levels\n", info->n_nodes, info->n_node_levels);
   printf("vertices   %zu\n", info->n_vertices);
   if (info->n_textures)
     printf("textures   %zu\n", info->n_textures);
@@ -38,6 +39,7 @@ void cli_hybrid_report(cli_json *json, const conic_hybrid_info *info, const coni
   cli_json_count(json, "surfel_clusters", info->n_surfel_patches);
   cli_json_count(json, "nodes", info->n_nodes);
   cli_json_count(json, "levels", info->n_levels);
+  cli_json_count(json, "node_levels", info->n_node_levels);
   cli_json_count(json, "all_triangles", info->n_all_triangles);
   cli_json_count(json, "all_surfels", info->n_all_surfels);
   cli_json_count(json, "vertices", info->n_vertices);

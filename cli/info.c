@@ -11,11 +11,14 @@
 #include "cli/json.h"
 #include "cli/layers_info.h"
 #include "cli/octree_info.h"
+#include "cli/outputs.h"
+#include "cli/reach.h"
 #include "core/clip.h"
 
 /* What in a model cannot be drawn as it stands. */
 typedef struct defects {
   size_t positions, axes, normals, colors, opacities, clips;
+  const char *extent; /* why no camera can be put before it; null where one can */
 } defects;
 
 typedef struct info_job {
@@ -63,7 +66,8 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   job->path = positional[0];
   if (conic_layers_is_url(job->path))
     return cli_usage("info: %s is on a web server; it takes a file", job->path);
-  return CLI_DONE;
+  exit_code = cli_check_outputs(session, NULL, 0);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(session, &job->path, 1, NULL, 0) : exit_code;
 }
 
 /* Told by content, so that a wrong ending does not mislead. A pipe, which can be read only once, is a model. */
@@ -120,7 +124,8 @@ static void check_model(info_job *job) {
   for (size_t i = 0; i < points->n_clips; i++)
     for (int k = 0; k < points->clips[i].n_lines; k++)
       found->clips += !conic_clip_is_line(points->clips[i].lines[k]);
-  job->is_sound = job->n_finite > 0 && found->positions + found->axes + found->normals + found->colors == 0 &&
+  found->extent = cli_why_out_of_reach(points);
+  job->is_sound = !found->extent && found->positions + found->axes + found->normals + found->colors == 0 &&
                   found->opacities + found->clips == 0;
 }
 
@@ -227,8 +232,8 @@ static void print_model(const info_job *job) {
     return;
   const defects *found = &job->found;
   printf("sound      %s\n", job->is_sound ? "yes" : "no");
-  if (job->n_finite == 0)
-    printf("  no point has a finite position\n");
+  if (found->extent)
+    printf("  cannot be drawn: %s\n", found->extent);
   const size_t counts[] = {found->positions, found->axes,      found->normals,
                            found->colors,    found->opacities, found->clips};
   static const char *const what[] = {"positions that are not finite",
@@ -308,6 +313,8 @@ static void report_model(cli_json *json, const info_job *job) {
   cli_json_count(json, "colors", job->found.colors);
   cli_json_count(json, "opacities", job->found.opacities);
   cli_json_count(json, "clips", job->found.clips);
+  if (job->found.extent)
+    cli_json_text(json, "extent", job->found.extent);
   cli_json_close(json);
 }
 

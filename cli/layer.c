@@ -5,7 +5,11 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
+#include "cli/tell.h"
 #include "conic/layers.h"
+#include "core/memory.h"
+#include "core/message.h"
 
 typedef struct layer_job {
   cli_session *session;
@@ -22,12 +26,37 @@ typedef struct layer_job {
   conic_layers_statistics statistics;
   const char *input; /* that is being read */
   int may_read_again, has_begun, is_raw, is_counting;
+  int has_points, has_colors; /* of all inputs up to here */
   uint64_t n_points;
   conic_repairs repairs;
 } layer_job;
 
 /* Estimating from the whole file takes about so much. */
 static const double estimate_bytes_a_point = 250.0;
+
+/* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
+static conic_status append(layer_job *job, const conic_splats *batch) {
+  conic_context *context = job->session->context;
+  if (!job->has_points)
+    job->has_colors = batch->color[0] != NULL;
+  job->has_points = 1;
+  if (!batch->color[0] == !job->has_colors)
+    return conic_layers_builder_append(job->builder, batch);
+  if (!job->has_colors)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: has colours, and what comes before it has none: name it first",
+                      job->input);
+  float *white = conic_memory_allocate(context, batch->count, sizeof *white);
+  if (!white)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < batch->count; i++)
+    white[i] = 1.0f;
+  conic_splats colored = *batch;
+  for (int channel = 0; channel < 3; channel++)
+    colored.color[channel] = white;
+  conic_status status = conic_layers_builder_append(job->builder, &colored);
+  conic_memory_release(context, white);
+  return status;
+}
 
 /* Points without normals and axes: where the whole file fits into memory, they are estimated from it, as elsewhere; the
  * others get their normals while the cloud is built. */
@@ -42,7 +71,7 @@ static conic_status take_batch(void *cookie, const conic_splats *batch) {
     return CONIC_ERROR_CANCELLED;
   }
   job->has_begun = 1;
-  return conic_layers_builder_append(job->builder, batch);
+  return append(job, batch);
 }
 
 static conic_status read_whole(layer_job *job, const conic_read_options *options) {
@@ -54,7 +83,9 @@ static conic_status read_whole(layer_job *job, const conic_read_options *options
     return status;
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
   if (status == CONIC_OK)
-    status = conic_layers_builder_append(job->builder, &model.points);
+    cli_tell_repairs(job->session, job->input, &repairs);
+  if (status == CONIC_OK)
+    status = append(job, &model.points);
   conic_model_release(context, &model);
   return status;
 }
@@ -118,6 +149,23 @@ static int write_statistics(layer_job *job, double total_seconds) {
   return cli_json_finish(file);
 }
 
+static void tell(const layer_job *job, double total_seconds) {
+  const conic_layers_statistics *s = &job->statistics;
+  const cli_stage stages[] = {{"read", s->read_seconds}, {"work", s->work_seconds}, {"write", s->write_seconds}};
+  conic_log(job->session->context, CONIC_LOG_INFO,
+            "%s: %llu points in; %llu samples in %llu clouds and %d levels out, %.1f MiB; a sample every %.4g, in "
+            "steps of %.4g",
+            job->output, (unsigned long long)s->n_in, (unsigned long long)s->n_samples, (unsigned long long)s->n_clouds,
+            s->n_levels, (double)s->n_bytes / 1048576.0, s->spacing, s->quantum);
+  if (s->n_in > s->n_samples || s->n_zero)
+    conic_log(job->session->context, CONIC_LOG_INFO,
+              "%s: left out %llu points, %llu of them not finite or farther out than 1e15; %llu without a normal or "
+              "size got one",
+              job->output, (unsigned long long)(s->n_in - s->n_samples), (unsigned long long)s->n_nan,
+              (unsigned long long)s->n_zero);
+  cli_tell_run(job->session, stages, 3, total_seconds);
+}
+
 static int run_job(layer_job *job) {
   double start = cli_seconds();
   int exit_code = cli_session_open(job->session);
@@ -131,7 +179,11 @@ static int run_job(layer_job *job) {
     status = conic_layers_builder_finish(job->builder, &job->statistics);
   else
     conic_layers_builder_abandon(job->builder);
-  return status == CONIC_OK ? write_statistics(job, cli_seconds() - start) : cli_exit_of(status);
+  if (status != CONIC_OK)
+    return cli_exit_of(status);
+  double total_seconds = cli_seconds() - start;
+  tell(job, total_seconds);
+  return write_statistics(job, total_seconds);
 }
 
 static int check_arguments(layer_job *job) {
@@ -147,7 +199,10 @@ static int check_arguments(layer_job *job) {
   job->options.quantum_in_spacings = job->quantum.is_in_spacings;
   job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
   int exit_code = cli_check_ending(job->output, "lpc");
-  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(job->session, job->inputs, job->n_inputs, &job->output, 1)
+                               : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {

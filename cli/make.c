@@ -4,7 +4,10 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "cli/suggest.h"
+#include "cli/tell.h"
+#include "core/message.h"
 
 /* Splats that are in memory at a time. */
 #define BATCH ((size_t)1 << 20)
@@ -221,9 +224,9 @@ static int run(cli_session *session, int argc, char **argv) {
   job.total_seconds = cli_seconds() - start;
   if (status != CONIC_OK)
     return cli_exit_of(status);
-  if (session->is_verbose)
-    fprintf(stderr, "conic: %zu splats: %.2f s of sampling, %.2f s of writing\n", job.scene.count, job.work_seconds,
-            job.write_seconds);
+  const cli_stage stages[] = {{"sample", job.work_seconds}, {"write", job.write_seconds}};
+  conic_log(session->context, CONIC_LOG_INFO, "%s: %zu splats", job.output, job.scene.count);
+  cli_tell_run(session, stages, 2, job.total_seconds);
   return report(session, &job);
 }
 

@@ -3,8 +3,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/device.h"
 #include "cli/json.h"
 #include "cli/mls_cells.h"
+#include "cli/outputs.h"
+#include "cli/tell.h"
 #include "core/message.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
@@ -37,6 +40,18 @@ typedef struct mls_job {
   double read_seconds, estimate_seconds, work_seconds, write_seconds;
 } mls_job;
 
+/* Where a length is in spacings: the median one of the points. */
+static conic_status find_unit(mls_job *job) {
+  if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
+      !job->hole.is_in_spacings)
+    return CONIC_OK;
+  conic_status status = conic_splats_spacing(job->session->context, &job->model.points, &job->unit);
+  if (status != CONIC_OK || job->unit > 0.0)
+    return status;
+  cli_error(CLI_INPUT, "%s: no two points are apart, so that a length in spacings has no meaning", job->input);
+  return CONIC_ERROR_INPUT;
+}
+
 /* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
 static conic_status read_points(mls_job *job) {
   conic_context *context = job->session->context;
@@ -58,9 +73,8 @@ static conic_status read_points(mls_job *job) {
     conic_estimate_options_init(&estimate);
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
-  if (status == CONIC_OK && (job->h.is_in_spacings || job->max_error.is_in_spacings || job->spacing.is_in_spacings ||
-                             job->hole.is_in_spacings))
-    status = conic_splats_spacing(context, points, &job->unit);
+  if (status == CONIC_OK)
+    status = find_unit(job);
   job->estimate_seconds = cli_seconds() - read;
   return status;
 }
@@ -100,6 +114,7 @@ static conic_status clean_cells(mls_job *job) {
   conic_clean_options options;
   conic_clean_options_init(&options);
   options.surface = job->options;
+  options.name = job->input;
   options.memory_bytes = (size_t)job->memory_mib << 20;
   options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
   double start = cli_seconds();
@@ -140,11 +155,9 @@ static conic_status work(mls_job *job) {
 }
 
 /* Points that have no surface about them are left out: some always are, many mean that h is too small. */
-static void tell(const mls_job *job) {
+static void warn(const mls_job *job) {
   const size_t *outcomes = job->report.outcomes;
   size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
-  if (job->session->is_verbose)
-    fprintf(stderr, "conic: %zu points in, %zu out\n", job->n_in, job->n_out);
   if (n_lost > job->n_in / 10)
     conic_log(
         job->session->context, CONIC_LOG_WARNING,
@@ -152,6 +165,29 @@ static void tell(const mls_job *job) {
         "--h reaches more",
         job->input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
         outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+}
+
+static void tell(const mls_job *job, double total_seconds) {
+  conic_context *context = job->session->context;
+  const conic_surface_report *r = &job->report;
+  const cli_stage stages[] = {{"read", job->read_seconds},
+                              {"estimate", job->estimate_seconds},
+                              {"work", job->work_seconds},
+                              {"write", job->write_seconds}};
+  conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->input, job->n_in,
+            job->n_out, r->h);
+  cli_tell_repairs(job->session, job->input, &job->repairs);
+  if (job->action == MLS_PROJECT)
+    conic_log(context, CONIC_LOG_INFO,
+              "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "
+              "neighbours, %zu without a minimum, %zu ill-conditioned",
+              job->input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
+              r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
+              r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->action == MLS_THIN)
+    conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->input,
+              r->there.max > r->back.max ? r->there.max : r->back.max);
+  cli_tell_run(job->session, stages, 4, total_seconds);
 }
 
 static int write_points(mls_job *job) {
@@ -251,10 +287,12 @@ static int run_job(mls_job *job) {
   if (status == CONIC_OK)
     status = work(job);
   exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
-  if (exit_code == CLI_DONE)
-    tell(job);
-  if (exit_code == CLI_DONE)
-    exit_code = write_statistics(job, cli_seconds() - start);
+  double total_seconds = cli_seconds() - start;
+  if (exit_code == CLI_DONE) {
+    warn(job);
+    tell(job, total_seconds);
+    exit_code = write_statistics(job, total_seconds);
+  }
   conic_splats_release(job->session->context, &job->result);
   conic_surface_destroy(job->surface);
   conic_model_release(job->session->context, &job->model);
@@ -290,7 +328,11 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
                      name);
   job->input = positional[1];
   int exit_code = cli_check_ending(job->output, "ply");
-  return exit_code == CLI_DONE ? cli_check_outputs(job->session, &job->output, 1) : exit_code;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it appears when all is read */
+    exit_code = cli_check_inputs_stay(job->session, &job->input, 1, NULL, 0);
+  return exit_code == CLI_DONE ? cli_isa_check(job->session, (conic_isa)job->isa) : exit_code;
 }
 
 static int run(cli_session *session, int argc, char **argv) {
@@ -299,99 +341,33 @@ static int run(cli_session *session, int argc, char **argv) {
   int n_positional;
   conic_surface_options_init(&job.options);
   const cli_option options[] = {
-      {.name = "o", .type = CLI_TEXT, .value = &job.output, .argument = "OUT.ply", .help = "the file to write"},
-      {.name = "type",
-       .type = CLI_CHOICE,
-       .value = &job.type,
-       .argument = "T",
-       .help = "mls: polynomials over planes; apss: algebraic spheres [mls]",
+      {"o", CLI_TEXT, &job.output, "OUT.ply", "the file to write"},
+      {"type", CLI_CHOICE, &job.type, "T", "mls: polynomials over planes; apss: algebraic spheres [mls]",
        .choices = type_names},
-      {.name = "plane",
-       .type = CLI_CHOICE,
-       .value = &job.plane,
-       .argument = "P",
-       .help = "full: the plane that makes a projection; fast: through the point itself [full]",
-       .choices = plane_names},
-      {.name = "degree",
-       .type = CLI_INT,
-       .value = &job.options.degree,
-       .argument = "D",
-       .help = "of the polynomials, 1 to 4 [3]",
-       .minimum = 1,
-       .maximum = CONIC_SURFACE_MAX_DEGREE},
-      {.name = "weight",
-       .type = CLI_CHOICE,
-       .value = &job.weight,
-       .argument = "W",
-       .help = "of a sample by its distance: gauss, compact or flat [gauss]",
+      {"plane", CLI_CHOICE, &job.plane, "P",
+       "full: the plane that makes a projection; fast: through the point itself [full]", .choices = plane_names},
+      {"degree", CLI_INT, &job.options.degree, "D", "of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE},
+      {"weight", CLI_CHOICE, &job.weight, "W", "of a sample by its distance: gauss, compact or flat [gauss]",
        .choices = weight_names},
-      {.name = "h",
-       .type = CLI_PARSED,
-       .value = &job.h,
-       .argument = "H",
-       .help = "what is smaller is smoothed away; world units, or 2x: two spacings [local, by -k]",
-       .parse = cli_parse_length,
+      {"h", CLI_PARSED, &job.h, "H",
+       "what is smaller is smoothed away; world units, or 2x: two spacings [local, by -k]", .parse = cli_parse_length,
        .dashes = "--"},
-      {.name = "k",
-       .type = CLI_INT,
-       .value = &job.options.n_local,
-       .argument = "K",
-       .help = "of a local h: the neglect distance is that of the K-th neighbour, 6 to 64 [32]",
-       .minimum = 6,
-       .maximum = 64},
-      {.name = "neglect",
-       .type = CLI_NUMBER,
-       .value = &job.options.neglect,
-       .argument = "C",
-       .help = "samples farther than C h weigh nothing, 1 to 6 [2]",
-       .minimum = 1,
-       .maximum = 6},
-      {.name = "cluster",
-       .type = CLI_NUMBER,
-       .value = &job.options.cluster,
-       .argument = "T",
-       .help = "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]",
-       .minimum = 0,
-       .maximum = 1},
-      {.name = "count",
-       .type = CLI_COUNT,
-       .value = &job.count,
-       .argument = "N",
-       .help = "thin: points to keep; densify: points to stop at",
-       .minimum = 1,
-       .maximum = 4294967294.0,
+      {"k", CLI_INT, &job.options.n_local, "K",
+       "of a local h: the neglect distance is that of the K-th neighbour, 6 to 64 [32]", 6, 64},
+      {"neglect", CLI_NUMBER, &job.options.neglect, "C", "samples farther than C h weigh nothing, 1 to 6 [2]", 1, 6},
+      {"cluster", CLI_NUMBER, &job.options.cluster, "T",
+       "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
+      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep; densify: points to stop at", 1, 4294967294.0,
        .is_given = &job.has_count},
-      {.name = "max-error",
-       .type = CLI_PARSED,
-       .value = &job.max_error,
-       .argument = "E",
-       .help = "thin: keep the surface within E of what it was",
+      {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
        .parse = cli_parse_length},
-      {.name = "spacing",
-       .type = CLI_PARSED,
-       .value = &job.spacing,
-       .argument = "S",
-       .help = "densify: no circle of a greater radius stays empty",
+      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty",
        .parse = cli_parse_length},
-      {.name = "hole",
-       .type = CLI_PARSED,
-       .value = &job.hole,
-       .argument = "R",
-       .help = "densify: circles of a greater radius are holes and stay [h]",
+      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay [h]",
        .parse = cli_parse_length},
-      {.name = "memory",
-       .type = CLI_COUNT,
-       .value = &job.memory_mib,
-       .argument = "MIB",
-       .help = "project: work cell by cell in so much memory, the rest beside the output",
-       .minimum = 1,
-       .maximum = 1e9,
-       .is_given = &job.has_memory},
-      {.name = "isa",
-       .type = CLI_CHOICE,
-       .value = &job.isa,
-       .argument = "ISA",
-       .help = "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+      {"memory", CLI_COUNT, &job.memory_mib, "MIB",
+       "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
+      {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_names},
   };
   int exit_code =

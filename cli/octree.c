@@ -4,6 +4,10 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
+#include "cli/reach.h"
+#include "cli/tell.h"
+#include "core/message.h"
 
 typedef struct octree_job {
   cli_session *session;
@@ -32,6 +36,12 @@ static conic_status build(octree_job *job) {
   if (status != CONIC_OK)
     return status;
   job->n_in = model.points.count;
+  const char *why = cli_why_out_of_reach(&model.points);
+  if (why) {
+    cli_error(CLI_INPUT, "%s: cannot be drawn: %s", job->input, why);
+    conic_model_release(context, &model);
+    return CONIC_ERROR_INPUT;
+  }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   double estimated = cli_seconds();
   job->estimate_seconds = estimated - read;
@@ -76,6 +86,19 @@ static int write_statistics(octree_job *job, double total_seconds) {
   return cli_json_finish(file);
 }
 
+static void tell(const octree_job *job, double total_seconds) {
+  const cli_stage stages[] = {{"read", job->read_seconds},
+                              {"estimate", job->estimate_seconds},
+                              {"work", job->work_seconds},
+                              {"write", job->write_seconds}};
+  const conic_octree_info *info = &job->info;
+  conic_log(job->session->context, CONIC_LOG_INFO,
+            "%s: %zu points in; %zu leaves and %zu inner nodes in %d levels out, %.1f MiB", job->input, job->n_in,
+            info->n_leaves, info->n_nodes, info->n_levels, (double)info->n_bytes / 1048576.0);
+  cli_tell_repairs(job->session, job->input, &job->repairs);
+  cli_tell_run(job->session, stages, 4, total_seconds);
+}
+
 static int run_job(octree_job *job) {
   double start = cli_seconds();
   int exit_code = cli_session_open(job->session);
@@ -84,7 +107,10 @@ static int run_job(octree_job *job) {
   conic_status status = build(job);
   if (status == CONIC_OK)
     status = write_octree(job);
-  exit_code = status == CONIC_OK ? write_statistics(job, cli_seconds() - start) : cli_exit_of(status);
+  double total_seconds = cli_seconds() - start;
+  if (status == CONIC_OK)
+    tell(job, total_seconds);
+  exit_code = status == CONIC_OK ? write_statistics(job, total_seconds) : cli_exit_of(status);
   conic_octree_destroy(job->octree);
   return exit_code;
 }
@@ -130,6 +156,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "cot");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, &job.output, 1);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -5,7 +5,10 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
+#include "cli/tell.h"
 #include "core/memory.h"
+#include "core/message.h"
 
 typedef struct prepare_job {
   cli_session *session;
@@ -112,6 +115,17 @@ static int write_statistics(prepare_job *job, double total_seconds) {
   return cli_json_finish(file);
 }
 
+static void tell(const prepare_job *job, double total_seconds) {
+  const cli_stage stages[] = {{"read", job->read_seconds}, {"work", job->work_seconds}, {"write", job->write_seconds}};
+  const conic_splats *points = &job->model.points;
+  conic_log(job->session->context, CONIC_LOG_INFO, "%s: %zu points in, %zu splats out", job->input, job->n_in,
+            points->count);
+  if (points->n_clips)
+    conic_log(job->session->context, CONIC_LOG_INFO, "%s: %zu splats have clip lines", job->input, points->n_clips);
+  cli_tell_repairs(job->session, job->input, &job->repairs);
+  cli_tell_run(job->session, stages, 3, total_seconds);
+}
+
 /* Runs one step unless an earlier one has failed, and adds what it takes to *seconds. */
 static void run_step(prepare_job *job, int (*step)(prepare_job *), double *seconds, int *exit_code) {
   double begin = cli_seconds();
@@ -128,8 +142,11 @@ static int run_job(prepare_job *job) {
   run_step(job, read_model, &job->read_seconds, &exit_code);
   run_step(job, find_axes, &job->work_seconds, &exit_code);
   run_step(job, write_splats, &job->write_seconds, &exit_code);
+  double total_seconds = cli_seconds() - begin;
   if (exit_code == CLI_DONE)
-    exit_code = write_statistics(job, cli_seconds() - begin);
+    tell(job, total_seconds);
+  if (exit_code == CLI_DONE)
+    exit_code = write_statistics(job, total_seconds);
   conic_model_release(job->session->context, &job->model);
   return exit_code;
 }
@@ -181,6 +198,8 @@ static int run(cli_session *session, int argc, char **argv) {
   exit_code = cli_check_ending(job.output, "ply");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, &job.output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it is read whole before */
+    exit_code = cli_check_inputs_stay(session, &job.input, 1, NULL, 0);
   return exit_code == CLI_DONE ? run_job(&job) : exit_code;
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/render_job.h"
+#include "cli/tell.h"
 #include "core/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -148,15 +149,14 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
 
 /* One picture; where what is drawn is chosen for it, that counts among the frame's time. */
 static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                         const conic_camera *camera, conic_renderer *renderer, conic_image *image,
-                         conic_render_statistics *statistics) {
+                         const conic_camera *camera, conic_image *image, conic_render_statistics *statistics) {
   double lod_ms;
   conic_drawing drawing;
   if (job->layers.file)
-    return cli_layers_draw(session, job, camera, renderer, image, statistics);
+    return cli_layers_draw(session, job, camera, image, statistics);
   conic_status status = cli_scene_select(job, camera, splats, &drawing, &lod_ms);
   if (status == CONIC_OK)
-    status = conic_render_drawing(session->context, renderer, &drawing, camera, &job->options, job->samples, image,
+    status = conic_render_drawing(session->context, job->renderer, &drawing, camera, &job->options, job->samples, image,
                                   statistics);
   if (status == CONIC_OK)
     cli_scene_name(job, image);
@@ -180,15 +180,14 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
-static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                                 conic_renderer *renderer, int i_frame, conic_image *image,
-                                 conic_render_statistics *repeats) {
+static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats, int i_frame,
+                                 conic_image *image, conic_render_statistics *repeats) {
   conic_camera camera;
   conic_status status = cli_scene_camera(session, job, splats, i_frame, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = draw(session, job, splats, &camera, renderer, image, &repeats[i]);
+    status = draw(session, job, splats, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
@@ -202,36 +201,48 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
   return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
 }
 
-static void print_summary(const cli_session *session, const cli_render_job *job) {
+static void tell(cli_session *session, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
-  if (!session->is_verbose)
-    return;
+  const conic_render_milliseconds *ms = &s->ms;
+  const cli_stage of_frame[] = {{"choose", ms->lod > 0.0 ? 1e-3 * ms->lod : -1.0},
+                                {"set up", 1e-3 * ms->setup},
+                                {"bin", 1e-3 * ms->bin},
+                                {"visibility", 1e-3 * ms->visibility},
+                                {"accumulate", 1e-3 * ms->accumulate},
+                                {"resolve", 1e-3 * ms->resolve}};
+  const cli_stage stages[] = {
+      {"read", 1e-3 * job->read_ms}, {"estimate", 1e-3 * job->estimate_ms}, {"write", 1e-3 * job->write_ms}};
+  conic_context *context = session->context;
   if (s->triangles_in)
-    fprintf(stderr, "conic: %llu triangles: %llu drawn, %llu culled, %llu skipped\n",
-            (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
-            (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
-  fprintf(stderr, "conic: %llu splats: %llu drawn, %llu culled, %llu skipped; %.1f ms a frame, %.0f ms in all\n",
-          (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
-          (unsigned long long)s->splats_skipped, s->ms.frame, job->total_ms);
+    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
+              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
+  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
+            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
+            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
+  cli_tell_stages(session, of_frame, 6, job->n_frames * job->repeat > 1 ? "a frame" : "for the frame",
+                  1e-3 * ms->frame);
+  cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
 }
 
 static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
-  conic_renderer *renderer = NULL;
   conic_image image;
   int exit_code = CLI_DONE;
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
-  conic_status status = repeats ? cli_device_open(session, &job->device, &renderer) : CONIC_ERROR_MEMORY;
-  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++)
-    status = render_frame(session, job, splats, renderer, i, &image, repeats);
+  conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
+    if (job->is_turntable)
+      cli_session_part(session, "frame", i + 1, job->n_frames);
+    status = render_frame(session, job, splats, i, &image, repeats);
+  }
   job->total_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK) {
-    print_summary(session, job);
+    tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
   conic_image_release(session->context, &image);
-  conic_renderer_destroy(renderer);
   free(repeats);
   return exit_code;
 }
@@ -261,6 +272,8 @@ static int run(cli_session *session, int argc, char **argv) {
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     memset(&splats, 0, sizeof splats);
+    if (status == CONIC_OK)
+      status = cli_scene_begin(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_read(session, &job, &splats);
     if (status == CONIC_OK)

@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/outputs.h"
 #include "cli/render_job.h"
 
 static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", "patch", NULL};
@@ -227,6 +228,13 @@ static int check_layers(const cli_render_job *job) {
   return CLI_DONE;
 }
 
+int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
+                          int n_outputs) {
+  const char *const beside[] = {job->camera_path, job->texture_path};
+  int answer = cli_check_inputs_stay(session, job->inputs, job->n_inputs, outputs, n_outputs);
+  return answer == CLI_DONE ? cli_check_inputs_stay(session, beside, 2, outputs, n_outputs) : answer;
+}
+
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, const cli_render_job *job) {
   const char *paths[CLI_MAX_OUTPUTS + 3];
@@ -256,7 +264,8 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     return answer;
   if (job->camera_path && job->is_turntable)
     return cli_usage("render: a turntable needs a framed camera, not --camera");
-  return cli_check_outputs(session, paths, job->n_outputs + 3);
+  answer = cli_check_outputs(session, paths, job->n_outputs + 3);
+  return answer == CLI_DONE ? cli_scene_inputs_stay(session, job, paths, job->n_outputs + 3) : answer;
 }
 
 void cli_scene_defaults(cli_render_job *job) {

@@ -37,6 +37,7 @@ typedef struct cli_render_job {
   const char *deep_path;     /* --deep; null: none */
   const char *overdraw_path; /* --overdraw; null: none */
   const char *camera_path;   /* null: framed */
+  conic_camera camera;       /* the file's */
   conic_framing framing;
   int is_up_given;
   int n_frames; /* of a turntable; 1 without */
@@ -51,12 +52,13 @@ typedef struct cli_render_job {
   cli_length h;                 /* of its surface; 0: local */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
-  cli_device device;            /* what draws */
-  int as;                       /* what meshes are drawn as, a cli_representation */
-  int is_smooth;                /* meshes get vertex normals from their faces */
-  const char *texture_path;     /* of meshes that are drawn as such, in place of their own; null: none */
-  double error_px;              /* 0: every splat */
-  unsigned long long budget;    /* 0: no limit; splats, or triangles and surfels */
+  cli_device device;            /* what draws: */
+  conic_renderer *renderer;
+  int as;                    /* what meshes are drawn as, a cli_representation */
+  int is_smooth;             /* meshes get vertex normals from their faces */
+  const char *texture_path;  /* of meshes that are drawn as such, in place of their own; null: none */
+  double error_px;           /* 0: every splat */
+  unsigned long long budget; /* 0: no limit; splats, or triangles and surfels */
 
   /* Where one of both is given: the only input, and what was chosen of it for the frame. */
   conic_octree *octree;
@@ -93,6 +95,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
 /* What job's options are before any is parsed; cli_scene_parse leaves alone what is no option of its own. */
 void cli_scene_defaults(cli_render_job *job);
 
+/* Wrong usage where an output (null entries are fine), or --json's, is a file that the scene is read from. */
+int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
+                          int n_outputs);
+
 /* Whether less than everything is to be drawn. */
 int cli_lod_is_wanted(const cli_render_job *job);
 /* Opens the only input, an octree, into the job. */
@@ -109,8 +115,8 @@ int cli_layers_is_wanted(const cli_render_job *job);
 /* Opens it into the job. */
 conic_status cli_layers_open(cli_session *session, cli_render_job *job);
 /* Draws a frame of it, with --progressive several, of which the last stays in `image`. */
-conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                             conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics);
+conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image,
+                             conic_render_statistics *statistics);
 /* Fine where it never was open. */
 void cli_layers_close(cli_render_job *job);
 void cli_render_layers_report(cli_json *json, const cli_render_job *job);
@@ -142,6 +148,9 @@ conic_status cli_scene_select(cli_render_job *job, const conic_camera *camera, c
 /* Names what was chosen in the drawn picture: planes id and cluster. */
 void cli_scene_name(const cli_render_job *job, conic_image *image);
 
+/* Makes the renderer and reads the camera's file: what is missing of these is said before the inputs are read, which
+ * may take minutes. Released by cli_scene_release, also after a failure. */
+conic_status cli_scene_begin(cli_session *session, cli_render_job *job);
 /* Reads the inputs into one set of splats, which the caller releases by cli_scene_release, also after a failure; and
  * into the job's triangles. */
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats);

@@ -28,7 +28,7 @@ conic_status cli_layers_open(cli_session *session, cli_render_job *job) {
 }
 
 static conic_status draw(cli_session *session, cli_render_job *job, int most_levels, const conic_camera *camera,
-                         conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics) {
+                         conic_image *image, conic_render_statistics *statistics) {
   conic_layers_draw_options options;
   (void)session;
   conic_layers_draw_options_init(&options);
@@ -42,7 +42,7 @@ static conic_status draw(cli_session *session, cli_render_job *job, int most_lev
     double left = job->layers.start_seconds + job->layers.deadline - cli_seconds();
     options.seconds = left > 1e-3 ? left : 1e-3;
   }
-  return conic_layers_draw(job->layers.file, renderer, camera, &job->options, &options, image, statistics,
+  return conic_layers_draw(job->layers.file, job->renderer, camera, &job->options, &options, image, statistics,
                            &job->layers.drawn);
 }
 
@@ -68,11 +68,11 @@ static int is_late(const cli_render_job *job) {
 
 /* A picture of the first level, of the first two, …, as long as one more level makes a finer one. */
 static conic_status draw_levels(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                                conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics) {
+                                conic_image *image, conic_render_statistics *statistics) {
   int n_levels = job->layers.scale.n_levels;
   conic_status status = make_folder(job->layers.progressive_path);
   for (int level = 1; level <= n_levels && status == CONIC_OK; level++) {
-    status = draw(session, job, level, camera, renderer, image, statistics);
+    status = draw(session, job, level, camera, image, statistics);
     if (status == CONIC_OK)
       status = write_progress(session, job, level, image);
     job->layers.n_pictures = level;
@@ -82,11 +82,11 @@ static conic_status draw_levels(cli_session *session, cli_render_job *job, const
   return status;
 }
 
-conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const conic_camera *camera,
-                             conic_renderer *renderer, conic_image *image, conic_render_statistics *statistics) {
+conic_status cli_layers_draw(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image,
+                             conic_render_statistics *statistics) {
   if (job->layers.progressive_path)
-    return draw_levels(session, job, camera, renderer, image, statistics);
-  return draw(session, job, 0, camera, renderer, image, statistics);
+    return draw_levels(session, job, camera, image, statistics);
+  return draw(session, job, 0, camera, image, statistics);
 }
 
 void cli_layers_close(cli_render_job *job) {

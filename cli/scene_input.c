@@ -1,18 +1,18 @@
 /* A scene as the commands that draw one take it: read, given axes, measured, framed. */
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/hybrid_mesh.h"
 #include "cli/reach.h"
 #include "cli/render_job.h"
+#include "cli/tell.h"
+#include "core/message.h"
 
 static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
   double low[3], high[3];
-  const char *why = NULL;
-  if (conic_splats_bounds(&model->points, low, high) == 0)
-    why = model->points.count ? "no point is finite" : "it holds no points";
-  else if (!job->camera_path && !cli_is_in_reach(low, high))
-    why = "a point is farther out than 1e20";
-  if (!why)
+  const char *why = cli_why_out_of_reach(&model->points);
+  if (!why || (job->camera_path && conic_splats_bounds(&model->points, low, high)))
     return CONIC_OK;
   cli_error(CLI_INPUT, "%s: cannot be drawn: %s", path, why);
   return CONIC_ERROR_INPUT;
@@ -97,6 +97,8 @@ static conic_status read_input(cli_session *session, cli_render_job *job, const 
   }
   if (status == CONIC_OK)
     status = conic_model_to_splats(session->context, &estimate_options, &model, &repairs);
+  if (status == CONIC_OK)
+    cli_tell_repairs(session, path, &repairs);
   if (status == CONIC_OK && splats->count == 0) {
     *splats = model.points; /* the first input's arrays are taken over, not copied */
     memset(&model.points, 0, sizeof model.points);
@@ -126,9 +128,25 @@ static conic_status lay_texture(cli_session *session, cli_render_job *job) {
 /* What the options say of triangles. */
 static conic_status dress_triangles(cli_session *session, cli_render_job *job) {
   conic_status status = CONIC_OK;
+  if (job->as == CLI_AS_MESH && job->triangles.count == 0)
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: there are no faces to draw as a mesh; the points are drawn",
+              job->inputs[0]);
   if (job->is_smooth && job->triangles.count)
     status = conic_triangles_smooth(session->context, &job->triangles);
   return status == CONIC_OK && job->texture_path && job->triangles.count ? lay_texture(session, job) : status;
+}
+
+conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
+  if (cli_isa_check(session, job->options.isa) != CLI_DONE)
+    return CONIC_ERROR_UNSUPPORTED;
+  if (job->texture_path && access(job->texture_path, R_OK) != 0) {
+    cli_error(CLI_INPUT, "%s: cannot read: %s", job->texture_path, strerror(errno));
+    return CONIC_ERROR_INPUT;
+  }
+  conic_status status = cli_device_open(session, &job->device, &job->renderer);
+  if (status == CONIC_OK && job->camera_path)
+    status = conic_camera_read(session->context, job->camera_path, &job->camera);
+  return status;
 }
 
 conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_splats *splats) {
@@ -161,6 +179,8 @@ conic_status cli_scene_read(cli_session *session, cli_render_job *job, conic_spl
 }
 
 void cli_scene_release(cli_session *session, cli_render_job *job, conic_splats *splats) {
+  conic_renderer_destroy(job->renderer);
+  job->renderer = NULL;
   cli_patch_close(job); /* it refers to the splats */
   cli_lod_close(session, job);
   cli_layers_close(job);
@@ -221,8 +241,10 @@ conic_status cli_scene_camera(cli_session *session, const cli_render_job *job, c
                               conic_camera *camera) {
   double low[3], high[3];
   conic_framing framing = job->framing;
-  if (job->camera_path)
-    return conic_camera_read(session->context, job->camera_path, camera);
+  if (job->camera_path) {
+    *camera = job->camera;
+    return CONIC_OK;
+  }
   if (job->layers.file) {
     memcpy(low, job->layers.scale.minimum, sizeof low);
     memcpy(high, job->layers.scale.maximum, sizeof high);

@@ -7,23 +7,22 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
+
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
+static int bar_is_shown;
 
 /* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
 static atomic_llong interrupted_at_ms;
 
 double cli_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+  return conic_seconds_now();
 }
 
 /* The kernel's own mark of this program: getrusage also counts what the shell that started it held. */
@@ -42,6 +41,12 @@ unsigned long long cli_peak_rss_bytes(void) {
   return kibibytes * 1024;
 }
 
+static void erase_bar(void) {
+  if (bar_is_shown)
+    fputs("\r\033[K", stderr);
+  bar_is_shown = 0;
+}
+
 /* One line, whatever the names in it hold. */
 static void print_message(const char *label, const char *format, va_list arguments) {
   char message[2048];
@@ -49,7 +54,10 @@ static void print_message(const char *label, const char *format, va_list argumen
   for (char *c = message; *c; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7F)
       *c = '?';
+  pthread_mutex_lock(&screen);
+  erase_bar();
   fprintf(stderr, "conic: %s%s\n", label, message);
+  pthread_mutex_unlock(&screen);
 }
 
 int cli_usage(const char *format, ...) {
@@ -85,71 +93,10 @@ int cli_exit_of(conic_status status) {
   return CLI_RESOURCE;
 }
 
-/* Whether there is a folder that PATH can be written in; devices and pipes stand where they are. */
-static int check_folder(const char *path) {
-  char folder[4096];
-  struct stat found;
-  if (strcmp(path, "-") == 0 || (stat(path, &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode)))
-    return CLI_DONE;
-  if (stat(path, &found) == 0 && S_ISDIR(found.st_mode))
-    return cli_error(CLI_RESOURCE, "%s: cannot write: it is a directory", path);
-  const char *slash = strrchr(path, '/');
-  int n = slash ? slash == path ? 1 : (int)(slash - path) : 0;
-  if (n >= (int)sizeof folder)
-    return CLI_DONE; /* whoever opens it will say so */
-  snprintf(folder, sizeof folder, "%.*s", n, path);
-  if (access(n ? folder : ".", W_OK | X_OK) != 0)
-    return cli_error(CLI_RESOURCE, "%s: cannot write: %s", path, strerror(errno));
-  return CLI_DONE;
-}
-
-/* What cannot be written is said before the work. */
-static int check_folders(const cli_session *session, const char *const *paths, int n_paths) {
-  int exit_code = CLI_DONE;
-  for (int i = 0; i <= n_paths && exit_code == CLI_DONE; i++) {
-    const char *path = i < n_paths ? paths[i] : session->json_path;
-    if (path)
-      exit_code = check_folder(path);
-  }
-  return exit_code;
-}
-
-int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths) {
-  for (int i = 0; i < n_paths; i++) {
-    for (int j = i + 1; j <= n_paths; j++) {
-      const char *first = paths[i], *second = j < n_paths ? paths[j] : session->json_path;
-      if (!first || !second || strcmp(first, second) != 0 || strncmp(first, "/dev/", 5) == 0)
-        continue;
-      if (strcmp(first, "-") == 0)
-        return cli_usage("%s: two outputs cannot both go to standard output", session->command);
-      return cli_usage("%s: two outputs cannot both go to %s", session->command, first);
-    }
-  }
-  return check_folders(session, paths, n_paths);
-}
-
-int cli_check_ending(const char *path, const char *ending) {
-  static const char *const known[] = {"ply", "obj", "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy",
-                                      "exr", "png", "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
-  const char *slash = path ? strrchr(path, '/') : NULL, *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
-  if (!dot || strcasecmp(dot + 1, ending) == 0)
-    return CLI_DONE;
-  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-    if (strcasecmp(dot + 1, known[i]) == 0)
-      return cli_usage("%s: what is written is no .%s; give the name the ending .%s", path, known[i], ending);
-  return CLI_DONE;
-}
-
-static void erase_bar(cli_session *session) {
-  if (session->bar_is_shown)
-    fputs("\r\033[K", stderr);
-  session->bar_is_shown = 0;
-}
-
 static int bar_cells(void) {
   struct winsize window;
   int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col ? window.ws_col : 80;
-  int cells = columns - 36;
+  int cells = columns - 42;
   return cells < 0 ? 0 : cells > 40 ? 40 : cells;
 }
 
@@ -164,23 +111,43 @@ static void draw_bar(cli_session *session, double fraction, double now) {
     if (seconds < 359999.0)
       snprintf(remaining, sizeof remaining, "  ETA %d:%02d", (int)seconds / 60, (int)seconds % 60);
   }
-  fprintf(stderr, "\r%-10.16s %s %3d %%%s\033[K", session->task, bar, (int)(100.0 * fraction), remaining);
+  fprintf(stderr, "\r%-10.22s %s %3d %%%s\033[K", session->task, bar, (int)(100.0 * fraction), remaining);
   fflush(stderr);
-  session->bar_is_shown = 1;
+  bar_is_shown = 1;
   session->drawn_seconds = now;
+}
+
+void cli_session_part(cli_session *session, const char *name, int i_part, int n_parts) {
+  session->part = name;
+  session->i_part = i_part;
+  session->n_parts = n_parts;
+  session->part_share = 0.0;
+  snprintf(session->task, sizeof session->task, "%s %d/%d", name, i_part, n_parts);
+  if (i_part == 1)
+    session->task_seconds = cli_seconds();
+}
+
+/* Of the whole, where a part has done so much of one of its tasks: a bar does not go back. */
+static double share_of_parts(cli_session *session, double fraction) {
+  if (session->part_share < fraction)
+    session->part_share = fraction;
+  return ((double)session->i_part - 1.0 + session->part_share) / (double)session->n_parts;
 }
 
 static void show_progress(cli_session *session, const char *task, double fraction) {
   const double refresh_seconds = 1.0 / 6.0;
   double now = cli_seconds();
   fraction = fraction > 0.0 ? fraction < 1.0 ? fraction : 1.0 : 0.0;
-  if (strncmp(session->task, task, sizeof session->task - 1) != 0) {
+  if (session->part)
+    fraction = share_of_parts(session, fraction);
+  else if (strncmp(session->task, task, sizeof session->task - 1) != 0) {
     snprintf(session->task, sizeof session->task, "%s", task);
     session->task_seconds = now;
   }
   if (fraction >= 1.0) {
-    erase_bar(session);
-    session->task[0] = '\0';
+    erase_bar();
+    if (!session->part)
+      session->task[0] = '\0';
   } else if (now - session->drawn_seconds >= refresh_seconds)
     draw_bar(session, fraction, now);
 }
@@ -201,7 +168,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
     return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
-  erase_bar(session);
+  erase_bar();
   fprintf(stderr, "conic: %s%s\n", label, message);
   pthread_mutex_unlock(&screen);
 }
@@ -252,7 +219,7 @@ int cli_session_open(cli_session *session) {
 }
 
 void cli_session_close(cli_session *session) {
-  erase_bar(session);
+  erase_bar();
   conic_context_destroy(session->context);
   session->context = NULL;
 }

@@ -16,7 +16,9 @@ typedef struct cli_session {
   char task[32];         /* what the progress bar is about; empty: nothing yet */
   double task_seconds;   /* when that began */
   double drawn_seconds;  /* when the bar was last drawn */
-  int bar_is_shown;
+  const char *part;      /* cli_session_part; null: none */
+  int i_part, n_parts;
+  double part_share;      /* of the part, what is done */
   int draws_many_frames;  /* of the same model: set before cli_session_open */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
@@ -26,6 +28,10 @@ int cli_session_open(cli_session *session);
 /* Ends the context; fine where it was never made. */
 void cli_session_close(cli_session *session);
 
+/* Says that what follows is part `i_part` of `n_parts`, from 1, of one long work, say a turntable's frame 3 of 36: the
+ * progress bar then is about all of them. `name` is to stay. */
+void cli_session_part(cli_session *session, const char *name, int i_part, int n_parts);
+
 /* The exit code that stands for a status; the message has been printed by the context's log. */
 int cli_exit_of(conic_status status);
 
@@ -33,15 +39,6 @@ int cli_exit_of(conic_status status);
 int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/* Asked before the work. Wrong usage where two of the run's outputs (null entries are fine), --json's included, go to
- * standard output or to the same file; CLI_RESOURCE where the folder that one would stand in is not there or may not be
- * written to. Returns CLI_DONE, or one of these after a message. */
-int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths);
-
-/* Wrong usage where the ending of an output's name (null is fine) is that of another kind of file than `ending`, say a
- * picture's: what stands there was hardly meant to be written over. Returns CLI_DONE, or CLI_USAGE after a message. */
-int cli_check_ending(const char *path, const char *ending);
 
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);

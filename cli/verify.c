@@ -6,6 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/outputs.h"
 #include "cli/render_job.h"
 
 typedef struct verify_job {
@@ -21,21 +22,16 @@ typedef struct verify_job {
 
 static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
                               const conic_camera *camera) {
-  conic_renderer *renderer;
-  if (job->image_path)
-    return conic_image_read(session->context, job->image_path, &job->image);
+  if (job->image_path) /* it was read before the scene */
+    return CONIC_OK;
   conic_status status =
       conic_image_allocate(session->context, camera->width, camera->height, job->scene.planes, &job->image);
   if (status != CONIC_OK)
     return status;
-  status = cli_device_open(session, &job->scene.device, &renderer);
-  if (status != CONIC_OK)
-    return status;
   double start = cli_seconds();
-  status = conic_render_drawing(session->context, renderer, drawing, camera, &job->scene.options, job->scene.samples,
-                                &job->image, &job->scene.statistics);
+  status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.options,
+                                job->scene.samples, &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
-  conic_renderer_destroy(renderer);
   return status;
 }
 
@@ -219,7 +215,12 @@ static int verify(cli_session *session, verify_job *job) {
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = cli_scene_read(session, &job->scene, &splats);
+  memset(&splats, 0, sizeof splats);
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK && job->image_path)
+    status = conic_image_read(session->context, job->image_path, &job->image);
+  if (status == CONIC_OK)
+    status = cli_scene_read(session, &job->scene, &splats);
   if (status == CONIC_OK)
     status = cli_scene_measure(session, &job->scene, &splats);
   if (status == CONIC_OK)
@@ -247,6 +248,8 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_usage("verify: the plane cluster holds names; the oracle knows what is drawn");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_scene_inputs_stay(session, &job.scene, &job.image_path, 0);
   if (exit_code == CLI_DONE)
     exit_code = verify(session, &job);
   free(job.scene.inputs);

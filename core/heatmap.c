@@ -48,6 +48,8 @@ static double pixel_difference(const float *a, const float *b) {
 
 /* A picture for the heat map of two images, all zero. */
 static conic_status begin(conic_context *context, const conic_image *a, const conic_image *b, conic_image *heatmap) {
+  if (heatmap)
+    memset(heatmap, 0, sizeof *heatmap);
   if (!a || !b || !heatmap || !a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: an image has no colour");
   if (a->width != b->width || a->height != b->height)
@@ -96,6 +98,8 @@ conic_status conic_image_flip_heatmap(conic_context *context, const conic_image 
 
 conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map) {
   const uint32_t *count = image ? image->planes[CONIC_PLANE_COUNT] : NULL;
+  if (map)
+    memset(map, 0, sizeof *map);
   if (!count || !map)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "overdraw: the image has no count");
   conic_status status = conic_image_allocate(context, image->width, image->height, 1u << CONIC_PLANE_RGBA, map);

@@ -74,7 +74,7 @@ conic_status conic_foreign_check(conic_context *context, const char *path, unsig
 
 conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
   const conic_bridge *bridge;
-  conic_bridge_writer writer;
+  conic_bridge_writer writer = {.has_alpha = 0};
   conic_status status = find_writer(context, path, conic_image_planes(image), &bridge, &writer);
   if (status != CONIC_OK)
     return status;

@@ -27,7 +27,7 @@ typedef struct conic_neighbours {
 } conic_neighbours;
 
 /* Builds the tree over positions[axis][0 … count). On success the caller owns what is in *tree; on failure it is
- * empty. Errors: ARGUMENT (over 2³² - 2 points), MEMORY. */
+ * empty. Errors: ARGUMENT (over 2³² - 2 points), MEMORY, CANCELLED. */
 conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,
                                     conic_neighbours *tree);
 void conic_neighbours_release(conic_context *context, conic_neighbours *tree);

@@ -8,6 +8,9 @@
 
 enum { SHARED_LEVELS = 6 };
 
+/* Building the tree of so many takes long enough to be reported. */
+enum { MANY_SLOTS = 1 << 18, SUBTREES_A_REPORT = 4 };
+
 typedef struct record {
   float position[3];
   uint32_t point;
@@ -178,13 +181,20 @@ static void make_level_subtree(void *data, size_t i_item, int i_thread) {
 }
 
 /* The nodes of the top levels one level after the other, then the subtrees below them. */
-static void make_tree(conic_context *context, build *b) {
+static conic_status make_tree(conic_context *context, build *b) {
+  int is_reported = b->tree->n_slots >= MANY_SLOTS;
   b->n_level_nodes = 1;
   for (int level = 0; level < SHARED_LEVELS && b->n_level_nodes < b->tree->n_leaves; level++) {
+    conic_status status = is_reported ? conic_progress(context, "neighbours", 0.0) : CONIC_OK;
+    if (status != CONIC_OK)
+      return status;
     conic_parallel_for(context, b->n_level_nodes, make_level_node, b);
     b->n_level_nodes *= 2;
   }
+  if (is_reported)
+    return conic_parallel_runs(context, "neighbours", b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree, b);
   conic_parallel_for(context, b->n_level_nodes, make_level_subtree, b);
+  return CONIC_OK;
 }
 
 /* Takes the positions in their final order, and turns record numbers into slots by way of `slot_of_record`. */
@@ -223,10 +233,11 @@ static conic_status build_with(conic_context *context, const float *const positi
   if (!slot_of_record)
     return CONIC_ERROR_MEMORY;
   build b = {tree, records, 1};
-  make_tree(context, &b);
-  settle(tree, records, slot_of_record);
+  status = make_tree(context, &b);
+  if (status == CONIC_OK)
+    settle(tree, records, slot_of_record);
   conic_memory_release(context, slot_of_record);
-  return CONIC_OK;
+  return status;
 }
 
 conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,

@@ -67,7 +67,7 @@ static double agreement(const conic_neighbourhood *neighbourhood, size_t a, size
 }
 
 /* A link from a slot to its i-th neighbour, as slot · LINKS + i, sorted by doubt in steps of 1/STEPS. */
-enum { LINKS = 8, STEPS = 65535 };
+enum { LINKS = 8, STEPS = 65535, LINKS_A_REPORT = 1 << 18 };
 
 typedef struct linking {
   conic_neighbourhood *neighbourhood;
@@ -137,7 +137,7 @@ static void join(linking *l, uint32_t a, uint32_t b, unsigned is_opposite) {
   l->flip[other] = (uint8_t)(flip_a ^ flip_b ^ is_opposite);
 }
 
-static void join_links(linking *l, const uint64_t *order, size_t n) {
+static conic_status join_links(conic_context *context, linking *l, const uint64_t *order, size_t n) {
   const conic_neighbourhood *neighbourhood = l->neighbourhood;
   for (size_t slot = 0; slot <= neighbourhood->tree.n_slots; slot++) {
     int is_given = slot == neighbourhood->tree.n_slots || !(neighbourhood->flags[slot] & CONIC_SLOT_GUESSED);
@@ -145,12 +145,16 @@ static void join_links(linking *l, const uint64_t *order, size_t n) {
     l->flip[slot] = 0;
   }
   for (size_t i = 0; i < n; i++) {
+    conic_status status = i % LINKS_A_REPORT == 0 ? conic_progress(context, "estimate", 0.55) : CONIC_OK;
+    if (status != CONIC_OK)
+      return status;
     size_t slot = (size_t)(order[i] / LINKS);
     uint32_t other = conic_neighbourhood_of(neighbourhood, slot)[order[i] % LINKS];
     const float *normal = neighbourhood->normals[other];
     if (normal[0] != 0.0f || normal[1] != 0.0f || normal[2] != 0.0f)
       join(l, (uint32_t)slot, other, agreement(neighbourhood, slot, other) < 0.0);
   }
+  return CONIC_OK;
 }
 
 static void turn(conic_neighbourhood *neighbourhood, size_t slot) {
@@ -195,11 +199,11 @@ static void settle_signs(linking *l, part *parts) {
 
 static conic_status orient_with(conic_context *context, linking *l, part *parts, size_t *starts, uint64_t *order) {
   conic_status status = conic_slots_for(context, l->neighbourhood->tree.n_slots, doubt_slots, l, 0.5, 0.55);
-  if (status != CONIC_OK)
-    return status;
-  join_links(l, order, sort_links(l, starts, order));
-  settle_signs(l, parts);
-  return CONIC_OK;
+  if (status == CONIC_OK)
+    status = join_links(context, l, order, sort_links(l, starts, order));
+  if (status == CONIC_OK)
+    settle_signs(l, parts);
+  return status;
 }
 
 conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *neighbourhood) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/color.h"
+#include "core/ellipse.h"
 #include "core/gaussian.h"
 #include "core/message.h"
 
@@ -205,19 +206,6 @@ static void store_vectors(const conic_ply_block block, conic_ply_column first_co
     store(block[(int)first_column + axis], n, 0.0, to[axis] + first);
 }
 
-/* Two orthonormal axes around the unit normal, t_u × t_v = normal. The formula divides by 1 + |n_z| only and so is
- * stable for every normal. */
-static void axes_around(const double normal[3], double tangent_u[3], double tangent_v[3]) {
-  double sign = normal[2] < 0.0 ? -1.0 : 1.0;
-  double a = -1.0 / (sign + normal[2]), b = normal[0] * normal[1] * a;
-  tangent_u[0] = 1.0 + sign * normal[0] * normal[0] * a;
-  tangent_u[1] = sign * b;
-  tangent_u[2] = -sign * normal[0];
-  tangent_v[0] = b;
-  tangent_v[1] = sign + normal[1] * normal[1] * a;
-  tangent_v[2] = -normal[1];
-}
-
 static void store_axes(conic_splats *points, size_t i, const double tangent_u[3], const double tangent_v[3]) {
   for (int axis = 0; axis < 3; axis++) {
     points->tangent_u[axis][i] = (float)tangent_u[axis];
@@ -235,7 +223,7 @@ static void store_circles(const conic_ply_layout *layout, const conic_ply_block 
     int is_usable = length > 0.0 && length - length == 0.0 && sigma > 0.0 && sigma - sigma == 0.0;
     for (int axis = 0; axis < 3; axis++)
       normal[axis] = is_usable ? normal[axis] / length : 0.0;
-    axes_around(normal, tangent_u, tangent_v);
+    conic_tangent_basis(normal, tangent_u, tangent_v);
     for (int axis = 0; axis < 3; axis++) {
       tangent_u[axis] = is_usable ? tangent_u[axis] * sigma : 0.0;
       tangent_v[axis] = is_usable ? tangent_v[axis] * sigma : 0.0;

@@ -5,6 +5,7 @@
 
 #include "conic/image.h"
 #include "core/color.h"
+#include "core/ellipse.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/random.h"
@@ -135,25 +136,13 @@ void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color
     color[c] = (uint8_t)((double)stops[i][c] * (1.0 - part) + (double)stops[i + 1][c] * part + 0.5);
 }
 
-/* Two unit vectors u, v with u × v = normal, continuous but at normal.z = 0. */
-static void frame_from_normal(const double normal[3], double u[3], double v[3]) {
-  double side = normal[2] < 0.0 ? -1.0 : 1.0;
-  double a = -1.0 / (side + normal[2]), b = normal[0] * normal[1] * a;
-  u[0] = 1.0 + side * normal[0] * normal[0] * a;
-  u[1] = side * b;
-  u[2] = -side * normal[0];
-  v[0] = b;
-  v[1] = side + normal[1] * normal[1] * a;
-  v[2] = -normal[1];
-}
-
 /* Moves the place by jitter and noise, and makes it splat `at` of the set. */
 static void finish(const conic_scene *scene, uint64_t i, const conic_surface_point *point, conic_splats *splats,
                    size_t at) {
   const conic_scene_options *options = &scene->options;
   double sigma = 1.5 * scene->spacing / (double)options->cutoff;
   double u[3], v[3], along_u = 0.0, along_v = 0.0, along_normal = 0.0;
-  frame_from_normal(point->normal, u, v);
+  conic_tangent_basis(point->normal, u, v);
   if (options->jitter > 0.0) {
     double reach = options->jitter * scene->spacing;
     double radius = reach * sqrt(conic_random_uniform(options->seed, i, DIMENSION_JITTER_RADIUS));

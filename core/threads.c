@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/message.h"
 
 typedef struct worker {
   conic_pool *pool;
@@ -116,4 +117,28 @@ void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task
   while (pool->n_busy)
     pthread_cond_wait(&pool->work_done, &pool->mutex);
   pthread_mutex_unlock(&pool->mutex);
+}
+
+typedef struct run {
+  conic_task *task;
+  void *data;
+  size_t first;
+} run;
+
+static void do_item_of_run(void *data, size_t i_item, int i_thread) {
+  const run *now = data;
+  now->task(now->data, now->first + i_item, i_thread);
+}
+
+conic_status conic_parallel_runs(conic_context *context, const char *name, size_t n_items, size_t n_a_run,
+                                 conic_task *task, void *data) {
+  run now = {task, data, 0};
+  for (; now.first < n_items; now.first += n_a_run) {
+    size_t n_left = n_items - now.first;
+    conic_status status = conic_progress(context, name, (double)now.first / (double)n_items);
+    if (status != CONIC_OK)
+      return status;
+    conic_parallel_for(context, n_left < n_a_run ? n_left : n_a_run, do_item_of_run, &now);
+  }
+  return CONIC_OK;
 }

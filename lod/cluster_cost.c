@@ -132,19 +132,32 @@ static double shape_of(const conic_face_sums *a, const conic_face_sums *b, const
   return shape > -1.0 ? shape : -1.0;
 }
 
+conic_joining_cost conic_joining_cost_without_plane(const conic_face_sums *a, const conic_face_sums *b, double shared,
+                                                    double largest_area, conic_face_sums *both) {
+  conic_joining_cost cost = {0.0, 0.0, 0.0, 0.0};
+  *both = conic_face_sums_join(a, b, shared);
+  if (!(both->area > 0.0))
+    return cost;
+  cost.shape = shape_of(a, b, both);
+  cost.size = both->area / largest_area;
+  return cost;
+}
+
+void conic_joining_cost_add_plane(const conic_face_sums *both, conic_joining_cost *cost) {
+  double normal[3], d;
+  if (!(both->area > 0.0))
+    return;
+  conic_face_sums_plane(both, normal, &d);
+  double fit = (form(both->second, normal) + 2.0 * d * conic_dot(normal, both->first)) / both->area + d * d;
+  double direction = 1.0 + (form(both->normals, normal) - 2.0 * conic_dot(normal, both->normal)) / both->area;
+  cost->fit = fit > 0.0 ? fit : 0.0;
+  cost->direction = direction > 0.0 ? direction : 0.0;
+}
+
 conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_face_sums *b, double shared,
                                          double largest_area) {
-  conic_joining_cost cost = {0.0, 0.0, 0.0, 0.0};
-  conic_face_sums both = conic_face_sums_join(a, b, shared);
-  double normal[3], d;
-  if (!(both.area > 0.0))
-    return cost;
-  conic_face_sums_plane(&both, normal, &d);
-  double fit = (form(both.second, normal) + 2.0 * d * conic_dot(normal, both.first)) / both.area + d * d;
-  double direction = 1.0 + (form(both.normals, normal) - 2.0 * conic_dot(normal, both.normal)) / both.area;
-  cost.fit = fit > 0.0 ? fit : 0.0;
-  cost.direction = direction > 0.0 ? direction : 0.0;
-  cost.shape = shape_of(a, b, &both);
-  cost.size = both.area / largest_area;
+  conic_face_sums both;
+  conic_joining_cost cost = conic_joining_cost_without_plane(a, b, shared, largest_area, &both);
+  conic_joining_cost_add_plane(&both, &cost);
   return cost;
 }

@@ -161,7 +161,8 @@ static double distance2_to_box(const conic_face_box *box, const double at[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double below = (double)box->low[axis] - at[axis], above = at[axis] - (double)box->high[axis];
     double out = below > above ? below : above;
-    sum += out > 0.0 ? out * out : 0.0;
+    out = out > 0.0 ? out : 0.0; /* no branch: chance would decide it */
+    sum += out * out;
   }
   return sum;
 }
@@ -173,17 +174,19 @@ static double distance2_to_face(const conic_mesh *mesh, uint32_t face, const dou
   return conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
 }
 
-static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const double at[3], double least2) {
+static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const double at[3], double least2,
+                                uint32_t *nearest) {
   for (size_t i = leaf * LEAF_FACES; i < (leaf + 1) * LEAF_FACES && i < tree->n_faces; i++) {
     double distance2 = distance2_to_face(tree->mesh, tree->faces[i], at);
+    *nearest = distance2 < least2 ? tree->faces[i] : *nearest;
     least2 = distance2 < least2 ? distance2 : least2;
   }
   return least2;
 }
 
-/* The least squared distance, where least2 is one that is known to be there. Nearer children first; done where
- * something is near enough. */
-static double search(const conic_face_tree *tree, const double at[3], double least2, double known) {
+/* The least squared distance, where least2 is one that is known to be there: the nearest face's. Nearer children first;
+ * done where something is near enough. */
+static double search(const conic_face_tree *tree, const double at[3], double least2, double known, uint32_t *nearest) {
   size_t stack[64];
   double distances2[64], known2 = known * known;
   int n = 1;
@@ -194,7 +197,7 @@ static double search(const conic_face_tree *tree, const double at[3], double lea
     if (distances2[n] >= least2)
       continue;
     if (i >= tree->n_leaves) {
-      least2 = distance2_in_leaf(tree, i - tree->n_leaves, at, least2);
+      least2 = distance2_in_leaf(tree, i - tree->n_leaves, at, least2, nearest);
       continue;
     }
     double first2 = distance2_to_box(&tree->boxes[2 * i], at), second2 = distance2_to_box(&tree->boxes[2 * i + 1], at);
@@ -208,7 +211,8 @@ static double search(const conic_face_tree *tree, const double at[3], double lea
 }
 
 double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], double known) {
-  double least2 = search(tree, at, HUGE_VAL, known);
+  uint32_t nearest = 0;
+  double least2 = search(tree, at, HUGE_VAL, known, &nearest);
   return least2 > known * known && least2 < HUGE_VAL ? sqrt(least2) : known;
 }
 
@@ -218,12 +222,12 @@ double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double a
 }
 
 double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known) {
-  double bound = conic_face_tree_bound(tree, at, guess, known);
+  double bound = conic_face_tree_bound(tree, at, &guess, known);
   return bound > known ? bound : known;
 }
 
-double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough) {
-  double guessed2 = distance2_to_face(tree->mesh, guess, at);
-  double least2 = search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, enough);
+double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t *near, double enough) {
+  double guessed2 = distance2_to_face(tree->mesh, *near, at);
+  double least2 = search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, enough, near);
   return least2 < HUGE_VAL ? sqrt(least2) : enough;
 }

@@ -28,8 +28,8 @@ double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], 
 double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3], uint32_t guess, double known);
 
 /* How far the place is from the nearest face, where that is more than `enough`; else no less than that, and `enough` at
- * most. Sooner where `guess` is a face that is near. */
-double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t guess, double enough);
+ * most. Sooner where *near is a face that is near; it becomes the one that was found to be as near as that. */
+double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t *near, double enough);
 
 /* How far the place is from that face of the mesh: infinite where the face has no area and no distance. */
 double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double at[3]);

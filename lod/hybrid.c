@@ -21,7 +21,6 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
   double square = 0.0;
   memset(info, 0, sizeof *info);
   info->n_patches = hybrid->n_patches;
-  info->n_levels = hybrid->n_levels;
   info->n_all_triangles = hybrid->n_triangles;
   info->n_all_surfels = hybrid->n_surfels;
   info->n_vertices = hybrid->n_vertices;
@@ -33,9 +32,11 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
     const conic_hybrid_patch *patch = &hybrid->patches[i];
     const conic_hybrid_level *built = &hybrid->levels[patch->first_level + patch->built];
     int is_surfels = built->kind == CONIC_HYBRID_SURFELS;
+    info->n_levels += patch->n_levels;
     info->n_surfel_patches += (size_t)is_surfels;
     *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
   }
+  info->n_node_levels = hybrid->n_levels - info->n_levels;
   for (size_t i = 0; i < hybrid->n_materials; i++)
     info->n_textures += hybrid->material_list[i].width > 0;
   for (int axis = 0; axis < 3; axis++) {

@@ -112,10 +112,15 @@ static double first_spacing(const conic_ways_job *job, uint32_t patch) {
 static const double tolerance = 0.5;
 enum { MOST_A_FACE = 2, MOST_A_FACE_OF_TRIANGLES = 1 };
 
-/* Keeps the level that was sampled last where it is worth one: with a fourth less than the one before. */
+/* With how many surfels the next level is worth one: a fourth less than the one before has. */
+static size_t most_of_next(const conic_patch_ways *ways) {
+  return ways->n_surfels ? 3 * ways->surfels[ways->n_surfels - 1].n / 4 : SIZE_MAX;
+}
+
+/* Keeps the level that was sampled last where it is worth one. */
 static void keep_level(conic_context *context, conic_patch_ways *ways) {
   conic_surfels *last = &ways->surfels[ways->n_surfels];
-  if (last->n == 0 || (ways->n_surfels > 0 && 4 * last->n > 3 * last[-1].n))
+  if (last->n == 0 || last->n > most_of_next(ways))
     conic_surfels_release(context, last);
   else
     ways->n_surfels++;
@@ -144,6 +149,7 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
     conic_surfels *surfels = &ways->surfels[ways->n_surfels];
     surfels->error = ways->n_surfels ? surfels[-1].error : 0.0; /* it has no less than what it is coarser than */
     sampling.tolerance = tolerance * sampling.spacing;
+    sampling.useful = most_of_next(ways);
     sampling.is_coarser = i > 0;
     if (job->options->sampling == CONIC_SAMPLING_BOX)
       status = conic_patch_sample_box(job->context, &sampling, surfels);
@@ -151,7 +157,7 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
       status = conic_patch_sample(sampler, &sampling, surfels);
     if (i == 0)
       ways->is_surfels = is_gathered && is_surfels(job->options, surfels, sampling.spacing);
-    int is_last = surfels->n <= 2;
+    int is_last = surfels->n <= 2 || surfels->is_coarsest;
     keep_level(job->context, ways);
     if (is_last)
       break;

@@ -10,6 +10,7 @@
 #include "core/trigonometry.h"
 #include "lod/hybrid_tree.h"
 #include "lod/patch_contrast.h"
+#include "lod/patch_error.h"
 #include "lod/patch_shape.h"
 
 /* The most surfels of a level, above which its node's children do as well; and how many nodes are done between two
@@ -175,7 +176,7 @@ static conic_status note_piece(conic_sampler *s, const piece *p) {
 static conic_status shape_sites(worker *w) {
   conic_sampler *s = w->sampler;
   conic_status status = CONIC_OK;
-  s->n_supports = 0;
+  s->n_supports = s->n_sorted = 0;
   for (size_t i = 0; i < w->n_pieces; i++) {
     w->pieces[i].site = nearest_alike(s, &w->pieces[i], HUGE_VAL);
     add_to_site(&s->sites[w->pieces[i].site], &w->pieces[i]);
@@ -191,7 +192,23 @@ static conic_status shape_sites(worker *w) {
 enum { RINGS = 4, PLACES_ON_RING = 40 };
 static const double turn[2] = {0.98768834, 0.15643447};
 
-static double farther_on_ring(const worker *w, const conic_site *site, double size, double known) {
+/* No place is farther from the mesh than the one that was measured last is, and the way to that: so many need no look.
+ * More than rounding takes is added. */
+typedef struct measured {
+  double at[3], bound;
+  uint32_t near; /* a face */
+} measured;
+
+static double farther_at(const worker *w, const double at[3], measured *last, double known) {
+  const double way[3] = {at[0] - last->at[0], at[1] - last->at[1], at[2] - last->at[2]};
+  if ((last->bound + sqrt(conic_dot(way, way))) * (1.0 + 1e-9) <= known)
+    return known;
+  memcpy(last->at, at, sizeof last->at);
+  last->bound = conic_face_tree_bound(w->sampler->job->tree, at, &last->near, known);
+  return last->bound > known ? last->bound : known;
+}
+
+static double farther_on_ring(const worker *w, const conic_site *site, double size, measured *last, double known) {
   const conic_ellipse *e = &site->ellipse;
   double way[2] = {size * e->reach, 0.0};
   for (int k = 0; k < PLACES_ON_RING; k++) {
@@ -200,7 +217,7 @@ static double farther_on_ring(const worker *w, const conic_site *site, double si
     double x = way[0] * e->major[0] - across * e->major[1], y = way[0] * e->major[1] + across * e->major[0], at[3];
     for (int axis = 0; axis < 3; axis++)
       at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-    known = conic_face_tree_farther_by(w->sampler->job->tree, at, site->face, known);
+    known = farther_at(w, at, last, known);
     memcpy(way, turned, sizeof way);
   }
   return known;
@@ -210,9 +227,10 @@ static double farther_on_ring(const worker *w, const conic_site *site, double si
  * more than `known`; else `known`. */
 static double error_of(const worker *w, const conic_site *site, double known) {
   double error = w->error + site->least_error;
-  known = conic_face_tree_farther_by(w->sampler->job->tree, site->at, site->face, error > known ? error : known);
+  measured last = {.bound = HUGE_VAL, .near = site->face};
+  known = farther_at(w, site->at, &last, error > known ? error : known);
   for (int ring = RINGS; ring > 0; ring--)
-    known = farther_on_ring(w, site, (double)ring / RINGS, known);
+    known = farther_on_ring(w, site, (double)ring / RINGS, &last, known);
   return known;
 }
 
@@ -241,6 +259,7 @@ static conic_status make_level(const nodes_pass *pass, worker *w, double spacing
                                        .tree = &job->tree,
                                        .spacing = spacing,
                                        .tolerance = HUGE_VAL, /* errors are found below */
+                                       .is_off_mesh = 1,
                                        .cutoff = (double)job->options->cutoff};
   w->sampler->job = &sampling;
   conic_status status = choose_sites(w, spacing);

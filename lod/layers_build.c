@@ -2,9 +2,9 @@
  * are, grown into a tree piece by piece, and written (docs/layers.md). */
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 #include "conic/layers.h"
+#include "core/clock.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
@@ -35,12 +35,6 @@ void conic_layers_options_init(conic_layers_options *options) {
   options->quantum = 0.5;
   options->quantum_in_spacings = 1;
   options->cutoff = 1.5f;
-}
-
-static double seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static int is_sound(const conic_layers_options *options) {
@@ -78,7 +72,7 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  made->started = seconds();
+  made->started = conic_seconds_now();
   if (options)
     made->options = *options;
   else
@@ -219,13 +213,13 @@ static void fill_statistics(conic_layers_builder *builder, double begun, double 
   s->quantum = header->quantum;
   s->read_seconds = begun - builder->started;
   s->work_seconds = built - begun;
-  s->write_seconds = seconds() - built;
+  s->write_seconds = conic_seconds_now() - built;
 }
 
 conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_layers_statistics *statistics) {
-  double begun = seconds();
+  double begun = conic_seconds_now();
   conic_status status = build(builder);
-  double built = seconds();
+  double built = conic_seconds_now();
   if (status == CONIC_OK)
     status = conic_layers_write(builder->context, builder->path, &builder->forest, &builder->header);
   if (status == CONIC_OK && statistics) {

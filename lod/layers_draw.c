@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "lod/layers_bands.h"
@@ -117,7 +118,7 @@ static void count_up(drawing *d, const conic_render_statistics *statistics) {
 
 static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *image,
                              conic_render_statistics *statistics) {
-  double start = conic_layers_now();
+  double start = conic_seconds_now();
   conic_status status = choose_first(d);
   if (status == CONIC_OK && d->options->may_be_coarser)
     status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
@@ -138,7 +139,7 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
   if (status != CONIC_OK)
     return status;
   count_up(d, statistics);
-  statistics->ms.lod = 1e3 * (conic_layers_now() - start) - statistics->ms.frame;
+  statistics->ms.lod = 1e3 * (conic_seconds_now() - start) - statistics->ms.frame;
   statistics->ms.frame += statistics->ms.lod;
   return CONIC_OK;
 }

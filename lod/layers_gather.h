@@ -34,7 +34,7 @@ typedef struct conic_layers_gathering {
   const conic_layers_view *view;
   const conic_window *window; /* only what may meet it is gathered; null: all */
   float cutoff;
-  double until_s; /* of the monotonic clock; infinite: clouds are waited for */
+  double until_s; /* by conic_seconds_now; infinite: clouds are waited for */
 } conic_layers_gathering;
 
 /* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are

@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
@@ -25,12 +25,6 @@ typedef struct arrivals {
   arrival all[DECODED_TOGETHER];
   size_t n;
 } arrivals;
-
-double conic_layers_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 conic_status conic_layers_store_open(conic_layers *layers) {
   conic_layers_store *store = &layers->store;
@@ -204,7 +198,7 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
 static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_loading *loading) {
   arrivals a = {.layers = layers};
   while (conic_ranges_pending(layers->ranges) > 0) {
-    double left = loading->until_s - conic_layers_now();
+    double left = loading->until_s - conic_seconds_now();
     if (!(left > 0.0))
       break;
     collect(layers, left < 0.1 ? left : 0.1, &a);

@@ -35,7 +35,7 @@ static inline const conic_layers_cloud *conic_layers_store_find(const conic_laye
 typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;
-  double until_s;     /* of the monotonic clock; infinite: as long as it takes */
+  double until_s;     /* by conic_seconds_now; infinite: as long as it takes */
   int may_miss;       /* what cannot be had is left out */
   uint64_t n_missing; /* set: so many were */
 } conic_layers_loading;
@@ -47,8 +47,5 @@ void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *
 
 /* How many of the first clouds of a list may be in memory together, within so many bytes; at least 1. */
 size_t conic_layers_store_fit(const conic_layers *layers, const uint32_t *clouds, size_t n, uint64_t n_bytes);
-
-/* Seconds of the monotonic clock. */
-double conic_layers_now(void);
 
 #endif

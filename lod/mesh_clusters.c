@@ -35,6 +35,7 @@ typedef struct joining {
   uint32_t *degree, *grown, *parent;
   uint8_t *is_new; /* joined in this phase */
   double largest_area;
+  double limit; /* of a joint's cost in this phase */
   int phase;
   conic_heap queue;
   size_t n_evaluations;
@@ -90,14 +91,20 @@ static uint32_t find_joint(const joining *j, uint32_t a, uint32_t b) {
 
 /* --- costs --- */
 
+/* Whose shape alone costs more than the limit is not joined whatever its plane, and that takes most of the time: its
+ * shape is all that is told. */
 static double cost_of(const joining *j, uint32_t i) {
   const joint *own = &j->joints[i];
   const conic_face_sums *a = &j->sums[own->ends[0]], *b = &j->sums[own->ends[1]];
-  conic_joining_cost cost = conic_joining_cost_of(a, b, own->length, j->largest_area);
+  conic_face_sums both;
+  if (j->phase == 1 && a->area + b->area > j->largest_area)
+    return HUGE_VAL;
+  conic_joining_cost cost = conic_joining_cost_without_plane(a, b, own->length, j->largest_area, &both);
   if (j->phase == 2)
     return cost.shape + cost.size;
-  if (a->area + b->area > j->largest_area)
-    return HUGE_VAL;
+  if (cost.shape > j->limit)
+    return cost.shape;
+  conic_joining_cost_add_plane(&both, &cost);
   return (cost.fit + cost.direction) + cost.shape;
 }
 
@@ -149,13 +156,13 @@ static void join(joining *j, uint32_t i) {
 }
 
 /* Every joint that costs less than the limit by now, in the queue. */
-static int fill_queue(joining *j, double limit) {
+static int fill_queue(joining *j) {
   conic_parallel_for(j->context, (j->n_joints + CHUNK - 1) / CHUNK, evaluate_task, j);
   j->queue.n = 0;
   for (size_t i = 0; i < j->n_joints; i++)
     if (j->joints[i].length >= 0.0) {
       j->n_evaluations++;
-      if (j->keys[i] <= limit)
+      if (j->keys[i] <= j->limit)
         conic_heap_push(&j->queue, (uint32_t)i);
     }
   return j->queue.n > 0;
@@ -165,8 +172,9 @@ static conic_status run_phase(joining *j, int phase, double limit) {
   static const size_t joints_a_report = 20000;
   size_t n_done = 0;
   j->phase = phase;
+  j->limit = limit;
   memset(j->is_new, 0, j->n_clusters);
-  while (fill_queue(j, limit))
+  while (fill_queue(j))
     while (j->queue.n > 0) {
       uint32_t i = conic_heap_pop(&j->queue);
       if (j->joints[i].length < 0.0)
@@ -175,7 +183,7 @@ static conic_status run_phase(joining *j, int phase, double limit) {
         join(j, i);
       } else {
         evaluate(j, i);
-        if (j->keys[i] <= limit)
+        if (j->keys[i] <= j->limit)
           conic_heap_push(&j->queue, i);
       }
       if (++n_done % joints_a_report == 0) {

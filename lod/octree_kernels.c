@@ -1,12 +1,13 @@
 #include "lod/octree_kernels.h"
 
+#include "core/processor.h"
+
 conic_octree_kernels conic_octree_kernels_choose(void) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq"))
+  if (conic_has_avx512())
     return (conic_octree_kernels){conic_cover_avx512,        conic_find_near_avx512, conic_add_reach_avx512,
                                   conic_choose_ratio_avx512, conic_measure_avx512,   conic_put_avx512};
-  if (__builtin_cpu_supports("avx2"))
+  if (conic_has_avx2())
     return (conic_octree_kernels){conic_cover_avx2,        conic_find_near_avx2, conic_add_reach_avx2,
                                   conic_choose_ratio_avx2, conic_measure_avx2,   conic_put_avx2};
 #endif

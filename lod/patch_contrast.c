@@ -11,6 +11,8 @@ static int has_colors(const conic_triangles *t) {
 static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, double side) {
   conic_site *site = &s->sites[s->owner[conic_lattice_place(l, i, j)]];
   double bary[3], color[3], texel[3];
+  if (site->is_settled)
+    return;
   conic_lattice_bary(l, i, j, bary);
   conic_patch_color(s->job->mesh, l->face, bary, color);
   conic_patch_texel(s->job->mesh, l->face, bary, side, texel);
@@ -25,7 +27,7 @@ void conic_patch_find_contrasts(conic_sampler *s) {
   if (!has_colors(s->job->mesh->triangles))
     return;
   for (size_t i = 0; i < s->n_sites; i++)
-    for (int channel = 0; channel < 3; channel++) {
+    for (int channel = 0; channel < 3 && !s->sites[i].is_settled; channel++) {
       s->sites[i].darkest[channel] = 1.0;
       s->sites[i].brightest[channel] = 0.0;
     }

@@ -11,8 +11,9 @@ static inline double conic_as_shown(double linear) {
   return linear >= 1.0 ? 1.0 : linear > 0.0 ? sqrt(linear) : 0.0;
 }
 
-/* Fills in the sites' contrasts: the greatest difference in a channel among the places that they own, as it is shown
- * (1: black and white). Details that are finer than the lattices count as what they are in the mean. */
+/* Fills in the contrasts of the sites that are not settled: the greatest difference in a channel among the places that
+ * they own, as it is shown (1: black and white). Details that are finer than the lattices count as what they are in the
+ * mean. */
 void conic_patch_find_contrasts(conic_sampler *sampler);
 
 #endif

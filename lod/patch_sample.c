@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "lod/patch_error.h"
+#include "lod/patch_reuse.h"
 #include "lod/patch_shape.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
@@ -18,18 +20,23 @@ conic_status conic_sampler_create(conic_context *context, conic_sampler **sample
 void conic_sampler_destroy(conic_sampler *sampler) {
   if (!sampler)
     return;
+  conic_memory_release(sampler->context, sampler->last.lattices);
+  conic_memory_release(sampler->context, sampler->last.owner);
+  conic_memory_release(sampler->context, sampler->last.sites);
   conic_memory_release(sampler->context, sampler->lattices);
   conic_memory_release(sampler->context, sampler->facing);
   conic_memory_release(sampler->context, sampler->depth);
   conic_memory_release(sampler->context, sampler->places);
+  conic_memory_release(sampler->context, sampler->lattice_of);
   conic_memory_release(sampler->context, sampler->owner);
   conic_memory_release(sampler->context, sampler->candidates);
   conic_memory_release(sampler->context, sampler->seeds);
   conic_memory_release(sampler->context, sampler->sites);
-  conic_site_table_release(sampler->context, &sampler->table);
+  conic_place_table_release(sampler->context, &sampler->table);
   conic_memory_release(sampler->context, sampler->supports);
   conic_memory_release(sampler->context, sampler->of_sites);
-  conic_memory_release(sampler->context, sampler->points);
+  for (int i = 0; i < 2; i++)
+    conic_memory_release(sampler->context, sampler->points[i]);
   conic_memory_release(sampler->context, sampler);
 }
 
@@ -73,25 +80,40 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
   return CONIC_OK;
 }
 
-/* The greater of `known` and the largest error of what is drawn. Most are known well enough from the sites' making:
- * beginning with the site that may have the largest, few are measured again. */
-static double largest_error(const conic_sampler *s, double known) {
-  const conic_site *worst = NULL;
-  double bound;
+/* The sites that are drawn and may err by more than is known, the one that may by the most first: in the place of the
+ * candidates, which have had their turn. */
+static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
+  void *candidates = s->candidates;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
+  s->candidates = candidates;
+  *n = 0;
+  for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
+    float bound = (float)s->sites[i].error_bound;
+    uint32_t bits;
+    memcpy(&bits, &bound, sizeof bits); /* of positive numbers these are in the numbers' order */
+    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
+      s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
+  }
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, *n, 32) : status;
+}
+
+/* Raises *known to the largest error of what is drawn. Most are known well enough from the sites' making; beginning
+ * with the site that may have the largest, few are measured again. */
+static conic_status find_largest_error(conic_sampler *s, double *known) {
+  size_t n;
   for (size_t i = 0; i < s->n_sites; i++) {
     const conic_site *site = &s->sites[i];
     double least = site->error > s->job->tolerance ? site->error : site->least_error;
-    if (!site->is_drawn)
-      continue;
-    known = least > known ? least : known;
-    worst = !worst || site->error_bound > worst->error_bound ? site : worst;
+    *known = site->is_drawn && least > *known ? least : *known;
   }
-  if (worst && worst->error_bound > known)
-    known = conic_site_error(s, worst, known, &bound);
-  for (size_t i = 0; i < s->n_sites; i++)
-    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
-      known = conic_site_error(s, &s->sites[i], known, &bound);
-  return known;
+  conic_status status = order_by_bound(s, *known, &n);
+  for (size_t k = 0; k < n && status == CONIC_OK; k++) {
+    const conic_site *site = &s->sites[s->candidates[k].value];
+    double bound;
+    if (site->error_bound > *known)
+      *known = conic_site_error(s, site, *known, &bound);
+  }
+  return status;
 }
 
 /* --- closer where it must be --- */
@@ -146,11 +168,43 @@ static conic_status begin_depths(conic_sampler *s) {
   return CONIC_OK;
 }
 
+static int has_texture(const conic_triangles *t) {
+  int is_any = 0;
+  for (size_t i = 0; i < t->n_materials; i++)
+    is_any |= t->materials[i].texture != NULL;
+  return is_any;
+}
+
+/* Whether a wider spacing would give the same sites: faces have no places but their corners, each of which is near
+ * every other, and nothing is to be parted. (Of textures a wider one sees less.) */
+static int is_coarsest(const conic_sampler *s) {
+  double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
+  int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);
+  for (size_t k = 0; k < s->n_lattices && is_plain; k++)
+    is_plain = s->lattices[k].sides == 1;
+  for (size_t i = 0; i < s->n_sites && is_plain; i++)
+    is_plain = s->sites[i].error <= s->job->tolerance;
+  for (size_t i = 0; i < s->n_places && is_plain; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      double at = s->places[i][axis];
+      low[axis] = at < low[axis] ? at : low[axis];
+      high[axis] = at > high[axis] ? at : high[axis];
+    }
+  for (int axis = 0; axis < 3; axis++)
+    square += (high[axis] - low[axis]) * (high[axis] - low[axis]);
+  return is_plain && square < 0.999 * s->job->spacing * s->job->spacing;
+}
+
 conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
   s->job = job;
+  s->n_supports = s->n_sorted = 0;
   conic_status status = begin_depths(s);
   for (int pass = 1; status == CONIC_OK; pass++) {
+    if (pass > 1)
+      conic_patch_end_pass(s);
     status = conic_patch_find_sites(s);
+    if (status == CONIC_OK && pass > 1)
+      conic_patch_settle_sites(s);
     if (status == CONIC_OK)
       status = conic_patch_shape_sites(s);
     if (status != CONIC_OK || pass == MOST_PASSES || !refine_faces(s, error_to_part(s)))
@@ -158,6 +212,8 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
   }
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
-  surfels->error = largest_error(s, surfels->error);
+  surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
+  if (status == CONIC_OK && surfels->n <= job->useful)
+    status = find_largest_error(s, &surfels->error);
   return status;
 }

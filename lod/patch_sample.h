@@ -18,7 +18,8 @@ typedef struct conic_surfels {
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
    * measured at twenty places. */
   double error;
-  double reach; /* the longest half axis of an outline */
+  double reach;    /* the longest half axis of an outline */
+  int is_coarsest; /* no wider spacing gives fewer */
 } conic_surfels;
 
 typedef struct conic_sampling_job {
@@ -28,7 +29,9 @@ typedef struct conic_sampling_job {
   double spacing;   /* no two surfels that face alike are nearer than this, but where the surface needs closer ones */
   double tolerance; /* surfels whose error is larger are made of closer ones, */
   size_t most;      /* as long as there are no more than these */
+  size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
   int is_coarser;   /* the job before was the same patch's, at half the spacing */
+  int is_off_mesh;  /* what sites stand for lies near the mesh, but not on it */
   double cutoff;    /* standard deviations at which a splat ends */
 } conic_sampling_job;
 

@@ -5,6 +5,7 @@
 
 #include "lod/least_ellipse.h"
 #include "lod/patch_contrast.h"
+#include "lod/patch_error.h"
 
 /* How far an ellipse reaches beyond what it must cover, and how long it may be. */
 static const double cover = 1.1;
@@ -18,7 +19,7 @@ typedef struct small_triangle {
   const conic_lattice *lattice;
   const double *facing;
   const double *at[3];
-  double bary[3][3];
+  int steps[3][2];
   uint32_t owners[3];
   int is_between; /* two that point as the face does */
 } small_triangle;
@@ -28,18 +29,31 @@ static const int corner_steps[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1,
 
 typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
 
+/* Whether something of a face's belongs to a site that is not settled. */
+static int has_work(const conic_sampler *s, const conic_lattice *l) {
+  uint32_t n = conic_lattice_places(l->sides), i = 0;
+  while (i < n && s->sites[s->owner[l->first + i]].is_settled)
+    i++;
+  return i < n;
+}
+
 static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
+    if (!has_work(s, l))
+      continue;
     for (int i = 0; i < l->sides; i++)
       for (int j = 0; j < l->sides - i; j++)
         for (int between = 0; between < (i + j < l->sides - 1 ? 2 : 1) && status == CONIC_OK; between++) {
-          small_triangle t = {.lattice = l, .facing = s->facing[k], .is_between = between};
+          small_triangle t;
+          t.lattice = l;
+          t.facing = s->facing[k];
+          t.is_between = between;
           for (int corner = 0; corner < 3; corner++) {
-            const int *step = corner_steps[between][corner];
-            uint32_t place = conic_lattice_place(l, i + step[0], j + step[1]);
-            conic_lattice_bary(l, i + step[0], j + step[1], t.bary[corner]);
+            t.steps[corner][0] = i + corner_steps[between][corner][0];
+            t.steps[corner][1] = j + corner_steps[between][corner][1];
+            uint32_t place = conic_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
             t.at[corner] = s->places[place];
             t.owners[corner] = s->owner[place];
           }
@@ -51,8 +65,19 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
 
 /* --- planes and colours --- */
 
+/* The normal and the colour at a corner. */
+static void look_at_corner(const conic_sampler *s, const small_triangle *t, int corner, double normal[3],
+                           double color[3]) {
+  double bary[3];
+  conic_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
+  conic_patch_normal(s->job->mesh, t->lattice->face, bary, t->facing, normal);
+  conic_patch_color(s->job->mesh, t->lattice->face, bary, color);
+}
+
 static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
-  double sides[2][3], cross[3];
+  const conic_triangles *triangles = s->job->mesh->triangles;
+  int varies = triangles->normal[0] || triangles->color[0], is_known = 0; /* over a face */
+  double sides[2][3], cross[3], normal[3], color[3];
   for (int axis = 0; axis < 3; axis++) {
     sides[0][axis] = t->at[1][axis] - t->at[0][axis];
     sides[1][axis] = t->at[2][axis] - t->at[0][axis];
@@ -61,9 +86,11 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
   double share = sqrt(conic_dot(cross, cross)) / 6.0;
   for (int corner = 0; corner < 3; corner++) {
     conic_site *site = &s->sites[t->owners[corner]];
-    double normal[3], color[3];
-    conic_patch_normal(s->job->mesh, t->lattice->face, t->bary[corner], t->facing, normal);
-    conic_patch_color(s->job->mesh, t->lattice->face, t->bary[corner], color);
+    if (site->is_settled)
+      continue;
+    if (varies || !is_known)
+      look_at_corner(s, t, corner, normal, color);
+    is_known = 1;
     for (int axis = 0; axis < 3; axis++) {
       site->normal[axis] += share * normal[axis];
       site->color[axis] += share * color[axis];
@@ -77,6 +104,8 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 void conic_patch_settle_planes(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
+    if (site->is_settled)
+      continue;
     double length = sqrt(conic_dot(site->normal, site->normal));
     for (int axis = 0; axis < 3; axis++)
       site->normal[axis] = length > 0.0 ? site->normal[axis] / length : site->facing[axis];
@@ -99,6 +128,8 @@ static conic_status grow_supports(conic_sampler *s) {
 conic_status conic_patch_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
                                       const double facing[3]) {
   conic_site *site = &s->sites[i_site];
+  if (site->is_settled)
+    return CONIC_OK;
   conic_status status = s->n_supports < s->supports_room ? CONIC_OK : grow_supports(s);
   if (status != CONIC_OK)
     return status;
@@ -124,7 +155,7 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
   const conic_site *a = &s->sites[t->owners[from]], *b = &s->sites[t->owners[to]];
   double more = 0.0, slope = 0.0, share;
   for (int axis = 0; axis < 3; axis++) {
-    double to_a = a->at[axis] - t->at[from][axis], to_b = b->at[axis] - t->at[from][axis];
+    double to_a = a->foot[axis] - t->at[from][axis], to_b = b->foot[axis] - t->at[from][axis];
     more += 0.5 * (to_b * to_b - to_a * to_a);
     slope += (t->at[to][axis] - t->at[from][axis]) * (to_b - to_a);
   }
@@ -138,6 +169,8 @@ static conic_status cover_places(conic_sampler *s) {
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
     size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
+    if (!has_work(s, l))
+      continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
       status = conic_patch_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
@@ -169,31 +202,38 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
   return status;
 }
 
-/* Lists the supports site by site, what was noted last first. */
+/* Lists the supports of this pass site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
-  void *of_sites = s->of_sites, *points = s->points;
-  size_t begin = 0, most = 0;
+  void *of_sites = s->of_sites;
+  size_t begin = s->n_sorted, most = 0;
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
+    if (site->is_settled)
+      continue;
     most = site->n_supports > most ? site->n_supports : most;
     begin += site->n_supports;
     site->first_support = begin;
   }
-  conic_status status = conic_sampler_grow(s, &of_sites, 0, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
+  conic_status status =
+      conic_sampler_grow(s, &of_sites, s->n_sorted, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
   s->of_sites = of_sites;
-  if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points);
-  s->points = points;
-  for (size_t i = 0; i < s->n_supports && status == CONIC_OK; i++)
-    s->of_sites[--s->sites[s->supports[i].site].first_support] = (uint32_t)i;
+  size_t points_room = s->points_room;
+  for (int i = 0; i < 2 && status == CONIC_OK; i++) {
+    void *points = s->points[i];
+    s->points_room = points_room;
+    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points[i]);
+    s->points[i] = points;
+  }
+  for (; s->n_sorted < s->n_supports && status == CONIC_OK; s->n_sorted++)
+    s->of_sites[--s->sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;
   return status;
 }
 
 /* --- ellipses --- */
 
 /* Half of the directions, in turn about the plane, in which a site's farthest supports are looked for. */
-static const double looks[CONIC_LEAST_ELLIPSE_POINTS / 2][2] = {
-    {1.0, 0.0}, {0.7071, 0.7071}, {0.0, 1.0}, {-0.7071, 0.7071}};
+enum { N_LOOKS = CONIC_LEAST_ELLIPSE_POINTS / 2 };
+static const double looks[N_LOOKS][2] = {{1.0, 0.0}, {0.7071, 0.7071}, {0.0, 1.0}, {-0.7071, 0.7071}};
 
 /* Lays the plane halfway between the lowest and the highest that it stands for, and finds where the supports come to
  * lie in it: along the face's normal, so that what is seen straight on the face is covered. */
@@ -205,59 +245,60 @@ static void settle_height(conic_sampler *s, conic_site *site) {
     const conic_support *support = &s->supports[s->of_sites[site->first_support + k]];
     double above = support->above - lift, way = fabs(above / support->cosine);
     for (int i = 0; i < 2; i++)
-      s->points[k][i] = support->at[i] - above * support->slope[i];
+      s->points[i][k] = support->at[i] - above * support->slope[i];
     site->height = way > site->height ? way : site->height;
   }
+}
+
+/* The farthest of a site's points along a direction and against it: of several as far the first. */
+typedef struct extent {
+  double most, least;
+  size_t at_most, at_least;
+} extent;
+
+static const extent no_extent = {-HUGE_VAL, HUGE_VAL, 0, 0};
+
+/* Chance decides whether it grows: without branches. */
+static inline void extend(extent *e, double along, size_t i) {
+  e->at_most = along > e->most ? i : e->at_most;
+  e->most = along > e->most ? along : e->most;
+  e->at_least = along < e->least ? i : e->at_least;
+  e->least = along < e->least ? along : e->least;
 }
 
 /* The supports that lie farthest out, one in each of the directions. */
 static int find_farthest(const conic_sampler *s, const conic_site *site,
                          double farthest[CONIC_LEAST_ELLIPSE_POINTS][2]) {
-  double most[CONIC_LEAST_ELLIPSE_POINTS];
-  const int n = CONIC_LEAST_ELLIPSE_POINTS / 2;
-  for (int i = 0; i < 2 * n; i++)
-    most[i] = -HUGE_VAL;
-  for (size_t k = 0; k < site->n_supports; k++) {
-    const double *at = s->points[k];
-    for (int i = 0; i < n; i++) {
-      double along = at[0] * looks[i][0] + at[1] * looks[i][1];
-      if (along > most[i]) {
-        most[i] = along;
-        memcpy(farthest[i], at, sizeof farthest[i]);
-      }
-      if (-along > most[n + i]) {
-        most[n + i] = -along;
-        memcpy(farthest[n + i], at, sizeof farthest[n + i]);
-      }
+  extent extents[N_LOOKS] = {no_extent, no_extent, no_extent, no_extent};
+  for (size_t k = 0; k < site->n_supports; k++)
+    for (int i = 0; i < N_LOOKS; i++)
+      extend(&extents[i], s->points[0][k] * looks[i][0] + s->points[1][k] * looks[i][1], k);
+  if (!(extents[0].most > -HUGE_VAL))
+    return 0;
+  for (int i = 0; i < N_LOOKS; i++)
+    for (int axis = 0; axis < 2; axis++) {
+      farthest[i][axis] = s->points[axis][extents[i].at_most];
+      farthest[N_LOOKS + i][axis] = s->points[axis][extents[i].at_least];
     }
-  }
-  return most[0] > -HUGE_VAL ? 2 * n : 0;
+  return 2 * N_LOOKS;
 }
-
-/* Where a surfel is measured, in its half axes: sixteen places of its outline in turn, and four within. */
-static const double ends[][2] = {{1.0, 0.0},  {0.92388, 0.38268},   {0.70711, 0.70711},   {0.38268, 0.92388},
-                                 {0.0, 1.0},  {-0.38268, 0.92388},  {-0.70711, 0.70711},  {-0.92388, 0.38268},
-                                 {-1.0, 0.0}, {-0.92388, -0.38268}, {-0.70711, -0.70711}, {-0.38268, -0.92388},
-                                 {0.0, -1.0}, {0.38268, -0.92388},  {0.70711, -0.70711},  {0.92388, -0.38268},
-                                 {0.5, 0.0},  {0.0, 0.5},           {-0.5, 0.0},          {0.0, -0.5}};
 
 /* Makes the ellipse large enough for all supports. Notes for each of the four ends of its axes on which face the
  * support lies that is farthest that way. */
 static void cover_supports(const conic_sampler *s, conic_site *site, const double center[2]) {
-  double most[4] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  size_t farthest[4] = {0, 0, 0, 0};
-  const double *major = site->ellipse.major;
+  extent major = no_extent, minor = no_extent;
+  double reach2 = 0.0;
+  const double *direction = site->ellipse.major, ratio = site->ellipse.ratio;
   for (size_t k = 0; k < site->n_supports; k++) {
-    double x = s->points[k][0] - center[0], y = s->points[k][1] - center[1];
-    double along = x * major[0] + y * major[1], across = y * major[0] - x * major[1];
-    const double ways[4] = {along, across, -along, -across};
-    conic_ellipse_cover(&site->ellipse, x, y);
-    for (int i = 0; i < 4; i++)
-      if (ways[i] > most[i]) {
-        most[i] = ways[i];
-        farthest[i] = k;
-      }
+    double x = s->points[0][k] - center[0], y = s->points[1][k] - center[1];
+    double along = x * direction[0] + y * direction[1], across = y * direction[0] - x * direction[1];
+    double wide = across / ratio, needed2 = along * along + wide * wide; /* as conic_ellipse_cover */
+    reach2 = needed2 > reach2 ? needed2 : reach2;
+    extend(&major, along, k);
+    extend(&minor, across, k);
   }
+  const size_t farthest[4] = {major.at_most, minor.at_most, major.at_least, minor.at_least};
+  site->ellipse.reach = sqrt(reach2);
   for (int i = 0; i < 4; i++)
     site->end_faces[i] = s->supports[s->of_sites[site->first_support + farthest[i]]].face;
 }
@@ -270,76 +311,6 @@ static void widen(conic_site *site) {
   double minor = e->ratio * e->reach + site->height;
   e->reach += site->height;
   e->ratio = e->reach > 0.0 ? minor / e->reach : 1.0;
-}
-
-enum { N_ENDS = 20 };
-
-static void find_ends(const conic_site *site, double at[N_ENDS][3]) {
-  const conic_ellipse *e = &site->ellipse;
-  for (int k = 0; k < N_ENDS; k++) {
-    double along = ends[k][0] * e->reach, across = ends[k][1] * e->reach * e->ratio;
-    double x = along * e->major[0] - across * e->major[1], y = along * e->major[1] + across * e->major[0];
-    for (int axis = 0; axis < 3; axis++)
-      at[k][axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-  }
-}
-
-/* No place is farther from the mesh than another is, and the way to that. More than rounding takes is added. */
-static void bound_by(const double at[N_ENDS][3], int from, double distance, double bounds[N_ENDS]) {
-  for (int k = 0; k < N_ENDS; k++) {
-    double x = at[k][0] - at[from][0], y = at[k][1] - at[from][1], z = at[k][2] - at[from][2];
-    double bound = (distance + sqrt((x * x + y * y) + z * z)) * (1.0 + 1e-9);
-    bounds[k] = bound < bounds[k] ? bound : bounds[k];
-  }
-  bounds[from] = distance;
-}
-
-static int largest_of(const double bounds[N_ENDS]) {
-  int largest = 0;
-  for (int k = 1; k < N_ENDS; k++)
-    largest = bounds[k] > bounds[largest] ? k : largest;
-  return largest;
-}
-
-/* The face of the support that is nearest to the place. */
-static uint32_t face_near(const conic_sampler *s, const conic_site *site, const double at[3]) {
-  const double d[3] = {at[0] - site->foot[0], at[1] - site->foot[1], at[2] - site->foot[2]};
-  double x = conic_dot(d, site->u), y = conic_dot(d, site->v), z = conic_dot(d, site->normal), least2 = HUGE_VAL;
-  const uint32_t *of_site = &s->of_sites[site->first_support];
-  uint32_t nearest = 0;
-  for (size_t k = 0; k < site->n_supports; k++) {
-    const conic_support *support = &s->supports[of_site[k]];
-    double dx = x - support->at[0], dy = y - support->at[1], dz = z - support->above;
-    double distance2 = (dx * dx + dy * dy) + dz * dz;
-    nearest = distance2 < least2 ? of_site[k] : nearest;
-    least2 = distance2 < least2 ? distance2 : least2;
-  }
-  return s->supports[nearest].face;
-}
-
-/* As conic_face_tree_bound for place k of a site. Most are near enough to what lies at the nearest end of an axis. */
-static double end_distance(const conic_sampler *s, const conic_site *site, int k, const double at[3], double enough) {
-  uint32_t end_face = site->end_faces[k < 16 ? (k + 2) / 4 % 4 : k - 16];
-  double distance = conic_face_distance(&s->job->mesh->mesh, end_face, at);
-  return distance <= enough ? distance : conic_face_tree_bound(s->job->tree, at, face_near(s, site, at), enough);
-}
-
-/* The place that may be farthest is measured first: that is soon far enough from those before, or near enough to them,
- * for the others to need no look. */
-double conic_site_error(const conic_sampler *s, const conic_site *site, double known, double *bound) {
-  double at[N_ENDS][3], bounds[N_ENDS];
-  int k = 0;
-  known = site->least_error > known ? site->least_error : known;
-  find_ends(site, at);
-  for (int i = 0; i < N_ENDS; i++)
-    bounds[i] = HUGE_VAL;
-  for (; bounds[k] > known; k = largest_of(bounds)) {
-    double distance = end_distance(s, site, k, at[k], known);
-    known = distance > known ? distance : known;
-    bound_by((const double(*)[3])at, k, distance, bounds);
-  }
-  *bound = bounds[k] > site->least_error ? bounds[k] : site->least_error;
-  return known;
 }
 
 static void shape_site(conic_sampler *s, conic_site *site) {
@@ -363,12 +334,12 @@ static void shape_site(conic_sampler *s, conic_site *site) {
 conic_status conic_patch_shape_supported(conic_sampler *s) {
   conic_status status = sort_supports(s);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
-    shape_site(s, &s->sites[i]);
+    if (!s->sites[i].is_settled)
+      shape_site(s, &s->sites[i]);
   return status;
 }
 
 conic_status conic_patch_shape_sites(conic_sampler *s) {
-  s->n_supports = 0;
   conic_status status = do_small_triangles(s, add_to_sums);
   if (status != CONIC_OK)
     return status;

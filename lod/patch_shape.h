@@ -4,7 +4,7 @@
 
 #include "lod/patch_sites.h"
 
-/* Fills in the sites' sums, planes, ellipses and errors. Errors: MEMORY. */
+/* Fills in the sums, planes, ellipses and errors of the sites that are not settled. Errors: MEMORY. */
 conic_status conic_patch_shape_sites(conic_sampler *sampler);
 
 /* Fills in the planes of sites whose normals were summed up. */
@@ -17,10 +17,5 @@ conic_status conic_patch_note_support(conic_sampler *sampler, uint32_t site, con
 
 /* From the sites' planes and what was noted: their ellipses and errors. Errors: MEMORY. */
 conic_status conic_patch_shape_supported(conic_sampler *sampler);
-
-/* How far what the site stands for is from its plane, along the faces' normals, or its outline from the mesh, as
- * measured at twenty places; or how far it smears colours: the share of black and white by which they differ, of
- * its longest half axis. Where that is more than `known`; else `known`. In any case no more than *bound. */
-double conic_site_error(const conic_sampler *sampler, const conic_site *site, double known, double *bound);
 
 #endif

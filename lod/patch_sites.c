@@ -41,12 +41,11 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 static conic_status lay_lattices(conic_sampler *s) {
   const conic_patch_mesh *mesh = s->job->mesh;
   size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
-  size_t facing_room = s->lattices_room;
   void *lattices = s->lattices, *facing = s->facing;
   conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
   s->lattices = lattices;
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &facing, 0, n, &facing_room, sizeof *s->facing);
+    status = conic_sampler_grow(s, &facing, 0, n, &s->facing_room, sizeof *s->facing);
   s->facing = facing;
   if (status != CONIC_OK)
     return status;
@@ -57,94 +56,108 @@ static conic_status lay_lattices(conic_sampler *s) {
   for (size_t i = 0; i < n; i++) {
     uint32_t face = mesh->faces[begin + i];
     int depth = s->depth[i];
-    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), (uint32_t)s->n_places};
+    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
     s->finest = depth > s->finest ? depth : s->finest;
     s->coarsest = depth < s->coarsest ? depth : s->coarsest;
     s->n_places += conic_lattice_places(s->lattices[i].sides);
     conic_patch_face_normal(mesh, face, s->facing[i]);
   }
-  size_t owner_room = s->places_room;
-  void *owner = s->owner, *places = s->places;
-  status = conic_sampler_grow(s, &owner, 0, s->n_places, &owner_room, sizeof *s->owner);
+  size_t lattice_room = s->places_room;
+  void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
+  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
   s->owner = owner;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
+  s->lattice_of = lattice_of;
   if (status == CONIC_OK)
     status = conic_sampler_grow(s, &places, 0, s->n_places, &s->places_room, sizeof *s->places);
   s->places = places;
   return status;
 }
 
-static void find_places(conic_sampler *s) {
-  size_t place = 0;
-  for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
-    for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i; j++) {
-        double bary[3];
-        conic_lattice_bary(l, i, j, bary);
-        conic_patch_place(s->job->mesh, l->face, bary, s->places[place++]);
-      }
-  }
+/* As conic_patch_place of each. */
+static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  double corners[3][3], shares[MOST_SIDES + 1];
+  uint32_t place = l->first;
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(&s->job->mesh->mesh, l->face, corner, corners[corner]);
+  for (int i = 0; i <= l->sides; i++)
+    shares[i] = (double)i / (double)l->sides;
+  for (int i = 0; i <= l->sides; i++)
+    for (int j = 0; j <= l->sides - i; j++, place++) {
+      double a = shares[l->sides - i - j], b = shares[i], c = shares[j];
+      s->lattice_of[place] = i_lattice;
+      for (int axis = 0; axis < 3; axis++)
+        s->places[place][axis] = (a * corners[0][axis] + b * corners[1][axis]) + c * corners[2][axis];
+    }
 }
 
 /* --- candidates --- */
 
-/* Which side of its face a place lies on, as the corner where that begins; -1 inside; corners count for either side. */
-static int is_on_side(const conic_lattice *l, int i, int j, int corner) {
-  return corner == 0 ? j == 0 : corner == 1 ? i + j == l->sides : i == 0;
+/* Sides of a face, as bits by the corner where each begins: those that a place lies on. */
+static int sides_at(const conic_lattice *l, int i, int j) {
+  return (j == 0) | (i + j == l->sides) << 1 | (i == 0) << 2;
 }
 
-/* Whether the surfels must reach to that side by themselves: what lies across is no surfels, or nothing. */
-static int is_rim(const conic_patch_mesh *mesh, uint32_t face, int corner) {
-  uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-  if (!conic_patch_ends_at(mesh, face, corner))
-    return 0;
-  return !conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]];
+/* Those that the surfels must reach to by themselves: what lies across is no surfels, or nothing. */
+static int rims_of(const conic_patch_mesh *mesh, uint32_t face) {
+  int rims = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    int is_rim = conic_patch_ends_at(mesh, face, corner) &&
+                 (!conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]]);
+    rims |= is_rim << corner;
+  }
+  return rims;
 }
 
-static conic_status add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
-  const conic_lattice *l = &s->lattices[i_lattice];
-  size_t room = s->candidates_room;
-  void *candidates = s->candidates, *seeds = s->seeds;
-  conic_status status =
-      conic_sampler_grow(s, &candidates, s->n_candidates, s->n_candidates + 1, &room, sizeof *s->candidates);
-  s->candidates = candidates;
-  if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &seeds, s->n_candidates, s->n_candidates + 1, &s->candidates_room, sizeof *s->seeds);
-  s->seeds = seeds;
-  if (status != CONIC_OK)
-    return status;
-  uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
-  uint64_t rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + (uint64_t)s->depth[i_lattice];
-  s->candidates[s->n_candidates].key = rank << 21 | turn;
-  s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
-  s->seeds[s->n_candidates][0] = i_lattice;
-  s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
-  return CONIC_OK;
+/* Those whose places are another face's of the patch, too, which answers for them. */
+static int sides_of_others(const conic_patch_mesh *mesh, uint32_t face) {
+  int sides = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    sides |= (!conic_patch_ends_at(mesh, face, corner) && across / 3 < face) << corner;
+  }
+  return sides;
 }
 
 int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
-  for (int corner = 0; corner < 3; corner++) {
-    uint32_t across = mesh->adjacency->across[3 * (size_t)l->face + (size_t)corner];
-    if (is_on_side(l, i, j, corner) && !conic_patch_ends_at(mesh, l->face, corner) && across / 3 < l->face)
-      return 0;
-  }
-  return 1;
+  return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
+}
+
+/* There is room for it. */
+static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
+  int rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth;
+  s->candidates[s->n_candidates].key = (uint64_t)rank << 21 | turn;
+  s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
+  s->seeds[s->n_candidates][0] = i_lattice;
+  s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
+}
+
+static conic_status make_room_for_candidates(conic_sampler *s) {
+  void *candidates = s->candidates, *seeds = s->seeds;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &s->candidates_room, sizeof *s->candidates);
+  s->candidates = candidates;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->seeds_room, sizeof *s->seeds);
+  s->seeds = seeds;
+  return status;
 }
 
 static conic_status list_candidates(conic_sampler *s) {
-  const conic_patch_mesh *mesh = s->job->mesh;
-  conic_status status = CONIC_OK;
+  conic_status status = make_room_for_candidates(s);
   s->n_candidates = 0;
-  for (size_t k = 0; k < s->n_lattices; k++) {
+  for (size_t k = 0; k < s->n_lattices && status == CONIC_OK; k++) {
     const conic_lattice *l = &s->lattices[k];
-    int rims[3] = {is_rim(mesh, l->face, 0), is_rim(mesh, l->face, 1), is_rim(mesh, l->face, 2)};
+    int rims = rims_of(s->job->mesh, l->face), others = sides_of_others(s->job->mesh, l->face);
     for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++) {
-        int is_first = 0;
-        for (int corner = 0; corner < 3; corner++)
-          is_first |= rims[corner] && is_on_side(l, i, j, corner);
-        if (is_first || conic_lattice_is_own(mesh, l, i, j))
-          status = add_candidate(s, (uint32_t)k, i, j, is_first);
+      for (int j = 0; j <= l->sides - i; j++) {
+        int sides = sides_at(l, i, j);
+        if ((sides & rims) || !(sides & others))
+          add_candidate(s, (uint32_t)k, i, j, (sides & rims) != 0);
       }
   }
   return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 24) : status;
@@ -152,9 +165,11 @@ static conic_status list_candidates(conic_sampler *s) {
 
 /* --- sites --- */
 
-static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, uint32_t *added) {
+/* Becomes the owner of what it is nearest to, of the places from number `first` on. */
+static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
   const conic_lattice *l = &s->lattices[i_lattice];
-  const double *at = s->places[conic_lattice_place(l, i, j)];
+  uint32_t place = conic_lattice_place(l, i, j);
+  const double *at = s->places[place];
   void *sites = s->sites;
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   s->sites = sites;
@@ -163,55 +178,70 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   conic_site *site = &s->sites[s->n_sites];
   memset(site, 0, sizeof *site);
   memcpy(site->at, at, sizeof site->at);
+  memcpy(site->foot, at, sizeof site->foot);
   conic_lattice_bary(l, i, j, site->bary);
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
   site->face = l->face;
+  site->place = place;
+  site->last = CONIC_NO_SITE;
   site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
-  *added = (uint32_t)s->n_sites++;
-  return conic_site_table_add(s->context, &s->table, at, s->facing[i_lattice], s->depth[i_lattice]);
+  conic_place_table_put(&s->table, (uint32_t)s->n_sites++, at, s->facing[i_lattice], first);
+  return CONIC_OK;
 }
 
+static conic_status fill_table(conic_sampler *s) {
+  const conic_places places = {.n = s->n_places,
+                               .at = (const double(*)[3])s->places,
+                               .group = s->lattice_of,
+                               .facing = (const double(*)[3])s->facing,
+                               .depth = s->depth,
+                               .spacing = s->job->spacing,
+                               .coarsest = s->coarsest,
+                               .finest = s->finest};
+  return conic_place_table_fill(s->context, &s->table, &places, s->owner);
+}
+
+/* A candidate that lies near no site becomes one. */
 static conic_status choose_sites(conic_sampler *s) {
-  conic_status status = conic_site_table_clear(s->context, &s->table, s->places[s->lattices[0].first], s->job->spacing,
-                                               s->coarsest, s->finest, s->n_candidates / 4);
+  conic_status status = CONIC_OK;
   s->n_sites = 0;
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
     int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
-    const double *at = s->places[conic_lattice_place(&s->lattices[seed[0]], i, j)];
-    uint32_t added;
-    if (!conic_site_table_has(&s->table, at, s->facing[seed[0]], s->depth[seed[0]]))
-      status = add_site(s, seed[0], i, j, &added);
+    if (s->owner[conic_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
+      status = add_site(s, seed[0], i, j, 0);
   }
   return status;
 }
 
-/* Every place of the lattices belongs to the nearest site; where there is none near (a place that was no candidate and
- * lies in a fold), it becomes one. */
-static conic_status find_owners(conic_sampler *s) {
-  uint32_t owner = CONIC_NO_SITE; /* that of the place before is a good guess */
+/* Every place of the lattices belongs to the nearest site by now; where there is none near (a place that was no
+ * candidate and lies in a fold), it becomes one, for itself and those after it. */
+static conic_status choose_in_folds(conic_sampler *s) {
+  conic_status status = CONIC_OK;
   size_t place = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
     const conic_lattice *l = &s->lattices[k];
     for (int i = 0; i <= l->sides; i++)
-      for (int j = 0; j <= l->sides - i; j++, place++) {
-        owner = conic_site_table_nearest(&s->table, s->places[place], s->facing[k], s->depth[k], owner);
-        conic_status status = owner == CONIC_NO_SITE ? add_site(s, (uint32_t)k, i, j, &owner) : CONIC_OK;
-        if (status != CONIC_OK)
-          return status;
-        s->owner[place] = owner;
-      }
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++, place++)
+        if (s->owner[place] == CONIC_NO_SITE) {
+          uint32_t own = (uint32_t)s->n_sites;
+          status = add_site(s, (uint32_t)k, i, j, place);
+          s->owner[place] = own; /* also where its face has no area and faces nothing */
+        }
   }
-  return CONIC_OK;
+  return status;
 }
 
 conic_status conic_patch_find_sites(conic_sampler *s) {
   conic_status status = lay_lattices(s);
   if (status != CONIC_OK)
     return status;
-  find_places(s);
+  for (size_t k = 0; k < s->n_lattices; k++)
+    find_places_of(s, (uint32_t)k);
   status = list_candidates(s);
   if (status == CONIC_OK)
+    status = fill_table(s);
+  if (status == CONIC_OK)
     status = choose_sites(s);
-  return status == CONIC_OK ? find_owners(s) : status;
+  return status == CONIC_OK ? choose_in_folds(s) : status;
 }

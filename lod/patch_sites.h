@@ -4,15 +4,15 @@
 
 #include "core/ellipse.h"
 #include "lod/patch_sample.h"
+#include "lod/place_table.h"
 #include "lod/radix.h"
-#include "lod/site_table.h"
 
 /* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
  * between them. */
 typedef struct conic_lattice {
   uint32_t face;
-  int sides;
-  uint32_t first; /* of its places among all */
+  int sides, depth; /* how often the spacing is halved here */
+  uint32_t first;   /* of its places among all */
 } conic_lattice;
 
 static inline uint32_t conic_lattice_places(int sides) {
@@ -32,7 +32,9 @@ static inline void conic_lattice_bary(const conic_lattice *l, int i, int j, doub
 
 typedef struct conic_site {
   double at[3], facing[3]; /* of its face */
-  uint32_t face;
+  uint32_t face, place;    /* where it was chosen */
+  uint32_t last;           /* the same site in the last pass, or NO_SITE */
+  int is_settled;          /* all of it is as in the last pass */
   double bary[3], spacing;
   /* Sums over what it stands for. */
   double normal[3], color[3], area;
@@ -42,7 +44,7 @@ typedef struct conic_site {
   size_t n_supports, first_support;          /* in the sampler's `of_sites` */
   double lowest, highest;                    /* of what it stands for, above the plane through its place */
   double height;                             /* of that, from its plane along a face's normal, the most */
-  double foot[3];                            /* where it was chosen, from which its supports are seen */
+  double foot[3];                            /* the place where it was chosen, from which its supports are seen */
   double least_error;                        /* what of the error needs no look at the mesh */
   double error;                              /* conic_site_error of it, from the tolerance on */
   double error_bound;                        /* no less than that error, also below the tolerance */
@@ -57,29 +59,39 @@ typedef struct conic_support {
   double at[2];                   /* in the plane */
 } conic_support;
 
+/* Of a pass: what the next one may look up. */
+typedef struct conic_sampling_pass {
+  size_t n_sites, lattices_room, owner_room, sites_room;
+  conic_lattice *lattices;
+  uint32_t *owner;
+  conic_site *sites;
+} conic_sampling_pass;
+
 struct conic_sampler {
   conic_context *context;
   const conic_sampling_job *job;
-  size_t n_lattices, lattices_room;
+  conic_sampling_pass last;
+  size_t n_lattices, lattices_room, facing_room;
   conic_lattice *lattices;
   double (*facing)[3]; /* of each lattice's face */
   uint8_t *depth;      /* of each face of the patch: how often the spacing is halved there */
   size_t depth_room;
   int coarsest, finest; /* of those */
-  size_t n_places, places_room;
-  double (*places)[3]; /* where they are */
-  uint32_t *owner;     /* of each place: a site */
-  size_t n_candidates, candidates_room;
+  size_t n_places, places_room, owner_room;
+  double (*places)[3];  /* where they are */
+  uint32_t *lattice_of; /* of each place: its lattice */
+  uint32_t *owner;      /* of each place: a site */
+  size_t n_candidates, candidates_room, seeds_room;
   conic_radix_item *candidates; /* key: when its turn is; value: its number */
   uint32_t (*seeds)[2];         /* of each candidate: lattice, and i << 16 | j */
   size_t n_sites, sites_room;
   conic_site *sites;
-  conic_site_table table; /* of them */
-  size_t n_supports, supports_room;
+  conic_place_table table;                    /* of the places */
+  size_t n_supports, n_sorted, supports_room; /* of all passes; sorted, of those before */
   conic_support *supports;
   uint32_t *of_sites; /* supports, site by site */
   size_t of_sites_room, points_room;
-  double (*points)[2]; /* of one site's supports, where they come to lie in its plane */
+  double *points[2]; /* of one site's supports, where they come to lie in its plane */
 };
 
 static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {

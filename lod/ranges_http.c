@@ -18,8 +18,8 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <time.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "lod/http_response.h"
 
@@ -77,12 +77,6 @@ typedef struct http_ranges {
   int is_dead;                             /* the server is given up, until nothing is asked for any more */
   char reason[160];                        /* of the last answer, or of the server's end */
 } http_ranges;
-
-static double seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void let_go(http_ranges *http, body *held) {
   if (!held || --held->n_holders > 0)
@@ -233,7 +227,7 @@ static conic_status begin(transfer *t) {
     return CONIC_ERROR_MEMORY;
   }
   t->is_busy = 1;
-  t->window_s = seconds_now();
+  t->window_s = conic_seconds_now();
   t->window_n = 0;
   return CONIC_OK;
 }
@@ -249,7 +243,7 @@ static void end(transfer *t) {
 
 /* Whether hardly anything came for long. libcurl's own look at it takes some seconds more. */
 static int is_stalled(transfer *t) {
-  double now = seconds_now(), elapsed = now - t->window_s;
+  double now = conic_seconds_now(), elapsed = now - t->window_s;
   if (elapsed < t->owner->options.stall_seconds)
     return 0;
   if ((double)(t->body->n - t->window_n) < LEAST_BYTES_PER_SECOND * elapsed) {
@@ -304,7 +298,7 @@ static void put_off(http_ranges *http, const transfer *t, conic_queued_range *pa
   double pause = http->options.pause_seconds;
   for (int i = 0; i < part->n_failures; i++)
     pause *= 2.0;
-  part->not_before_s = seconds_now() + pause;
+  part->not_before_s = conic_seconds_now() + pause;
   part->n_failures++;
   int is_last = part->n_failures > http->options.n_retries;
   if (is_last && http->n_failures > http->options.n_retries && !http->is_dead) {
@@ -349,7 +343,7 @@ static int gather_parts(http_ranges *http, transfer *t, double *wait_s) {
   conic_queued_range item;
   t->n_parts = 0;
   uint64_t last = 0;
-  while (conic_range_queue_pop(&http->base.queue, seconds_now(), &item, wait_s)) {
+  while (conic_range_queue_pop(&http->base.queue, conic_seconds_now(), &item, wait_s)) {
     uint64_t range_end = item.range.offset + item.range.n_bytes;
     if (range_end <= http->head->n) {
       if (!answer_from(http, http->head, 0, &item.range))
@@ -437,7 +431,7 @@ static int is_idle(const http_ranges *http) {
 
 static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer) {
   http_ranges *http = (http_ranges *)ranges;
-  double until = seconds_now() + wait_seconds;
+  double until = conic_seconds_now() + wait_seconds;
   for (;;) {
     double wait_s;
     if (http->is_dead)
@@ -449,7 +443,7 @@ static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *a
       http->is_dead &= ranges->n_pending > 1;
       return 1;
     }
-    double left = until - seconds_now();
+    double left = until - conic_seconds_now();
     if (!(left > 0.0) || is_idle(http))
       return 0;
     left = left < 0.1 ? left : 0.1;
@@ -527,8 +521,8 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
 }
 
 static conic_status pause_between(http_ranges *http, double seconds) {
-  double until = seconds_now() + seconds;
-  while (seconds_now() < until) {
+  double until = conic_seconds_now() + seconds;
+  while (conic_seconds_now() < until) {
     conic_status status = conic_progress(http->base.context, "connect", 0.0);
     if (status != CONIC_OK)
       return status;

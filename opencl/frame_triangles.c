@@ -1,8 +1,8 @@
 /* Triangles: set up on the host by plain C, drawn on the device before the splats, and added to their sums after them.
  */
-#include <time.h>
 
 #include "conic/triangles.h"
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/texture.h"
@@ -21,12 +21,6 @@ typedef struct host_array {
 } host_array;
 
 enum { N_ARRAYS = CONIC_N_BUFFER_NAMES - CONIC_BUFFER_TRIANGLE_RECORDS };
-
-static double milliseconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 static void list_columns(float *const *columns, int n_columns, size_t n, int buffer, host_array *arrays) {
   for (int i = 0; i < n_columns; i++)
@@ -207,13 +201,13 @@ conic_status conic_frame_set_up_triangles(conic_frame *f, conic_isa isa) {
   conic_status status = conic_opencl_need_triangles(f->opencl);
   if (status != CONIC_OK)
     return status;
-  double start = milliseconds_now();
+  double start = conic_seconds_now();
   conic_triangle_frame_tiles(f->triangles, f->opencl->tile);
   status = conic_triangle_frame_prepare(f->triangles, conic_tile_kernels_of(isa));
   if (status != CONIC_OK)
     return status;
   list_arrays(f->triangles, arrays);
-  f->opencl->queue.ms[CONIC_STAGE_SETUP] += milliseconds_now() - start;
+  f->opencl->queue.ms[CONIC_STAGE_SETUP] += 1e3 * (conic_seconds_now() - start);
   return measure(f, arrays);
 }
 

@@ -133,7 +133,8 @@ typedef struct conic_band {
 
 /* Where a strip of so many rows keeps the pixel in the given column and row of the tile. */
 static inline size_t conic_strip_place(int strip_rows, int column, int row) {
-  return (size_t)(row / strip_rows * strip_rows * CONIC_STRIP_COLUMNS + column * strip_rows + row % strip_rows);
+  int place = row / strip_rows * strip_rows * CONIC_STRIP_COLUMNS + column * strip_rows + row % strip_rows;
+  return (size_t)place;
 }
 
 /* Where `nearest` has pixel l of a block of the band. */

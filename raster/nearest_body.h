@@ -66,8 +66,8 @@ CONIC_INLINE void nearest_in_strip(const ellipse_columns *columns, const sources
 CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
                                   uint32_t strip_rows, conic_nearest *kept, index_lanes *n_covered) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t begin = conic_word_first(entry->word) * strip_rows,
-               end = (conic_word_last(entry->word) + 1) * strip_rows, stride = strip_rows * CONIC_STRIP_COLUMNS;
+  const size_t n_rows = strip_rows, begin = conic_word_first(entry->word) * n_rows,
+               end = (conic_word_last(entry->word) + 1) * n_rows, stride = n_rows * CONIC_STRIP_COLUMNS;
   const uint32_t first = conic_word_first_row(entry->word) / strip_rows,
                  last = conic_word_last_row(entry->word) / strip_rows;
   for (size_t at = begin; at < end; at += CONIC_LANES) {
@@ -85,8 +85,8 @@ static __attribute__((noinline)) unsigned nearest_special(const sources *from, c
                                                           const conic_tile_entry *entry, uint32_t strip_rows,
                                                           conic_nearest *kept) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
-  const size_t begin = conic_word_first(entry->word) * strip_rows,
-               end = (conic_word_last(entry->word) + 1) * strip_rows, stride = strip_rows * CONIC_STRIP_COLUMNS;
+  const size_t n_rows = strip_rows, begin = conic_word_first(entry->word) * n_rows,
+               end = (conic_word_last(entry->word) + 1) * n_rows, stride = n_rows * CONIC_STRIP_COLUMNS;
   const uint32_t last = conic_word_last_row(entry->word) / strip_rows;
   unsigned n_covered = 0;
   fragments f;
@@ -153,7 +153,7 @@ CONIC_INLINE size_t place_of_part(const conic_band *band, int strip_rows, int bl
 
 /* It: one piece of a strip of four rows, or what lies at `upper` and as far on in the strip below. */
 CONIC_INLINE lanes load_part(const float *upper, int strip_rows) {
-  return strip_rows == 4 ? lanes_load(upper) : lanes_of_pairs(upper, upper + 2 * CONIC_STRIP_COLUMNS);
+  return strip_rows == 4 ? lanes_load(upper) : lanes_of_pairs(upper, upper + (size_t)2 * CONIC_STRIP_COLUMNS);
 }
 
 /* The nearest splats' colour, normal and weight, in one part of a block. */

@@ -42,7 +42,7 @@ typedef struct job {
   conic_reference *reference;
   worker *workers;
   size_t blocks_across, first_block;
-  atomic_int has_failed;
+  atomic_int failure; /* a conic_status */
 } job;
 
 const char *conic_oracle_question_name(conic_oracle_question question) {
@@ -226,21 +226,33 @@ static void do_pixel(const job *j, worker *w, int column, int row, size_t n_cand
     w->by_reason[i] += doubt >> i & 1;
 }
 
+/* A pixel may take milliseconds, so that each is reported: by the thread that may, which is the first. */
+static void report_pixel(job *j, size_t block) {
+  size_t n_blocks = j->blocks_across * (((size_t)j->reference->height + BLOCK - 1) / BLOCK);
+  if (conic_progress(j->context, "verify", (double)block / (double)n_blocks) != CONIC_OK)
+    atomic_store(&j->failure, CONIC_ERROR_CANCELLED);
+}
+
 static void do_block(void *data, size_t i_item, int i_thread) {
   job *j = data;
   worker *w = &j->workers[i_thread];
   size_t block = j->first_block + i_item;
   int left = (int)(block % j->blocks_across) * BLOCK, top = (int)(block / j->blocks_across) * BLOCK;
-  if (atomic_load(&j->has_failed))
+  if (atomic_load(&j->failure) != CONIC_OK)
     return;
   ptrdiff_t n = find_candidates(j, w, (double)left, (double)top);
   if (n < 0 || !find_triangles(j, w, (double)left, (double)top)) {
-    atomic_store(&j->has_failed, 1);
+    atomic_store(&j->failure, CONIC_ERROR_MEMORY);
     return;
   }
   for (int y = top; y < top + BLOCK && y < j->reference->height; y++)
-    for (int x = left; x < left + BLOCK && x < j->reference->width; x++)
+    for (int x = left; x < left + BLOCK && x < j->reference->width; x++) {
+      if (i_thread == 0)
+        report_pixel(j, block);
+      if (atomic_load(&j->failure) != CONIC_OK)
+        return;
       do_pixel(j, w, x, y, (size_t)n);
+    }
 }
 
 static void add_histogram(histogram *to, const histogram *from) {
@@ -282,9 +294,9 @@ static conic_status compute(job *j) {
   for (size_t row = 0; row < blocks_down && status == CONIC_OK; row++) {
     j->first_block = row * j->blocks_across;
     conic_parallel_for(j->context, j->blocks_across, do_block, j);
-    status = atomic_load(&j->has_failed)
-                 ? CONIC_ERROR_MEMORY
-                 : conic_progress(j->context, "verify", (double)(row + 1) / (double)blocks_down);
+    status = (conic_status)atomic_load(&j->failure);
+    if (status == CONIC_OK)
+      status = conic_progress(j->context, "verify", (double)(row + 1) / (double)blocks_down);
   }
   if (status == CONIC_OK)
     gather(j, n_threads);

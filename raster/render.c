@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 
+#include "core/clock.h"
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/message.h"
@@ -58,12 +58,6 @@ typedef struct frame {
   atomic_size_t n_tiles_done;
   atomic_int is_cancelled;
 } frame;
-
-static double seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void conic_render_options_init(conic_render_options *options) {
   memset(options, 0, sizeof *options);
@@ -370,16 +364,16 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
 
 static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
-  double start = seconds_now();
+  double start = conic_seconds_now();
   conic_status status = project_and_sort(f);
-  double sorted = seconds_now();
+  double sorted = conic_seconds_now();
   if (status == CONIC_OK && f->triangles)
     status = conic_triangle_frame_prepare(f->triangles, f->kernels);
   if (status != CONIC_OK)
     return status;
-  double prepared = seconds_now();
+  double prepared = conic_seconds_now();
   conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
-  double done = seconds_now();
+  double done = conic_seconds_now();
   share_out(f, 1e3 * (sorted - start), 1e3 * (done - prepared), ms);
   ms->setup += 1e3 * (prepared - sorted);
   return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
@@ -420,7 +414,7 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
 /* All of conic_render, for the window and the plane that `f` names already. */
 static conic_status render(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
                            const conic_render_options *options, conic_render_statistics *statistics) {
-  double start = seconds_now();
+  double start = conic_seconds_now();
   conic_render_statistics counted;
   conic_renderer *renderer = f->renderer;
   conic_context *context = renderer->context;
@@ -445,7 +439,7 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   if (status != CONIC_OK)
     return status;
   note_settings(f, options, &counted);
-  counted.ms.frame = 1e3 * (seconds_now() - start);
+  counted.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (statistics)
     *statistics = counted;
   return CONIC_OK;
@@ -515,6 +509,7 @@ conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *s
     status = check_part(renderer);
   if (status != CONIC_OK)
     return status;
-  frame f = {.renderer = renderer, .splats = splats, .hiding = hiding, .window = whole_of(camera)};
+  frame f = {.renderer = renderer, .splats = splats, .window = whole_of(camera)};
+  f.hiding = hiding;
   return render(&f, &alone, camera, options, NULL);
 }

@@ -1,9 +1,9 @@
 /* Supersampling: the picture drawn N times as wide and as high, and every N × N of its pixels made one. */
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 #include "conic/render.h"
+#include "core/clock.h"
 #include "core/image.h"
 #include "core/memory.h"
 #include "core/message.h"
@@ -26,12 +26,6 @@ typedef struct reduction {
   size_t first_row; /* of the image, where the fine band begins */
   size_t samples;   /* N */
 } reduction;
-
-static double milliseconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 /* The fine picture's pixel k of an image's pixel: its first is `corner`. */
 static size_t fine_at(const reduction *r, size_t corner, size_t k) {
@@ -214,11 +208,11 @@ static conic_status draw_band(conic_renderer *renderer, conic_context *context, 
     return status;
   status = conic_render_whole(renderer, drawing, camera, options, &fine, &band);
   if (status == CONIC_OK) {
-    double start = milliseconds_now();
+    double start = conic_seconds_now();
     r->fine = &fine;
     conic_parallel_for(context, (size_t)fine.height / r->samples, reduce_row, r);
     add_statistics(&band, sum);
-    sum->ms.resolve += milliseconds_now() - start;
+    sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
   }
   conic_image_release(context, &fine);
   return status;
@@ -234,7 +228,7 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
                                    const conic_camera *camera, const conic_render_options *options, int samples,
                                    conic_image *image, conic_render_statistics *statistics) {
   conic_render_statistics sum;
-  double start = milliseconds_now();
+  double start = conic_seconds_now();
   if (samples == 1)
     return conic_render_whole(renderer, drawing, camera, options, image, statistics);
   if (!drawing->splats || !camera || !options || !image || options->size != sizeof *options)
@@ -261,7 +255,7 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
     conic_camera whole = fine_camera(camera, samples, 0, camera->height);
     status = count_whole(context, drawing, &whole, &same, &sum);
   }
-  sum.ms.frame = milliseconds_now() - start;
+  sum.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (status == CONIC_OK && statistics)
     *statistics = sum;
   return status;

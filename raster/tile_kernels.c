@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "core/processor.h"
+
 const char *conic_isa_name(conic_isa isa) {
   static const char *const names[CONIC_N_ISAS] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};
   return (unsigned)isa < CONIC_N_ISAS ? names[isa] : NULL;
@@ -9,17 +11,8 @@ const char *conic_isa_name(conic_isa isa) {
 
 #if defined(__x86_64__)
 
-static int has_avx512(void) {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
-}
-
-static int has_avx2(void) {
-  return __builtin_cpu_supports("avx2");
-}
-
 conic_isa conic_isa_best(void) {
-  return has_avx512() ? CONIC_ISA_AVX512 : has_avx2() ? CONIC_ISA_AVX2 : CONIC_ISA_SSE2;
+  return conic_has_avx512() ? CONIC_ISA_AVX512 : conic_has_avx2() ? CONIC_ISA_AVX2 : CONIC_ISA_SSE2;
 }
 
 const conic_tile_kernels *conic_tile_kernels_of(conic_isa isa) {
@@ -29,9 +22,9 @@ const conic_tile_kernels *conic_tile_kernels_of(conic_isa isa) {
   case CONIC_ISA_SSE2:
     return &conic_tile_kernels_sse2;
   case CONIC_ISA_AVX2:
-    return has_avx2() ? &conic_tile_kernels_avx2 : NULL;
+    return conic_has_avx2() ? &conic_tile_kernels_avx2 : NULL;
   case CONIC_ISA_AVX512:
-    return has_avx512() ? &conic_tile_kernels_avx512 : NULL;
+    return conic_has_avx512() ? &conic_tile_kernels_avx512 : NULL;
   default:
     return NULL;
   }

@@ -49,6 +49,10 @@ typedef struct cleaning {
   conic_surface_report report;
 } cleaning;
 
+static const char *name_of(const cleaning *work) {
+  return work->options->name ? work->options->name : "surface";
+}
+
 /* --- the points, put in the order of the cells --- */
 
 static conic_status count_batch(void *cookie, const conic_splats *batch) {
@@ -121,7 +125,7 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
     for (end = i + 1; end < n_keys && work->keys[end] >> 32 == work->keys[i] >> 32;)
       end++;
     if (cell->filled + (end - i) > cell->count)
-      return conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+      return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
     status = conic_store_write(&work->records, cell->start + cell->filled, end - i, work->page + i);
     cell->filled += end - i;
   }
@@ -133,7 +137,7 @@ static conic_status place_batch(void *cookie, const conic_splats *batch) {
   cleaning *work = cookie;
   conic_status status = CONIC_OK;
   if (work->n_placed + batch->count > work->n_points)
-    return conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+    return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
   for (size_t i = 0; i < batch->count && status == CONIC_OK; i += BATCH)
     status = place_points(work, batch, i, batch->count - i < BATCH ? batch->count - i : BATCH);
   return status == CONIC_OK ? conic_progress(work->context, "sort", (double)work->n_placed / (double)work->n_points)
@@ -338,7 +342,8 @@ static conic_status clean_all(cleaning *work, conic_points_source *source, void 
   if (status == CONIC_OK)
     status = source(source_cookie, count_batch, work);
   if (status == CONIC_OK && work->n_finite == 0)
-    status = conic_fail(work->context, CONIC_ERROR_INPUT, "surface: no point is finite");
+    status = conic_fail(work->context, CONIC_ERROR_INPUT, "%s: %s", name_of(work),
+                        work->n_points ? "no point is finite" : "it holds no points");
   if (status != CONIC_OK)
     return status;
   conic_cells_sort(&work->cells);
@@ -346,7 +351,7 @@ static conic_status clean_all(cleaning *work, conic_points_source *source, void 
   if (status == CONIC_OK)
     status = source(source_cookie, place_batch, work);
   if (status == CONIC_OK && work->n_placed != work->n_points)
-    status = conic_fail(work->context, CONIC_ERROR_INPUT, "surface: the points changed while they were read");
+    status = conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
   for (size_t i = 0; i < work->cells.n && status == CONIC_OK; i++)
     status = clean_cell(work, &work->cells.cells[i]);
   if (status == CONIC_OK)

@@ -1,26 +1,23 @@
 #include "surface/kernels.h"
 
-#if defined(__x86_64__)
+#include "core/processor.h"
 
-static int has_avx512(void) {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
-}
+#if defined(__x86_64__)
 
 const conic_surface_kernels *conic_surface_kernels_of(conic_isa isa) {
   switch (isa) {
   case CONIC_ISA_AUTO:
-    return has_avx512()                     ? &conic_surface_kernels_avx512
-           : __builtin_cpu_supports("avx2") ? &conic_surface_kernels_avx2
-                                            : &conic_surface_kernels_sse2;
+    return conic_has_avx512() ? &conic_surface_kernels_avx512
+           : conic_has_avx2() ? &conic_surface_kernels_avx2
+                              : &conic_surface_kernels_sse2;
   case CONIC_ISA_SCALAR:
     return &conic_surface_kernels_scalar;
   case CONIC_ISA_SSE2:
     return &conic_surface_kernels_sse2;
   case CONIC_ISA_AVX2:
-    return __builtin_cpu_supports("avx2") ? &conic_surface_kernels_avx2 : NULL;
+    return conic_has_avx2() ? &conic_surface_kernels_avx2 : NULL;
   case CONIC_ISA_AVX512:
-    return has_avx512() ? &conic_surface_kernels_avx512 : NULL;
+    return conic_has_avx512() ? &conic_surface_kernels_avx512 : NULL;
   default:
     return NULL;
   }

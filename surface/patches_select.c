@@ -184,7 +184,7 @@ static conic_status reserve(const selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
   unsigned fields = conic_splats_fields(work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
-  if (n <= frame->room)
+  if (n <= frame->room && frame->points) /* with nothing in sight, too, the arrays are there */
     return CONIC_OK;
   release_samples(context, frame);
   size_t room = n + n / 4 + 1;

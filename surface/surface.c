@@ -10,7 +10,7 @@
 #include "surface/clusters.h"
 #include "surface/weight.h"
 
-enum { CHUNK = 1024 };
+enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
 void conic_surface_options_init(conic_surface_options *options) {
   memset(options, 0, sizeof *options);
@@ -174,12 +174,15 @@ static void find_node_reach(conic_surface *surface) {
 
 static conic_status find_scales(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
+  conic_status status = CONIC_OK;
   if (surface->options.h > 0.0)
     for (size_t slot = 0; slot < n; slot++)
       surface->h[slot] = (float)surface->options.h;
   else
-    conic_parallel_for(surface->context, (n + CHUNK - 1) / CHUNK, find_local_h, surface);
-  conic_status status = find_median_h(surface);
+    status = conic_parallel_runs(surface->context, "scales", (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT, find_local_h,
+                                 surface);
+  if (status == CONIC_OK)
+    status = find_median_h(surface);
   find_node_reach(surface);
   return status;
 }

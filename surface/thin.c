@@ -13,7 +13,7 @@
 #include "surface/surface.h"
 
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */
-enum { BATCH = 64, REMOVALS_A_REPORT = 4096 };
+enum { BATCH = 64, REMOVALS_A_REPORT = 512, BATCHES_A_REPORT = 32 };
 
 /* Tries to find the limit for a point that keeps the whole within its own, once one does, and the first one's share. */
 enum { MAX_TRIES = 5 };
@@ -110,7 +110,10 @@ static int allocate(thinning *work) {
 static conic_status remove_slots(thinning *work, size_t n_wanted, double max_error, size_t *n_left) {
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
-  conic_parallel_for(context, (n + BATCH - 1) / BATCH, measure_chunk, work);
+  conic_status status =
+      conic_parallel_runs(context, "measure", (n + BATCH - 1) / BATCH, BATCHES_A_REPORT, measure_chunk, work);
+  if (status != CONIC_OK)
+    return status;
   for (size_t slot = 0; slot < n; slot++)
     if (work->heap.keys[slot] < HUGE_VAL)
       conic_heap_push(&work->heap, (uint32_t)slot);
@@ -128,7 +131,7 @@ static conic_status remove_slots(thinning *work, size_t n_wanted, double max_err
         work->heap.keys[first] > work->greatest_error ? work->heap.keys[first] : work->greatest_error;
     remove_slot(work, first);
     if (--*n_left % REMOVALS_A_REPORT == 0) {
-      conic_status status = conic_progress(context, "thin", (double)(n - *n_left) / (double)(n - n_wanted));
+      status = conic_progress(context, "thin", (double)(n - *n_left) / (double)(n - n_wanted));
       if (status != CONIC_OK)
         return status;
     }

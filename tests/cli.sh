@@ -67,6 +67,10 @@ run_wrong 2 '' make sphere -n 10
 run_wrong 2 '' render
 run_wrong 2 '' diff one.pfm
 run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|a.ply|-o|outputs/a.pfm|--json|"; do
+  IFS='|' read -ra words <<< "$arguments" # as from a variable that was never set
+  run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
+done
 # What cannot be written is said before anything is read
 run_wrong 2 'standard output' render absent.ply -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
@@ -83,6 +87,37 @@ for command in prepare octree layer hybrid 'mls project'; do # $command is one o
   run_wrong 2 "give the name the ending .$ending" $command absent.ply -o outputs/a.PNG
 done
 run_wrong 4 'cannot make the folder' chart -o "$conic" --quick
+# Nor is what the work would be done with
+absent_isa=neon
+[[ $(uname -m) == x86_64 ]] || absent_isa=avx2
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' 'mls project -o outputs/a.ply' bench; do
+  # shellcheck disable=SC2086 # the options are words
+  run_wrong 4 "no $absent_isa" $command absent.ply --isa $absent_isa
+done
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' bench; do
+  # shellcheck disable=SC2086
+  run_wrong 4 'opencl' $command absent.ply --device opencl:77.0
+  # shellcheck disable=SC2086
+  run_wrong 3 'absent.json' $command absent.ply --camera absent.json
+done
+run_wrong 3 'absent.png' render absent.obj -o outputs/a.pfm --as mesh --texture absent.png
+# A file has many names: none of the outputs is another one, or what the work begins with
+mkdir linked
+: > linked/there.pfm
+: > linked/there.ply
+ln -s linked elsewhere
+ln -s linked/there.pfm linked.pfm
+ln linked/there.ply twin.ply
+for pair in 'outputs/a.pfm ./outputs/a.pfm' "outputs/a.pfm $work/outputs/a.pfm" 'linked/a.pfm elsewhere/a.pfm' \
+  'linked/there.pfm linked.pfm' 'a.pfm ./a.pfm'; do
+  run_wrong 2 'two outputs' render absent.ply -o "${pair% *}" -o "${pair#* }"
+done
+for name in linked/there.ply elsewhere/there.ply twin.ply; do
+  run_wrong 2 "$name is an input" render ./linked/there.ply -o outputs/a.pfm --json $name
+  run_wrong 2 "$name is an input" info ./linked/there.ply --json $name
+done
+run_wrong 2 'is an input' diff linked.pfm outputs/a.pfm --heatmap linked/there.pfm
+run_wrong 2 'is an input' layer linked/there.ply -o twin.lpc --json twin.ply
 no_files_but
 
 # Inputs that cannot be used
@@ -143,6 +178,54 @@ run 0 diff a.pfm b.pfm --max-abs 1e9
 run_wrong 3 'b.ply' diff a.pfm b.ply
 run 0 info a.ply --json -
 grep -q '"points": 2000' out || fail "info does not count"
+
+# What --verbose says is on standard error, and nowhere without it
+printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' > square.obj
+printf 'f 1 2 3 4\n' >> square.obj
+has_zstd=$("$conic" --version | grep -c '^In this build:.* zstd')
+for command in 'make torus -n 2000 -o told.ply' 'prepare a.ply -o told.ply' 'octree a.ply -o told.cot' \
+  'layer a.ply -o told.lpc' 'hybrid square.obj -o told.chy' 'mls project a.ply -o told.ply' \
+  'mls thin a.ply -o told.ply --count 500' 'render a.ply -o told.pfm --size 64x48'; do
+  [[ $command == layer* && $has_zstd -eq 0 ]] && continue
+  # shellcheck disable=SC2086
+  run 0 $command --verbose
+  [[ ! -s out ]] || fail "conic $command --verbose: something on standard output"
+  grep -q '^conic: .* in all, [0-9]* MiB of memory at most$' err || fail "conic $command --verbose: no times: $(cat err)"
+  grep -q 'write [0-9.]* m\?s' err || fail "conic $command --verbose: no stages: $(cat err)"
+  grep -qv 'in all' err || fail "conic $command --verbose: nothing of what was done: $(cat err)"
+  # shellcheck disable=SC2086
+  run 0 $command
+  [[ ! -s err ]] || fail "conic $command: not silent: $(cat err)"
+done
+printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n1 1 0\nnan 0 0\n' > odd.xyz
+for command in 'prepare -o told.ply' 'octree -o told.cot' 'render --size 64x48 -o told.pfm'; do
+  # shellcheck disable=SC2086
+  run 0 $command odd.xyz --verbose
+  grep -q '^conic: odd.xyz: of the points: 1 left out, not finite.*1 at the place of another' err ||
+    fail "conic $command --verbose does not say what was left out: $(cat err)"
+done
+
+# Where render refuses a scene for its extent, info --check says so
+printf '0 0 0\n0 1e30 0\n' > giant.xyz
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' render giant.xyz -o outputs/a.pfm
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' octree giant.xyz -o outputs/a.cot
+run 0 info giant.xyz --check
+grep -q '^sound *no' out || fail "info takes what cannot be drawn for sound"
+grep -q 'cannot be drawn: a point is farther out than 1e20' out || fail "info does not say why: $(cat out)"
+run 0 info giant.xyz --check --json -
+grep -q '"extent": "a point' out || fail "info does not say why in JSON"
+
+# A table that has no line has no head
+run_wrong 3 'absent.ply' bench absent.ply
+
+# The progress bar of a turntable names the frame
+if [[ -n $(type -P script) ]] && script -qec true /dev/null > /dev/null 2>&1 < /dev/null; then
+  script -qec "'$conic' render a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1" /dev/null \
+    > out 2> err < /dev/null
+  grep -q 'frame [0-9]*/20' out || fail "no frame in the progress bar: $(head -c 300 out)"
+else
+  echo "skipped: there is no script(1) to make a terminal"
+fi
 
 # A run that is stopped leaves nothing behind; nor when the signal comes twice at once, as from a terminal or from timeout
 for signals in 1 2; do

@@ -53,7 +53,7 @@ static void count_tiles(desk *d) {
   d->bins.tile = 1 << d->bins.tile_bits;
   d->bins.by_pixels = 0;
   d->bins.n_tiles_x = (d->view.width + d->bins.tile - 1) / d->bins.tile;
-  d->bins.n_tiles = (size_t)(d->bins.n_tiles_x * ((d->view.height + d->bins.tile - 1) / d->bins.tile));
+  d->bins.n_tiles = (size_t)d->bins.n_tiles_x * (size_t)((d->view.height + d->bins.tile - 1) / d->bins.tile);
   CHECK(d->bins.n_tiles < MOST_TILES);
   d->sorter = (conic_sorter){.projected = d->projected,
                              .chunk = d->chunk,

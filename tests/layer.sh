@@ -42,6 +42,15 @@ run 0 layer gyroid.ply gyroid.ply -o other.lpc --cloud-size 512 --quantum 0.01 -
 [[ $(value points_out twice.json) == 400000 && $(value quantum twice.json) == 0.01 ]] || fail "two inputs"
 is_sound other.lpc
 
+# Of several inputs, what has no colours is white beside what has; the other way round nobody can know in time.
+printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n' > grey.xyz
+printf '5 0 0 255 0 0\n6 0 0 255 0 0\n5 1 0 255 0 0\n6 1 0 255 0 0\n' > red.xyz
+run 0 layer red.xyz grey.xyz -o both.lpc
+run 0 info both.lpc
+grep -q '^samples *8, with colours' out || fail "layer drops colours or samples: $(cat out)"
+run 3 layer grey.xyz red.xyz -o never.lpc
+grep -q '^conic: error: red.xyz: has colours' err || fail "layer does not name the input that has colours: $(cat err)"
+
 # Every kind of input: text, with raw points and with colours; a mesh; map coordinates.
 printf '%s\n' '0 0 0 255 0 0' '1 0 0 0 255 0' '0 1 0 0 0 255' '1 1 0 9 9 9' '2 0 0 9 9 9' '2 1 0 1 1 1' '0 2 0 1 1 1' \
   '1 2 0 1 1 1' '2 2 0 7 7 7' > raw.xyz

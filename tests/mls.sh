@@ -81,7 +81,20 @@ run 2 mls project torus.ply -o - --json -
 run 3 mls project missing.ply -o x.ply
 run 3 mls project torus.ply -o x.ply --h 1e-9
 grep -q 'too few neighbours' err || fail "no reason given"
+printf '1 2 3\n%.0s' {1..30} > same.xyz
+run 3 mls densify same.xyz -o x.ply --spacing 1x
+grep -q '^conic: error: same.xyz: no two points are apart' err || fail "a spacing of points that are not apart: $(cat err)"
 run 4 mls project torus.ply -o /nowhere/x.ply
+printf 'nan 0 0\n0 inf 0\n' > nan.xyz
+printf '0\n' > none.pts
+for memory in "" "--memory 100"; do
+  # shellcheck disable=SC2086
+  run 3 mls project nan.xyz -o x.ply --h 0.1 $memory
+  grep -q '^conic: error: nan.xyz: no point is finite$' err || fail "points that are not finite: $(cat err)"
+  # shellcheck disable=SC2086
+  run 3 mls project none.pts -o x.ply --h 0.1 $memory
+  grep -q '^conic: error: none.pts: it holds no points$' err || fail "no points: $(cat err)"
+done
 [[ ! -e x.ply ]] || fail "a file of a run that failed"
 
 [[ $failures -eq 0 ]]

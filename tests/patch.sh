@@ -54,6 +54,10 @@ run 0 render torus.cot -o tree.pfm --method patch --zoom 3 --size 96x96 --aov al
 echo "1 2 3" > lone.xyz
 run 0 render lone.xyz -o lone.pfm --method patch --size 16x16
 
+# Out of sight from the first frame on: an empty picture.
+run 0 render torus.ply -o empty.pfm --method patch --size 16x16 --near 100 --json empty.json
+[[ $(value splats_in empty.json) -eq 0 && $(value pixels_covered empty.json) -eq 0 ]] || fail "the picture out of sight is not empty"
+
 # What is asked for in vain.
 run 2 render torus.cot -o x.pfm --method patch --error 2
 run 2 render torus.ply -o x.pfm --method patch --deep x.exr

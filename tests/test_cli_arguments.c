@@ -1,6 +1,7 @@
 /* Reading arguments: what is understood, what is refused, and which name a mistyped one is near. */
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/outputs.h"
 #include "cli/suggest.h"
 #include "tests/check.h"
 

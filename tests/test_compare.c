@@ -261,7 +261,8 @@ static void test_heatmap(conic_context *context) {
   conic_image_release(context, &map);
   conic_image_release(context, &b);
   b = flat_image(context, 4, 2, 0.0f);
-  CHECK(conic_image_heatmap(context, &a, &b, &map) == CONIC_ERROR_ARGUMENT);
+  memset(&map, 0x55, sizeof map);
+  CHECK(conic_image_heatmap(context, &a, &b, &map) == CONIC_ERROR_ARGUMENT && !map.planes[CONIC_PLANE_RGBA]);
   conic_image_release(context, &b);
   CHECK_OK(conic_image_allocate(context, 8, 1, 1u << CONIC_PLANE_Z, &b));
   CHECK(conic_image_heatmap(context, &a, &b, &map) == CONIC_ERROR_ARGUMENT);

@@ -39,16 +39,20 @@ static void fill(soup *s, uint64_t *state) {
                          .faces = (const uint32_t(*)[3])s->faces};
 }
 
+static double distance_of_face(const conic_mesh *mesh, size_t face, const double at[3]) {
+  double corners[3][3];
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(mesh, face, corner, corners[corner]);
+  return sqrt(conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]));
+}
+
 static double distance_of_all(const conic_mesh *mesh, const double at[3]) {
-  double least2 = HUGE_VAL;
+  double least = HUGE_VAL;
   for (size_t i = 0; i < mesh->n_faces; i++) {
-    double corners[3][3];
-    for (int corner = 0; corner < 3; corner++)
-      conic_mesh_corner(mesh, i, corner, corners[corner]);
-    double distance2 = conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
-    least2 = distance2 < least2 ? distance2 : least2;
+    double distance = distance_of_face(mesh, i, at);
+    least = distance < least ? distance : least;
   }
-  return sqrt(least2);
+  return least;
 }
 
 static void check_place(const conic_face_tree *tree, const double at[3], uint32_t guess) {
@@ -56,10 +60,12 @@ static void check_place(const conic_face_tree *tree, const double at[3], uint32_
   for (int k = 0; k < 4; k++) {
     double enough = distance * (0.4 + 0.4 * k);
     int is_farther = enough < distance;
-    double found = conic_face_tree_farther(tree, at, enough), bound = conic_face_tree_bound(tree, at, guess, enough);
+    uint32_t near = guess;
+    double found = conic_face_tree_farther(tree, at, enough), bound = conic_face_tree_bound(tree, at, &near, enough);
     CHECK_NEAR(found, is_farther ? distance : enough, 1e-12);
     CHECK_NEAR(conic_face_tree_farther_by(tree, at, guess, enough), is_farther ? distance : enough, 1e-12);
     CHECK(bound >= distance - 1e-12 && bound <= (is_farther ? distance + 1e-12 : enough));
+    CHECK_NEAR(distance_of_face(tree->mesh, near, at), bound, 1e-12);
   }
 }
 

@@ -62,7 +62,7 @@ static void find_places(borders_scene *s) {
 
 /* All edges of n triangles, sorted. */
 static edge *list_edges(const uint32_t (*corners)[3], const uint32_t *place, size_t n) {
-  edge *edges = malloc(3 * n * sizeof *edges);
+  edge *edges = malloc((3 * n + 1) * sizeof *edges);
   if (!edges)
     exit(1);
   for (size_t i = 0; i < n; i++)
@@ -238,7 +238,7 @@ static void find_border(borders_scene *s) {
   uint32_t(*corners)[3];
   for (size_t i = 0; i < h->n_patches; i++)
     n += h->levels[h->patches[i].first_level].count;
-  corners = malloc(n * sizeof *corners);
+  corners = malloc((n + 1) * sizeof *corners);
   s->is_border = calloc(h->n_vertices, 1);
   if (!corners || !s->is_border)
     exit(1);
@@ -287,9 +287,9 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   for (size_t i = 0; i < n_patches; i++)
     room += s.hybrid->levels[s.hybrid->patches[i].first_level].count;
   room += 2 * s.hybrid->n_slots;
-  s.levels = malloc(n_patches * sizeof *s.levels);
-  s.stages = malloc(n_patches * sizeof *s.stages);
-  s.drawn_place = malloc(3 * room * sizeof *s.drawn_place);
+  s.levels = malloc((n_patches + 1) * sizeof *s.levels);
+  s.stages = malloc((n_patches + 1) * sizeof *s.stages);
+  s.drawn_place = malloc((3 * room + 1) * sizeof *s.drawn_place);
   if (!s.levels || !s.stages || !s.drawn_place)
     exit(1);
   find_places(&s);

@@ -106,8 +106,10 @@ static double judge_errors(const outlines *o) {
     errors[n++] = (double)level->error * o->scale_px;
   }
   CHECK(n > 0);
-  if (n == 0)
+  if (n == 0) {
+    free(errors);
     return 0.0;
+  }
   qsort(errors, n, sizeof *errors, compare_doubles);
   double greatest = errors[n - 1];
   fprintf(stderr, "  %zu of %zu patches are %zu surfels, the others %zu triangles; quarters of errors px:", n,

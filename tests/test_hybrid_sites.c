@@ -2,7 +2,7 @@
  */
 #include "core/ellipse.h"
 #include "lod/least_ellipse.h"
-#include "lod/site_table.h"
+#include "lod/place_table.h"
 #include "tests/hybrid_fixture.h"
 #include "tests/random.h"
 
@@ -14,13 +14,17 @@ static double random_between(uint64_t *state, double low, double high) {
 
 typedef struct spread_site {
   double at[3], facing[3];
+  size_t first; /* of the places for which it is put */
 } spread_site;
 
-/* By asking every site. */
-static uint32_t nearest_of_all(const spread_site *sites, size_t n, const spread_site *place, double spacing) {
+/* By asking every site that is put for a place of that number. */
+static uint32_t nearest_of_all(const spread_site *sites, size_t n, const spread_site *place, size_t number,
+                               double spacing) {
   double least = spacing * spacing;
   uint32_t found = CONIC_NO_SITE;
   for (size_t i = 0; i < n; i++) {
+    if (number < sites[i].first)
+      continue;
     double square = 0.0, cosine = 0.0;
     for (int axis = 0; axis < 3; axis++) {
       double d = place->at[axis] - sites[i].at[axis];
@@ -36,7 +40,7 @@ static uint32_t nearest_of_all(const spread_site *sites, size_t n, const spread_
 }
 
 static spread_site random_site(uint64_t *state) {
-  spread_site site;
+  spread_site site = {.first = 0};
   double length2 = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     site.at[axis] = random_between(state, -1.0, 1.0) * (axis == 2 ? 0.1 : 1.0);
@@ -48,33 +52,61 @@ static spread_site random_site(uint64_t *state) {
   return site;
 }
 
+enum { SITES = 3000, GROUPS = 500, A_GROUP = 4, PLACES = GROUPS * A_GROUP };
+
+/* Places in groups that face alike, each but the first of a group anywhere. */
+typedef struct spread_places {
+  double at[PLACES][3], facing[GROUPS][3];
+  uint32_t group[PLACES], owner[PLACES];
+  uint8_t depth[GROUPS];
+  conic_places places;
+} spread_places;
+
+static void spread_randomly(spread_places *p, uint64_t *state, int coarsest, int finest) {
+  for (uint32_t i = 0; i < PLACES; i++) {
+    spread_site place = random_site(state);
+    p->group[i] = i / A_GROUP;
+    memcpy(p->at[i], place.at, sizeof place.at);
+    memcpy(p->facing[p->group[i]], place.facing, sizeof place.facing);
+    p->depth[p->group[i]] = (uint8_t)(coarsest + (int)p->group[i] % (finest - coarsest + 1));
+  }
+  p->places = (conic_places){.n = PLACES,
+                             .at = (const double(*)[3])p->at,
+                             .group = p->group,
+                             .facing = (const double(*)[3])p->facing,
+                             .depth = p->depth,
+                             .spacing = 0.17,
+                             .coarsest = coarsest,
+                             .finest = finest};
+}
+
 static void check_nearest(conic_context *context, int coarsest, int finest) {
-  enum { SITES = 3000, PLACES = 2000 };
   static spread_site sites[SITES];
-  conic_site_table table = {0};
-  const double low[3] = {0.0, 0.0, 0.0}, spacing = 0.17;
+  static spread_places p;
+  conic_place_table table = {0};
   uint64_t state = 7;
   long n_found = 0;
   for (int time = 0; time < 2; time++) { /* the second in memory that was used */
-    CHECK_OK(conic_site_table_clear(context, &table, low, spacing, coarsest, finest, 100));
-    for (size_t i = 0; i < SITES; i++) {
-      int depth = coarsest + (int)(i % (size_t)(finest - coarsest + 1));
+    spread_randomly(&p, &state, coarsest, finest);
+    CHECK_OK(conic_place_table_fill(context, &table, &p.places, p.owner));
+    for (uint32_t i = 0; i < SITES; i++) {
       sites[i] = random_site(&state);
-      CHECK_OK(conic_site_table_add(context, &table, sites[i].at, sites[i].facing, depth));
+      sites[i].first = i % 3 == 2 ? i % PLACES : 0;
+      if (i % 5 == 0) /* where a place is; and twice, of which the first counts */
+        memcpy(sites[i].at, i % 10 ? sites[i - 5].at : p.at[i % PLACES], sizeof sites[i].at);
+      conic_place_table_put(&table, i, sites[i].at, sites[i].facing, sites[i].first);
     }
-    for (int i = 0; i < PLACES; i++) {
-      int depth = coarsest + i % (finest - coarsest + 1);
-      spread_site place = random_site(&state);
-      uint32_t wanted = nearest_of_all(sites, SITES, &place, spacing / (double)(1 << depth));
-      const uint32_t guesses[] = {CONIC_NO_SITE, (uint32_t)i, wanted};
-      for (int k = 0; k < 3; k++)
-        CHECK(conic_site_table_nearest(&table, place.at, place.facing, depth, guesses[k]) == wanted);
-      CHECK(conic_site_table_has(&table, place.at, place.facing, depth) == (wanted != CONIC_NO_SITE));
-      n_found += wanted != CONIC_NO_SITE;
+    for (uint32_t i = 0; i < PLACES; i++) {
+      spread_site place = {.first = 0};
+      memcpy(place.at, p.at[i], sizeof place.at);
+      memcpy(place.facing, p.facing[p.group[i]], sizeof place.facing);
+      double spacing = p.places.spacing / (double)(1 << p.depth[p.group[i]]);
+      CHECK(p.owner[i] == nearest_of_all(sites, SITES, &place, i, spacing));
+      n_found += p.owner[i] != CONIC_NO_SITE;
     }
   }
   CHECK(n_found > PLACES / 8 && (finest == 0 || n_found < 2 * PLACES));
-  conic_site_table_release(context, &table);
+  conic_place_table_release(context, &table);
 }
 
 /* --- ellipses --- */

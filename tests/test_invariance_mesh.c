@@ -8,7 +8,7 @@
 enum { WIDTH = 190, HEIGHT = 130, N_PASSES = 2 };
 
 /* What is drawn. */
-enum { MESH, MIXED, BUILT, WITH_ERROR, SURFELS, N_SCENES };
+enum { MESH, MIXED, BUILT, JOINED, SURFELS, N_SCENES };
 
 typedef struct model {
   conic_hybrid *hybrid;
@@ -81,7 +81,7 @@ static conic_drawing choose(fixture *f, model *m, int scene) {
   if (scene == MESH || scene == MIXED)
     return (conic_drawing){scene == MIXED ? &f->splats : NULL, &m->mesh};
   conic_hybrid_view_init(&view);
-  view.error_px = scene == WITH_ERROR ? 3.0 : 0.0;
+  view.error_px = scene == JOINED ? 12.0 : 0.0; /* for which nodes stand for patches */
   view.only_kind = scene == SURFELS ? CONIC_HYBRID_SURFELS : -1;
   CHECK_OK(conic_hybrid_select(m->hybrid, &f->camera, &f->options, &view, &m->selection));
   return (conic_drawing){&m->selection.splats, &m->selection.triangles};
@@ -123,12 +123,14 @@ static void check_instruction_sets(fixture *f, model *m, int scene, const hashes
   f->options.isa = CONIC_ISA_AUTO;
 }
 
-/* That the scenes are what they should be: both kinds are seen, but where there is only one. */
-static void check_contents(const fixture *f, int scene) {
+/* That the scenes are what they should be: both kinds are seen, but where there is only one, and nodes where they must
+ * be. */
+static void check_contents(const fixture *f, const model *m, int scene) {
   const conic_render_statistics *s = &f->statistics;
   CHECK(s->pixels_covered > 2000);
   CHECK((s->splats_drawn > 50) == (scene != MESH));
-  CHECK((s->triangles_drawn > 50) == (scene != SURFELS));
+  CHECK((s->triangles_drawn > 50) == (scene != SURFELS && scene != JOINED));
+  CHECK(scene != JOINED || m->selection.n_joined > 0);
 }
 
 int main(void) {
@@ -151,7 +153,7 @@ int main(void) {
         hashes found = draw(&f, &m, scene);
         if (t == 0 && i == 0) {
           *wanted = found;
-          check_contents(&f, scene);
+          check_contents(&f, &m, scene);
           check_instruction_sets(&f, &m, scene, wanted);
         }
         check_same(wanted, &found, scene, t == 0 ? "tile" : "threads", t == 0 ? tiles[i] : thread_counts[t]);

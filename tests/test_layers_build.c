@@ -385,7 +385,8 @@ static void test_refused(conic_context *context) {
   conic_splats splats, empty = {0};
   conic_layers_builder *builder;
   layers_scene(context, CONIC_SCENE_SPHERE, 100, 0.0, &splats);
-  files_check_failed("nothing", layers_build(context, &empty, path, NULL, NULL), "refused.lpc: not written: there is no sample", NULL);
+  files_check_failed("nothing", layers_build(context, &empty, path, NULL, NULL),
+                     "refused.lpc: not written: there is no sample", NULL);
   for (size_t i = 0; i < splats.count; i++)
     splats.position[1][i] = NAN;
   files_check_failed("nothing finite", layers_build(context, &splats, path, NULL, NULL), "no sample", NULL);

@@ -1,5 +1,5 @@
-/* Memory that runs out at the n-th allocation, for every n, on the way through a surface: a clean error each time, and
- * nothing lost. */
+/* Memory that runs out at the n-th allocation, for every n, on the way through a surface, and a wish to stop at the
+ * n-th report of progress: a clean error each time, and nothing lost. */
 #include <stdatomic.h>
 
 #include "tests/surface_shapes.h"
@@ -22,12 +22,25 @@ static void release(void *cookie, void *pointer) {
   free(pointer);
 }
 
+static long n_reports, stopping_report; /* from 1; 0: none */
+static unsigned tasks_seen;             /* bits of the names below */
+static const char *const task_names[] = {"scales", "measure", "project", "patches"};
+
+static int report(void *cookie, const char *task, double fraction) {
+  (void)cookie;
+  CHECK(fraction >= 0.0 && fraction <= 1.0);
+  for (unsigned i = 0; i < sizeof task_names / sizeof task_names[0]; i++)
+    tasks_seen |= strcmp(task, task_names[i]) == 0 ? 1u << i : 0u;
+  return ++n_reports == stopping_report;
+}
+
 static conic_context *open_context(void) {
   conic_context_options options;
   conic_context *context;
   conic_context_options_init(&options);
   options.allocate = allocate;
   options.release = release;
+  options.progress = report;
   options.threads = 2;
   if (conic_context_create(&options, &context) != CONIC_OK)
     exit(1);
@@ -87,6 +100,27 @@ static conic_status run(conic_context *context, const conic_splats *samples, dou
                                                               : work_on(context, samples, cluster);
 }
 
+/* Stopped at any of its reports, it gives back all that it had. */
+static void check_stopped(const conic_splats *samples, const conic_splats *splats) {
+  long n_stopped = 0;
+  failing_call = 0;
+  for (int what = 0; what < 2; what++) {
+    conic_status status = CONIC_ERROR_CANCELLED;
+    for (stopping_report = 1; status == CONIC_ERROR_CANCELLED; stopping_report++) {
+      conic_context *context = open_context();
+      long n_before = atomic_load(&n_alive);
+      n_reports = 0;
+      status = run(context, what ? splats : samples, 0.0);
+      CHECK(status == (n_reports < stopping_report ? CONIC_OK : CONIC_ERROR_CANCELLED));
+      CHECK(atomic_load(&n_alive) == n_before);
+      n_stopped += status == CONIC_ERROR_CANCELLED;
+      conic_context_destroy(context);
+    }
+  }
+  stopping_report = 0;
+  CHECK(n_stopped > 6 && tasks_seen == 0xF);
+}
+
 int main(void) {
   conic_context *plain = check_context(1);
   conic_splats samples = shape_sample(plain, SHAPE_TORUS, 150, 0.1, 3);
@@ -112,6 +146,7 @@ int main(void) {
       }
     }
   }
+  check_stopped(&samples, &splats);
   printf("%ld clean failures\n", n_failures);
   CHECK(n_failures > 100);
   conic_splats_release(plain, &samples);

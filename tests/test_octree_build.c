@@ -74,8 +74,8 @@ static int check_overshoot(const conic_octree *octree, size_t i) {
   for (size_t k = 0; k < octree->n_leaves; k++) {
     vector apart = plus(at(octree->leaves.position, k), -1.0, center), tu = at(octree->leaves.tangent_u, k);
     vector tv = at(octree->leaves.tangent_v, k);
-    near[n_near] = k;
-    n_near += sqrt(dot(apart, apart)) <= reach + 1.5 * sqrt(dot(tu, tu) + dot(tv, tv));
+    if (sqrt(dot(apart, apart)) <= reach + 1.5 * sqrt(dot(tu, tu) + dot(tv, tv)))
+      near[n_near++] = k;
   }
   for (int ring = 1; ring <= 3; ring++)
     for (int step = 0; step < 16; step++) {

@@ -1,5 +1,6 @@
 /* The loops of building give the same on every instruction set, and what they leave out would change nothing. */
 #include "core/memory.h"
+#include "core/processor.h"
 #include "lod/octree_kernels.h"
 #include "tests/octree_fixture.h"
 
@@ -64,7 +65,7 @@ static conic_node_disc node_over(const conic_discs *discs, size_t begin, int i) 
 static int list_kernels(conic_octree_kernels kernels[2]) {
   int n = 0;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2"))
+  if (conic_has_avx2())
     kernels[n++] = (conic_octree_kernels){conic_cover_avx2,        conic_find_near_avx2, conic_add_reach_avx2,
                                           conic_choose_ratio_avx2, conic_measure_avx2,   conic_put_avx2};
 #endif

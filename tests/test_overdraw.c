@@ -25,7 +25,8 @@ int main(void) {
   conic_image_release(f.context, &map);
   conic_image_release(f.context, &f.image);
   CHECK_OK(conic_image_allocate(f.context, 7, 1, 1u << CONIC_PLANE_RGBA, &f.image));
-  CHECK(conic_image_overdraw(f.context, &f.image, &map) == CONIC_ERROR_ARGUMENT);
+  memset(&map, 0x55, sizeof map);
+  CHECK(conic_image_overdraw(f.context, &f.image, &map) == CONIC_ERROR_ARGUMENT && !map.planes[CONIC_PLANE_RGBA]);
   fixture_close(&f);
   return check_result();
 }

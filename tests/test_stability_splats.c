@@ -15,7 +15,7 @@ static void test_floor(fixture *f) {
   straight(f, 120, 96, 80.0);
   for (int k = 0; k < 3; k++) {
     stability_sheet floor = stability_floor(0.5, rolls[k], 4.0, k ? 16 : 40);
-    fixture_splats(f, (size_t)(floor.n * floor.n));
+    fixture_splats(f, (size_t)floor.n * (size_t)floor.n);
     stability_fill(f, 0, &floor);
     stability_agree(f, k ? "a rolled floor of large discs" : "a floor past the eye", 0.02);
     for (int method = 0; method < CONIC_N_METHODS; method++) {

@@ -22,7 +22,8 @@ static float uniform(int x, int y, int channel) {
 }
 
 static float noise(int x, int y, int channel) {
-  uint64_t state = (uint64_t)(x * 7919 + y * 104729 + channel);
+  int place = x * 7919 + y * 104729 + channel;
+  uint64_t state = (uint64_t)place;
   return (float)fixture_random(&state);
 }
 

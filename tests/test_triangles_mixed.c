@@ -8,12 +8,12 @@
 /* The square [-1, 1]² in z = 0: its left half splats, its right half two triangles, all of one colour. */
 static conic_triangles fill_halves(fixture *f, int n) {
   const double step = 1.0 / n, sigma = step * 0.9;
-  fixture_splats(f, (size_t)(n * 2 * n));
+  fixture_splats(f, 2 * (size_t)n * (size_t)n);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < 2 * n; j++) {
       const double p[3] = {-1.0 + (i + 0.5) * step, -1.0 + (j + 0.5) * step, 0.0};
       const double u[3] = {sigma, 0, 0}, v[3] = {0, sigma, 0};
-      fixture_set(f, (size_t)(i * 2 * n + j), p, u, v, 0.3f, 0.6f, 0.9f);
+      fixture_set(f, 2 * (size_t)n * (size_t)i + (size_t)j, p, u, v, 0.3f, 0.6f, 0.9f);
     }
   conic_triangles t = triangles_make(f, 2, 4, CONIC_TRIANGLES_COLORS);
   for (size_t i = 0; i < 4; i++) {

@@ -32,12 +32,12 @@ typedef struct conic_framing {
 CONIC_API void conic_framing_init(conic_framing *framing);
 
 /* A camera that sees the bounding sphere of the box at 90 % of the picture's shorter side (at zoom 1). A box without
- * extent is framed as if its sphere had radius 1. Errors: ARGUMENT. */
+ * extent is framed as if its sphere had radius 1. Errors: ARGUMENT; *camera is then as it was. */
 CONIC_API conic_status conic_camera_frame(conic_context *context, const conic_framing *framing, const double minimum[3],
                                           const double maximum[3], conic_camera *camera);
 
 /* Reads a camera from JSON: width, height, fx, fy, cx, cy, world_to_camera (4 × 4, rows). Other keys are ignored.
- * Errors: INPUT, MEMORY. */
+ * Errors: INPUT, MEMORY; *camera is then as it was. */
 CONIC_API conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera);
 
 #ifdef __cplusplus

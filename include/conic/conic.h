@@ -1,4 +1,11 @@
-/* conic: a software rasteriser for surface splatting. This header brings in the whole public API. */
+/* conic: a software rasteriser for surface splatting. This header brings in the whole public API.
+ *
+ * What holds everywhere: pointers are not null unless a function says that they may be. What is made with a context is
+ * used by one thread at a time, as the context is, unless it says otherwise. Functions that make something set what
+ * they hand out to null, or empty it, before they can fail; on failure nothing is left that would have to be released.
+ * Functions that end something (destroy, close, abandon) allow null; those that release a set leave it empty, and a set
+ * of zero bytes is one already. An options struct whose `size` was not set by its init function is an ARGUMENT error.
+ * Lengths are in world units unless it says otherwise, and colours linear. */
 #ifndef CONIC_CONIC_H
 #define CONIC_CONIC_H
 

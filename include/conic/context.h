@@ -31,7 +31,8 @@ typedef struct conic_context_options {
   void (*release)(void *cookie, void *pointer);
   void *allocator_cookie;
 
-  /* Messages, without a newline. `message` is valid during the call only. Default: dropped. */
+  /* Messages, in UTF-8 and without a newline. `message` is valid during the call only. Called on the thread that has
+   * something to say, which may be any of the context's, and several at a time. Default: dropped. */
   void (*log)(void *cookie, conic_log_level level, const char *message);
   void *log_cookie;
 
@@ -53,6 +54,7 @@ typedef struct conic_context_options {
   size_t max_allocation_bytes;
 } conic_context_options;
 
+/* malloc and free, no messages, no progress, all threads, no limit. */
 CONIC_API void conic_context_options_init(conic_context_options *options);
 
 /* Creates a context; `options` may be null for the defaults. On success the caller owns *context and ends it with

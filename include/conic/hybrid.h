@@ -75,7 +75,7 @@ CONIC_API int conic_hybrid_is_file(const char *path);
 typedef struct conic_hybrid_info {
   size_t n_patches, n_surfel_patches; /* all, and those that are surfels as built */
   size_t n_triangles, n_surfels;      /* drawn as built, if all is in sight */
-  size_t n_levels;                    /* representations, over all patches */
+  size_t n_levels, n_node_levels;     /* ways to draw, of all patches and of all nodes of their tree, but for points */
   size_t n_all_triangles, n_all_surfels;
   size_t n_vertices, n_textures, n_nodes;
   float cutoff;

@@ -71,6 +71,7 @@ CONIC_API conic_status conic_image_allocate(conic_context *context, int width, i
                                             conic_image *image);
 /* Which planes there are, as bits 1 << plane. */
 CONIC_API unsigned conic_image_planes(const conic_image *image);
+/* Releases the planes and leaves an empty image; null is allowed. */
 CONIC_API void conic_image_release(conic_context *context, conic_image *image);
 
 /* 64-bit FNV-1a over the plane's little-endian bytes, row by row; 0 where the plane is not there. */
@@ -78,9 +79,9 @@ CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane)
 
 /* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z
  * or weight as grey), and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats,
- * unpremultiplied where the format wants that). The file appears under its name only when it is whole. "-" writes EXR…
- * to standard output is not supported: ARGUMENT. Errors: ARGUMENT (no plane the format can hold, unknown ending),
- * UNSUPPORTED (not in this build), MEMORY, IO. */
+ * unpremultiplied where the format wants that). The file appears under its name only when it is whole. Errors: ARGUMENT
+ * (no plane the format can hold, unknown ending, "-": there is no writing to standard output), UNSUPPORTED (not in this
+ * build), MEMORY, IO. */
 CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
 
 /* Whether conic_image_write could write an image with these planes (bits) under that name, as far as the name tells: to
@@ -122,7 +123,7 @@ CONIC_API conic_status conic_image_compare(conic_context *context, const conic_i
 CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_image *heatmap);
 
-/* The same of ꟻLIP: black at 0, then linearly over blue, red and yellow to white at 1. */
+/* The same of ꟻLIP: black at 0, then linearly over blue, red and yellow to white at 1. Errors: as there. */
 CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                                 conic_image *heatmap);
 

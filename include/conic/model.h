@@ -41,6 +41,7 @@ typedef struct conic_read_options {
   int keeps_faces;
 } conic_read_options;
 
+/* Cutoff 1.5, points alone. */
 CONIC_API void conic_read_options_init(conic_read_options *options);
 
 /* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/formats.md); "-" is standard input. The format is told by the
@@ -63,6 +64,7 @@ typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batc
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);
 
+/* Releases what a model holds and leaves an empty one. */
 CONIC_API void conic_model_release(conic_context *context, conic_model *model);
 
 /* Points that could not be used as they stood, by reason. */
@@ -85,6 +87,7 @@ typedef struct conic_estimate_options {
   double feature_angle_deg;
 } conic_estimate_options;
 
+/* 20 neighbours, cutoff 1.5, no creases. */
 CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
@@ -115,6 +118,7 @@ typedef struct conic_write_options {
   float cutoff;                /* F_g, for that radius */
 } conic_write_options;
 
+/* Binary, positions as they come, axes, cutoff 1.5. */
 CONIC_API void conic_write_options_init(conic_write_options *options);
 
 /* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. What is written first
@@ -131,7 +135,7 @@ CONIC_API conic_status conic_splats_writer_finish(conic_splats_writer *writer);
 /* Drops the file and releases the writer; null is allowed. */
 CONIC_API void conic_splats_writer_abandon(conic_splats_writer *writer);
 
-/* open, append, finish for one set. */
+/* open, append, finish for one set. Errors: as theirs. */
 CONIC_API conic_status conic_splats_write(conic_context *context, const char *path, const conic_splats *splats,
                                           const conic_write_options *options);
 

@@ -24,6 +24,7 @@ typedef struct conic_octree_options {
   int quantize; /* round the splats too, for a file of under half the size (docs/format-cot.md) */
 } conic_octree_options;
 
+/* Cutoff 1.5, not quantised. */
 CONIC_API void conic_octree_options_init(conic_octree_options *options);
 
 /* Builds the hierarchy of splats with tangent axes. It takes the arrays over: *splats is empty afterwards, on failure
@@ -36,7 +37,8 @@ CONIC_API conic_status conic_octree_build(conic_context *context, conic_splats *
 /* Null is allowed. */
 CONIC_API void conic_octree_destroy(conic_octree *octree);
 
-/* Errors: MEMORY, IO. */
+/* Writes a .cot file (docs/format-cot.md), which appears under its name only when it is whole. Errors: MEMORY, IO,
+ * UNSUPPORTED (a big-endian machine). */
 CONIC_API conic_status conic_octree_write(conic_octree *octree, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *octree, which
@@ -86,6 +88,7 @@ typedef struct conic_selection_options {
   uint64_t budget; /* or, where not 0: the least error that this many splats can give */
 } conic_selection_options;
 
+/* An error of 1 pixel. */
 CONIC_API void conic_selection_options_init(conic_selection_options *options);
 
 /* A picture's splats, in the order of the hierarchy. Zero before the first use; the memory is kept from call to call.
@@ -110,6 +113,7 @@ CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_cam
 /* Replaces the numbers of an image's id plane, indices in the selection, by its ids. */
 CONIC_API void conic_selection_name(const conic_selection *selection, conic_image *image);
 
+/* Releases the memory that selecting has kept, and leaves an empty selection. */
 CONIC_API void conic_selection_release(conic_context *context, conic_selection *selection);
 
 #ifdef __cplusplus

@@ -25,6 +25,7 @@ typedef struct conic_opencl_device {
 /* The devices of this machine, platform by platform; none is no error. On success the caller releases *devices. Errors:
  * UNSUPPORTED (this build has no OpenCL), MEMORY. */
 CONIC_API conic_status conic_opencl_devices(conic_context *context, conic_opencl_device **devices, size_t *n_devices);
+/* Null is allowed. */
 CONIC_API void conic_opencl_devices_release(conic_context *context, conic_opencl_device *devices);
 
 /* How the raster is shared out; neither changes a bit. */
@@ -44,11 +45,13 @@ typedef struct conic_opencl_options {
   size_t part_splats;   /* no more splats are on the device at a time; 0: as many as its memory holds */
 } conic_opencl_options;
 
+/* The first device that will do and rounds correctly, no cache, work as it chooses, projection on the device. */
 CONIC_API void conic_opencl_options_init(conic_opencl_options *options);
 
-/* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, and *device (which
- * may be null) says what draws. Errors: ARGUMENT (a name that is none), UNSUPPORTED (no such device, it does not round
- * correctly, it cannot build the programs, this build has no OpenCL), MEMORY. */
+/* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, which must
+ * not outlive the context, and *device (which may be null) says what draws. Errors: ARGUMENT (a name that is none),
+ * UNSUPPORTED (no such device, it does not round correctly, it cannot build the programs, this build has no OpenCL),
+ * MEMORY. */
 CONIC_API conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
                                                     conic_opencl_device *device, conic_renderer **renderer);
 

@@ -100,8 +100,8 @@ CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[
 CONIC_API conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length);
 
 /* The median sample spacing in world units: √(area a point), from each point's eight nearest neighbours. A unit for
- * lengths that fits any scan. 0 where there are not two points apart. Errors: ARGUMENT (over 2³² - 2 points), MEMORY.
- */
+ * lengths that fits any scan. 0 where there are not two points apart. Errors: ARGUMENT (over 2³² - 2 points), MEMORY,
+ * CANCELLED. */
 CONIC_API conic_status conic_splats_spacing(conic_context *context, const conic_splats *splats, double *spacing);
 
 #ifdef __cplusplus

@@ -59,7 +59,7 @@ typedef struct conic_surface conic_surface;
 /* Prepares the surface of the points of `points`; normals (of either kind: normals, or those of the axes) and colours
  * are used where it has them. The set is copied. On success the caller owns *surface, which must not outlive the
  * context. Errors: ARGUMENT (options out of range; APSS without normals), INPUT (no finite point), UNSUPPORTED (the
- * instruction set), MEMORY. */
+ * instruction set), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_surface_create(conic_context *context, const conic_splats *points,
                                             const conic_surface_options *options, conic_surface **surface);
 CONIC_API void conic_surface_destroy(conic_surface *surface);
@@ -90,7 +90,8 @@ typedef struct conic_surface_point {
   conic_surface_outcome outcome;
 } conic_surface_point;
 
-/* Projects `count` points in world coordinates onto the surface. Errors: MEMORY, CANCELLED. */
+/* Projects `count` points in world coordinates onto the surface: points[i] is what became of positions[i]. Errors:
+ * MEMORY, CANCELLED; the points are then undefined. */
 CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
                                              conic_surface_point *points);
 
@@ -136,6 +137,7 @@ typedef struct conic_clean_options {
   conic_surface_options surface; /* with h, and without clusters */
   size_t memory_bytes;           /* what may be taken at a time; 0: whatever it takes */
   const char *scratch;           /* beside this path what does not fit is put, in files without a name; null: nowhere */
+  const char *name;              /* of what the points are read from, for messages; null: "surface" */
 } conic_clean_options;
 
 /* The surface's defaults, for which h is still to be set. */
@@ -156,6 +158,7 @@ typedef struct conic_thin_options {
   int is_measured;  /* measure how far they are from each other where there is no limit, too */
 } conic_thin_options;
 
+/* Neither a count nor an error: one of them is still to be set. */
 CONIC_API void conic_thin_options_init(conic_thin_options *options);
 
 /* Removes the points that mean least, the least first: by the distance of a point from the surface of the others that
@@ -172,6 +175,7 @@ typedef struct conic_densify_options {
   size_t max_count; /* points in all; 0: 2³² - 2 */
 } conic_densify_options;
 
+/* Holes wider than h stay, any number of points; the spacing is still to be set. */
 CONIC_API void conic_densify_options_init(conic_densify_options *options);
 
 /* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a

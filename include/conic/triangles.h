@@ -80,8 +80,8 @@ CONIC_API conic_status conic_triangles_check(conic_context *context, const conic
 
 /* Makes triangles of a model that was read with keeps_faces: the arrays move, and the model keeps nothing but what it
  * was besides (its points become an empty set). Material files are read from the model's folder; one that is not there
- * is a warning, as is a texture. Errors: INPUT (the model has no faces; a file is spoiled), UNSUPPORTED (a picture that
- * this build cannot read), MEMORY. */
+ * is a warning, as is a texture. On success the caller releases *triangles; on failure they are empty. Errors: INPUT
+ * (the model has no faces; a file is spoiled), UNSUPPORTED (a picture that this build cannot read), MEMORY. */
 CONIC_API conic_status conic_triangles_take(conic_context *context, conic_model *model, conic_triangles *triangles);
 
 /* conic_model_read with keeps_faces, and conic_triangles_take. Errors: as both. */
@@ -112,7 +112,7 @@ typedef struct conic_drawing {
   const conic_triangles *triangles;
 } conic_drawing;
 
-/* The box of both; and the near distance that near_z = 0 stands for. */
+/* The box of both, and how many centres and corners of it are finite; the near distance that near_z = 0 stands for. */
 CONIC_API size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]);
 CONIC_API double conic_drawing_near(const conic_drawing *drawing);
 

@@ -1,0 +1,67 @@
+#include "cli/tell.h"
+
+#include <string.h>
+
+#include "core/message.h"
+
+/* A line that is put together piece by piece; what is too long is cut. */
+typedef struct line {
+  char text[768];
+  size_t length;
+} line;
+
+static void append(line *to, const char *piece) {
+  int n = snprintf(to->text + to->length, sizeof to->text - to->length, "%s%s", to->length ? ", " : "", piece);
+  to->length += n > 0 ? (size_t)n : 0;
+  if (to->length >= sizeof to->text)
+    to->length = sizeof to->text - 1;
+}
+
+static void print_seconds(char *text, size_t room, double seconds) {
+  if (seconds < 0.9995)
+    snprintf(text, room, "%.*f ms", seconds < 0.00995 ? 1 : 0, 1e3 * seconds);
+  else
+    snprintf(text, room, "%.2f s", seconds);
+}
+
+void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages, const char *whole,
+                     double whole_seconds) {
+  line told = {"", 0};
+  char seconds[32], piece[64];
+  for (int i = 0; i < n_stages; i++) {
+    if (stages[i].seconds < 0.0)
+      continue;
+    print_seconds(seconds, sizeof seconds, stages[i].seconds);
+    snprintf(piece, sizeof piece, "%s %s", stages[i].name, seconds);
+    append(&told, piece);
+  }
+  print_seconds(seconds, sizeof seconds, whole_seconds);
+  conic_log(session->context, CONIC_LOG_INFO, "%s; %s %s", told.text, seconds, whole);
+}
+
+void cli_tell_run(cli_session *session, const cli_stage *stages, int n_stages, double total_seconds) {
+  char whole[64];
+  snprintf(whole, sizeof whole, "in all, %.0f MiB of memory at most", (double)cli_peak_rss_bytes() / 1048576.0);
+  cli_tell_stages(session, stages, n_stages, whole, total_seconds);
+}
+
+void cli_tell_repairs(cli_session *session, const char *path, const conic_repairs *repairs) {
+  const struct {
+    size_t n;
+    const char *what;
+  } reasons[] = {{repairs->nan, "left out, not finite"},
+                 {repairs->failed, "left out, no ellipse to be found"},
+                 {repairs->zero, "given a normal or size, having none that is one"},
+                 {repairs->duplicate, "at the place of another"},
+                 {repairs->isolated, "far from all others, kept small"},
+                 {repairs->clip, "clip lines dropped"}};
+  line told = {"", 0};
+  char piece[96];
+  for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
+    if (reasons[i].n) {
+      snprintf(piece, sizeof piece, "%zu %s", reasons[i].n, reasons[i].what);
+      append(&told, piece);
+    }
+  if (told.length)
+    conic_log(session->context, CONIC_LOG_INFO, "%s: of the points: %s", path, told.text);
+}

@@ -1,0 +1,24 @@
+/* What --verbose adds on standard error, in the same words from every command. Other lines go there by conic_log with
+ * CONIC_LOG_INFO. */
+#ifndef CLI_TELL_H
+#define CLI_TELL_H
+
+#include "cli/session.h"
+
+/* A stage and what it took; below 0: there was none. */
+typedef struct cli_stage {
+  const char *name;
+  double seconds;
+} cli_stage;
+
+/* The stages in their order, and what they are together: "a frame", "in all". */
+void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages, const char *whole,
+                     double whole_seconds);
+
+/* The same for all of a run, with the memory that it took. */
+void cli_tell_run(cli_session *session, const cli_stage *stages, int n_stages, double total_seconds);
+
+/* What of a file's points could not be used as it stood; no line where all could. */
+void cli_tell_repairs(cli_session *session, const char *path, const conic_repairs *repairs);
+
+#endif

@@ -1,0 +1,12 @@
+/* How far a site's surfel is from what it stands for, and from the mesh. */
+#ifndef LOD_PATCH_ERROR_H
+#define LOD_PATCH_ERROR_H
+
+#include "lod/patch_sites.h"
+
+/* How far what the site stands for is from its plane, along the faces' normals, or its outline from the mesh, as
+ * measured at twenty places; or how far it smears colours: the share of black and white by which they differ, of
+ * its longest half axis. Where that is more than `known`; else `known`. In any case no more than *bound. */
+double conic_site_error(const conic_sampler *sampler, const conic_site *site, double known, double *bound);
+
+#endif
