@@ -167,17 +167,10 @@ static double distance2_to_box(const conic_face_box *box, const double at[3]) {
   return sum;
 }
 
-static double distance2_to_face(const conic_mesh *mesh, uint32_t face, const double at[3]) {
-  double corners[3][3];
-  for (int corner = 0; corner < 3; corner++)
-    conic_mesh_corner(mesh, face, corner, corners[corner]);
-  return conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
-}
-
 static double distance2_in_leaf(const conic_face_tree *tree, size_t leaf, const double at[3], double least2,
                                 uint32_t *nearest) {
   for (size_t i = leaf * LEAF_FACES; i < (leaf + 1) * LEAF_FACES && i < tree->n_faces; i++) {
-    double distance2 = distance2_to_face(tree->mesh, tree->faces[i], at);
+    double distance2 = conic_distance2_to_face(tree->mesh, tree->faces[i], at);
     *nearest = distance2 < least2 ? tree->faces[i] : *nearest;
     least2 = distance2 < least2 ? distance2 : least2;
   }
@@ -217,7 +210,7 @@ double conic_face_tree_farther(const conic_face_tree *tree, const double at[3], 
 }
 
 double conic_face_distance(const conic_mesh *mesh, uint32_t face, const double at[3]) {
-  double distance2 = distance2_to_face(mesh, face, at);
+  double distance2 = conic_distance2_to_face(mesh, face, at);
   return distance2 >= 0.0 ? sqrt(distance2) : HUGE_VAL;
 }
 
@@ -227,7 +220,7 @@ double conic_face_tree_farther_by(const conic_face_tree *tree, const double at[3
 }
 
 double conic_face_tree_bound(const conic_face_tree *tree, const double at[3], uint32_t *near, double enough) {
-  double guessed2 = distance2_to_face(tree->mesh, *near, at);
+  double guessed2 = conic_distance2_to_face(tree->mesh, *near, at);
   double least2 = search(tree, at, guessed2 >= 0.0 ? guessed2 : HUGE_VAL, enough, near);
   return least2 < HUGE_VAL ? sqrt(least2) : enough;
 }

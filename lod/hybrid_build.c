@@ -1,19 +1,13 @@
 /* From a mesh to a hybrid model: flat, who beside whom, clusters, ways to draw each. */
 #include <string.h>
-#include <time.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "lod/flat_mesh.h"
 #include "lod/hybrid_nodes.h"
 #include "lod/hybrid_pack.h"
 #include "lod/hybrid_tree.h"
-
-static double seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void conic_hybrid_options_init(conic_hybrid_options *options) {
   memset(options, 0, sizeof *options);
@@ -152,15 +146,16 @@ static void report_oddities(building *b, const conic_triangles *mesh) {
 }
 
 static conic_status check_options(conic_context *context, const conic_hybrid_options *o) {
-  int is_good = o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 && o->most_area >= 0.0 &&
-                o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 && o->cutoff >= 0.25f &&
-                o->cutoff <= 5.0f && (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
+  int is_good = o->size == sizeof *o && o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 &&
+                o->most_area >= 0.0 && o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 &&
+                o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
+                (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
   return is_good ? CONIC_OK
                  : conic_fail(context, CONIC_ERROR_ARGUMENT, "an option of the hybrid model is out of range");
 }
 
 static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
-  double start = seconds_now();
+  double start = conic_seconds_now();
   conic_status status = conic_flat_mesh(b->context, mesh, &b->flat);
   if (status != CONIC_OK)
     return status;
@@ -172,7 +167,7 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   if (status != CONIC_OK)
     return status;
   report_oddities(b, mesh);
-  b->report->cluster_seconds = seconds_now() - start;
+  b->report->cluster_seconds = conic_seconds_now() - start;
   conic_ways_job ways = {.context = b->context, .mesh = &b->mesh, .options = b->options, .ways = b->ways};
   status = conic_find_ways(&ways);
   b->report->sample_seconds = ways.sample_seconds;

@@ -1,16 +1,13 @@
 /* .chy files: docs/format-chy.md. */
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "lod/file_fields.h"
+#include "lod/file_header.h"
 #include "lod/hybrid_layout.h"
-
-static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'};
 
 typedef conic_chy_header header;
 
@@ -22,7 +19,8 @@ static const conic_file_field fields[] = {
     FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
     FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1),   FIELD(n_slots, 1),     FIELD(n_borders, 1)};
 
-enum { N_FIELDS = sizeof fields / sizeof *fields };
+static const conic_file_kind kind = {
+    {'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'}, ".chy", CONIC_CHY_VERSION, fields, sizeof fields / sizeof *fields};
 
 /* --- sums --- */
 
@@ -82,35 +80,18 @@ uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
   return conic_chy_lay_out(&h).n_bytes;
 }
 
-static void make_header(header *h, unsigned char bytes[CONIC_CHY_HEADER_BYTES]) {
-  memset(bytes, 0, CONIC_CHY_HEADER_BYTES);
-  memcpy(bytes, magic, sizeof magic);
-  conic_file_fields_write(fields, N_FIELDS, h, bytes + sizeof magic);
-  conic_file_put(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
-}
-
-static conic_status refuse_order(conic_context *context, const char *path) {
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: .chy files need a little-endian machine", path);
-#else
-  (void)context;
-  (void)path;
-  return CONIC_OK;
-#endif
-}
-
 /* What is in memory is what goes into the file, but for the header. */
 conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
   const unsigned char *body = hybrid->owned ? hybrid->owned : hybrid->mapping.bytes;
-  unsigned char bytes[CONIC_CHY_HEADER_BYTES];
+  unsigned char bytes[CONIC_FILE_HEADER_BYTES];
   header h = header_of(hybrid);
   conic_chy_layout l = conic_chy_lay_out(&h);
   conic_output *output;
-  conic_status status = refuse_order(hybrid->context, path);
+  conic_status status = conic_file_refuse_order(hybrid->context, path, &kind);
   if (status != CONIC_OK)
     return status;
   h.body_sum = sum_body(hybrid->context, &l, body);
-  make_header(&h, bytes);
+  conic_file_make_header(&kind, &h, bytes);
   status = conic_output_open(hybrid->context, path, &output);
   if (status != CONIC_OK)
     return status;
@@ -158,24 +139,11 @@ static const char *check_header(const header *h) {
 }
 
 static conic_status read_header(conic_hybrid *hybrid, const char *path, header *h) {
-  conic_context *context = hybrid->context;
   const conic_mapping *file = &hybrid->mapping;
-  if (file->n_bytes < sizeof magic || memcmp(file->bytes, magic, sizeof magic) != 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: no .chy file (at byte 0)", path);
-  if (file->n_bytes < CONIC_CHY_HEADER_BYTES)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, file->n_bytes);
-  conic_file_fields_read(fields, N_FIELDS, file->bytes + sizeof magic, h);
-  if (h->version != CONIC_CHY_VERSION)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
-                      (unsigned)h->version);
-  if (conic_file_get(file->bytes + CONIC_CHY_HEADER_BYTES - 8, 8) !=
-      conic_checksum(file->bytes, CONIC_CHY_HEADER_BYTES - 8))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path,
-                      CONIC_CHY_HEADER_BYTES - 8);
-  const char *wrong = check_header(h);
-  if (wrong)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong);
-  return CONIC_OK;
+  conic_status status = conic_file_read_header(hybrid->context, path, &kind, file->bytes, file->n_bytes, h);
+  const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
+  return wrong ? conic_fail(hybrid->context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong)
+               : status;
 }
 
 /* The size, the sums, and nothing between the arrays. */
@@ -194,13 +162,13 @@ static conic_status check_body(const conic_hybrid *hybrid, const char *path, con
   }
   if (sum_body(hybrid->context, &l, file->bytes) != h->body_sum)
     return conic_fail(hybrid->context, CONIC_ERROR_INPUT,
-                      "%s: is damaged: its sum is not that of its header (at byte %d)", path, CONIC_CHY_HEADER_BYTES);
+                      "%s: is damaged: its sum is not that of its header (at byte %d)", path, CONIC_FILE_HEADER_BYTES);
   return CONIC_OK;
 }
 
 static conic_status read_file(conic_hybrid *hybrid, const char *path) {
   header h;
-  conic_status status = refuse_order(hybrid->context, path);
+  conic_status status = conic_file_refuse_order(hybrid->context, path, &kind);
   if (status == CONIC_OK)
     status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
   if (status == CONIC_OK)
@@ -213,7 +181,7 @@ static conic_status read_file(conic_hybrid *hybrid, const char *path) {
   const char *wrong = conic_hybrid_structure(hybrid);
   if (wrong)
     return conic_fail(hybrid->context, CONIC_ERROR_INPUT, "%s: has %s (at byte %d)", path, wrong,
-                      CONIC_CHY_HEADER_BYTES);
+                      CONIC_FILE_HEADER_BYTES);
   return conic_chy_make_materials(hybrid);
 }
 
@@ -232,20 +200,12 @@ conic_status conic_hybrid_read(conic_context *context, const char *path, conic_h
 }
 
 int conic_hybrid_is_file(const char *path) {
-  unsigned char head[sizeof magic];
-  struct stat found;
-  int is_file = strcmp(path, "-") != 0 && stat(path, &found) == 0 && S_ISREG(found.st_mode);
-  FILE *file = is_file ? fopen(path, "rb") : NULL;
-  if (!file)
-    return 0;
-  size_t n = fread(head, 1, sizeof head, file);
-  fclose(file);
-  return n == sizeof head && memcmp(head, magic, sizeof magic) == 0;
+  return conic_file_is_of_kind(&kind, path);
 }
 
 void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
-  conic_file_fields_read(fields, N_FIELDS, bytes + sizeof magic, &h);
+  conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   if (!check_header(&h)) {
     conic_chy_layout l = conic_chy_lay_out(&h);
     if (l.n_bytes == n_bytes) {
@@ -253,8 +213,8 @@ void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
       for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
         sums[i] = conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes);
       h.body_sum = sum_of_sums(sums);
-      conic_file_fields_write(fields, N_FIELDS, &h, bytes + sizeof magic);
+      conic_file_fields_write(fields, kind.n_fields, &h, bytes + sizeof kind.magic);
     }
   }
-  conic_file_put(bytes + CONIC_CHY_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_CHY_HEADER_BYTES - 8));
+  conic_file_put(bytes + CONIC_FILE_HEADER_BYTES - 8, 8, conic_checksum(bytes, CONIC_FILE_HEADER_BYTES - 8));
 }

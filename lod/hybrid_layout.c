@@ -16,7 +16,7 @@ _Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 
 conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
-  conic_chy_layout l = {.n_bytes = CONIC_CHY_HEADER_BYTES};
+  conic_chy_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
   size_t vertices = (size_t)h->n_vertices * sizeof(float);
   sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);

@@ -2,9 +2,10 @@
 #ifndef LOD_HYBRID_LAYOUT_H
 #define LOD_HYBRID_LAYOUT_H
 
+#include "lod/file_header.h"
 #include "lod/hybrid.h"
 
-enum { CONIC_CHY_HEADER_BYTES = 256, CONIC_CHY_VERSION = 3 };
+enum { CONIC_CHY_VERSION = 3 };
 
 enum {
   CONIC_CHY_NORMALS = 1,

@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
@@ -11,12 +11,6 @@
 #include "lod/radix.h"
 
 enum { PATCHES_A_PORTION = 256 };
-
-static double seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
   conic_patch_levels_release(context, &ways->triangles);
@@ -228,17 +222,17 @@ static conic_status order_by_size(ways_pass *pass) {
 static conic_status run_passes(ways_pass *pass) {
   conic_ways_job *job = pass->job;
   int n_threads = conic_context_threads(job->context);
-  double start = seconds_now();
+  double start = conic_seconds_now();
   conic_status status = run_pass(pass, 0.0, 0.5);
   for (int i = 0; i < n_threads; i++)
     conic_sampler_destroy(pass->workers[i]);
   if (status == CONIC_OK)
     status = conic_find_nodes(job);
-  double sampled = seconds_now();
+  double sampled = conic_seconds_now();
   if (status == CONIC_OK && !job->options->has_single_levels)
     status = conic_find_simpler(job);
   job->sample_seconds = sampled - start;
-  job->simplify_seconds = seconds_now() - sampled;
+  job->simplify_seconds = conic_seconds_now() - sampled;
   return status;
 }
 

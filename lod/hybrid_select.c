@@ -398,6 +398,8 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
 }
 
 static conic_status check_view(conic_context *context, const conic_hybrid_view *view) {
+  if (view->size != sizeof *view)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "a view of a hybrid that was not set by its init function");
   if (!(view->error_px >= 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "an error on the screen is 0 or more, and a kind one that there is");

@@ -2,21 +2,18 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/message.h"
 #include "core/threads.h"
-#include "lod/file_fields.h"
+#include "lod/file_header.h"
 #include "lod/leaf_code.h"
 #include "lod/octree.h"
 
-enum { HEADER_BYTES = 256, VERSION = 1, ALIGNMENT = 64, MOST_ARRAYS = 16 };
+enum { HEADER_BYTES = CONIC_FILE_HEADER_BYTES, VERSION = 1, ALIGNMENT = 64, MOST_ARRAYS = 16 };
 
 enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES = 8, ALL_FLAGS = 15 };
-
-static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'};
 
 /* The records of clip lines are in the file as they are in memory. */
 _Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");
@@ -40,7 +37,8 @@ static const conic_file_field fields[] = {
     FIELD(origin, 3),  FIELD(low, 3),          FIELD(high, 3),           FIELD(cutoff, 1),   FIELD(color, 1),
     FIELD(length, 1),  FIELD(splat_length, 1), FIELD(position_error, 1), FIELD(n_clips, 1),  FIELD(body_sum, 1)};
 
-enum { N_FIELDS = sizeof fields / sizeof *fields };
+static const conic_file_kind kind = {
+    {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'}, ".cot", VERSION, fields, sizeof fields / sizeof *fields};
 
 /* One array of the file's body. */
 typedef struct array {
@@ -178,20 +176,13 @@ static uint64_t sum_arrays(conic_context *context, const layout *l, const void *
   return conic_checksum(bytes, 8 * (size_t)l->n);
 }
 
-static void make_header(header *h, unsigned char bytes[HEADER_BYTES]) {
-  memset(bytes, 0, HEADER_BYTES);
-  memcpy(bytes, magic, sizeof magic);
-  conic_file_fields_write(fields, N_FIELDS, h, bytes + sizeof magic);
-  conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
-}
-
 static conic_status write_body(conic_octree *octree, const char *path, header *h, const void *const *sources) {
   static const unsigned char zeros[ALIGNMENT];
   unsigned char bytes[HEADER_BYTES];
   conic_output *output;
   layout l = lay_out_file(h);
   h->body_sum = sum_arrays(octree->context, &l, sources);
-  make_header(h, bytes);
+  conic_file_make_header(&kind, h, bytes);
   conic_status status = conic_output_open(octree->context, path, &output);
   if (status != CONIC_OK)
     return status;
@@ -212,21 +203,11 @@ static conic_status write_body(conic_octree *octree, const char *path, header *h
   return conic_output_commit(output);
 }
 
-static conic_status refuse_order(conic_context *context, const char *path) {
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: .cot files need a little-endian machine", path);
-#else
-  (void)context;
-  (void)path;
-  return CONIC_OK;
-#endif
-}
-
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
   const void *sources[MOST_ARRAYS];
   unsigned char *color_codes[3] = {NULL, NULL, NULL};
   header h = describe_header(octree);
-  conic_status status = refuse_order(octree->context, path);
+  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
   if (status == CONIC_OK)
     status = encode_colors(octree, color_codes);
   if (status == CONIC_OK) {
@@ -265,22 +246,11 @@ static const char *check_header(const header *h) {
 }
 
 static conic_status read_header(conic_octree *octree, const char *path, header *h) {
-  conic_context *context = octree->context;
   const conic_mapping *file = &octree->mapping;
-  if (file->n_bytes < sizeof magic || memcmp(file->bytes, magic, sizeof magic) != 0)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: no .cot file (at byte 0)", path);
-  if (file->n_bytes < HEADER_BYTES)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: ends within its header (at byte %zu)", path, file->n_bytes);
-  conic_file_fields_read(fields, N_FIELDS, file->bytes + sizeof magic, h);
-  if (h->version != VERSION)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of the format is not known (at byte 8)", path,
-                      (unsigned)h->version);
-  if (conic_file_get(file->bytes + HEADER_BYTES - 8, 8) != conic_checksum(file->bytes, HEADER_BYTES - 8))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path, HEADER_BYTES - 8);
-  const char *wrong = check_header(h);
-  if (wrong)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong);
-  return CONIC_OK;
+  conic_status status = conic_file_read_header(octree->context, path, &kind, file->bytes, file->n_bytes, h);
+  const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
+  return wrong ? conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong)
+               : status;
 }
 
 /* The size, the sums, and nothing between the arrays. */
@@ -306,7 +276,7 @@ static conic_status check_body(const conic_octree *octree, const char *path, con
 
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
-  conic_file_fields_read(fields, N_FIELDS, bytes + sizeof magic, &h);
+  conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   layout l = {0};
   if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
@@ -315,7 +285,7 @@ void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
     for (int i = 0; i < l.n; i++)
       conic_file_put(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
     h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
-    conic_file_fields_write(fields, N_FIELDS, &h, bytes + sizeof magic);
+    conic_file_fields_write(fields, kind.n_fields, &h, bytes + sizeof kind.magic);
   }
   conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
 }
@@ -428,7 +398,7 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
 
 static conic_status read_octree(conic_octree *octree, const char *path) {
   header h = {.n_points = 0};
-  conic_status status = refuse_order(octree->context, path);
+  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
   if (status == CONIC_OK)
     status = conic_mapping_open(octree->context, path, &octree->mapping);
   if (status == CONIC_OK)
@@ -470,13 +440,5 @@ conic_status conic_octree_read(conic_context *context, const char *path, conic_o
 }
 
 int conic_octree_is_file(const char *path) {
-  unsigned char head[sizeof magic];
-  struct stat found;
-  int is_regular = stat(path, &found) == 0 && S_ISREG(found.st_mode); /* a pipe can be read only once */
-  FILE *file = is_regular ? fopen(path, "rb") : NULL;
-  if (!file)
-    return 0;
-  size_t n = fread(head, 1, sizeof head, file);
-  fclose(file);
-  return n == sizeof head && memcmp(head, magic, sizeof head) == 0;
+  return conic_file_is_of_kind(&kind, path);
 }

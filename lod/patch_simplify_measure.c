@@ -81,25 +81,18 @@ static void measure_points(conic_simplifier *s, uint32_t patch, const size_t *st
 
 /* --- from the triangles to the mesh --- */
 
-static double distance2_to_face(const conic_mesh *mesh, uint32_t face, const double at[3]) {
-  double corners[3][3];
-  for (int corner = 0; corner < 3; corner++)
-    conic_mesh_corner(mesh, face, corner, corners[corner]);
-  return conic_distance2_to_triangle(at, corners[0], corners[1], corners[2]);
-}
-
 /* From a face on to its neighbours, as long as they are nearer and it is not near enough: whether it is in the end. A
  * face without area may have no distance. */
 static int walk_near(const conic_simplifier *s, const double at[3], double enough2, uint32_t *face) {
   const conic_mesh *mesh = &s->mesh->mesh;
-  double least2 = distance2_to_face(mesh, *face, at);
+  double least2 = conic_distance2_to_face(mesh, *face, at);
   for (uint32_t from = CONIC_NONE; from != *face && !(least2 <= enough2);) {
     from = *face;
     for (size_t edge = 3 * (size_t)from; edge < 3 * (size_t)from + 3; edge++) {
       uint32_t across = s->mesh->adjacency->across[edge];
       if (!conic_edge_is_shared(across))
         continue;
-      double distance2 = distance2_to_face(mesh, across / 3, at);
+      double distance2 = conic_distance2_to_face(mesh, across / 3, at);
       if (!(distance2 < least2))
         continue;
       least2 = distance2;

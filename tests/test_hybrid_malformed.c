@@ -131,7 +131,7 @@ static void check_edit(conic_context *context, const sound_file *sound, size_t a
 static void check_u32(conic_context *context, const sound_file *sound, size_t at, size_t value, const char *wrong) {
   char wanted[200];
   uint32_t bits = (uint32_t)value;
-  snprintf(wanted, sizeof wanted, "has %s (at byte %d)", wrong, CONIC_CHY_HEADER_BYTES);
+  snprintf(wanted, sizeof wanted, "has %s (at byte %d)", wrong, CONIC_FILE_HEADER_BYTES);
   check_edit(context, sound, at, &bits, sizeof bits, 1, wanted);
 }
 
@@ -202,7 +202,7 @@ static void test_damage(conic_context *context, const sound_file *sound) {
   unsigned char *longer = calloc(1, sound->n_bytes + 64);
   if (!longer)
     exit(1);
-  check_edit(context, sound, CONIC_CHY_HEADER_BYTES - 8, "damaged!", 8, 0, "the header is damaged (at byte 248)");
+  check_edit(context, sound, CONIC_FILE_HEADER_BYTES - 8, "damaged!", 8, 0, "the header is damaged (at byte 248)");
   check_edit(context, sound, LOW, "wide", 4, 0, "the header is damaged (at byte 248)");
   check_edit(context, sound, sound->levels + offsetof(conic_hybrid_level, error), "error", 4, 0,
              "is damaged: its sum is not that of its header (at byte 256)");

@@ -38,6 +38,7 @@ typedef struct conic_hybrid_options {
   int has_single_levels; /* leave out what only --error needs: simpler levels, and the other kind of each patch */
 } conic_hybrid_options;
 
+/* 0.12, 0.4, by the number of faces, BLUE, 2 surfels, 0.5, cutoff 1.5, all levels. */
 CONIC_API void conic_hybrid_options_init(conic_hybrid_options *options);
 
 /* What became of the mesh's faces, and how long that took. */
@@ -62,11 +63,12 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 
-/* Writes a .chy file (docs/format-chy.md). Errors: MEMORY, IO. */
+/* Writes a .chy file (docs/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
 CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path);
 
-/* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid. The file
- * must not be changed while it is in use. Errors: INPUT, MEMORY. */
+/* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid, which
+ * must not outlive the context. The file must not be changed while it is in use. Errors: INPUT, IO, MEMORY,
+ * UNSUPPORTED (a big-endian machine). */
 CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *path, conic_hybrid **hybrid);
 
 /* Whether a file that can be read begins like a .chy. */
@@ -110,6 +112,7 @@ typedef struct conic_hybrid_view {
   uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
 } conic_hybrid_view;
 
+/* As built, of either kind. */
 CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
 
 /* What is drawn in one picture. With an error or a budget, a node of the tree that does not reach the near distance

@@ -46,7 +46,7 @@ static void read_and_use(const uint8_t *bytes, size_t n_bytes) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
   read_and_use(bytes, n_bytes);
-  if (n_bytes < CONIC_CHY_HEADER_BYTES)
+  if (n_bytes < CONIC_FILE_HEADER_BYTES)
     return 0;
   uint8_t *mended = malloc(n_bytes);
   FUZZ_CHECK(mended);
