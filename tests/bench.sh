@@ -76,7 +76,7 @@ refused() { # EXIT_CODE PATTERN ARGUMENTS …
 refused 2 'did you mean sphere?' --scenes spere-2k
 refused 2 'how many splats' --scenes sphere-many
 refused 2 'how many splats' --scenes sphere-0
-refused 2 'no list' --scenes ''
+refused 2 'it takes LIST' --scenes ''
 refused 2 'no list' --scenes sphere-2k,
 refused 2 'did you mean affine?' --methods afine
 refused 2 'unknown instruction set' --isa mmx
