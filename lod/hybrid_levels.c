@@ -122,7 +122,7 @@ static void keep_level(conic_context *context, conic_patch_ways *ways) {
 
 /* Whether a patch that was gathered is drawn as its finest surfels where no error is asked for. */
 static int is_surfels(const conic_hybrid_options *options, const conic_surfels *finest, double spacing) {
-  int is_good = options->most_error <= 0.0 || finest->error <= options->most_error * spacing;
+  int is_good = options->most_error <= 0.0 || finest->refined_error <= options->most_error * spacing;
   return finest->n > 0 && (is_good || options->sampling == CONIC_SAMPLING_BOX);
 }
 

@@ -187,51 +187,11 @@ static conic_status shape_sites(worker *w) {
   return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
 }
 
-/* A large surfel may lie over what the mesh leaves open, so that it is measured within too: on rings about its middle,
- * the last its outline, at places a fortieth of a turn apart. */
-enum { RINGS = 4, PLACES_ON_RING = 40 };
-static const double turn[2] = {0.98768834, 0.15643447};
-
-/* No place is farther from the mesh than the one that was measured last is, and the way to that: so many need no look.
- * More than rounding takes is added. */
-typedef struct measured {
-  double at[3], bound;
-  uint32_t near; /* a face */
-} measured;
-
-static double farther_at(const worker *w, const double at[3], measured *last, double known) {
-  const double way[3] = {at[0] - last->at[0], at[1] - last->at[1], at[2] - last->at[2]};
-  if ((last->bound + sqrt(conic_dot(way, way))) * (1.0 + 1e-9) <= known)
-    return known;
-  memcpy(last->at, at, sizeof last->at);
-  last->bound = conic_face_tree_bound(w->sampler->job->tree, at, &last->near, known);
-  return last->bound > known ? last->bound : known;
-}
-
-static double farther_on_ring(const worker *w, const conic_site *site, double size, measured *last, double known) {
-  const conic_ellipse *e = &site->ellipse;
-  double way[2] = {size * e->reach, 0.0};
-  for (int k = 0; k < PLACES_ON_RING; k++) {
-    double across = e->ratio * way[1],
-           turned[2] = {turn[0] * way[0] - turn[1] * way[1], turn[1] * way[0] + turn[0] * way[1]};
-    double x = way[0] * e->major[0] - across * e->major[1], y = way[0] * e->major[1] + across * e->major[0], at[3];
-    for (int axis = 0; axis < 3; axis++)
-      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
-    known = farther_at(w, at, last, known);
-    memcpy(way, turned, sizeof way);
-  }
-  return known;
-}
-
 /* What the pieces are off, and the site is off from them; or its ellipse from the mesh, if that is more. Where it is
  * more than `known`; else `known`. */
 static double error_of(const worker *w, const conic_site *site, double known) {
   double error = w->error + site->least_error;
-  measured last = {.bound = HUGE_VAL, .near = site->face};
-  known = farther_at(w, site->at, &last, error > known ? error : known);
-  for (int ring = RINGS; ring > 0; ring--)
-    known = farther_on_ring(w, site, (double)ring / RINGS, &last, known);
-  return known;
+  return conic_site_off_mesh(w->sampler, site, error > known ? error : known);
 }
 
 static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfels) {

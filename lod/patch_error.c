@@ -145,3 +145,53 @@ double conic_site_error(const conic_sampler *s, const conic_site *site, double k
   *bound = farthest > site->least_error ? farthest : site->least_error;
   return known;
 }
+
+/* --- closely --- */
+
+/* Rings about the middle, the last the outline, at places a fortieth of a turn apart. A surfel of a patch is farthest
+ * on its outline; one that stands for more may lie over what the mesh leaves open. */
+enum { RINGS = 4, PLACES_ON_RING = 40 };
+static const double turn[2] = {0.98768834, 0.15643447};
+
+/* No place is farther from the mesh than the one that was measured last is, and the way to that: so many need no look.
+ */
+typedef struct measured {
+  double at[3], bound;
+  uint32_t near; /* a face */
+} measured;
+
+static double farther_at(const conic_sampler *s, const double at[3], measured *last, double known) {
+  const double way[3] = {at[0] - last->at[0], at[1] - last->at[1], at[2] - last->at[2]};
+  if ((last->bound + sqrt(conic_dot(way, way))) * rounding <= known)
+    return known;
+  memcpy(last->at, at, sizeof last->at);
+  last->bound = conic_face_tree_bound(s->job->tree, at, &last->near, known);
+  return last->bound > known ? last->bound : known;
+}
+
+static double farther_on_ring(const conic_sampler *s, const conic_site *site, double size, measured *last,
+                              double known) {
+  const conic_ellipse *e = &site->ellipse;
+  double way[2] = {size * e->reach, 0.0};
+  for (int k = 0; k < PLACES_ON_RING; k++) {
+    double across = e->ratio * way[1],
+           turned[2] = {turn[0] * way[0] - turn[1] * way[1], turn[1] * way[0] + turn[0] * way[1]};
+    double x = way[0] * e->major[0] - across * e->major[1], y = way[0] * e->major[1] + across * e->major[0], at[3];
+    for (int axis = 0; axis < 3; axis++)
+      at[axis] = site->at[axis] + x * site->u[axis] + y * site->v[axis];
+    known = farther_at(s, at, last, known);
+    memcpy(way, turned, sizeof way);
+  }
+  return known;
+}
+
+double conic_site_off_mesh(const conic_sampler *s, const conic_site *site, double known) {
+  measured last = {.bound = HUGE_VAL, .near = site->face};
+  known = farther_at(s, site->at, &last, known);
+  if ((last.bound + site->ellipse.reach) * rounding <= known)
+    return known;
+  int n_rings = s->job->is_off_mesh ? RINGS : 1;
+  for (int ring = RINGS; ring > RINGS - n_rings; ring--)
+    known = farther_on_ring(s, site, (double)ring / RINGS, &last, known);
+  return known;
+}

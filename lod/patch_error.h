@@ -9,4 +9,8 @@
  * its longest half axis. Where that is more than `known`; else `known`. In any case no more than *bound. */
 double conic_site_error(const conic_sampler *sampler, const conic_site *site, double known, double *bound);
 
+/* How far the surfel is from the mesh, as measured at forty places of its outline and its centre, and off the mesh at
+ * 120 between, where that is more than `known`; else `known`. */
+double conic_site_off_mesh(const conic_sampler *sampler, const conic_site *site, double known);
+
 #endif

@@ -116,6 +116,15 @@ static conic_status find_largest_error(conic_sampler *s, double *known) {
   return status;
 }
 
+static conic_status find_errors(conic_sampler *s, conic_surfels *surfels) {
+  conic_status status = find_largest_error(s, &surfels->error);
+  surfels->refined_error = surfels->error;
+  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
+    if (s->sites[i].is_drawn)
+      surfels->error = conic_site_off_mesh(s, &s->sites[i], surfels->error);
+  return status;
+}
+
 /* --- closer where it must be --- */
 
 /* How often sites are looked for anew, and by which factors the error grows above which they are parted. */
@@ -214,6 +223,6 @@ conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job,
     status = emit(s, &s->sites[i], surfels);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
   if (status == CONIC_OK && surfels->n <= job->useful)
-    status = find_largest_error(s, &surfels->error);
+    status = find_errors(s, surfels);
   return status;
 }

@@ -16,10 +16,11 @@ typedef struct conic_surfels {
   size_t n, room;
   conic_surfel *items;
   /* No point of the faces is farther from the surfel that stands for it; nor a surfel's outline from the mesh, as
-   * measured at twenty places. */
+   * measured at forty places. */
   double error;
-  double reach;    /* the longest half axis of an outline */
-  int is_coarsest; /* no wider spacing gives fewer */
+  double refined_error; /* the same as measured at the twenty places by which surfels are laid closer or not */
+  double reach;         /* the longest half axis of an outline */
+  int is_coarsest;      /* no wider spacing gives fewer */
 } conic_surfels;
 
 typedef struct conic_sampling_job {
