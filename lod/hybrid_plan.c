@@ -282,7 +282,8 @@ static conic_status begin(planning *p) {
 conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
                                int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes) {
   conic_context *context = hybrid->context;
-  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px, .nodes = nodes};
+  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px};
+  p.nodes = nodes;
   conic_status status = begin(&p);
   if (status == CONIC_OK) {
     ask(&p);
