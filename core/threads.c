@@ -142,3 +142,45 @@ conic_status conic_parallel_runs(conic_context *context, const char *name, size_
   }
   return CONIC_OK;
 }
+
+typedef struct telling {
+  conic_context *context;
+  const char *name;
+  double from, to;
+  size_t n_items;
+  conic_task *task;
+  void *data;
+  atomic_size_t n_done;
+  atomic_int is_stopped;
+  conic_status status; /* the calling thread's */
+} telling;
+
+static void do_told_item(void *data, size_t i_item, int i_thread) {
+  telling *t = data;
+  if (atomic_load(&t->is_stopped))
+    return;
+  if (i_thread == 0) {
+    double share = (double)atomic_load(&t->n_done) / (double)t->n_items;
+    t->status = conic_progress(t->context, t->name, t->from + (t->to - t->from) * share);
+    if (t->status != CONIC_OK) {
+      atomic_store(&t->is_stopped, 1);
+      return;
+    }
+  }
+  t->task(t->data, i_item, i_thread);
+  atomic_fetch_add(&t->n_done, 1);
+}
+
+conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                 conic_task *task, void *data) {
+  telling t = {.context = context,
+               .name = name,
+               .from = from,
+               .to = to,
+               .n_items = n_items,
+               .task = task,
+               .data = data,
+               .status = CONIC_OK};
+  conic_parallel_for(context, n_items, do_told_item, &t);
+  return t.status;
+}

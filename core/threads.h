@@ -19,4 +19,9 @@ void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task
 conic_status conic_parallel_runs(conic_context *context, const char *name, size_t n_items, size_t n_a_run,
                                  conic_task *task, void *data);
 
+/* The same for items that take long each: the calling thread reports the progress of `name`, between the two fractions,
+ * before each of its own; nobody begins another where that was to stop. Errors: CANCELLED. */
+conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                 conic_task *task, void *data);
+
 #endif

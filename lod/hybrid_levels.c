@@ -10,8 +10,6 @@
 #include "lod/hybrid_nodes.h"
 #include "lod/radix.h"
 
-enum { PATCHES_A_PORTION = 256 };
-
 void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
   conic_patch_levels_release(context, &ways->triangles);
   for (int i = 0; i < ways->n_surfels; i++)
@@ -167,7 +165,6 @@ typedef struct ways_pass {
   uint32_t *order; /* of the patches, the largest first: none of them is begun when the others are done */
   void **workers;  /* a sampler for each thread */
   conic_status *statuses;
-  size_t first;
 } ways_pass;
 
 static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
@@ -184,23 +181,15 @@ static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
 static void ways_task(void *data, size_t i_task, int i_thread) {
   ways_pass *pass = data;
   if (pass->statuses[i_thread] == CONIC_OK)
-    pass->statuses[i_thread] = do_patch(pass, pass->order[pass->first + i_task], i_thread);
+    pass->statuses[i_thread] = do_patch(pass, pass->order[i_task], i_thread);
 }
 
-/* In portions, so that progress is told. */
-static conic_status run_pass(ways_pass *pass, double from, double to) {
+static conic_status run_pass(ways_pass *pass) {
   conic_context *context = pass->job->context;
   size_t n = pass->job->mesh->clusters->n_clusters;
-  int n_threads = conic_context_threads(context);
-  conic_status status = CONIC_OK;
-  for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += PATCHES_A_PORTION) {
-    size_t n_now = n - pass->first < PATCHES_A_PORTION ? n - pass->first : PATCHES_A_PORTION;
-    conic_parallel_for(context, n_now, ways_task, pass);
-    for (int i = 0; i < n_threads; i++)
-      status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
-    if (status == CONIC_OK)
-      status = conic_progress(context, "sample", from + (to - from) * (double)(pass->first + n_now) / (double)n);
-  }
+  conic_status status = conic_parallel_told(context, "sample", 0.0, 0.5, n, ways_task, pass);
+  for (int i = 0; i < conic_context_threads(context); i++)
+    status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
   return status;
 }
 
@@ -223,7 +212,7 @@ static conic_status run_passes(ways_pass *pass) {
   conic_ways_job *job = pass->job;
   int n_threads = conic_context_threads(job->context);
   double start = conic_seconds_now();
-  conic_status status = run_pass(pass, 0.0, 0.5);
+  conic_status status = run_pass(pass);
   for (int i = 0; i < n_threads; i++)
     conic_sampler_destroy(pass->workers[i]);
   if (status == CONIC_OK)

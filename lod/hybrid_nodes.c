@@ -13,9 +13,8 @@
 #include "lod/patch_error.h"
 #include "lod/patch_shape.h"
 
-/* The most surfels of a level, above which its node's children do as well; and how many nodes are done between two
- * reports. */
-enum { MOST_SITES = 64, NODES_A_PORTION = 256 };
+/* The most surfels of a level, above which its node's children do as well. */
+enum { MOST_SITES = 64 };
 
 /* The first level's spacing, in radii of the node's point, and how much smaller the surfels are of which one is
  * made. */
@@ -40,7 +39,6 @@ typedef struct nodes_pass {
   conic_ways_job *job;
   worker *workers;
   conic_status *statuses;
-  size_t first;
 } nodes_pass;
 
 /* --- pieces --- */
@@ -306,21 +304,14 @@ static conic_status do_node(nodes_pass *pass, size_t i, worker *w) {
 static void node_task(void *data, size_t i_task, int i_thread) {
   nodes_pass *pass = data;
   if (pass->statuses[i_thread] == CONIC_OK)
-    pass->statuses[i_thread] = do_node(pass, pass->first + i_task, &pass->workers[i_thread]);
+    pass->statuses[i_thread] = do_node(pass, i_task, &pass->workers[i_thread]);
 }
 
 static conic_status run_pass(nodes_pass *pass, int n_threads) {
-  conic_context *context = pass->job->context;
-  size_t n = pass->job->n_nodes;
-  conic_status status = CONIC_OK;
-  for (pass->first = 0; pass->first < n && status == CONIC_OK; pass->first += NODES_A_PORTION) {
-    size_t n_now = n - pass->first < NODES_A_PORTION ? n - pass->first : NODES_A_PORTION;
-    conic_parallel_for(context, n_now, node_task, pass);
-    for (int i = 0; i < n_threads; i++)
-      status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
-    if (status == CONIC_OK)
-      status = conic_progress(context, "join", (double)(pass->first + n_now) / (double)n);
-  }
+  const conic_ways_job *job = pass->job;
+  conic_status status = conic_parallel_told(job->context, "join", 0.0, 1.0, job->n_nodes, node_task, pass);
+  for (int i = 0; i < n_threads; i++)
+    status = pass->statuses[i] != CONIC_OK ? pass->statuses[i] : status;
   return status;
 }
 

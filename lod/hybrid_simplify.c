@@ -82,8 +82,9 @@ static conic_status simplify(regions_job *job, size_t n_now) {
     n_patches = 0;
     for (size_t i = 0; i < n_now; i++)
       n_patches += job->places[i].n_patches;
-    conic_parallel_for(context, n_patches, measure_task, job);
-  } while (n_patches > 0);
+    double done = 0.5 + 0.5 * (double)job->first / (double)job->n;
+    status = conic_parallel_told(context, "sample", done, done, n_patches, measure_task, job);
+  } while (n_patches > 0 && status == CONIC_OK);
   for (size_t i = 0; i < n_now; i++) {
     status = job->places[i].status != CONIC_OK ? job->places[i].status : status;
     if (job->places[i].simplifier)
