@@ -14,6 +14,7 @@
 #include "cli/outputs.h"
 #include "cli/reach.h"
 #include "core/clip.h"
+#include "core/file.h"
 
 /* What in a model cannot be drawn as it stands. */
 typedef struct defects {
@@ -72,15 +73,7 @@ static int parse(cli_session *session, int argc, char **argv, info_job *job) {
 
 /* Told by content, so that a wrong ending does not mislead. A pipe, which can be read only once, is a model. */
 static int is_exr(const char *path) {
-  unsigned char head[4] = {0, 0, 0, 0};
-  struct stat found;
-  int is_file = strcmp(path, "-") != 0 && stat(path, &found) == 0 && S_ISREG(found.st_mode);
-  FILE *file = is_file ? fopen(path, "rb") : NULL;
-  if (!file)
-    return 0;
-  size_t n = fread(head, 1, sizeof head, file);
-  fclose(file);
-  return n == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0;
+  return conic_file_begins_with(path, "\x76\x2f\x31\x01", 4);
 }
 
 static void find_size(info_job *job) {

@@ -174,3 +174,13 @@ int conic_file_is_there(const char *path) {
   struct stat about;
   return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
 }
+
+int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {
+  unsigned char head[16];
+  FILE *file = strcmp(path, "-") != 0 && conic_file_is_there(path) ? fopen(path, "rb") : NULL;
+  if (!file)
+    return 0;
+  size_t n = fread(head, 1, n_bytes, file);
+  fclose(file);
+  return n == n_bytes && memcmp(head, bytes, n_bytes) == 0;
+}

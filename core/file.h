@@ -33,4 +33,7 @@ void conic_output_sweep(conic_context *context, const char *path);
  * lead to. */
 int conic_file_is_there(const char *path);
 
+/* Whether such a file begins with these bytes, 16 at most. */
+int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);
+
 #endif

@@ -1,24 +1,15 @@
 #include "lod/file_header.h"
 
-#include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "core/file.h"
 #include "core/message.h"
 #include "lod/mapping.h"
 
 enum { AT_SUM = CONIC_FILE_HEADER_BYTES - 8 };
 
 int conic_file_is_of_kind(const conic_file_kind *kind, const char *path) {
-  unsigned char head[sizeof kind->magic];
-  struct stat found;
-  int is_file = strcmp(path, "-") != 0 && stat(path, &found) == 0 && S_ISREG(found.st_mode);
-  FILE *file = is_file ? fopen(path, "rb") : NULL;
-  if (!file)
-    return 0;
-  size_t n = fread(head, 1, sizeof head, file);
-  fclose(file);
-  return n == sizeof head && memcmp(head, kind->magic, sizeof head) == 0;
+  return conic_file_begins_with(path, kind->magic, sizeof kind->magic);
 }
 
 conic_status conic_file_refuse_order(conic_context *context, const char *path, const conic_file_kind *kind) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "conic/layers.h"
+#include "core/file.h"
 #include "core/message.h"
 #include "lod/file_fields.h"
 #include "lod/mapping.h"
@@ -119,8 +121,8 @@ uint64_t conic_layers_index_bytes(const conic_layers_header *header) {
   return (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
 }
 
-int conic_layers_is_start(const unsigned char *bytes, size_t n_bytes) {
-  return n_bytes >= sizeof magic && memcmp(bytes, magic, sizeof magic) == 0;
+int conic_layers_is_file(const char *path) {
+  return conic_file_begins_with(path, magic, sizeof magic);
 }
 
 /* The numbers that one entry states, each by itself. */

@@ -59,9 +59,6 @@ typedef struct conic_layers_entry {
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
 } conic_layers_entry;
 
-/* Whether a file's bytes begin like a .lpc. */
-int conic_layers_is_start(const unsigned char *bytes, size_t n_bytes);
-
 /* Bytes to header: checks sum and ranges. `name` is for messages; `n_bytes` at least CONIC_LAYERS_HEADER_BYTES, or what
  * there is. Errors: INPUT. */
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,

@@ -1,8 +1,6 @@
 #include "lod/layers_read.h"
 
-#include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "conic/layers.h"
 #include "core/memory.h"
@@ -79,16 +77,4 @@ conic_status conic_layers_describe(conic_context *context, const char *path, con
   describe(&view.header, info);
   conic_layers_view_close(&view);
   return CONIC_OK;
-}
-
-int conic_layers_is_file(const char *path) {
-  unsigned char head[8];
-  struct stat found;
-  int is_regular = stat(path, &found) == 0 && S_ISREG(found.st_mode); /* a pipe can be read only once */
-  FILE *file = is_regular ? fopen(path, "rb") : NULL;
-  if (!file)
-    return 0;
-  size_t n = fread(head, 1, sizeof head, file);
-  fclose(file);
-  return conic_layers_is_start(head, n);
 }
