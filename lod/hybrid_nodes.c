@@ -50,7 +50,7 @@ static conic_status add_piece(const nodes_pass *pass, worker *w, const conic_sur
   w->pieces = pieces;
   if (status != CONIC_OK)
     return status;
-  piece *p = &w->pieces[w->n_pieces++];
+  piece *p = &w->pieces[w->n_pieces];
   double u[3], v[3], cutoff = (double)pass->job->options->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     p->at[axis] = (double)surfel->position[axis];
@@ -60,9 +60,10 @@ static conic_status add_piece(const nodes_pass *pass, worker *w, const conic_sur
   conic_cross(u, v, p->normal);
   double length = sqrt(conic_dot(p->normal, p->normal));
   for (int axis = 0; axis < 3; axis++)
-    p->normal[axis] /= length; /* neither axis is zero, and they are at right angles */
+    p->normal[axis] /= length;
   p->area = CONIC_PI * cutoff * cutoff * length;
   p->surfel = surfel;
+  w->n_pieces += length > 0.0; /* axes of the least floats may have lost their right angle, and so all area */
   return CONIC_OK;
 }
 
@@ -74,7 +75,7 @@ static const conic_surfels *fine_enough(const conic_patch_ways *ways, double spa
   return &ways->surfels[k];
 }
 
-/* All of a node's patches as surfels, shuffled; none where there is a patch without, or where that is too many. */
+/* All of a node's patches as surfels, shuffled; none where there is a patch without. */
 static conic_status gather(const nodes_pass *pass, worker *w, const conic_hybrid_node *node, double spacing) {
   conic_status status = CONIC_OK;
   w->n_pieces = 0;
