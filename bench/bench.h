@@ -1,13 +1,13 @@
 /* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath. docs/benchmark.md
  * has the definitions. */
-#ifndef CLI_BENCH_H
-#define CLI_BENCH_H
+#ifndef CONIC_BENCH_H
+#define CONIC_BENCH_H
 
-#include "cli/device.h"
-#include "cli/json.h"
+#include "cli/device_option.h"
+#include "cli/json_write.h"
 #include "cli/session.h"
 
-/* --- scenes (cli/bench_scene.c) --- */
+/* --- scenes (bench/bench_scene.c) --- */
 
 /* How files are looked at; what is made has a way of its own. */
 typedef struct cli_bench_look {
@@ -49,7 +49,7 @@ typedef struct cli_bench_method {
 enum { CLI_BENCH_N_METHODS = 7 };
 extern const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS];
 
-/* --- what a stage must at least do (cli/bench_work.c) --- */
+/* --- what a stage must at least do (bench/bench_work.c) --- */
 
 enum { CLI_BENCH_N_STAGES = 5 };
 extern const char *const cli_bench_stages[CLI_BENCH_N_STAGES]; /* "setup", "bin" … */
@@ -64,7 +64,7 @@ void cli_bench_work_of(const conic_render_statistics *statistics, const conic_sp
 
 double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage);
 
-/* --- one line (cli/bench_frame.c) --- */
+/* --- one line (bench/bench_frame.c) --- */
 
 enum { CLI_BENCH_MOST_FRAMES = 1000 };
 
@@ -114,7 +114,7 @@ typedef struct cli_bench_patience {
 conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
                                int counter, cli_bench_pictures *pictures, cli_bench_line *line);
 
-/* --- cycles (cli/bench_cycles.c) --- */
+/* --- cycles (bench/bench_cycles.c) --- */
 
 /* A counter of the cycles that this process and the threads that it will start spend outside the kernel; -1 where the
  * machine has none or keeps it to itself. */
@@ -123,7 +123,7 @@ int cli_bench_cycles_open(void);
 double cli_bench_cycles_read(int counter);
 void cli_bench_cycles_close(int counter);
 
-/* --- the machine (cli/bench_machine.c) --- */
+/* --- the machine (bench/bench_machine.c) --- */
 
 typedef struct cli_bench_machine {
   int threads;
@@ -133,7 +133,7 @@ typedef struct cli_bench_machine {
 
 conic_status cli_bench_machine_measure(cli_session *worker, cli_bench_machine *machine);
 
-/* --- reports (cli/bench_report.c, bench_floor.c, bench_compare.c) --- */
+/* --- reports (bench/bench_report.c, bench_floor.c, bench_compare.c) --- */
 
 void cli_bench_print_head(void);
 void cli_bench_print_line(const cli_bench_line *line);

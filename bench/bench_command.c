@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/bench_job.h"
 #include "cli/arguments.h"
-#include "cli/bench_job.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
 

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/bench.h"
-#include "core/json.h"
+#include "bench/bench.h"
+#include "core/files/json_read.h"
 
 static void read_ms(conic_json *json, double old_ms[CLI_BENCH_N_STAGES + 1]) {
   char key[CONIC_JSON_KEY_ROOM];

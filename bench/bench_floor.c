@@ -1,5 +1,5 @@
 /* The machine's rates, and what the stages of a frame would take if nothing but those held them up. */
-#include "cli/bench.h"
+#include "bench/bench.h"
 
 void cli_bench_print_machine(const cli_bench_machine *machine) {
   printf("%d thread%s: reads %.1f, writes %.1f, copies %.1f GB/s; %.1f G multiplications and additions a second (%s)\n",

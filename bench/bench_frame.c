@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/bench.h"
+#include "bench/bench.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
     {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},

@@ -1,8 +1,8 @@
 /* One `conic bench`: what was asked for, the lines that this means, and what they are measured with. */
-#ifndef CLI_BENCH_JOB_H
-#define CLI_BENCH_JOB_H
+#ifndef CONIC_BENCH_JOB_H
+#define CONIC_BENCH_JOB_H
 
-#include "cli/bench.h"
+#include "bench/bench.h"
 
 enum { CLI_BENCH_MOST_SCENES = 64, CLI_BENCH_MOST_THREADS = 8 };
 
@@ -16,7 +16,7 @@ typedef struct cli_bench_job {
   int size[2], repeat;
   int is_quick, is_curve, is_machine, is_floor;
 
-  /* What it means (cli/bench_plan.c). */
+  /* What it means (bench/bench_plan.c). */
   char scene_names[CLI_BENCH_MOST_SCENES][32];
   const char *scenes[CLI_BENCH_MOST_SCENES]; /* names, or the paths of files */
   int is_file[CLI_BENCH_MOST_SCENES], n_scenes;

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/bench.h"
-#include "core/memory.h"
-#include "core/threads.h"
+#include "bench/bench.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
 
 /* Far beyond the last cache of any machine that we know; a thread's share is cut in slices. */
 static const size_t buffer_bytes = (size_t)256 << 20;

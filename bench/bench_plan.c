@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/bench_job.h"
 #include "cli/arguments.h"
-#include "cli/bench_job.h"
-#include "cli/device.h"
+#include "cli/device_option.h"
 #include "cli/suggest.h"
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";

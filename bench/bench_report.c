@@ -1,7 +1,7 @@
 /* What `conic bench` prints and writes of its lines. */
 #include <math.h>
 
-#include "cli/bench.h"
+#include "bench/bench.h"
 
 static double millions_per_s(double n, double ms) {
   return 1e-3 * n / ms;

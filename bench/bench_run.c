@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/bench_job.h"
+#include "bench/bench_job.h"
 
 /* What the lines of a run share. */
 typedef struct bench_run {

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/bench.h"
 #include "cli/arguments.h"
-#include "cli/bench.h"
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 #include "cli/suggest.h"
-#include "core/random.h"
+#include "core/base/random.h"
 
 /* The camera of the rates that are quoted: the unit sphere from a little above, some 900 pixels across. */
 static const double focal_px = 1406.708438760767; /* for 1024 pixels */

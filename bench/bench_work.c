@@ -1,6 +1,6 @@
 /* What the stages of a frame must at least move and compute: a model, counted from the definitions, not measured. */
-#include "cli/bench.h"
-#include "raster/band.h"
+#include "bench/bench.h"
+#include "raster/tiles/band.h"
 
 const char *const cli_bench_stages[CLI_BENCH_N_STAGES] = {"setup", "bin", "visibility", "accumulate", "resolve"};
 
@@ -9,7 +9,8 @@ double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage) {
   return stages[i_stage];
 }
 
-/* Operations of docs/picture.md's formulas as raster/project.c, coverage.h and resolve.c write them, one a sign. */
+/* Operations of docs/picture.md's formulas as raster/project/project_splats.c, coverage.h and resolve.c write them, one
+ * a sign. */
 enum {
   MOVE_CENTER = 18,    /* p and, below, both axes into camera space */
   MOVE_AXES = 36,      /* with the division by p_z */

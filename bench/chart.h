@@ -1,10 +1,10 @@
 /* The speed–accuracy chart: what was measured, and drawing it. */
-#ifndef CLI_CHART_H
-#define CLI_CHART_H
+#ifndef CONIC_CHART_H
+#define CONIC_CHART_H
 
 #include <stddef.h>
 
-#include "cli/chart_scene.h"
+#include "bench/chart_scene.h"
 #include "cli/session.h"
 
 /* How far a picture is from what it should be; of R, G, B. */

@@ -1,5 +1,5 @@
 /* conic chart: every method and kernel on every scene, and every representation of a mesh: its error over its time. */
-#include "cli/chart.h"
+#include "bench/chart.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,12 +7,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "bench/chart_mesh.h"
 #include "cli/arguments.h"
-#include "cli/chart_mesh.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "core/file.h"
+#include "core/files/file.h"
 
 /* A kernel of the chart. */
 typedef struct chart_kernel {

@@ -1,5 +1,5 @@
 /* Every representation of a mesh at every size: its time, and its error against the mesh's own supersampled picture. */
-#include "cli/chart_mesh.h"
+#include "bench/chart_mesh.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* The chart of representations: what draws a mesh best, by the size of its triangles on the screen. */
-#ifndef CLI_CHART_MESH_H
-#define CLI_CHART_MESH_H
+#ifndef CONIC_CHART_MESH_H
+#define CONIC_CHART_MESH_H
 
-#include "cli/chart.h"
-#include "cli/chart_models.h"
+#include "bench/chart.h"
+#include "bench/chart_models.h"
 
 #define CLI_MAX_MESH_SIZES 10
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/chart_mesh.h"
-#include "core/file.h"
+#include "bench/chart_mesh.h"
+#include "core/files/file.h"
 
 static void write_quoted(FILE *to, const char *text) {
   fputc('"', to);

@@ -1,9 +1,9 @@
-#include "cli/chart_models.h"
+#include "bench/chart_models.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "cli/hybrid_mesh.h"
+#include "cli/commands/hybrid_mesh.h"
 
 const char *cli_chart_model_name(cli_chart_model representation) {
   static const char *const names[CLI_N_CHART_MODELS] = {"triangles", "surfels", "hybrid", "octree", "points"};

@@ -1,6 +1,6 @@
 /* One mesh as everything that draws it: triangles, surfels, a hybrid, an octree, points. */
-#ifndef CLI_CHART_MODELS_H
-#define CLI_CHART_MODELS_H
+#ifndef CONIC_CHART_MODELS_H
+#define CONIC_CHART_MODELS_H
 
 #include "cli/session.h"
 

@@ -5,8 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/chart.h"
-#include "core/file.h"
+#include "bench/chart.h"
+#include "core/files/file.h"
 
 /* A figure: a file's name, the table's column of the error, and what the error is called. */
 typedef struct figure {

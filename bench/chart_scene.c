@@ -1,11 +1,11 @@
-#include "cli/chart_scene.h"
+#include "bench/chart_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/trigonometry.h"
+#include "core/base/color.h"
+#include "core/base/trigonometry.h"
 
 const cli_chart_scene cli_chart_scenes[CLI_N_CHART_SCENES] = {
     {"plane", CONIC_SCENE_PLANE, 10000, 20.0, 15.0, 1.6},

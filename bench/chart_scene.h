@@ -1,6 +1,6 @@
 /* The scenes of the speed–accuracy chart, and what their pictures would be of the surfaces themselves. */
-#ifndef CLI_CHART_SCENE_H
-#define CLI_CHART_SCENE_H
+#ifndef CONIC_CHART_SCENE_H
+#define CONIC_CHART_SCENE_H
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "cli/device.h"
+#include "cli/device_option.h"
 
 #include <stdlib.h>
 #include <string.h>

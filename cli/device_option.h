@@ -1,6 +1,6 @@
 /* --device, --isa: what draws. */
-#ifndef CLI_DEVICE_H
-#define CLI_DEVICE_H
+#ifndef CONIC_DEVICE_OPTION_H
+#define CONIC_DEVICE_OPTION_H
 
 #include "cli/session.h"
 

@@ -1,11 +1,11 @@
-#include "cli/json.h"
+#include "cli/json_write.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/session.h"
-#include "core/file.h"
+#include "core/files/file.h"
 
 /* What has_items remembers of each open object or array. */
 enum { HAS_ITEMS = 1, IS_ARRAY = 2, HAS_LINES = 4, MAX_DEPTH = 32 };

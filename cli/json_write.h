@@ -1,7 +1,7 @@
 /* A writer for the JSON that --json asks for: objects and arrays nest, keys come in call order. Numbers are printed so
  * that they read back as the same double; NaN and infinity become null. */
-#ifndef CLI_JSON_H
-#define CLI_JSON_H
+#ifndef CONIC_JSON_WRITE_H
+#define CONIC_JSON_WRITE_H
 
 #include <stdint.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
-#include "opencl/device.h"
+#include "opencl/opencl_device.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 enum { MOST_PLATFORMS = 16, MOST_DEVICES = 64 };
 

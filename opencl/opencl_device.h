@@ -1,6 +1,6 @@
 /* OpenCL's platforms and devices, and what its calls answer. */
-#ifndef OPENCL_DEVICE_H
-#define OPENCL_DEVICE_H
+#ifndef CONIC_OPENCL_DEVICE_H
+#define CONIC_OPENCL_DEVICE_H
 
 #ifndef CL_TARGET_OPENCL_VERSION
 #define CL_TARGET_OPENCL_VERSION 120

@@ -1,9 +1,9 @@
-#include "opencl/renderer.h"
+#include "opencl/opencl_renderer.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"
 

@@ -1,9 +1,9 @@
 /* A device that is ready to draw: its queue, its programs' kernels, its memory. */
-#ifndef OPENCL_RENDERER_H
-#define OPENCL_RENDERER_H
+#ifndef CONIC_OPENCL_RENDERER_H
+#define CONIC_OPENCL_RENDERER_H
 
 #include "opencl/queue.h"
-#include "raster/backend.h"
+#include "raster/frame/backend.h"
 
 /* Those of setup.cl, of raster.cl and of triangles.cl; of VISIBILITY and what follows, the kind that suits the device.
  */

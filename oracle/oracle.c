@@ -4,12 +4,12 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/oracle_exact.h"
-#include "raster/oracle_pixel.h"
-#include "raster/oracle_triangle.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "oracle/oracle_exact.h"
+#include "oracle/oracle_pixel.h"
+#include "oracle/oracle_triangle.h"
 
 enum { BLOCK = 16, N_BINS = 1024 };
 

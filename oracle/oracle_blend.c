@@ -1,5 +1,5 @@
 /* The planes of a covered pixel, from the fragments that are visible there. */
-#include "raster/oracle_pixel.h"
+#include "oracle/oracle_pixel.h"
 
 #include <string.h>
 

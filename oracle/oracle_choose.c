@@ -1,5 +1,5 @@
 /* Which formula draws a splat: "Which splats" and "Which formula, in this order" of docs/picture.md. */
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z) {
   oracle_view view = {*camera, near_z, options->kernel};

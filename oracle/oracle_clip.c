@@ -1,4 +1,4 @@
-#include "raster/oracle_clip.h"
+#include "oracle/oracle_clip.h"
 
 /* Mates overlap by twice this. */
 static const double overlap_px = 0.00390625;

@@ -1,8 +1,8 @@
 /* Clip lines, for the oracle: docs/picture.md, Clip lines, from points of the line instead of from matrices. */
-#ifndef RASTER_ORACLE_CLIP_H
-#define RASTER_ORACLE_CLIP_H
+#ifndef CONIC_ORACLE_CLIP_H
+#define CONIC_ORACLE_CLIP_H
 
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 typedef struct oracle_clip {
   int n_lines, is_or;

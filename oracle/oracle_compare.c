@@ -1,9 +1,9 @@
 /* An image held against the oracle's reference. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "raster/oracle_pixel.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "oracle/oracle_pixel.h"
 
 static const double bounds[CONIC_N_PLANES] = {
     [CONIC_PLANE_RGBA] = ORACLE_COLOR_BOUND,

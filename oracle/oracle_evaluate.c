@@ -1,5 +1,5 @@
 /* A shape's value at a pixel, and what single precision may make of it. */
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 double conic_oracle_kernel(const conic_kernel *kernel, double q) {
   double r = sqrt(q), power = 1.0;

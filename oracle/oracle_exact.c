@@ -1,4 +1,4 @@
-#include "raster/oracle_exact.h"
+#include "oracle/oracle_exact.h"
 
 #include <string.h>
 

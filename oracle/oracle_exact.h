@@ -1,8 +1,8 @@
 /* The exact weight: a splat's kernel, projected without approximation, convolved with the pixel's Gaussian. */
-#ifndef RASTER_ORACLE_EXACT_H
-#define RASTER_ORACLE_EXACT_H
+#ifndef CONIC_ORACLE_EXACT_H
+#define CONIC_ORACLE_EXACT_H
 
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 /* From places of the screen to the splat's plane: U, V, 1/z = row 0·x + row 1·y + row 2. */
 typedef struct oracle_exact {

@@ -1,5 +1,5 @@
 /* A splat at a pixel, and how far off single precision may be there. */
-#include "raster/oracle_pixel.h"
+#include "oracle/oracle_pixel.h"
 
 /* Segments are set up in double precision, as are rays that reach near: nothing disturbs those. Nor does a point know
  * of its axes. */

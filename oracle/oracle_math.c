@@ -1,4 +1,4 @@
-#include "raster/oracle_math.h"
+#include "oracle/oracle_math.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The oracle's own arithmetic: double precision, nothing shared with the pipeline. */
-#ifndef RASTER_ORACLE_MATH_H
-#define RASTER_ORACLE_MATH_H
+#ifndef CONIC_ORACLE_MATH_H
+#define CONIC_ORACLE_MATH_H
 
 #include <math.h>
 #include <stddef.h>

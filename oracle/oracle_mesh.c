@@ -1,8 +1,8 @@
 /* Triangles on the oracle's screen: placed, clipped and snapped. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "raster/oracle_triangle.h"
+#include "core/base/memory.h"
+#include "oracle/oracle_triangle.h"
 
 /* The guard band, in pixels. */
 #define GUARD 131000.0

@@ -1,5 +1,5 @@
 /* How far the outline of a disc, clipped at the near plane, reaches on the screen. */
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 /* Adds the place that a point of camera space projects to. */
 static void add(const oracle_view *view, const double point[3], const double e[2], oracle_extreme extremes[2],

@@ -1,9 +1,9 @@
 /* A pixel of the oracle: what covers it, what is visible, what the planes hold, and what is in doubt. */
-#ifndef RASTER_ORACLE_PIXEL_H
-#define RASTER_ORACLE_PIXEL_H
+#ifndef CONIC_ORACLE_PIXEL_H
+#define CONIC_ORACLE_PIXEL_H
 
 #include "conic/oracle.h"
-#include "raster/oracle_scene.h"
+#include "oracle/oracle_scene.h"
 
 /* What a stable pixel may be off by: see docs/oracle.md. */
 #define ORACLE_COLOR_BOUND 1e-4

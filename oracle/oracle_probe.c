@@ -1,8 +1,8 @@
 /* One splat alone: what its formula and the exact kernel give at chosen places. */
 #include <string.h>
 
-#include "core/message.h"
-#include "raster/oracle_exact.h"
+#include "core/base/message.h"
+#include "oracle/oracle_exact.h"
 
 static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
   static const oracle_formula formulas[CONIC_N_METHODS] = {[CONIC_METHOD_CONIC] = ORACLE_CONIC,

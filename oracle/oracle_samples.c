@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "core/message.h"
-#include "raster/oracle_pixel.h"
+#include "core/base/message.h"
+#include "oracle/oracle_pixel.h"
 
 /* A mean normal shorter than this makes more of the samples' rounding than the bound of a normal allows. */
 static const double shortest_mean = 0.1;

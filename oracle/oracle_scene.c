@@ -1,8 +1,8 @@
-#include "raster/oracle_scene.h"
+#include "oracle/oracle_scene.h"
 
-#include "core/clip.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/splats/clip.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */

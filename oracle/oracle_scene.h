@@ -1,13 +1,13 @@
 /* The oracle's scene: every splat that may be drawn, in camera space, and what is in doubt about it. */
-#ifndef RASTER_ORACLE_SCENE_H
-#define RASTER_ORACLE_SCENE_H
+#ifndef CONIC_ORACLE_SCENE_H
+#define CONIC_ORACLE_SCENE_H
 
 #include <stddef.h>
 #include <stdint.h>
 
 #include "conic/oracle.h"
-#include "raster/oracle_clip.h"
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_clip.h"
+#include "oracle/oracle_splat.h"
 
 enum { ORACLE_N_INPUTS = 6, ORACLE_MAX_OTHERS = 3 };
 

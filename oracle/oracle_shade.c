@@ -1,5 +1,5 @@
 /* Deferred shading, background and exposure. */
-#include "raster/oracle_pixel.h"
+#include "oracle/oracle_pixel.h"
 
 static double white(const conic_render_options *options) {
   return conic_oracle_exp(options->exposure * 0.69314718055994530942);

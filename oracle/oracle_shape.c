@@ -1,5 +1,5 @@
 /* The formulas themselves: a splat's set-up, and its value at a pixel. */
-#include "raster/oracle_splat.h"
+#include "oracle/oracle_splat.h"
 
 /* The projection, linearised where it takes the splat's centre: the columns of a 2 × 3 matrix. */
 static void project_axis(const conic_camera *c, const double p[3], const double axis[3], double result[2]) {

@@ -1,11 +1,11 @@
 /* One splat of the oracle: placed in camera space, given a formula, evaluated at pixels. */
-#ifndef RASTER_ORACLE_SPLAT_H
-#define RASTER_ORACLE_SPLAT_H
+#ifndef CONIC_ORACLE_SPLAT_H
+#define CONIC_ORACLE_SPLAT_H
 
 #include <stddef.h>
 
 #include "conic/oracle.h"
-#include "raster/oracle_math.h"
+#include "oracle/oracle_math.h"
 
 /* The rounding unit of single precision: a rounding is off by at most this, relatively. */
 #define ORACLE_UNIT 0x1p-24

@@ -1,5 +1,5 @@
 /* A triangle at a pixel: docs/picture.md, Triangles. */
-#include "raster/oracle_triangle.h"
+#include "oracle/oracle_triangle.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* Triangles of the oracle: placed on the screen, and evaluated at pixels by plain double arithmetic, which is exact for
  * the edges. */
-#ifndef RASTER_ORACLE_TRIANGLE_H
-#define RASTER_ORACLE_TRIANGLE_H
+#ifndef CONIC_ORACLE_TRIANGLE_H
+#define CONIC_ORACLE_TRIANGLE_H
 
 #include "conic/triangles.h"
-#include "raster/oracle_pixel.h"
+#include "oracle/oracle_pixel.h"
 
 /* A triangle, or a piece of one that is clipped, as it is drawn. */
 typedef struct oracle_triangle {

@@ -1,5 +1,5 @@
 /* Visibility, and in how far it is certain. */
-#include "raster/oracle_pixel.h"
+#include "oracle/oracle_pixel.h"
 
 /* The two greatest of a set, and whose the greatest is. */
 typedef struct greatest {

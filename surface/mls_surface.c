@@ -1,14 +1,14 @@
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 #include "surface/clusters.h"
-#include "surface/weight.h"
+#include "surface/kernels/weight.h"
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 

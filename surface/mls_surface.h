@@ -1,10 +1,10 @@
 /* The inside of a surface, and what its parts do for each other. */
-#ifndef SURFACE_SURFACE_H
-#define SURFACE_SURFACE_H
+#ifndef CONIC_MLS_SURFACE_H
+#define CONIC_MLS_SURFACE_H
 
 #include "conic/surface.h"
-#include "core/neighbours.h"
-#include "surface/kernels.h"
+#include "core/splats/neighbours.h"
+#include "surface/kernels/surface_kernels.h"
 
 /* Cells of the tree summed as one sample each (PSS §3.4.2); made where they are asked for. */
 typedef struct conic_surface_clusters {

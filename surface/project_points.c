@@ -1,10 +1,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "surface/surface.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "surface/mls_surface.h"
 
 enum { CHUNK = 256, CHUNKS_A_REPORT = 64 };
 

@@ -6,11 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/heap.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "surface/surface.h"
+#include "core/base/heap.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "surface/mls_surface.h"
 
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */
 enum { BATCH = 64, REMOVALS_A_REPORT = 512, BATCHES_A_REPORT = 32 };

@@ -7,7 +7,7 @@
  * A slot is a line of `slots`: what it is called, what runs it, what has to run before it. */
 #include <time.h>
 
-#include "tests/cross_desk.h"
+#include "bench/kernels/cross_desk.h"
 
 typedef void run_slot(const conic_tile_kernels *kernels, desk *d);
 

@@ -1,10 +1,10 @@
 /* The desk on which tests/cross sets out all that a slot of the kernel tables reads and writes, between guard bands;
  * and the splats that it sets out. */
-#ifndef TESTS_CROSS_DESK_H
-#define TESTS_CROSS_DESK_H
+#ifndef CONIC_CROSS_DESK_H
+#define CONIC_CROSS_DESK_H
 
-#include "raster/tile_kernels.h"
-#include "tests/fixture.h"
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/fixture.h"
 
 enum {
   N_SPLATS = 2501,

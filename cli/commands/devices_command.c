@@ -1,7 +1,7 @@
 /* conic devices: what there is to draw on. */
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 
 static void print_device(const conic_opencl_device *d) {
   printf("opencl:%d.%d  %s\n", d->i_platform, d->i_device, d->name);

@@ -4,9 +4,9 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 typedef struct diff_job {
   cli_session *session;

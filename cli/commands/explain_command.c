@@ -5,11 +5,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/render_job.h"
-#include "core/file.h"
-#include "core/message.h"
+#include "cli/render/render_job.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
 
 typedef struct explain_job {
   cli_render_job scene;

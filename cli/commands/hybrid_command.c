@@ -1,12 +1,12 @@
 /* conic hybrid: a mesh in, patches of triangles and of surfels out. */
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/hybrid_mesh.h"
-#include "cli/json.h"
+#include "cli/commands/hybrid_mesh.h"
+#include "cli/commands/reach.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/reach.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
 

@@ -1,8 +1,8 @@
-#include "cli/hybrid_info.h"
+#include "cli/commands/hybrid_info.h"
 
 #include <stdio.h>
 
-#include "cli/info_parts.h"
+#include "cli/commands/info_parts.h"
 
 enum { N_DEFECTS = 4 };
 

@@ -1,8 +1,8 @@
 /* What `conic info` says of a hybrid model. */
-#ifndef CLI_HYBRID_INFO_H
-#define CLI_HYBRID_INFO_H
+#ifndef CONIC_HYBRID_INFO_H
+#define CONIC_HYBRID_INFO_H
 
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "conic/hybrid.h"
 
 /* `broken` may be null: not looked for. */

@@ -1,4 +1,4 @@
-#include "cli/hybrid_mesh.h"
+#include "cli/commands/hybrid_mesh.h"
 
 static int is_apart(const conic_triangles *mesh, uint32_t a, uint32_t b) {
   for (int axis = 0; axis < 3; axis++)

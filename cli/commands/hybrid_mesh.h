@@ -1,6 +1,6 @@
 /* Meshes: those that become hybrid models, for the commands that make them, and what any mesh must have. */
-#ifndef CLI_HYBRID_MESH_H
-#define CLI_HYBRID_MESH_H
+#ifndef CONIC_HYBRID_MESH_H
+#define CONIC_HYBRID_MESH_H
 
 #include "cli/session.h"
 

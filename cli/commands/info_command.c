@@ -6,15 +6,15 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/hybrid_info.h"
-#include "cli/info_parts.h"
-#include "cli/json.h"
-#include "cli/layers_info.h"
-#include "cli/octree_info.h"
+#include "cli/commands/hybrid_info.h"
+#include "cli/commands/info_parts.h"
+#include "cli/commands/layers_info.h"
+#include "cli/commands/octree_info.h"
+#include "cli/commands/reach.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/reach.h"
-#include "core/clip.h"
-#include "core/file.h"
+#include "core/files/file.h"
+#include "core/splats/clip.h"
 
 /* What in a model cannot be drawn as it stands. */
 typedef struct defects {

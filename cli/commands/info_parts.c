@@ -1,4 +1,4 @@
-#include "cli/info_parts.h"
+#include "cli/commands/info_parts.h"
 
 #include <inttypes.h>
 #include <stdio.h>

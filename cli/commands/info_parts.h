@@ -1,10 +1,10 @@
 /* What `conic info` says of every kind of model alike. */
-#ifndef CLI_INFO_PARTS_H
-#define CLI_INFO_PARTS_H
+#ifndef CONIC_INFO_PARTS_H
+#define CONIC_INFO_PARTS_H
 
 #include <stdint.h>
 
-#include "cli/json.h"
+#include "cli/json_write.h"
 
 void cli_bounds_print(const double low[3], const double high[3]);
 void cli_bounds_report(cli_json *json, const double low[3], const double high[3]);

@@ -1,9 +1,9 @@
-#include "cli/layers_info.h"
+#include "cli/commands/layers_info.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "cli/info_parts.h"
+#include "cli/commands/info_parts.h"
 
 enum { N_DEFECTS = 4 };
 

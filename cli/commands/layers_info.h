@@ -1,8 +1,8 @@
 /* What `conic info` says of a layered point cloud. */
-#ifndef CLI_LAYERS_INFO_H
-#define CLI_LAYERS_INFO_H
+#ifndef CONIC_LAYERS_INFO_H
+#define CONIC_LAYERS_INFO_H
 
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "conic/layers.h"
 
 /* `broken` is null where the clouds were not looked at. */

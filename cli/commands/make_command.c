@@ -3,11 +3,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/suggest.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 /* Splats that are in memory at a time. */
 #define BATCH ((size_t)1 << 20)

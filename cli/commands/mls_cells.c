@@ -1,4 +1,4 @@
-#include "cli/mls_cells.h"
+#include "cli/commands/mls_cells.h"
 
 typedef struct cleaning {
   cli_session *session;

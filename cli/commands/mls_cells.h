@@ -1,6 +1,6 @@
 /* conic mls project by cells: from a set or a file of any size to a file. */
-#ifndef CLI_MLS_CELLS_H
-#define CLI_MLS_CELLS_H
+#ifndef CONIC_MLS_CELLS_H
+#define CONIC_MLS_CELLS_H
 
 #include "cli/session.h"
 

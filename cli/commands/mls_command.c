@@ -3,12 +3,12 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/device.h"
-#include "cli/json.h"
-#include "cli/mls_cells.h"
+#include "cli/commands/mls_cells.h"
+#include "cli/device_option.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
 

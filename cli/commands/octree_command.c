@@ -3,11 +3,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/commands/reach.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/reach.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 typedef struct octree_job {
   cli_session *session;

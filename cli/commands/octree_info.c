@@ -1,9 +1,9 @@
-#include "cli/octree_info.h"
+#include "cli/commands/octree_info.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/info_parts.h"
+#include "cli/commands/info_parts.h"
 
 /* Half the opening of a cone whose cosine is given. */
 static double cone_degrees(double cosine) {

@@ -1,8 +1,8 @@
 /* What `conic info` says of an octree. */
-#ifndef CLI_OCTREE_INFO_H
-#define CLI_OCTREE_INFO_H
+#ifndef CONIC_OCTREE_INFO_H
+#define CONIC_OCTREE_INFO_H
 
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "conic/octree.h"
 
 /* `broken` is null where the bounds were not checked. */

@@ -4,11 +4,11 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/tell.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 typedef struct prepare_job {
   cli_session *session;

@@ -1,6 +1,6 @@
 /* How far out points may be for commands that frame or keep a scene. */
-#ifndef CLI_REACH_H
-#define CLI_REACH_H
+#ifndef CONIC_REACH_H
+#define CONIC_REACH_H
 
 #include "conic/conic.h"
 

@@ -5,9 +5,9 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/json.h"
+#include "cli/json_write.h"
 #include "cli/outputs.h"
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 typedef struct verify_job {
   cli_render_job scene;

@@ -5,7 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", "patch", NULL};
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 static int compare_frames(const void *a, const void *b) {
   const conic_render_statistics *first = a, *second = b;

@@ -1,6 +1,6 @@
 /* Hybrid models as a scene: a .chy, or a mesh with --as hybrid. */
-#include "cli/hybrid_mesh.h"
-#include "cli/render_job.h"
+#include "cli/commands/hybrid_mesh.h"
+#include "cli/render/render_job.h"
 
 int cli_hybrid_is_wanted(const cli_render_job *job) {
   if (job->as == CLI_AS_HYBRID)

@@ -1,10 +1,10 @@
 /* One `conic render`: what was asked for, and what came of it. */
-#ifndef CLI_RENDER_JOB_H
-#define CLI_RENDER_JOB_H
+#ifndef CONIC_RENDER_JOB_H
+#define CONIC_RENDER_JOB_H
 
 #include "cli/arguments.h"
-#include "cli/device.h"
-#include "cli/json.h"
+#include "cli/device_option.h"
+#include "cli/json_write.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 

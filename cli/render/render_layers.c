@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 int cli_layers_is_input(const char *name) {
   return conic_layers_is_url(name) || conic_layers_is_file(name);

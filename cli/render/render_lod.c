@@ -1,5 +1,5 @@
 /* conic render --error, --budget: what is chosen of an octree, frame by frame. */
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->error_px > 0.0 || job->budget > 0;

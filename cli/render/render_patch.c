@@ -1,5 +1,5 @@
 /* --method patch: polynomials about the points, sampled frame by frame. */
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 const char *cli_method_name(const cli_render_job *job) {
   return job->is_patch ? "patch" : conic_method_name(job->options.method);

@@ -1,4 +1,4 @@
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 static double per_second_in_millions(double count, double ms) {
   return ms > 0.0 ? count / ms * 1e-3 : 0.0;

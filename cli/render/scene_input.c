@@ -3,11 +3,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/hybrid_mesh.h"
-#include "cli/reach.h"
-#include "cli/render_job.h"
+#include "cli/commands/hybrid_mesh.h"
+#include "cli/commands/reach.h"
+#include "cli/render/render_job.h"
 #include "cli/tell.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 static conic_status check_extent(const cli_render_job *job, const char *path, const conic_model *model) {
   double low[3], high[3];

@@ -1,5 +1,5 @@
 /* What of a scene a picture takes: all of it, or what is chosen for its camera. */
-#include "cli/render_job.h"
+#include "cli/render/render_job.h"
 
 conic_status cli_scene_select(cli_render_job *job, const conic_camera *camera, const conic_splats *splats,
                               conic_drawing *drawing, double *ms) {

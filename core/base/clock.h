@@ -1,6 +1,6 @@
 /* The time that passes: for statistics and limits of time, never for what is computed. */
-#ifndef CORE_CLOCK_H
-#define CORE_CLOCK_H
+#ifndef CONIC_CLOCK_H
+#define CONIC_CLOCK_H
 
 #include <time.h>
 

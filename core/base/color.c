@@ -1,8 +1,8 @@
-#include "core/color.h"
+#include "core/base/color.h"
 
 #include <math.h>
 
-#include "core/power.h"
+#include "core/base/power.h"
 
 static double fifth_root(double v) {
   double r = conic_root_guess(v, 5);

@@ -1,6 +1,6 @@
 /* sRGB to linear and back, with the same bits on every machine (only + − × ÷ √). */
-#ifndef CORE_COLOR_H
-#define CORE_COLOR_H
+#ifndef CONIC_COLOR_H
+#define CONIC_COLOR_H
 
 #include <stdint.h>
 

@@ -1,4 +1,4 @@
-#include "core/context.h"
+#include "core/base/context_struct.h"
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 static void *default_allocate(void *cookie, size_t bytes) {
   (void)cookie;

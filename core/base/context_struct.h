@@ -1,6 +1,6 @@
 /* The context's inside. */
-#ifndef CORE_CONTEXT_H
-#define CORE_CONTEXT_H
+#ifndef CONIC_CONTEXT_STRUCT_H
+#define CONIC_CONTEXT_STRUCT_H
 
 #include "conic/context.h"
 

@@ -1,4 +1,4 @@
-#include "core/eigen.h"
+#include "core/base/eigen.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Eigenvalues and eigenvectors of small symmetric matrices, with the same bits everywhere. */
-#ifndef CORE_EIGEN_H
-#define CORE_EIGEN_H
+#ifndef CONIC_EIGEN_H
+#define CONIC_EIGEN_H
 
 /* Of [[xx, xy], [xy, yy]]: values[0] ≥ values[1], the roots of λ² - trace·λ + det = 0; `major` is the unit eigenvector
  * of values[0] with x > 0, or x = 0 and y > 0; that of values[1] is (-major[1], major[0]). Where both values are the

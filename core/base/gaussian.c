@@ -1,10 +1,10 @@
-#include "core/gaussian.h"
+#include "core/base/gaussian.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "core/color.h"
+#include "core/base/color.h"
 
 /* ln 2 in two parts; the first has zeros in its last bits, so that k·ln2_high is exact. */
 static const double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;

@@ -1,6 +1,6 @@
 /* Splats as 2D and 3D Gaussian splatting store them: logarithmic scales, quaternions, logits, harmonics. */
-#ifndef CORE_GAUSSIAN_H
-#define CORE_GAUSSIAN_H
+#ifndef CONIC_GAUSSIAN_H
+#define CONIC_GAUSSIAN_H
 
 /* e^x with the same bits on every machine; relative error under 4e-16, 0 below -745.2, infinity above 709.8. */
 double conic_gaussian_exp(double x);

@@ -1,6 +1,6 @@
 /* A priority queue of slots: the least key first, of equal keys the lowest slot. */
-#ifndef CORE_HEAP_H
-#define CORE_HEAP_H
+#ifndef CONIC_HEAP_H
+#define CONIC_HEAP_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* Memory through the context's allocator: counted sizes, no overflow, aligned for vectors. */
-#ifndef CORE_MEMORY_H
-#define CORE_MEMORY_H
+#ifndef CONIC_MEMORY_H
+#define CONIC_MEMORY_H
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 #include <stdint.h>
 #include <sys/mman.h>
 
-#include "core/context.h"
-#include "core/memory.h"
+#include "core/base/context_struct.h"
+#include "core/base/memory.h"
 
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes) {
 #if defined(MADV_HUGEPAGE)

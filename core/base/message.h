@@ -1,6 +1,6 @@
 /* Messages to the context's log. */
-#ifndef CORE_MESSAGE_H
-#define CORE_MESSAGE_H
+#ifndef CONIC_MESSAGE_H
+#define CONIC_MESSAGE_H
 
 #include "conic/context.h"
 

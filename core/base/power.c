@@ -1,10 +1,10 @@
-#include "core/power.h"
+#include "core/base/power.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "core/gaussian.h"
+#include "core/base/gaussian.h"
 
 /* By the series of artanh((m − 1)/(m + 1)) with v = m·2^e. */
 double conic_logarithm(double v) {

@@ -1,7 +1,7 @@
 /* Logarithms, powers and cube roots in double with the same bits on every machine; the C library's differ from one to
  * the next. Only + − × ÷ and changes of the exponent are used. */
-#ifndef CORE_POWER_H
-#define CORE_POWER_H
+#ifndef CONIC_POWER_H
+#define CONIC_POWER_H
 
 /* ln v for a finite v > 0, within 1e-15 of 1 or relative, whichever is larger. */
 double conic_logarithm(double v);

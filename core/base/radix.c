@@ -1,8 +1,8 @@
-#include "lod/radix.h"
+#include "core/base/radix.h"
 
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* Of few items it takes longer to go through the digits that there may be than through them. */
 enum { DIGIT_BITS = 11, DIGIT_BITS_OF_FEW = 8, FEW = 2048 };

@@ -1,6 +1,6 @@
 /* A stable sort of numbered keys, in time that grows as their number. */
-#ifndef LOD_RADIX_H
-#define LOD_RADIX_H
+#ifndef CONIC_RADIX_H
+#define CONIC_RADIX_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Random numbers by number: what is drawn depends on the seed, the index and the dimension, never on what was drawn
  * before, so that any part of a sequence can be made by itself, on any thread. */
-#ifndef CORE_RANDOM_H
-#define CORE_RANDOM_H
+#ifndef CONIC_RANDOM_H
+#define CONIC_RANDOM_H
 
 #include <stdint.h>
 

@@ -1,11 +1,11 @@
-#include "core/threads.h"
+#include "core/base/threads.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "core/context.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/context_struct.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 typedef struct worker {
   conic_pool *pool;

@@ -1,6 +1,6 @@
 /* The context's thread pool. */
-#ifndef CORE_THREADS_H
-#define CORE_THREADS_H
+#ifndef CONIC_THREADS_H
+#define CONIC_THREADS_H
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "core/trigonometry.h"
+#include "core/base/trigonometry.h"
 
 /* π/2 in three parts; the first two have zeros in their last 20 bits or more, so that k·part is exact for |k| < 2²⁰. */
 static const double half_pi_1 = 0x1.921fb544p+0;

@@ -1,7 +1,7 @@
 /* Sine, cosine, tangent in double with the same bits on every machine; the C library's differ from one to the next.
  * Error at most 1 ulp of 1 for |x| up to 1e5 radians; only + − × ÷ are used. NaN and infinity give NaN. */
-#ifndef CORE_TRIGONOMETRY_H
-#define CORE_TRIGONOMETRY_H
+#ifndef CONIC_TRIGONOMETRY_H
+#define CONIC_TRIGONOMETRY_H
 
 #define CONIC_PI 3.14159265358979323846
 

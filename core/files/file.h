@@ -1,6 +1,6 @@
 /* Output files that appear under their name only when they are whole: written beside it, then renamed. */
-#ifndef CORE_FILE_H
-#define CORE_FILE_H
+#ifndef CONIC_FILE_H
+#define CONIC_FILE_H
 
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-#include "lod/file_fields.h"
+#include "core/files/file_fields.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Structures in files: members in the order of a table, little-endian, one after the other. What is written and what is
  * read so cannot differ, on any machine. */
-#ifndef LOD_FILE_FIELDS_H
-#define LOD_FILE_FIELDS_H
+#ifndef CONIC_FILE_FIELDS_H
+#define CONIC_FILE_FIELDS_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,10 +1,10 @@
-#include "lod/file_header.h"
+#include "core/files/file_header.h"
 
 #include <string.h>
 
-#include "core/file.h"
-#include "core/message.h"
-#include "lod/mapping.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/mapping.h"
 
 enum { AT_SUM = CONIC_FILE_HEADER_BYTES - 8 };
 

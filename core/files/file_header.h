@@ -1,10 +1,10 @@
 /* The 256 bytes that files begin with which are mapped and used as they lie: eight that say what the file is, numbers,
  * zeros, and the sum of all that. */
-#ifndef LOD_FILE_HEADER_H
-#define LOD_FILE_HEADER_H
+#ifndef CONIC_FILE_HEADER_H
+#define CONIC_FILE_HEADER_H
 
 #include "conic/context.h"
-#include "lod/file_fields.h"
+#include "core/files/file_fields.h"
 
 enum { CONIC_FILE_HEADER_BYTES = 256 };
 

@@ -1,4 +1,4 @@
-#include "core/input.h"
+#include "core/files/input.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* Progress is reported this often: a few times a second on a fast disk. */
 static const uint64_t report_bytes = 64u << 20;

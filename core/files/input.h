@@ -1,6 +1,6 @@
 /* Input files as a stream of bytes through a window of bounded size; text files word by word. */
-#ifndef CORE_INPUT_H
-#define CORE_INPUT_H
+#ifndef CONIC_INPUT_H
+#define CONIC_INPUT_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,11 +1,11 @@
-#include "core/json.h"
+#include "core/files/json_read.h"
 
 #include <string.h>
 
-#include "core/input.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/number.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/input.h"
+#include "core/files/number.h"
 
 static const size_t largest_file = 16u << 20;
 

@@ -1,7 +1,7 @@
 /* A strict reader of JSON files, value by value in the file's order. Once something was wrong, every call says so again
  * (with one message), so that callers may check at the end. */
-#ifndef CORE_JSON_H
-#define CORE_JSON_H
+#ifndef CONIC_JSON_READ_H
+#define CONIC_JSON_READ_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "lod/mapping.h"
+#include "core/files/mapping.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* What cannot be mapped is read to its end. */
 static conic_status read_all(conic_context *context, const char *name, int descriptor, conic_mapping *mapping) {

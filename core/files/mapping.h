@@ -1,6 +1,6 @@
 /* A whole file in memory, read-only. */
-#ifndef LOD_MAPPING_H
-#define LOD_MAPPING_H
+#ifndef CONIC_MAPPING_H
+#define CONIC_MAPPING_H
 
 #include <stddef.h>
 

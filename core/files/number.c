@@ -1,4 +1,4 @@
-#include "core/number.h"
+#include "core/files/number.h"
 
 #include <stdint.h>
 #include <stdio.h>

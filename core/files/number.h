@@ -1,6 +1,6 @@
 /* Decimal numbers to doubles and back, correctly rounded, whatever the locale and the C library. */
-#ifndef CORE_NUMBER_H
-#define CORE_NUMBER_H
+#ifndef CONIC_NUMBER_H
+#define CONIC_NUMBER_H
 
 #include <stddef.h>
 

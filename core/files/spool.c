@@ -1,4 +1,4 @@
-#include "lod/spool.h"
+#include "core/files/spool.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 void conic_spool_begin(conic_context *context, const char *path, size_t memory_bytes, conic_spool *spool) {
   memset(spool, 0, sizeof *spool);

@@ -1,7 +1,7 @@
 /* Bytes that are put aside and read again: in memory up to a bound, beyond it in a file without a name, which the
  * system takes away however the program ends. */
-#ifndef LOD_SPOOL_H
-#define LOD_SPOOL_H
+#ifndef CONIC_SPOOL_H
+#define CONIC_SPOOL_H
 
 #include <stddef.h>
 #include <stdint.h>

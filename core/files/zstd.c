@@ -1,7 +1,7 @@
-#include "lod/zstd.h"
+#include "core/files/zstd.h"
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 #if CONIC_HAVE_ZSTD
 

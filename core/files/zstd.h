@@ -1,6 +1,6 @@
 /* zstd, where it is in this build: bytes to fewer bytes and back. */
-#ifndef LOD_ZSTD_H
-#define LOD_ZSTD_H
+#ifndef CONIC_ZSTD_H
+#define CONIC_ZSTD_H
 
 #include <stddef.h>
 

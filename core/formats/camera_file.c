@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "conic/camera.h"
-#include "core/json.h"
+#include "core/files/json_read.h"
 
 typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, N_KEYS } camera_key;
 

@@ -1,12 +1,12 @@
-#include "core/las.h"
+#include "core/formats/las.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/builder.h"
-#include "core/message.h"
-#include "core/ply_source.h"
-#include "core/raw_colors.h"
+#include "core/base/message.h"
+#include "core/formats/ply_source.h"
+#include "core/formats/raw_colors.h"
+#include "core/splats/builder.h"
 
 /* Where the fields of the public header stand. */
 enum {

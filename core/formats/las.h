@@ -2,14 +2,14 @@
  *
  * Positions are the file's integers times its scale; what the first point and the offset give in double is the origin,
  * so that map coordinates lose nothing. Colours are meant to have 16 bits, yet many programs store 8-bit codes: the
- * largest value of the whole file tells (core/raw_colors.h). Everything else of a point, variable-length records and
- * whatever follows the points is passed over. */
-#ifndef CORE_LAS_H
-#define CORE_LAS_H
+ * largest value of the whole file tells (core/formats/raw_colors.h). Everything else of a point, variable-length
+ * records and whatever follows the points is passed over. */
+#ifndef CONIC_LAS_H
+#define CONIC_LAS_H
 
 #include "conic/model.h"
-#include "core/builder.h"
-#include "core/input.h"
+#include "core/files/input.h"
+#include "core/splats/builder.h"
 
 /* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */

@@ -1,12 +1,12 @@
-#include "core/material_file.h"
+#include "core/formats/material_file.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/input.h"
-#include "core/message.h"
-#include "core/number.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/input.h"
+#include "core/files/number.h"
 
 typedef struct material_reader {
   conic_input input;

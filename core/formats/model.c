@@ -1,15 +1,15 @@
-#include "core/model.h"
+#include "core/formats/model_read.h"
 
 #include <string.h>
 
-#include "core/faces.h"
-#include "core/input.h"
-#include "core/las.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/obj.h"
-#include "core/ply_read.h"
-#include "core/xyz.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/input.h"
+#include "core/formats/las.h"
+#include "core/formats/obj.h"
+#include "core/formats/ply_read.h"
+#include "core/formats/xyz.h"
+#include "core/splats/faces.h"
 
 void conic_read_options_init(conic_read_options *options) {
   memset(options, 0, sizeof *options);

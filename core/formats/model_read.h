@@ -1,10 +1,10 @@
 /* What reading a model and streaming its points share. */
-#ifndef CORE_MODEL_H
-#define CORE_MODEL_H
+#ifndef CONIC_MODEL_READ_H
+#define CONIC_MODEL_READ_H
 
 #include "conic/model.h"
-#include "core/builder.h"
-#include "core/input.h"
+#include "core/files/input.h"
+#include "core/splats/builder.h"
 
 /* The format of a file that stands at its start. Errors: INPUT, CANCELLED. */
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind);

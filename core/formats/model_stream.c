@@ -1,9 +1,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/model.h"
-#include "core/raw_colors.h"
+#include "core/base/memory.h"
+#include "core/formats/model_read.h"
+#include "core/formats/raw_colors.h"
 
 /* Points in memory at a time. */
 enum { BATCH = 1 << 16 };

@@ -1,15 +1,15 @@
-#include "core/obj.h"
+#include "core/formats/obj.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "core/builder.h"
-#include "core/color.h"
-#include "core/faces.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/number.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/number.h"
+#include "core/splats/builder.h"
+#include "core/splats/faces.h"
 
 /* Where the first vertex lies farther out than this, positions are kept from it as their origin, since a file in map
  * coordinates has digits that a float has not. */

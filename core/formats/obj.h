@@ -1,9 +1,9 @@
 /* The OBJ reader. */
-#ifndef CORE_OBJ_H
-#define CORE_OBJ_H
+#ifndef CONIC_OBJ_H
+#define CONIC_OBJ_H
 
 #include "conic/model.h"
-#include "core/input.h"
+#include "core/files/input.h"
 
 /* Reads a model from the start of the file. On failure *model is for the caller to release. Errors: INPUT, MEMORY,
  * CANCELLED. */

@@ -1,12 +1,12 @@
-#include "core/ply_columns.h"
+#include "core/formats/ply_columns.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/ellipse.h"
-#include "core/gaussian.h"
-#include "core/message.h"
+#include "core/base/color.h"
+#include "core/base/gaussian.h"
+#include "core/base/message.h"
+#include "core/splats/ellipse.h"
 
 typedef struct column_name {
   conic_ply_column column;

@@ -1,9 +1,9 @@
 /* From the columns of a PLY's vertices to splats: which properties mean what, and how they are converted. */
-#ifndef CORE_PLY_COLUMNS_H
-#define CORE_PLY_COLUMNS_H
+#ifndef CONIC_PLY_COLUMNS_H
+#define CONIC_PLY_COLUMNS_H
 
 #include "conic/splats.h"
-#include "core/ply_header.h"
+#include "core/formats/ply_header.h"
 
 /* What a vertex property can mean. Three-component ones are consecutive. */
 typedef enum conic_ply_column {

@@ -1,9 +1,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/message.h"
-#include "core/ply_read.h"
-#include "core/ply_texture.h"
+#include "core/base/message.h"
+#include "core/formats/ply_read.h"
+#include "core/formats/ply_texture.h"
 
 /* Turns a list of vertex indices, one at a time, into triangles. */
 typedef struct triangulation {

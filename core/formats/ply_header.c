@@ -1,9 +1,9 @@
-#include "core/ply_header.h"
+#include "core/formats/ply_header.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 typedef struct type_description {
   const char *names[2];

@@ -1,9 +1,9 @@
 /* The header of a PLY file: which elements it holds, and how their values are stored. */
-#ifndef CORE_PLY_HEADER_H
-#define CORE_PLY_HEADER_H
+#ifndef CONIC_PLY_HEADER_H
+#define CONIC_PLY_HEADER_H
 
-#include "core/faces.h"
-#include "core/input.h"
+#include "core/files/input.h"
+#include "core/splats/faces.h"
 
 typedef enum conic_ply_format { CONIC_PLY_TEXT, CONIC_PLY_LITTLE_ENDIAN, CONIC_PLY_BIG_ENDIAN } conic_ply_format;
 

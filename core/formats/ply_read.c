@@ -1,11 +1,11 @@
-#include "core/ply_read.h"
+#include "core/formats/ply_read.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/ply_columns.h"
-#include "core/ply_texture.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/formats/ply_columns.h"
+#include "core/formats/ply_texture.h"
 
 /* What the reading of the vertices shares. */
 typedef struct vertex_reader {

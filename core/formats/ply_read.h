@@ -1,11 +1,11 @@
 /* The PLY reader. */
-#ifndef CORE_PLY_READ_H
-#define CORE_PLY_READ_H
+#ifndef CONIC_PLY_READ_H
+#define CONIC_PLY_READ_H
 
 #include "conic/model.h"
-#include "core/builder.h"
-#include "core/input.h"
-#include "core/ply_source.h"
+#include "core/files/input.h"
+#include "core/formats/ply_source.h"
+#include "core/splats/builder.h"
 
 /* Reads a model from the start of the file; with a delivery the points go there, and faces are passed over. On failure
  * *model is for the caller to release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */

@@ -1,9 +1,9 @@
-#include "core/ply_source.h"
+#include "core/formats/ply_source.h"
 
 #include <string.h>
 
-#include "core/message.h"
-#include "core/number.h"
+#include "core/base/message.h"
+#include "core/files/number.h"
 
 conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {
   const conic_input *input = source->input;

@@ -1,8 +1,8 @@
 /* The values behind a PLY file's header, one at a time and whatever the encoding. */
-#ifndef CORE_PLY_SOURCE_H
-#define CORE_PLY_SOURCE_H
+#ifndef CONIC_PLY_SOURCE_H
+#define CONIC_PLY_SOURCE_H
 
-#include "core/ply_header.h"
+#include "core/formats/ply_header.h"
 
 typedef struct conic_ply_source {
   conic_input *input;

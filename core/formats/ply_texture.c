@@ -1,10 +1,10 @@
-#include "core/ply_texture.h"
+#include "core/formats/ply_texture.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "core/builder.h"
-#include "core/message.h"
+#include "core/base/message.h"
+#include "core/splats/builder.h"
 
 /* The property of that name which is a list, or which is none; -1 where there is none such. */
 static int find(const conic_ply_header *header, const conic_ply_element *element, const char *name, int is_list) {

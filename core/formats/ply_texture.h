@@ -1,9 +1,9 @@
 /* What a PLY file says of textures, for those who keep what faces have besides vertices. */
-#ifndef CORE_PLY_TEXTURE_H
-#define CORE_PLY_TEXTURE_H
+#ifndef CONIC_PLY_TEXTURE_H
+#define CONIC_PLY_TEXTURE_H
 
 #include "conic/model.h"
-#include "core/ply_source.h"
+#include "core/formats/ply_source.h"
 
 /* What the rows of an element tell of their triangles; -1: nothing. */
 typedef struct conic_ply_face_texture {

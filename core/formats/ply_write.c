@@ -4,11 +4,11 @@
 
 #include "conic/model.h"
 #include "conic/version.h"
-#include "core/color.h"
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/number.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/number.h"
 
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {

@@ -1,7 +1,7 @@
-#include "core/raw_colors.h"
+#include "core/formats/raw_colors.h"
 
-#include "core/color.h"
-#include "core/memory.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
 
 float conic_raw_colors_largest(const conic_splats *points, float largest) {
   for (int channel = 0; channel < 3 && points->color[0]; channel++)

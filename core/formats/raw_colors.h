@@ -1,7 +1,7 @@
 /* Colours whose scale is known only when all have been read: they are collected as they stand in the file, and then
  * decoded. */
-#ifndef CORE_RAW_COLORS_H
-#define CORE_RAW_COLORS_H
+#ifndef CONIC_RAW_COLORS_H
+#define CONIC_RAW_COLORS_H
 
 #include "conic/splats.h"
 

@@ -2,11 +2,11 @@
 #include <string.h>
 
 #include "conic/triangles.h"
-#include "core/faces.h"
-#include "core/file.h"
-#include "core/material_file.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/formats/material_file.h"
+#include "core/splats/faces.h"
 
 /* Moves the model's vertices, their colours and normals, and its faces. */
 static void take_arrays(conic_model *model, conic_triangles *triangles) {

@@ -1,11 +1,11 @@
-#include "core/xyz.h"
+#include "core/formats/xyz.h"
 
 #include <string.h>
 
-#include "core/builder.h"
-#include "core/message.h"
-#include "core/number.h"
-#include "core/raw_colors.h"
+#include "core/base/message.h"
+#include "core/files/number.h"
+#include "core/formats/raw_colors.h"
+#include "core/splats/builder.h"
 
 enum { MAX_VALUES = 9, BLOCK = 256 };
 

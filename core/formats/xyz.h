@@ -12,14 +12,14 @@
  * Three values are a normal if, in the first 256 points, one of them is negative or all of them have length 1 (to 5 %;
  * those of length 0 do not count, but not all may be 0); else they are a colour. Of 9 values the last three are the
  * normal unless only the first three are one. A colour is sRGB-encoded; the largest value of the whole file tells
- * whether it is a fraction of 1, a code of 8 bits or one of 16 (core/raw_colors.h). Intensity is passed over. Positions
- * are kept in double, from the first finite one as the origin. */
-#ifndef CORE_XYZ_H
-#define CORE_XYZ_H
+ * whether it is a fraction of 1, a code of 8 bits or one of 16 (core/formats/raw_colors.h). Intensity is passed over.
+ * Positions are kept in double, from the first finite one as the origin. */
+#ifndef CONIC_XYZ_H
+#define CONIC_XYZ_H
 
 #include "conic/model.h"
-#include "core/builder.h"
-#include "core/input.h"
+#include "core/files/input.h"
+#include "core/splats/builder.h"
 
 /* Whether text begins like such a file: with numbers only, after comments. */
 int conic_xyz_is_likely(const char *bytes, size_t n);

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/message.h"
-#include "core/trigonometry.h"
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
 
 void conic_framing_init(conic_framing *framing) {
   memset(framing, 0, sizeof *framing);

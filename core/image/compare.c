@@ -1,12 +1,12 @@
-#include "core/compare.h"
+#include "core/image/compare.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/power.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/power.h"
+#include "core/image/image_common.h"
 
 /* The sums of one plane, or of several. */
 typedef struct plane_sums {

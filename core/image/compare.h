@@ -1,6 +1,6 @@
 /* The parts of a comparison; docs/diff.md has the definitions. */
-#ifndef CORE_COMPARE_H
-#define CORE_COMPARE_H
+#ifndef CONIC_COMPARE_H
+#define CONIC_COMPARE_H
 
 #include <math.h>
 #include <stddef.h>

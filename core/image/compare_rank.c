@@ -1,8 +1,8 @@
 /* Percentiles and counts of the pixels' differences, without memory for them: what is not negative is ordered as the
  * bits of its float are, so that three counts, of 2¹¹ classes each, find a rank exactly. */
-#include "core/color.h"
-#include "core/compare.h"
-#include "core/image.h"
+#include "core/base/color.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 enum { CLASS_BITS = 11, N_CLASSES = 1 << CLASS_BITS };
 

@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/compare.h"
-#include "core/gaussian.h"
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/power.h"
-#include "core/threads.h"
-#include "core/trigonometry.h"
+#include "core/base/gaussian.h"
+#include "core/base/memory.h"
+#include "core/base/power.h"
+#include "core/base/threads.h"
+#include "core/base/trigonometry.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 /* The published viewer: 0.7 m before a screen that is 0.7 m wide and shows 3840 pixels. */
 #define PIXELS_PER_DEGREE (3840.0 * CONIC_PI / 180.0)

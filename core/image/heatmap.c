@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/compare.h"
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 /* The smallest difference that is told from the next: 2^-20, a millionth. */
 enum { DARKEST_EXPONENT = -20 };

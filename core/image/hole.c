@@ -1,9 +1,9 @@
 /* The largest hole: what the first image covers and the second does not. */
 #include <string.h>
 
-#include "core/compare.h"
-#include "core/image.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 /* Whether pixel i is covered, by one plane. */
 static int is_covered(const conic_image *image, conic_plane plane, size_t i) {

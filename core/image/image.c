@@ -3,9 +3,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/image_common.h"
 
 static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_RGBA] = {"rgba", 4, 0, {"R", "G", "B", "A"}},

@@ -1,6 +1,6 @@
 /* What the image code shares inside the library. */
-#ifndef CORE_IMAGE_H
-#define CORE_IMAGE_H
+#ifndef CONIC_IMAGE_COMMON_H
+#define CONIC_IMAGE_COMMON_H
 
 #include <stddef.h>
 #include <stdint.h>

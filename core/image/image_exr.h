@@ -3,8 +3,8 @@
  *
  * Written: one part of scanlines, ZIP, the channels of conic_plane_describe in alphabetical order, FLOAT and UINT, and
  * the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */
-#ifndef CORE_IMAGE_EXR_H
-#define CORE_IMAGE_EXR_H
+#ifndef CONIC_IMAGE_EXR_H
+#define CONIC_IMAGE_EXR_H
 
 #include "conic/image.h"
 

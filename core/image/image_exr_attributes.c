@@ -1,6 +1,6 @@
 #if CONIC_HAVE_OPENEXR
 
-#include "core/image_exr_attributes.h"
+#include "core/image/image_exr_attributes.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* An image's attributes in the header of an EXR that is being written. */
-#ifndef CORE_IMAGE_EXR_ATTRIBUTES_H
-#define CORE_IMAGE_EXR_ATTRIBUTES_H
+#ifndef CONIC_IMAGE_EXR_ATTRIBUTES_H
+#define CONIC_IMAGE_EXR_ATTRIBUTES_H
 
 #if CONIC_HAVE_OPENEXR
 

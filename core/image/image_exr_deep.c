@@ -1,15 +1,15 @@
-#include "core/image_exr_deep.h"
+#include "core/image/image_exr_deep.h"
 
-#include "core/message.h"
+#include "core/base/message.h"
 
 #if CONIC_HAVE_OPENEXR
 
 #include <string.h>
 
-#include "core/file.h"
-#include "core/image_exr_attributes.h"
-#include "core/image_exr_stream.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
+#include "core/files/file.h"
+#include "core/image/image_exr_attributes.h"
+#include "core/image/image_exr_stream.h"
 
 struct conic_deep_writer {
   conic_context *context;

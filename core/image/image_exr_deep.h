@@ -1,6 +1,6 @@
 /* Deep EXR files: any number of samples a pixel, each with a depth, a number and a weight. */
-#ifndef CORE_IMAGE_EXR_DEEP_H
-#define CORE_IMAGE_EXR_DEEP_H
+#ifndef CONIC_IMAGE_EXR_DEEP_H
+#define CONIC_IMAGE_EXR_DEEP_H
 
 #include "conic/image.h"
 

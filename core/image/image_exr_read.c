@@ -1,7 +1,7 @@
-#include "core/image_exr.h"
+#include "core/image/image_exr.h"
 
-#include "core/image_foreign.h"
-#include "core/message.h"
+#include "core/base/message.h"
+#include "core/image/image_foreign.h"
 
 #if CONIC_HAVE_OPENEXR
 
@@ -9,10 +9,10 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "core/image.h"
-#include "core/image_exr_stream.h"
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+#include "core/image/image_common.h"
+#include "core/image/image_exr_stream.h"
 
 /* Where a channel of the file goes; plane < 0: nowhere. */
 typedef struct exr_target {

@@ -1,6 +1,6 @@
 #if CONIC_HAVE_OPENEXR
 
-#include "core/image_exr_stream.h"
+#include "core/image/image_exr_stream.h"
 
 #include <errno.h>
 #include <string.h>
@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "conic/image.h"
-#include "core/image.h"
-#include "core/message.h"
+#include "core/base/message.h"
+#include "core/image/image_common.h"
 
 static conic_exr_stream *stream_of(exr_const_context_t file) {
   void *data = NULL;

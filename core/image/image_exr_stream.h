@@ -1,7 +1,7 @@
 /* What the EXR writer and reader share: file access by our own functions, and the library's message kept for the end.
  */
-#ifndef CORE_IMAGE_EXR_STREAM_H
-#define CORE_IMAGE_EXR_STREAM_H
+#ifndef CONIC_IMAGE_EXR_STREAM_H
+#define CONIC_IMAGE_EXR_STREAM_H
 
 #if CONIC_HAVE_OPENEXR
 

@@ -1,16 +1,16 @@
-#include "core/image_exr.h"
+#include "core/image/image_exr.h"
 
-#include "core/message.h"
+#include "core/base/message.h"
 
 #if CONIC_HAVE_OPENEXR
 
 #include <string.h>
 
-#include "core/file.h"
-#include "core/image_exr_attributes.h"
-#include "core/image_exr_stream.h"
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+#include "core/files/file.h"
+#include "core/image/image_exr_attributes.h"
+#include "core/image/image_exr_stream.h"
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
 enum { ZIP_LEVEL = 2 };

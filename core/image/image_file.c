@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "conic/image.h"
-#include "core/image.h"
-#include "core/image_exr.h"
-#include "core/image_foreign.h"
-#include "core/image_pfm.h"
-#include "core/message.h"
+#include "core/base/message.h"
+#include "core/image/image_common.h"
+#include "core/image/image_exr.h"
+#include "core/image/image_foreign.h"
+#include "core/image/image_pfm.h"
 
 /* The part of PATH's name after its last dot; empty where there is none. */
 static const char *ending_of(const char *path) {

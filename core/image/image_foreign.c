@@ -1,14 +1,14 @@
-#include "core/image_foreign.h"
+#include "core/image/image_foreign.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/image.h"
-#include "core/image_samples.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/openimageio_bridge.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
+#include "core/image/image_samples.h"
+#include "core/image/openimageio_bridge.h"
 
 /* OpenImageIO writes EXR too, but would leave out all but rgba. */
 static int is_float_format(const char *format) {

@@ -5,8 +5,8 @@
  * linear floats. Where the format has an alpha channel the colour is divided by alpha before it is encoded; where it
  * has none, the picture stands over black. Read: rgba, by the same rules backwards; grey goes to R, G and B; without
  * alpha A is 1. */
-#ifndef CORE_IMAGE_FOREIGN_H
-#define CORE_IMAGE_FOREIGN_H
+#ifndef CONIC_IMAGE_FOREIGN_H
+#define CONIC_IMAGE_FOREIGN_H
 
 #include "conic/image.h"
 

@@ -1,13 +1,13 @@
-#include "core/image_pfm.h"
+#include "core/image/image_pfm.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
 
 /* Writes the first n_written of n_channels floats a pixel, bottom row first. */
 static conic_status write_rows(conic_context *context, FILE *stream, const conic_image *image, const float *plane,

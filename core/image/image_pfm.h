@@ -3,8 +3,8 @@
  * Written: rgba as colour (R, G, B as they are, over black); without rgba, a lone Z or weight as grey. Little-endian,
  * rows from the bottom. Read: either byte order; the size of the scale is not looked at; grey goes to R, G and B; A
  * is 1. */
-#ifndef CORE_IMAGE_PFM_H
-#define CORE_IMAGE_PFM_H
+#ifndef CONIC_IMAGE_PFM_H
+#define CONIC_IMAGE_PFM_H
 
 #include "conic/image.h"
 

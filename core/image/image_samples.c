@@ -1,10 +1,10 @@
-#include "core/image_samples.h"
+#include "core/image/image_samples.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/threads.h"
+#include "core/base/color.h"
+#include "core/base/threads.h"
 
 /* conic_srgb_code in one look and about one step: `first` holds the code at the foot of each of N_STEPS equal steps of
  * linear light. The steps are a power of two, so that finding the step is exact. */

@@ -1,6 +1,6 @@
 /* Between the rgba plane (linear, premultiplied floats) and the samples that image formats hold. */
-#ifndef CORE_IMAGE_SAMPLES_H
-#define CORE_IMAGE_SAMPLES_H
+#ifndef CONIC_IMAGE_SAMPLES_H
+#define CONIC_IMAGE_SAMPLES_H
 
 #include <stddef.h>
 

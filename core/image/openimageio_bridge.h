@@ -2,8 +2,8 @@
  *
  * It is a module of its own, conic-openimageio.so, that is loaded when the first file needs it: OpenImageIO brings some
  * 250 libraries along, and whoever draws into an EXR should not wait for them. */
-#ifndef CORE_OPENIMAGEIO_BRIDGE_H
-#define CORE_OPENIMAGEIO_BRIDGE_H
+#ifndef CONIC_OPENIMAGEIO_BRIDGE_H
+#define CONIC_OPENIMAGEIO_BRIDGE_H
 
 #include <stddef.h>
 

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "conic/version.h"
-#include "core/openimageio_bridge.h"
+#include "core/image/openimageio_bridge.h"
 
 #if CONIC_HAVE_OPENIMAGEIO
 

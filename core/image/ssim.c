@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/compare.h"
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
 
 enum { WINDOW = 11, N_MOMENTS = 5 };
 

@@ -1,9 +1,9 @@
-#include "core/texture.h"
+#include "core/image/texture_levels.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* What an old row or column of `n` texels gives to texel i of a new one of `m`: the overlaps of the old texels with the
  * new one's place, which add up to 1. Returns how many there are, 2 or 3; *first is the first. */

@@ -1,7 +1,7 @@
 /* The numbers of elliptical texture filtering (docs/picture.md, Textures), shared by plain C, a device's programs and
- * the lanes of raster/texture_body.h. */
-#ifndef CORE_TEXTURE_FILTER_H
-#define CORE_TEXTURE_FILTER_H
+ * the lanes of raster/triangles/texture_body.h. */
+#ifndef CONIC_TEXTURE_FILTER_H
+#define CONIC_TEXTURE_FILTER_H
 
 /* The filter of a pixel, and that of a texel, have a standard deviation of half their width, and end at two. */
 #define CONIC_FILTER_VARIANCE 0.25f

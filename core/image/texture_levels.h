@@ -1,6 +1,6 @@
 /* A texture's inside. */
-#ifndef CORE_TEXTURE_H
-#define CORE_TEXTURE_H
+#ifndef CONIC_TEXTURE_LEVELS_H
+#define CONIC_TEXTURE_LEVELS_H
 
 #include "conic/texture.h"
 

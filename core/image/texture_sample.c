@@ -2,9 +2,9 @@
  * pyramid, with a bounded number of texels. */
 #include <math.h>
 
-#include "core/kernel.h"
-#include "core/texture.h"
-#include "core/texture_filter.h"
+#include "core/image/texture_filter.h"
+#include "core/image/texture_levels.h"
+#include "core/splats/kernel.h"
 
 /* A footprint's variance in texels². */
 typedef struct footprint {

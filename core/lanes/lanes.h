@@ -3,8 +3,8 @@
  *
  * A part of a block is 4 rows of pixels, column by column: lane l is column l / 4, row l % 4. Floats take + - × ÷ as
  * they are. lanes_max(a, b) is a > b ? a : b, lanes_min(a, b) is a < b ? a : b: where a is not a number, b. */
-#ifndef RASTER_LANES_H
-#define RASTER_LANES_H
+#ifndef CONIC_LANES_H
+#define CONIC_LANES_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -368,7 +368,7 @@ CONIC_INLINE int_lanes lanes_alternating(int n) {
   return alternating;
 }
 
-/* conic_exp_negative (core/kernel.h) in every lane: the same operations in the same order. */
+/* conic_exp_negative (core/splats/kernel.h) in every lane: the same operations in the same order. */
 CONIC_INLINE lanes lanes_exp_negative(lanes x) {
   x = lanes_max(x, lanes_of(-80.0f));
   int_lanes k = __builtin_convertvector(x * 0x1.715476p+0f - 0.5f, int_lanes);

@@ -1,8 +1,8 @@
 /* Doubles for as many splats as there are lanes: two halves, each of a native vector. */
-#ifndef RASTER_LANES_DOUBLE_H
-#define RASTER_LANES_DOUBLE_H
+#ifndef CONIC_LANES_DOUBLE_H
+#define CONIC_LANES_DOUBLE_H
 
-#include "raster/lanes.h"
+#include "core/lanes/lanes.h"
 
 #define CONIC_HALF_LANES (CONIC_LANES / 2)
 

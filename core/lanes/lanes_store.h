@@ -1,10 +1,10 @@
 /* From channels in lanes to pixels in rows: a part of a block is 4 rows, lane l is column l / 4, row l % 4. In each
  * 128 bits a column, so that a transposition within them gives rows of pixels. */
-#ifndef RASTER_LANES_STORE_H
-#define RASTER_LANES_STORE_H
+#ifndef CONIC_LANES_STORE_H
+#define CONIC_LANES_STORE_H
 
-#include "raster/lanes.h"
-#include "raster/stream.h"
+#include "core/lanes/lanes.h"
+#include "core/lanes/stream.h"
 
 typedef float quad __attribute__((vector_size(16)));
 

@@ -1,6 +1,6 @@
 /* Which instructions this processor has, of those that files are compiled for (CMakeLists.txt). */
-#ifndef CORE_PROCESSOR_H
-#define CORE_PROCESSOR_H
+#ifndef CONIC_PROCESSOR_H
+#define CONIC_PROCESSOR_H
 
 #if defined(__x86_64__)
 

@@ -1,6 +1,6 @@
 /* Copies that go past the caches, for what is written once and not read soon: an image's rows. */
-#ifndef RASTER_STREAM_H
-#define RASTER_STREAM_H
+#ifndef CONIC_STREAM_H
+#define CONIC_STREAM_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
-#include "core/noise.h"
+#include "core/scenes/noise.h"
 
 #include <math.h>
 
-#include "core/random.h"
+#include "core/base/random.h"
 
 /* The weight of a cell's far side, 6t⁵ − 15t⁴ + 10t³, and its derivatives. */
 typedef struct fade {

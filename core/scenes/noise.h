@@ -1,6 +1,6 @@
 /* Gradient noise in the plane, smooth to its second derivatives, which come with it. */
-#ifndef CORE_NOISE_H
-#define CORE_NOISE_H
+#ifndef CONIC_NOISE_H
+#define CONIC_NOISE_H
 
 #include <stdint.h>
 

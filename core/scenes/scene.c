@@ -1,16 +1,16 @@
-#include "core/scene.h"
+#include "core/scenes/scene_kind.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "conic/image.h"
-#include "core/color.h"
-#include "core/ellipse.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/random.h"
-#include "core/threads.h"
-#include "core/trigonometry.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/random.h"
+#include "core/base/threads.h"
+#include "core/base/trigonometry.h"
+#include "core/splats/ellipse.h"
 
 static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
     [CONIC_SCENE_PLANE] = &conic_scene_plane,     [CONIC_SCENE_SPHERE] = &conic_scene_sphere,

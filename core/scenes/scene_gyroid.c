@@ -1,9 +1,9 @@
 #include <math.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/scene.h"
-#include "core/trigonometry.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
+#include "core/scenes/scene_kind.h"
 
 /* sin x cos y + sin y cos z + sin z cos x = 0 with so many periods along an edge of the cube that a picture of it has,
  * on average over its pixels, more than 20 sheets one behind the other. */

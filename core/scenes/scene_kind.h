@@ -2,14 +2,15 @@
  *
  * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says (an even lattice carried
  * onto the surface by a map that keeps areas). Where no such map is known, the scene has a lattice
- * (core/scene_lattice.h) instead, and `walk` and `project` find its points near the surface and carry them there. */
-#ifndef CORE_SCENE_H
-#define CORE_SCENE_H
+ * (core/scenes/scene_lattice.h) instead, and `walk` and `project` find its points near the surface and carry them
+ * there. */
+#ifndef CONIC_SCENE_KIND_H
+#define CONIC_SCENE_KIND_H
 
 #include <stdint.h>
 
 #include "conic/scene.h"
-#include "core/scene_lattice.h"
+#include "core/scenes/scene_lattice.h"
 
 /* A place on a surface. */
 struct conic_surface_point {

@@ -1,7 +1,7 @@
 #include <math.h>
 
-#include "core/scene.h"
-#include "core/trigonometry.h"
+#include "core/base/trigonometry.h"
+#include "core/scenes/scene_kind.h"
 
 /* The trefoil: a curve that goes twice around the y axis while it goes three times around the ring it lies on. */
 #define RING_RADIUS 1.0

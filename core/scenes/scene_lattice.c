@@ -1,11 +1,11 @@
-#include "core/scene_lattice.h"
+#include "core/scenes/scene_lattice.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 
 /* found · n_wanted / n_found, rounded: found minus its share of the surplus. The surplus is small where the numbers are
  * large, so the product stays below 2⁶⁴. */

@@ -4,8 +4,8 @@
  * The layer that is one spacing thick holds one lattice point per spacing² of surface, however the surface lies. Its
  * points are numbered slab by slab; the surplus over the number wanted is dropped evenly. Only the slabs' counts are
  * kept, so that memory does not grow with the number of points and any batch is found without what comes before it. */
-#ifndef CORE_SCENE_LATTICE_H
-#define CORE_SCENE_LATTICE_H
+#ifndef CONIC_SCENE_LATTICE_H
+#define CONIC_SCENE_LATTICE_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 #include <math.h>
 
-#include "core/scene.h"
+#include "core/scenes/scene_kind.h"
 
 /* A checkerboard of 8 × 8: white, and a grey of code 32; the square at (-½, -½) is dark. */
 enum { SQUARES = 8, WHITE = 255, DARK = 32 };

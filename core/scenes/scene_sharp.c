@@ -2,7 +2,7 @@
  */
 #include <math.h>
 
-#include "core/scene.h"
+#include "core/scenes/scene_kind.h"
 
 /* A face at axis = level, facing ±axis: the square [low, high]² of the two axes that follow, without its quarter of
  * positive coordinates where it is notched. */

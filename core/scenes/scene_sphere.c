@@ -1,7 +1,7 @@
 #include <math.h>
 
-#include "core/scene.h"
-#include "core/trigonometry.h"
+#include "core/base/trigonometry.h"
+#include "core/scenes/scene_kind.h"
 
 /* The checkerboard's squares around the axis and from pole to pole. */
 enum { MERIDIANS = 24, PARALLELS = 12 };

@@ -1,12 +1,12 @@
-#include "core/scene_terrain.h"
+#include "core/scenes/scene_terrain.h"
 
 #include <math.h>
 
-#include "core/memory.h"
-#include "core/noise.h"
-#include "core/random.h"
-#include "core/scene.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
+#include "core/base/threads.h"
+#include "core/scenes/noise.h"
+#include "core/scenes/scene_kind.h"
 
 /* Octaves of noise, each twice as fine as the one before; the finest cells are 1/700 wide. */
 enum { OCTAVES = 10 };

@@ -1,6 +1,6 @@
 /* The terrain's heights: an island of fractal mountains in a flat sea. */
-#ifndef CORE_SCENE_TERRAIN_H
-#define CORE_SCENE_TERRAIN_H
+#ifndef CONIC_SCENE_TERRAIN_H
+#define CONIC_SCENE_TERRAIN_H
 
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
-#include "core/scene.h"
-#include "core/trigonometry.h"
+#include "core/base/trigonometry.h"
+#include "core/scenes/scene_kind.h"
 
 #define RING_RADIUS 1.0
 #define TUBE_RADIUS 0.4

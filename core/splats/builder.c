@@ -1,8 +1,8 @@
-#include "core/builder.h"
+#include "core/splats/builder.h"
 
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
                                  const conic_delivery *delivery, conic_builder *builder) {

@@ -1,6 +1,6 @@
 /* A model that grows while it is read. */
-#ifndef CORE_BUILDER_H
-#define CORE_BUILDER_H
+#ifndef CONIC_BUILDER_H
+#define CONIC_BUILDER_H
 
 #include "conic/model.h"
 

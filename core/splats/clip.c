@@ -1,4 +1,4 @@
-#include "core/clip.h"
+#include "core/splats/clip.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* Clip lines as they are kept: which lines count, and how records are found and made. */
-#ifndef CORE_CLIP_H
-#define CORE_CLIP_H
+#ifndef CONIC_CLIP_H
+#define CONIC_CLIP_H
 
 #include "conic/splats.h"
 

@@ -1,8 +1,8 @@
-#include "core/ellipse.h"
+#include "core/splats/ellipse.h"
 
 #include <math.h>
 
-#include "core/eigen.h"
+#include "core/base/eigen.h"
 
 void conic_tangent_basis(const double normal[3], double u[3], double v[3]) {
   /* sign + z is at least 1 in magnitude, wherever the normal points. */

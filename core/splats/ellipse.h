@@ -1,6 +1,6 @@
 /* Ellipses in tangent planes that bound given points (Confetti §4.3, with the corrections of docs/errata.md). */
-#ifndef CORE_ELLIPSE_H
-#define CORE_ELLIPSE_H
+#ifndef CONIC_ELLIPSE_H
+#define CONIC_ELLIPSE_H
 
 /* Two unit vectors that make a right-handed orthonormal basis with the unit normal: u × v = n. Stable for every n. */
 void conic_tangent_basis(const double normal[3], double u[3], double v[3]);

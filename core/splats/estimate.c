@@ -1,16 +1,16 @@
 /* From a model to splats: what came with good axes keeps them, vertices take theirs from their faces, and the rest from
  * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
-#include "core/estimate.h"
+#include "core/splats/estimate.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/clip.h"
-#include "core/features.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/normals.h"
-#include "core/trigonometry.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
+#include "core/splats/clip.h"
+#include "core/splats/features.h"
+#include "core/splats/normals.h"
 
 void conic_estimate_options_init(conic_estimate_options *options) {
   memset(options, 0, sizeof *options);

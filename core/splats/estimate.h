@@ -1,11 +1,11 @@
-/* What the steps of an estimate share (core/estimate.c drives them). */
-#ifndef CORE_ESTIMATE_H
-#define CORE_ESTIMATE_H
+/* What the steps of an estimate share (core/splats/estimate.c drives them). */
+#ifndef CONIC_ESTIMATE_H
+#define CONIC_ESTIMATE_H
 
 #include <stdint.h>
 
 #include "conic/model.h"
-#include "core/neighbourhood.h"
+#include "core/splats/neighbourhood.h"
 
 /* What has become of a point. */
 typedef enum conic_point_state {

@@ -1,9 +1,9 @@
-#include "core/faces.h"
+#include "core/splats/faces.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
   *faces = conic_memory_allocate_zeroed(context, 1, sizeof **faces);

@@ -1,6 +1,6 @@
 /* What a mesh's faces have besides their vertices, while a model is read and until triangles take it. */
-#ifndef CORE_FACES_H
-#define CORE_FACES_H
+#ifndef CONIC_FACES_H
+#define CONIC_FACES_H
 
 #include <stdint.h>
 

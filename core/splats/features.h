@@ -1,6 +1,6 @@
 /* Sharp features: where a surface has creases, and the clip lines that splats get there (docs/notes/features.md). */
-#ifndef CORE_FEATURES_H
-#define CORE_FEATURES_H
+#ifndef CONIC_FEATURES_H
+#define CONIC_FEATURES_H
 
 #include <stdint.h>
 

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/features.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
+#include "core/splats/features.h"
 
 /* A crease matters to a splat that would touch it if it were twice as large: the prefilter widens splats. */
 #define REACH 2.0

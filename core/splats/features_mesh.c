@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/features.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/splats.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/splats/features.h"
+#include "core/splats/splats_gather.h"
 
 /* An edge that starts at the vertex in hand, in one of its triangles. */
 typedef struct spoke {

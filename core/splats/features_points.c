@@ -4,12 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/clip.h"
-#include "core/eigen.h"
-#include "core/ellipse.h"
-#include "core/features.h"
-#include "core/memory.h"
-#include "core/neighbourhood.h"
+#include "core/base/eigen.h"
+#include "core/base/memory.h"
+#include "core/splats/clip.h"
+#include "core/splats/ellipse.h"
+#include "core/splats/features.h"
+#include "core/splats/neighbourhood.h"
 
 /* Neighbours that a small plane is fitted to, and of which the spacing is told. */
 enum { FEW = 9 };

@@ -1,7 +1,7 @@
 /* Reconstruction kernels, as functions of q = r², r in standard deviations: unit peak at 0, falling to the cutoff.
  * The same bits everywhere: + − × ÷ √ and integer operations only. */
-#ifndef CORE_KERNEL_H
-#define CORE_KERNEL_H
+#ifndef CONIC_KERNEL_H
+#define CONIC_KERNEL_H
 
 #include <math.h>
 #include <stdint.h>
@@ -9,7 +9,7 @@
 
 #include "conic/render.h"
 
-/* eˣ for x ≤ 0, clamped below at e⁻⁸⁰; NaN gives e⁻⁸⁰. Error at most 1.1 ulp (tests/test_kernel.c). */
+/* eˣ for x ≤ 0, clamped below at e⁻⁸⁰; NaN gives e⁻⁸⁰. Error at most 1.1 ulp (tests/core/splats/test_kernel.c). */
 static inline float conic_exp_negative(float x) {
   x = x > -80.0f ? x : -80.0f;
   /* x = k·ln 2 + r with |r| ≤ ½·ln 2; truncation rounds to nearest here, since x ≤ 0. The first part of ln 2 has few
@@ -33,7 +33,8 @@ static inline float conic_exp_negative(float x) {
 #define CONIC_NARROW_SUPPORT 2.25f
 
 /* e^(-q/2) for 0 ≤ q ≤ 2.25: the minimax polynomial about the middle. Its sum is shallow, a third of the exponential's
- * depth, because what a pixel waits for is this. Relative error at most 2.4e-7; exactly 1 at 0 (tests/test_kernel.c).
+ * depth, because what a pixel waits for is this. Relative error at most 2.4e-7; exactly 1 at 0
+ * (tests/core/splats/test_kernel.c).
  */
 static inline float conic_gauss_narrow(float q) {
   float t = q - 1.125f, t2 = t * t, t4 = t2 * t2;

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/ellipse.h"
-#include "core/estimate.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/splats/ellipse.h"
+#include "core/splats/estimate.h"
 
 /* The cosine from which on a face is steep in a vertex's tangent plane: 60°. */
 #define STEEP 0.5

@@ -1,10 +1,10 @@
-#include "core/neighbourhood.h"
+#include "core/splats/neighbourhood.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* Slots that one call of a task does, and calls between two reports of progress. */
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };

@@ -1,11 +1,11 @@
 /* A set's points with their neighbours and normals, slot by slot: what ellipses are estimated from. */
-#ifndef CORE_NEIGHBOURHOOD_H
-#define CORE_NEIGHBOURHOOD_H
+#ifndef CONIC_NEIGHBOURHOOD_H
+#define CONIC_NEIGHBOURHOOD_H
 
 #include <stdint.h>
 
-#include "core/neighbours.h"
-#include "core/threads.h"
+#include "core/base/threads.h"
+#include "core/splats/neighbours.h"
 
 enum { CONIC_MAX_NEIGHBOURS = 64 };
 

@@ -1,4 +1,4 @@
-#include "core/neighbours.h"
+#include "core/splats/neighbours.h"
 
 #include <math.h>
 

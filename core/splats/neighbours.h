@@ -3,8 +3,8 @@
  * The tree keeps the points in its own order, by *slots*: what is near in space is near in memory, so that
  * whoever works slot by slot works in the cache. Coincident points are one slot, which stands for the first of them;
  * points that are not finite have none. The order and every answer depend on the positions and indices only. */
-#ifndef CORE_NEIGHBOURS_H
-#define CORE_NEIGHBOURS_H
+#ifndef CONIC_NEIGHBOURS_H
+#define CONIC_NEIGHBOURS_H
 
 #include <stddef.h>
 #include <stdint.h>

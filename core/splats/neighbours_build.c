@@ -1,10 +1,10 @@
 /* How the kd-tree comes to be: coincident points are joined, then ranges are halved across their longest side. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/neighbours.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/splats/neighbours.h"
 
 enum { SHARED_LEVELS = 6 };
 

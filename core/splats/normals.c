@@ -1,11 +1,11 @@
-#include "core/normals.h"
+#include "core/splats/normals.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/eigen.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/eigen.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);

@@ -1,8 +1,8 @@
 /* Normals of points that have none: across the neighbours' plane, and all of a surface on one side. */
-#ifndef CORE_NORMALS_H
-#define CORE_NORMALS_H
+#ifndef CONIC_NORMALS_H
+#define CONIC_NORMALS_H
 
-#include "core/neighbourhood.h"
+#include "core/splats/neighbourhood.h"
 
 /* Gives every slot that is GUESSED (and LISTED) its normal: the direction in which the slot and its neighbours spread
  * least, up to the sign. Errors: CANCELLED. */

@@ -3,10 +3,10 @@
  * that was not seen. */
 #include <math.h>
 
-#include "core/ellipse.h"
-#include "core/estimate.h"
-#include "core/memory.h"
-#include "core/voronoi_cell.h"
+#include "core/base/memory.h"
+#include "core/splats/ellipse.h"
+#include "core/splats/estimate.h"
+#include "core/splats/voronoi_cell.h"
 
 /* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
 #define CELL_RADIUS 1.5

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 
 #include "conic/splats.h"
-#include "core/memory.h"
-#include "core/neighbours.h"
+#include "core/base/memory.h"
+#include "core/splats/neighbours.h"
 
 enum { N_NEAREST = 8, MAX_SAMPLES = 20000 };
 

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "conic/splats.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* The longer axis as the bits of a float, which order like the lengths themselves; 0 for a splat that is not usable. */
 static uint32_t length_bits(const conic_splats *splats, size_t i) {

@@ -2,10 +2,10 @@
 
 #include <string.h>
 
-#include "core/clip.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/splats.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/splats/clip.h"
+#include "core/splats/splats_gather.h"
 
 /* The set's arrays in one list, so that what is done to one is done to all. */
 enum { N_ARRAYS = 16 };

@@ -1,6 +1,6 @@
 /* What the library does with splat sets besides the public functions. */
-#ifndef CORE_SPLATS_H
-#define CORE_SPLATS_H
+#ifndef CONIC_SPLATS_GATHER_H
+#define CONIC_SPLATS_GATHER_H
 
 #include "conic/splats.h"
 

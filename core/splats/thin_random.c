@@ -1,6 +1,6 @@
 /* A stable random choice of splats. */
 #include "conic/model.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* A bijection of 64 bits (splitmix64): no two indices have the same rank under one seed. */
 static uint64_t rank_of(uint64_t seed, uint64_t index) {

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
   for (int i = 0; i < n; i++) {

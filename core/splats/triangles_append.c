@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "conic/triangles.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* An attribute of the corners: so many arrays of n values, and which of them each corner has. */
 typedef struct attribute {

@@ -1,4 +1,4 @@
-#include "core/voronoi_cell.h"
+#include "core/splats/voronoi_cell.h"
 
 #include <string.h>
 

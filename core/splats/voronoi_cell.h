@@ -1,6 +1,6 @@
 /* A point's Voronoi cell in its tangent plane, cut off at a radius. */
-#ifndef CORE_VORONOI_CELL_H
-#define CORE_VORONOI_CELL_H
+#ifndef CONIC_VORONOI_CELL_H
+#define CONIC_VORONOI_CELL_H
 
 enum { CONIC_CELL_SIDES = 16, CONIC_CELL_CORNERS = CONIC_CELL_SIDES + 64 };
 

@@ -1,4 +1,4 @@
-#include "lod/patch.h"
+#include "lod/clusters/cluster.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* Patches: the clusters of a mesh, one by one, and what their surface is at a place. */
-#ifndef LOD_PATCH_H
-#define LOD_PATCH_H
+#ifndef CONIC_CLUSTER_H
+#define CONIC_CLUSTER_H
 
 #include "conic/triangles.h"
-#include "lod/mesh_clusters.h"
+#include "lod/mesh/mesh_clusters.h"
 
 typedef struct conic_patch_mesh {
   const conic_triangles *triangles;

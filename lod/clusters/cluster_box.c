@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/ellipse.h"
-#include "lod/patch_sample.h"
+#include "core/splats/ellipse.h"
+#include "lod/clusters/cluster_sample.h"
 
 /* Waterproof where the greatest gap, √3 spacings, is below the surfels' radius. */
 static const double radius_in_spacings = 1.7320508075688772;

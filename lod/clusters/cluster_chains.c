@@ -1,8 +1,8 @@
-#include "lod/patch_chains.h"
+#include "lod/clusters/cluster_chains.h"
 
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* An edge between two patches, its ends as places. */
 typedef struct border_edge {

@@ -1,10 +1,10 @@
 /* Chains: where two patches meet, from one corner that more than they have to the next. A simpler patch may leave out
  * what lies between a chain's ends; its neighbour, if it is finer, puts into both what it still has. */
-#ifndef LOD_PATCH_CHAINS_H
-#define LOD_PATCH_CHAINS_H
+#ifndef CONIC_CLUSTER_CHAINS_H
+#define CONIC_CLUSTER_CHAINS_H
 
-#include "lod/hybrid.h"
-#include "lod/patch.h"
+#include "lod/clusters/cluster.h"
+#include "lod/hybrid/hybrid_model.h"
 
 #define CONIC_NO_SLOT UINT32_MAX
 

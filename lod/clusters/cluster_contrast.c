@@ -1,4 +1,4 @@
-#include "lod/patch_contrast.h"
+#include "lod/clusters/cluster_contrast.h"
 
 /* Whether a mesh has more than one colour at all. */
 static int has_colors(const conic_triangles *t) {

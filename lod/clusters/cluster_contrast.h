@@ -1,10 +1,10 @@
 /* How much the colours differ in what each site stands for. */
-#ifndef LOD_PATCH_CONTRAST_H
-#define LOD_PATCH_CONTRAST_H
+#ifndef CONIC_CLUSTER_CONTRAST_H
+#define CONIC_CLUSTER_CONTRAST_H
 
 #include <math.h>
 
-#include "lod/patch_sites.h"
+#include "lod/clusters/cluster_sites.h"
 
 /* Pictures show about the square root of linear light; what is beyond their range they do not show. */
 static inline double conic_as_shown(double linear) {

@@ -1,4 +1,4 @@
-#include "lod/patch_error.h"
+#include "lod/clusters/cluster_error.h"
 
 #include <math.h>
 #include <string.h>

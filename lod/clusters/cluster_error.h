@@ -1,8 +1,8 @@
 /* How far a site's surfel is from what it stands for, and from the mesh. */
-#ifndef LOD_PATCH_ERROR_H
-#define LOD_PATCH_ERROR_H
+#ifndef CONIC_CLUSTER_ERROR_H
+#define CONIC_CLUSTER_ERROR_H
 
-#include "lod/patch_sites.h"
+#include "lod/clusters/cluster_sites.h"
 
 /* How far what the site stands for is from its plane, along the faces' normals, or its outline from the mesh, as
  * measured at twenty places; or how far it smears colours: the share of black and white by which they differ, of

@@ -1,4 +1,4 @@
-#include "lod/patch_reuse.h"
+#include "lod/clusters/cluster_reuse.h"
 
 void conic_patch_end_pass(conic_sampler *s) {
   conic_sampling_pass now = {.n_sites = s->n_sites,

@@ -1,8 +1,8 @@
 /* What one pass over a patch need not do again: sites whose surroundings are as they were in the last. */
-#ifndef LOD_PATCH_REUSE_H
-#define LOD_PATCH_REUSE_H
+#ifndef CONIC_CLUSTER_REUSE_H
+#define CONIC_CLUSTER_REUSE_H
 
-#include "lod/patch_sites.h"
+#include "lod/clusters/cluster_sites.h"
 
 /* Puts this pass's lattices, owners and sites aside, as the last one's. */
 void conic_patch_end_pass(conic_sampler *sampler);

@@ -1,13 +1,13 @@
 /* From a patch to surfels: sites, closer ones where their ellipses stray from the surface, and colours. */
-#include "lod/patch_sample.h"
+#include "lod/clusters/cluster_sample.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/patch_error.h"
-#include "lod/patch_reuse.h"
-#include "lod/patch_shape.h"
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_error.h"
+#include "lod/clusters/cluster_reuse.h"
+#include "lod/clusters/cluster_shape.h"
 
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
   *sampler = conic_memory_allocate_zeroed(context, 1, sizeof **sampler);

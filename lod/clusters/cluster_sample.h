@@ -1,9 +1,9 @@
 /* Surfels of a patch: splats that stand for its faces. */
-#ifndef LOD_PATCH_SAMPLE_H
-#define LOD_PATCH_SAMPLE_H
+#ifndef CONIC_CLUSTER_SAMPLE_H
+#define CONIC_CLUSTER_SAMPLE_H
 
-#include "lod/face_tree.h"
-#include "lod/patch.h"
+#include "lod/clusters/cluster.h"
+#include "lod/mesh/face_tree.h"
 
 typedef struct conic_surfel {
   float position[3]; /* from the mesh's origin */

@@ -1,11 +1,11 @@
-#include "lod/patch_shape.h"
+#include "lod/clusters/cluster_shape.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lod/least_ellipse.h"
-#include "lod/patch_contrast.h"
-#include "lod/patch_error.h"
+#include "lod/clusters/cluster_contrast.h"
+#include "lod/clusters/cluster_error.h"
+#include "lod/clusters/least_ellipse.h"
 
 /* How far an ellipse reaches beyond what it must cover, and how long it may be. */
 static const double cover = 1.1;

@@ -1,11 +1,11 @@
 /* What simplifying works on: the triangles of a region, vertices with their quadrics, and the places of the mesh by
  * which errors are measured. Private to lod/patch_simplify*.c. */
-#ifndef LOD_PATCH_SIMPLIFIER_H
-#define LOD_PATCH_SIMPLIFIER_H
+#ifndef CONIC_CLUSTER_SIMPLIFIER_H
+#define CONIC_CLUSTER_SIMPLIFIER_H
 
-#include "core/heap.h"
-#include "lod/patch_simplify.h"
-#include "lod/quadric.h"
+#include "core/base/heap.h"
+#include "lod/clusters/cluster_simplify.h"
+#include "lod/mesh/quadric.h"
 
 #define CONIC_NONE UINT32_MAX
 

@@ -1,10 +1,10 @@
-#include "lod/patch_simplify.h"
+#include "lod/clusters/cluster_simplify.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/patch_simplifier.h"
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_simplifier.h"
 
 typedef conic_simplifier_triangle triangle;
 

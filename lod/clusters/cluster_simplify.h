@@ -1,9 +1,9 @@
 /* Simpler and simpler triangles for the patches of a region, which are simplified together. */
-#ifndef LOD_PATCH_SIMPLIFY_H
-#define LOD_PATCH_SIMPLIFY_H
+#ifndef CONIC_CLUSTER_SIMPLIFY_H
+#define CONIC_CLUSTER_SIMPLIFY_H
 
-#include "lod/face_tree.h"
-#include "lod/patch_chains.h"
+#include "lod/clusters/cluster_chains.h"
+#include "lod/mesh/face_tree.h"
 
 enum { CONIC_MOST_TRIANGLE_LEVELS = 12 };
 

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/patch_simplifier.h"
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_simplifier.h"
 
 typedef conic_simplifier_vertex vertex;
 typedef conic_simplifier_triangle triangle;

@@ -2,8 +2,8 @@
  * patches may be measured at the same time. */
 #include <math.h>
 
-#include "lod/distance.h"
-#include "lod/patch_simplifier.h"
+#include "lod/clusters/cluster_simplifier.h"
+#include "lod/mesh/distance.h"
 
 typedef conic_simplifier_triangle triangle;
 

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/patch_simplifier.h"
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_simplifier.h"
 
 typedef conic_simplifier_triangle triangle;
 

@@ -1,7 +1,7 @@
 /* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
 #include <math.h>
 
-#include "lod/patch_simplifier.h"
+#include "lod/clusters/cluster_simplifier.h"
 
 typedef conic_simplifier_vertex vertex;
 typedef conic_simplifier_triangle triangle;

@@ -1,10 +1,10 @@
-#include "lod/patch_sites.h"
+#include "lod/clusters/cluster_sites.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/random.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;

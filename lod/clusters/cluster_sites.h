@@ -1,11 +1,11 @@
 /* The places that surfels are put at, and what of the patch each of them stands for. */
-#ifndef LOD_PATCH_SITES_H
-#define LOD_PATCH_SITES_H
+#ifndef CONIC_CLUSTER_SITES_H
+#define CONIC_CLUSTER_SITES_H
 
-#include "core/ellipse.h"
-#include "lod/patch_sample.h"
-#include "lod/place_table.h"
-#include "lod/radix.h"
+#include "core/base/radix.h"
+#include "core/splats/ellipse.h"
+#include "lod/clusters/cluster_sample.h"
+#include "lod/clusters/place_table.h"
 
 /* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
  * between them. */

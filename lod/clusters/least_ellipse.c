@@ -1,4 +1,4 @@
-#include "lod/least_ellipse.h"
+#include "lod/clusters/least_ellipse.h"
 
 /* Each round a point's weight is multiplied by what it wants of the ellipse (Titterington 1978): those on its border
  * come to hold all weight, the points within lose theirs. So many rounds leave a few per cent of the area to win. */

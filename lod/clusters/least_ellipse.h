@@ -1,6 +1,6 @@
 /* The smallest ellipse about points of a plane. */
-#ifndef LOD_LEAST_ELLIPSE_H
-#define LOD_LEAST_ELLIPSE_H
+#ifndef CONIC_LEAST_ELLIPSE_H
+#define CONIC_LEAST_ELLIPSE_H
 
 enum { CONIC_LEAST_ELLIPSE_POINTS = 8 };
 

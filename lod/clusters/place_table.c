@@ -1,9 +1,9 @@
-#include "lod/place_table.h"
+#include "lod/clusters/place_table.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/radix.h"
+#include "core/base/memory.h"
+#include "core/base/radix.h"
 
 /* The side of a depth's cells, in spacings. */
 static const double cell_side = 1.4;

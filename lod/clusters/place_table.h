@@ -1,6 +1,6 @@
 /* Places of a patch, by where they are, each with the nearest of the sites that were put so far. */
-#ifndef LOD_PLACE_TABLE_H
-#define LOD_PLACE_TABLE_H
+#ifndef CONIC_PLACE_TABLE_H
+#define CONIC_PLACE_TABLE_H
 
 #include <stddef.h>
 #include <stdint.h>

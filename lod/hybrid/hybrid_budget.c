@@ -1,12 +1,12 @@
-#include "lod/hybrid_budget.h"
+#include "lod/hybrid/hybrid_budget.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/hybrid_point.h"
-#include "lod/hybrid_stitch.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/hybrid/hybrid_point.h"
+#include "lod/hybrid/hybrid_stitch.h"
 
 /* Patches in sight, and how far on the screen each of their levels is off. */
 typedef struct fitting {

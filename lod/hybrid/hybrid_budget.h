@@ -1,8 +1,8 @@
 /* The least error that so many primitives can give. */
-#ifndef LOD_HYBRID_BUDGET_H
-#define LOD_HYBRID_BUDGET_H
+#ifndef CONIC_HYBRID_BUDGET_H
+#define CONIC_HYBRID_BUDGET_H
 
-#include "lod/hybrid_cut.h"
+#include "lod/hybrid/hybrid_cut.h"
 
 /* Gives each of n patches, those in sight, the level of fewest primitives, from its first, whose error on the screen is
  * at most E; and nodes of fewer than their patches together the level by which they stand for these, all others

@@ -1,13 +1,13 @@
 /* From a mesh to a hybrid model: flat, who beside whom, clusters, ways to draw each. */
 #include <string.h>
 
-#include "core/clock.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/flat_mesh.h"
-#include "lod/hybrid_nodes.h"
-#include "lod/hybrid_pack.h"
-#include "lod/hybrid_tree.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/hybrid/hybrid_nodes.h"
+#include "lod/hybrid/hybrid_pack.h"
+#include "lod/hybrid/hybrid_tree.h"
+#include "lod/mesh/flat_mesh.h"
 
 void conic_hybrid_options_init(conic_hybrid_options *options) {
   memset(options, 0, sizeof *options);

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "lod/hybrid.h"
+#include "lod/hybrid/hybrid_model.h"
 
 /* What floats lose between the finding of a bound and its use. */
 static const double hair = 1e-5;

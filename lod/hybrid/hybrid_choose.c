@@ -1,11 +1,11 @@
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid/hybrid_choose.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "core/trigonometry.h"
-#include "lod/hybrid_point.h"
+#include "core/base/trigonometry.h"
+#include "lod/hybrid/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
  * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */

@@ -1,8 +1,8 @@
 /* Which level of each patch a picture needs. */
-#ifndef LOD_HYBRID_CHOOSE_H
-#define LOD_HYBRID_CHOOSE_H
+#ifndef CONIC_HYBRID_CHOOSE_H
+#define CONIC_HYBRID_CHOOSE_H
 
-#include "lod/hybrid.h"
+#include "lod/hybrid/hybrid_model.h"
 
 /* A camera as the patches are looked at by. */
 typedef struct conic_hybrid_camera {

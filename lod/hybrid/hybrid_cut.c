@@ -1,4 +1,4 @@
-#include "lod/hybrid_cut.h"
+#include "lod/hybrid/hybrid_cut.h"
 
 static double sum_patches(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
   double sum = 0.0;

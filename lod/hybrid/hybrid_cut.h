@@ -1,8 +1,8 @@
 /* Which nodes stand for all of their patches. */
-#ifndef LOD_HYBRID_CUT_H
-#define LOD_HYBRID_CUT_H
+#ifndef CONIC_HYBRID_CUT_H
+#define CONIC_HYBRID_CUT_H
 
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid/hybrid_choose.h"
 
 /* A node whose patches are drawn each by itself, or that is below one that stands for it. */
 #define CONIC_HYBRID_NO_NODE UINT32_MAX

@@ -2,12 +2,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/file_header.h"
-#include "lod/hybrid_layout.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/files/file.h"
+#include "core/files/file_header.h"
+#include "lod/hybrid/hybrid_layout.h"
 
 typedef conic_chy_header header;
 

@@ -1,9 +1,9 @@
-#include "lod/hybrid_layout.h"
+#include "lod/hybrid/hybrid_layout.h"
 
 #include <string.h>
 
-#include "core/color.h"
-#include "core/memory.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
 
 enum { ALIGNMENT = 64 };
 

@@ -1,9 +1,9 @@
 /* Where everything is in a .chy file, and in the memory of a hybrid model, which is the same. */
-#ifndef LOD_HYBRID_LAYOUT_H
-#define LOD_HYBRID_LAYOUT_H
+#ifndef CONIC_HYBRID_LAYOUT_H
+#define CONIC_HYBRID_LAYOUT_H
 
-#include "lod/file_header.h"
-#include "lod/hybrid.h"
+#include "core/files/file_header.h"
+#include "lod/hybrid/hybrid_model.h"
 
 enum { CONIC_CHY_VERSION = 3 };
 

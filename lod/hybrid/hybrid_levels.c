@@ -1,14 +1,14 @@
-#include "lod/hybrid_levels.h"
+#include "lod/hybrid/hybrid_levels.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/clock.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/hybrid_nodes.h"
-#include "lod/radix.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/radix.h"
+#include "core/base/threads.h"
+#include "lod/hybrid/hybrid_nodes.h"
 
 void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
   conic_patch_levels_release(context, &ways->triangles);

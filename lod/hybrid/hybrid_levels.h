@@ -1,10 +1,10 @@
 /* All ways to draw one patch. */
-#ifndef LOD_HYBRID_LEVELS_H
-#define LOD_HYBRID_LEVELS_H
+#ifndef CONIC_HYBRID_LEVELS_H
+#define CONIC_HYBRID_LEVELS_H
 
-#include "lod/hybrid.h"
-#include "lod/patch_sample.h"
-#include "lod/patch_simplify.h"
+#include "lod/clusters/cluster_sample.h"
+#include "lod/clusters/cluster_simplify.h"
+#include "lod/hybrid/hybrid_model.h"
 
 enum { CONIC_MOST_SURFEL_LEVELS = 8 };
 

@@ -1,10 +1,10 @@
-#include "lod/hybrid.h"
+#include "lod/hybrid/hybrid_model.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/hybrid_layout.h"
+#include "core/base/memory.h"
+#include "lod/hybrid/hybrid_layout.h"
 
 void conic_hybrid_destroy(conic_hybrid *hybrid) {
   if (!hybrid)

@@ -1,9 +1,9 @@
 /* A hybrid model as it is in memory. */
-#ifndef LOD_HYBRID_H
-#define LOD_HYBRID_H
+#ifndef CONIC_HYBRID_MODEL_H
+#define CONIC_HYBRID_MODEL_H
 
 #include "conic/hybrid.h"
-#include "lod/mapping.h"
+#include "core/files/mapping.h"
 
 /* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
 

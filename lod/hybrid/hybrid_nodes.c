@@ -1,17 +1,17 @@
-#include "lod/hybrid_nodes.h"
+#include "lod/hybrid/hybrid_nodes.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/random.h"
-#include "core/threads.h"
-#include "core/trigonometry.h"
-#include "lod/hybrid_tree.h"
-#include "lod/patch_contrast.h"
-#include "lod/patch_error.h"
-#include "lod/patch_shape.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/random.h"
+#include "core/base/threads.h"
+#include "core/base/trigonometry.h"
+#include "lod/clusters/cluster_contrast.h"
+#include "lod/clusters/cluster_error.h"
+#include "lod/clusters/cluster_shape.h"
+#include "lod/hybrid/hybrid_tree.h"
 
 /* The most surfels of a level, above which its node's children do as well. */
 enum { MOST_SITES = 64 };

@@ -1,8 +1,8 @@
 /* The hierarchy over the patches, and ways to draw many of them as one. */
-#ifndef LOD_HYBRID_NODES_H
-#define LOD_HYBRID_NODES_H
+#ifndef CONIC_HYBRID_NODES_H
+#define CONIC_HYBRID_NODES_H
 
-#include "lod/hybrid_levels.h"
+#include "lod/hybrid/hybrid_levels.h"
 
 /* Makes job->nodes over the patches, whose ways are known; and, but for single levels and boxes, for each node its
  * point and surfels that stand for all of its patches: of the patches' own surfels, some of them close together at a

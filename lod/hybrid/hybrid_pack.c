@@ -1,13 +1,13 @@
-#include "lod/hybrid_pack.h"
+#include "lod/hybrid/hybrid_pack.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/texture.h"
-#include "lod/hybrid_layout.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/texture_levels.h"
+#include "lod/hybrid/hybrid_layout.h"
 
 typedef struct packing {
   conic_context *context;

@@ -1,8 +1,8 @@
 /* From the ways to draw each patch to a model, all in one piece of memory. */
-#ifndef LOD_HYBRID_PACK_H
-#define LOD_HYBRID_PACK_H
+#ifndef CONIC_HYBRID_PACK_H
+#define CONIC_HYBRID_PACK_H
 
-#include "lod/hybrid_levels.h"
+#include "lod/hybrid/hybrid_levels.h"
 
 /* From all that was found. What there is of *hybrid is the caller's, on failure too. Errors: ARGUMENT (too much for a
  * file), MEMORY. */

@@ -1,9 +1,9 @@
-#include "lod/hybrid_plan.h"
+#include "lod/hybrid/hybrid_plan.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* Rounds in which each patch is thought over; and how much less a picture of both kinds must promise to be preferred to
  * one of a single kind. */

@@ -1,9 +1,9 @@
 /* The levels of all patches in sight together, and of nodes that stand for many of them: what one is drawn as changes
  * what its neighbours take. */
-#ifndef LOD_HYBRID_PLAN_H
-#define LOD_HYBRID_PLAN_H
+#ifndef CONIC_HYBRID_PLAN_H
+#define CONIC_HYBRID_PLAN_H
 
-#include "lod/hybrid_cut.h"
+#include "lod/hybrid/hybrid_cut.h"
 
 /* Gives each of n patches, those in sight, a level, from its first, whose error is at most error_px: triangles or
  * surfels, or the kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in

@@ -1,8 +1,8 @@
-#include "lod/hybrid_point.h"
+#include "lod/hybrid/hybrid_point.h"
 
 #include <math.h>
 
-#include "core/ellipse.h"
+#include "core/splats/ellipse.h"
 
 /* The way from the eye to the centre, and the radius of the disc there that hides the sphere: where the rays that touch
  * the sphere pass. Returns infinity where the eye is in the sphere. */

@@ -1,8 +1,8 @@
 /* A node of a hybrid model as a point: one disc that faces the camera and hides the node's sphere. */
-#ifndef LOD_HYBRID_POINT_H
-#define LOD_HYBRID_POINT_H
+#ifndef CONIC_HYBRID_POINT_H
+#define CONIC_HYBRID_POINT_H
 
-#include "lod/hybrid_choose.h"
+#include "lod/hybrid/hybrid_choose.h"
 
 /* How many pixels places of the node may be off where its point stands for them: infinite where its sphere reaches
  * near, or there is no point. */

@@ -2,13 +2,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/hybrid_budget.h"
-#include "lod/hybrid_plan.h"
-#include "lod/hybrid_point.h"
-#include "lod/hybrid_stitch.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/hybrid/hybrid_budget.h"
+#include "lod/hybrid/hybrid_plan.h"
+#include "lod/hybrid/hybrid_point.h"
+#include "lod/hybrid/hybrid_stitch.h"
 
 void conic_hybrid_view_init(conic_hybrid_view *view) {
   memset(view, 0, sizeof *view);

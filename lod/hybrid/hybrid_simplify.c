@@ -2,11 +2,11 @@
  * threads measure all their patches. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/hybrid_levels.h"
-#include "lod/hybrid_tree.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/hybrid/hybrid_levels.h"
+#include "lod/hybrid/hybrid_tree.h"
 
 /* A region has no more faces than this, or but one patch. What lies between regions stays, so they are large. */
 enum { MOST_FACES = 250000 };

@@ -1,8 +1,8 @@
 /* Patches side by side at different levels: what the one has along their border and the other has not is put in. */
-#ifndef LOD_HYBRID_STITCH_H
-#define LOD_HYBRID_STITCH_H
+#ifndef CONIC_HYBRID_STITCH_H
+#define CONIC_HYBRID_STITCH_H
 
-#include "lod/hybrid.h"
+#include "lod/hybrid/hybrid_model.h"
 
 /* A patch that is not drawn: nothing has to fit it. */
 #define CONIC_HYBRID_HIDDEN UINT32_MAX

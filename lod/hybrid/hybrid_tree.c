@@ -1,10 +1,10 @@
-#include "lod/hybrid_tree.h"
+#include "lod/hybrid/hybrid_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* Where n patches are parted: the halves then need no more levels than they must. */
 size_t conic_hybrid_half(size_t n) {

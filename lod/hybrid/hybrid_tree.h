@@ -1,8 +1,8 @@
 /* The hierarchy over the patches. */
-#ifndef LOD_HYBRID_TREE_H
-#define LOD_HYBRID_TREE_H
+#ifndef CONIC_HYBRID_TREE_H
+#define CONIC_HYBRID_TREE_H
 
-#include "lod/hybrid.h"
+#include "lod/hybrid/hybrid_model.h"
 
 /* The most patches in a node without children. */
 enum { CONIC_HYBRID_LEAF = 4 };

@@ -1,10 +1,10 @@
-#include "lod/cluster_cost.h"
+#include "lod/mesh/cluster_cost.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/eigen.h"
-#include "core/trigonometry.h"
+#include "core/base/eigen.h"
+#include "core/base/trigonometry.h"
 
 conic_unit_box conic_unit_box_of(const conic_mesh *mesh, const conic_adjacency *adjacency) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, longest = 0.0;

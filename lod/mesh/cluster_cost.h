@@ -1,9 +1,9 @@
 /* What a set of faces is like, as sums that add up when two sets become one, and what it costs to make them one (HQP
  * §3.2.2). All lengths are in units of the longest side of the mesh's box, about its middle. */
-#ifndef LOD_CLUSTER_COST_H
-#define LOD_CLUSTER_COST_H
+#ifndef CONIC_CLUSTER_COST_H
+#define CONIC_CLUSTER_COST_H
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 typedef struct conic_face_sums {
   double area;

@@ -1,6 +1,6 @@
-#include "lod/distance.h"
+#include "lod/mesh/distance.h"
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
   for (int axis = 0; axis < 3; axis++)

@@ -1,8 +1,8 @@
 /* How far a point is from a triangle. */
-#ifndef LOD_DISTANCE_H
-#define LOD_DISTANCE_H
+#ifndef CONIC_DISTANCE_H
+#define CONIC_DISTANCE_H
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 /* The squared distance of p from the triangle a, b, c, its border included. */
 double conic_distance2_to_triangle(const double p[3], const double a[3], const double b[3], const double c[3]);

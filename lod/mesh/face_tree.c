@@ -1,12 +1,12 @@
-#include "lod/face_tree.h"
+#include "lod/mesh/face_tree.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/random.h"
-#include "lod/distance.h"
-#include "lod/radix.h"
+#include "core/base/memory.h"
+#include "core/base/radix.h"
+#include "core/base/random.h"
+#include "lod/mesh/distance.h"
 
 enum { LEAF_FACES = 2, CODE_BITS = 10 };
 

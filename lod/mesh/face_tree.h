@@ -1,8 +1,8 @@
 /* Boxes around boxes around a mesh's faces: how far a place is from the nearest. */
-#ifndef LOD_FACE_TREE_H
-#define LOD_FACE_TREE_H
+#ifndef CONIC_FACE_TREE_H
+#define CONIC_FACE_TREE_H
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 typedef struct conic_face_box {
   float low[3], high[3];

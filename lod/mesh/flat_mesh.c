@@ -1,11 +1,11 @@
-#include "lod/flat_mesh.h"
+#include "lod/mesh/flat_mesh.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/random.h"
-#include "lod/radix.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/radix.h"
+#include "core/base/random.h"
 
 static const uint32_t none = UINT32_MAX;
 

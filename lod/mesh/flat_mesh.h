@@ -1,6 +1,6 @@
 /* Meshes whose attributes have indices of their own, with one index a corner instead. */
-#ifndef LOD_FLAT_MESH_H
-#define LOD_FLAT_MESH_H
+#ifndef CONIC_FLAT_MESH_H
+#define CONIC_FLAT_MESH_H
 
 #include "conic/triangles.h"
 

@@ -1,13 +1,13 @@
 /* Who lies beside whom in a mesh. */
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/random.h"
-#include "lod/radix.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/radix.h"
+#include "core/base/random.h"
 
 static const uint32_t none = UINT32_MAX;
 

@@ -1,6 +1,6 @@
 /* Triangles as the hybrid models' steps look at them: who lies beside whom, and which of them are of use. */
-#ifndef LOD_MESH_H
-#define LOD_MESH_H
+#ifndef CONIC_MESH_H
+#define CONIC_MESH_H
 
 #include <stddef.h>
 #include <stdint.h>

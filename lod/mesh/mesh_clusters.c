@@ -5,15 +5,15 @@
  * when one of its clusters grows; that shows when its turn comes, and it goes back into the queue with its new cost.
  * Costs may fall when clusters grow (a shape becomes rounder), so whoever is still there at the end is asked again,
  * until nobody is left below the limit. */
-#include "lod/mesh_clusters.h"
+#include "lod/mesh/mesh_clusters.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/heap.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/heap.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 
 static const uint32_t none = UINT32_MAX;
 

@@ -1,8 +1,8 @@
 /* Clusters of faces: first what is flat together, then what is small is gathered into patches (HQP §3.2). */
-#ifndef LOD_MESH_CLUSTERS_H
-#define LOD_MESH_CLUSTERS_H
+#ifndef CONIC_MESH_CLUSTERS_H
+#define CONIC_MESH_CLUSTERS_H
 
-#include "lod/cluster_cost.h"
+#include "lod/mesh/cluster_cost.h"
 
 #define CONIC_NO_CLUSTER UINT32_MAX
 

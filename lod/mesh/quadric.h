@@ -1,6 +1,6 @@
 /* Sums of squared distances from planes, as a form in the place: vᵀAv + 2bᵀv + c (HQP Eq. 3.6). */
-#ifndef LOD_QUADRIC_H
-#define LOD_QUADRIC_H
+#ifndef CONIC_QUADRIC_H
+#define CONIC_QUADRIC_H
 
 typedef struct conic_quadric {
   double a[6], b[3], c; /* xx, xy, xz, yy, yz, zz */

@@ -1,10 +1,10 @@
-#include "lod/leaf_code.h"
+#include "lod/octree/leaf_code.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/ellipse.h"
-#include "core/threads.h"
+#include "core/base/threads.h"
+#include "core/splats/ellipse.h"
 
 /* Where in a leaf's bytes: */
 enum { AT_POSITION = 0, AT_NORMAL = 5, AT_DIRECTION = 8, AT_LENGTH = 9, AT_RATIO = 11, AT_REST = 12 };

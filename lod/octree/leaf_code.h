@@ -1,11 +1,11 @@
 /* The leaves of a quantised octree: 12 bytes each, 3 more with colours, 1 more with opacities, and 24 for every 64
  * leaves, which share a box that their positions are counted in. Neighbours in the order of the tree are neighbours in
  * space, so the boxes are small. */
-#ifndef LOD_LEAF_CODE_H
-#define LOD_LEAF_CODE_H
+#ifndef CONIC_LEAF_CODE_H
+#define CONIC_LEAF_CODE_H
 
 #include "conic/splats.h"
-#include "lod/octree_code.h"
+#include "lod/octree/octree_code.h"
 
 enum { CONIC_LEAF_BLOCK = 64, CONIC_LEAF_BLOCK_BYTES = 24 };
 

@@ -1,4 +1,4 @@
-#include "lod/moments.h"
+#include "lod/octree/moments.h"
 
 #include <math.h>
 #include <string.h>

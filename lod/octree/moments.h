@@ -1,7 +1,7 @@
 /* Sums over a set of splats, which a node gets from its children by merging theirs: the generic homogeneous covariance
  * of Confetti (§4.2), and the averages beside it. */
-#ifndef LOD_MOMENTS_H
-#define LOD_MOMENTS_H
+#ifndef CONIC_MOMENTS_H
+#define CONIC_MOMENTS_H
 
 #include "conic/splats.h"
 

@@ -1,8 +1,8 @@
 /* The least error that so many splats can give. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/octree_view.h"
+#include "core/base/memory.h"
+#include "lod/octree/octree_view.h"
 
 /* A node gives way to its children once the error asked for is below `pixels`: its own and those of all nodes above,
  * for these have given way before. Then there are `change` more splats. */

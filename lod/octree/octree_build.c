@@ -1,13 +1,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/leaf_code.h"
-#include "lod/octree_fit.h"
-#include "lod/octree_split.h"
-#include "raster/projected.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_fit.h"
+#include "lod/octree/octree_split.h"
+#include "raster/project/projected.h"
 
 /* Squares of what is farther out overflow a float. */
 static const float farthest = 1e15f;

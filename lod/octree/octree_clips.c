@@ -1,5 +1,5 @@
 /* Clip lines of splats that are rounded. */
-#include "lod/octree.h"
+#include "lod/octree/octree_nodes.h"
 
 static double dot_at(float *const a[3], size_t i, float *const b[3], size_t k) {
   double sum = 0.0;

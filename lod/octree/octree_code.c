@@ -1,11 +1,11 @@
-#include "lod/octree_code.h"
+#include "lod/octree/octree_code.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#include "core/color.h"
-#include "core/ellipse.h"
+#include "core/base/color.h"
+#include "core/splats/ellipse.h"
 
 /* Where in the 19 bytes: */
 enum {

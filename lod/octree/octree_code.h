@@ -1,7 +1,7 @@
 /* The inner nodes of a point-octree as they are kept: 19 bytes each. What is rounded is rounded to the side on which
  * the bounds hold, and every bound is found for the numbers that the bytes give back (docs/format-cot.md). */
-#ifndef LOD_OCTREE_CODE_H
-#define LOD_OCTREE_CODE_H
+#ifndef CONIC_OCTREE_CODE_H
+#define CONIC_OCTREE_CODE_H
 
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
-#include "lod/octree_cover.h"
+#include "lod/octree/octree_cover.h"
 
 #include <math.h>
 
-#include "core/trigonometry.h"
+#include "core/base/trigonometry.h"
 
 void conic_disc_samples_init(conic_disc_samples *samples) {
   /* Rings, turned against each other; found by search, the gap is held by a test. The outermost, of which the most is

@@ -1,7 +1,7 @@
 /* How far a node's disc reaches past a surface of discs. It is looked at in a few places: first, which of them lie well
  * inside a disc; for those that do not, how near the discs come. */
-#ifndef LOD_OCTREE_COVER_H
-#define LOD_OCTREE_COVER_H
+#ifndef CONIC_OCTREE_COVER_H
+#define CONIC_OCTREE_COVER_H
 
 #include <stddef.h>
 #include <stdint.h>

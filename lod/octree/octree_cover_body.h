@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "lod/octree_kernels.h"
-#include "raster/lanes.h"
+#include "core/lanes/lanes.h"
+#include "lod/octree/octree_kernels.h"
 
 /* A disc seen along the node's normal: an ellipse, and what takes it to the unit circle. */
 enum {

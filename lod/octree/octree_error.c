@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/octree_kernels.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_kernels.h"
 
 /* Subtrees with as many leaves are worked off at a time: their discs stay in the cache. */
 static const size_t task_leaves = 8192;

@@ -3,13 +3,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/file_header.h"
-#include "lod/leaf_code.h"
-#include "lod/octree.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/files/file.h"
+#include "core/files/file_header.h"
+#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_nodes.h"
 
 enum { HEADER_BYTES = CONIC_FILE_HEADER_BYTES, VERSION = 1, ALIGNMENT = 64, MOST_ARRAYS = 16 };
 

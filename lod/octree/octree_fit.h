@@ -1,10 +1,10 @@
 /* What stands for many: the position, ellipse, colour and bounds of every inner node. */
-#ifndef LOD_OCTREE_FIT_H
-#define LOD_OCTREE_FIT_H
+#ifndef CONIC_OCTREE_FIT_H
+#define CONIC_OCTREE_FIT_H
 
-#include "core/ellipse.h"
-#include "lod/moments.h"
-#include "lod/octree.h"
+#include "core/splats/ellipse.h"
+#include "lod/octree/moments.h"
+#include "lod/octree/octree_nodes.h"
 
 /* Fills in the codes of all nodes, whose structure and leaves are there. Errors: MEMORY, CANCELLED. */
 conic_status conic_octree_fit(conic_octree *octree);

@@ -1,6 +1,6 @@
-#include "lod/octree_kernels.h"
+#include "lod/octree/octree_kernels.h"
 
-#include "core/processor.h"
+#include "core/lanes/processor.h"
 
 conic_octree_kernels conic_octree_kernels_choose(void) {
 #if defined(__x86_64__)

@@ -1,10 +1,10 @@
 /* The loops that take the time of building and of choosing, as the instruction sets have them: all give the same. */
-#ifndef LOD_OCTREE_KERNELS_H
-#define LOD_OCTREE_KERNELS_H
+#ifndef CONIC_OCTREE_KERNELS_H
+#define CONIC_OCTREE_KERNELS_H
 
-#include "lod/octree_cover.h"
-#include "lod/octree_fit.h"
-#include "lod/octree_view.h"
+#include "lod/octree/octree_cover.h"
+#include "lod/octree/octree_fit.h"
+#include "lod/octree/octree_view.h"
 
 /* Puts the n chosen at `place` of a selection: leaves by their numbers, nodes with a bit more. With an eye, nodes are
  * turned towards it. */

@@ -5,10 +5,10 @@
 #define CHOOSE_RATIO conic_choose_ratio_avx2
 #define MEASURE conic_measure_avx2
 #define PUT conic_put_avx2
-#include "lod/octree_cover_body.h"
-#include "lod/octree_measure_body.h"
-#include "lod/octree_put_body.h"
-#include "lod/octree_reach_body.h"
+#include "lod/octree/octree_cover_body.h"
+#include "lod/octree/octree_measure_body.h"
+#include "lod/octree/octree_put_body.h"
+#include "lod/octree/octree_reach_body.h"
 #else
 typedef int conic_not_this_machine;
 #endif

@@ -4,7 +4,7 @@
 #define CHOOSE_RATIO conic_choose_ratio_baseline
 #define MEASURE conic_measure_baseline
 #define PUT conic_put_baseline
-#include "lod/octree_cover_body.h"
-#include "lod/octree_measure_body.h"
-#include "lod/octree_put_body.h"
-#include "lod/octree_reach_body.h"
+#include "lod/octree/octree_cover_body.h"
+#include "lod/octree/octree_measure_body.h"
+#include "lod/octree/octree_put_body.h"
+#include "lod/octree/octree_reach_body.h"

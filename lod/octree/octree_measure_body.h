@@ -1,8 +1,8 @@
 /* What octree_view.h says of measuring, for compilers to put in lanes: MEASURE is the function's name. */
 #include <math.h>
 
-#include "lod/octree_kernels.h"
-#include "raster/lanes.h"
+#include "core/lanes/lanes.h"
+#include "lod/octree/octree_kernels.h"
 
 /* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
  * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,

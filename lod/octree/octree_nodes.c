@@ -1,12 +1,12 @@
-#include "lod/octree.h"
+#include "lod/octree/octree_nodes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 
 static const size_t chunk_nodes = 4096;
 

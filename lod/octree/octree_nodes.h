@@ -1,14 +1,14 @@
 /* The octree's inside: what its parts hand to each other. */
-#ifndef LOD_OCTREE_H
-#define LOD_OCTREE_H
+#ifndef CONIC_OCTREE_NODES_H
+#define CONIC_OCTREE_NODES_H
 
 #include "conic/octree.h"
-#include "lod/mapping.h"
-#include "lod/octree_code.h"
+#include "core/files/mapping.h"
+#include "lod/octree/octree_code.h"
 
 #define CONIC_NO_CLIP UINT32_MAX
 
-/* No inner node is deeper; splitting at the mean gives up well before (lod/octree_split.c). */
+/* No inner node is deeper; splitting at the mean gives up well before (lod/octree/octree_split.c). */
 enum { CONIC_OCTREE_DEPTH = 128 };
 
 /* A quantised octree leaves out what cannot be drawn; were that more than this times what can, a small file would ask

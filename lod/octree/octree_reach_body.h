@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "lod/octree_kernels.h"
-#include "raster/lanes.h"
+#include "core/lanes/lanes.h"
+#include "lod/octree/octree_kernels.h"
 
 #if defined(__AVX512F__)
 enum { WIDE = 8 };

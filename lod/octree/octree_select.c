@@ -1,10 +1,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/octree_kernels.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_kernels.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
 typedef struct piece {

@@ -1,11 +1,11 @@
-#include "lod/octree_split.h"
+#include "lod/octree/octree_split.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/octree_code.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_code.h"
 
 /* Larger nodes are split one after the other, the subtrees below them side by side. */
 static const size_t task_points = 32768;

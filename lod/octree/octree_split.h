@@ -1,6 +1,6 @@
 /* The structure of a point-octree: space split at the mean of each node's points (Confetti §3.2). */
-#ifndef LOD_OCTREE_SPLIT_H
-#define LOD_OCTREE_SPLIT_H
+#ifndef CONIC_OCTREE_SPLIT_H
+#define CONIC_OCTREE_SPLIT_H
 
 #include <stdint.h>
 

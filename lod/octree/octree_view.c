@@ -1,9 +1,9 @@
-#include "lod/octree_view.h"
+#include "lod/octree/octree_view.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lod/octree_kernels.h"
+#include "lod/octree/octree_kernels.h"
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
 static void set_side(float side[3], int axis, double a, double b) {

@@ -1,8 +1,8 @@
 /* How large the errors of inner nodes are in one picture. */
-#ifndef LOD_OCTREE_VIEW_H
-#define LOD_OCTREE_VIEW_H
+#ifndef CONIC_OCTREE_VIEW_H
+#define CONIC_OCTREE_VIEW_H
 
-#include "lod/octree.h"
+#include "lod/octree/octree_nodes.h"
 
 typedef struct conic_octree_view conic_octree_view;
 

@@ -1,4 +1,4 @@
-#include "lod/http_response.h"
+#include "lod/ranges/http_response.h"
 
 #include <string.h>
 #include <strings.h>

@@ -1,6 +1,6 @@
 /* What the headers of a web server's response say of the file. */
-#ifndef LOD_HTTP_RESPONSE_H
-#define LOD_HTTP_RESPONSE_H
+#ifndef CONIC_HTTP_RESPONSE_H
+#define CONIC_HTTP_RESPONSE_H
 
 #include <stddef.h>
 #include <stdint.h>

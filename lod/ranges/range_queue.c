@@ -1,8 +1,8 @@
-#include "lod/range_queue.h"
+#include "lod/ranges/range_queue.h"
 
 #include <string.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* By priority, then by place in the file, so that neighbours follow each other. */
 static int is_sooner(const conic_queued_range *a, const conic_queued_range *b) {

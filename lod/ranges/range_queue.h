@@ -1,8 +1,8 @@
 /* Ranges that wait, the first by priority first. */
-#ifndef LOD_RANGE_QUEUE_H
-#define LOD_RANGE_QUEUE_H
+#ifndef CONIC_RANGE_QUEUE_H
+#define CONIC_RANGE_QUEUE_H
 
-#include "lod/ranges.h"
+#include "lod/ranges/ranges.h"
 
 typedef struct conic_queued_range {
   conic_range range;

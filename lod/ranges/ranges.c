@@ -1,9 +1,9 @@
-#include "lod/ranges.h"
+#include "lod/ranges/ranges.h"
 
 #include <string.h>
 
-#include "core/message.h"
-#include "lod/ranges_backend.h"
+#include "core/base/message.h"
+#include "lod/ranges/ranges_backend.h"
 
 void conic_ranges_options_init(conic_ranges_options *options) {
   memset(options, 0, sizeof *options);

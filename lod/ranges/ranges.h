@@ -3,8 +3,8 @@
  *
  * Nothing happens between the calls: transfers go on within conic_ranges_next, several at a time. One thread at a time.
  */
-#ifndef LOD_RANGES_H
-#define LOD_RANGES_H
+#ifndef CONIC_RANGES_H
+#define CONIC_RANGES_H
 
 #include <stddef.h>
 #include <stdint.h>

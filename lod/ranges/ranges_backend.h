@@ -1,9 +1,9 @@
-/* What a backend of lod/ranges.h is: a struct that begins with a conic_ranges. */
-#ifndef LOD_RANGES_BACKEND_H
-#define LOD_RANGES_BACKEND_H
+/* What a backend of lod/ranges/ranges.h is: a struct that begins with a conic_ranges. */
+#ifndef CONIC_RANGES_BACKEND_H
+#define CONIC_RANGES_BACKEND_H
 
-#include "lod/range_queue.h"
-#include "lod/ranges.h"
+#include "lod/ranges/range_queue.h"
+#include "lod/ranges/ranges.h"
 
 typedef struct conic_ranges_backend {
   int (*next)(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);

@@ -2,9 +2,9 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "core/memory.h"
-#include "lod/mapping.h"
-#include "lod/ranges_backend.h"
+#include "core/base/memory.h"
+#include "core/files/mapping.h"
+#include "lod/ranges/ranges_backend.h"
 
 /* Pages that were read count as this process's memory until they are given back; the system keeps them all the same,
  * while it has room. */

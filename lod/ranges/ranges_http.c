@@ -1,7 +1,7 @@
 /* Ranges of a file on a web server, by libcurl's multi interface: the one file that knows libcurl. */
-#include "lod/ranges_backend.h"
+#include "lod/ranges/ranges_backend.h"
 
-#include "core/message.h"
+#include "core/base/message.h"
 
 #ifndef CONIC_HAVE_CURL
 
@@ -19,9 +19,9 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 #include <string.h>
 #include <strings.h>
 
-#include "core/clock.h"
-#include "core/memory.h"
-#include "lod/http_response.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "lod/ranges/http_response.h"
 
 enum {
   PROBE_BYTES = 1 << 16,  /* the first request's: it says how large the file is, and holds its beginning */

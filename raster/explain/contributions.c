@@ -1,11 +1,11 @@
-#include "raster/contributions.h"
+#include "raster/explain/pixel_contributions.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/tile_kernels.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/kernels/tile_kernels.h"
 
 /* Splats that a thread projects at a time. */
 enum { CHUNK = 1 << 14 };

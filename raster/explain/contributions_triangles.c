@@ -1,9 +1,9 @@
 /* What triangles do to a pixel. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "raster/contributions.h"
-#include "raster/triangle_tile.h"
+#include "core/base/memory.h"
+#include "raster/explain/pixel_contributions.h"
+#include "raster/triangles/triangle_tile.h"
 
 static conic_status make_room(conic_contributions *c, size_t n) {
   if (n <= c->triangle_list_room)

@@ -1,11 +1,11 @@
 /* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
 #include <string.h>
 
-#include "core/image_exr_deep.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/contributions.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/image/image_exr_deep.h"
+#include "raster/explain/pixel_contributions.h"
 
 /* A line that a thread works out; what it holds serves line after line. */
 typedef struct line {

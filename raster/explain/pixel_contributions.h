@@ -1,11 +1,11 @@
 /* The inside of a frame's contributions. */
-#ifndef RASTER_CONTRIBUTIONS_H
-#define RASTER_CONTRIBUTIONS_H
+#ifndef CONIC_PIXEL_CONTRIBUTIONS_H
+#define CONIC_PIXEL_CONTRIBUTIONS_H
 
 #include "conic/contributions.h"
-#include "raster/coverage.h"
-#include "raster/drawing.h"
-#include "raster/triangle_frame.h"
+#include "raster/frame/drawing.h"
+#include "raster/tiles/coverage.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* Rows of the picture whose splats are listed together. */
 enum { CONIC_CONTRIBUTION_BAND = 8 };

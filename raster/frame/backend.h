@@ -1,9 +1,9 @@
 /* What draws in the place of a renderer's own loops: another device. The renderer checks and prepares, the backend does
  * all the rest. */
-#ifndef RASTER_BACKEND_H
-#define RASTER_BACKEND_H
+#ifndef CONIC_BACKEND_H
+#define CONIC_BACKEND_H
 
-#include "raster/resolve.h"
+#include "raster/tiles/resolve.h"
 
 typedef struct conic_backend conic_backend;
 

@@ -1,10 +1,10 @@
-#include "raster/drawing.h"
+#include "raster/frame/drawing.h"
 
 #include <string.h>
 
-#include "raster/scene_scale.h"
-#include "raster/tile_kernels.h"
-#include "raster/triangle_frame.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/triangles/triangle_frame.h"
+#include "raster/view/scene_scale.h"
 
 void conic_whole_drawing_of(const conic_drawing *drawing, conic_whole_drawing *whole) {
   memset(whole, 0, sizeof *whole);

@@ -1,9 +1,9 @@
 /* One picture of what a drawing holds, without samples. */
-#ifndef RASTER_DRAWING_H
-#define RASTER_DRAWING_H
+#ifndef CONIC_DRAWING_H
+#define CONIC_DRAWING_H
 
 #include "conic/triangles.h"
-#include "raster/view.h"
+#include "raster/view/view.h"
 
 /* A drawing whose parts are there: an absent or empty set of splats is an empty one with axes, absent triangles are
  * none. */

@@ -4,19 +4,19 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "core/clock.h"
-#include "core/color.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/backend.h"
-#include "raster/bins.h"
-#include "raster/clip_lines.h"
-#include "raster/drawing.h"
-#include "raster/method.h"
-#include "raster/part.h"
-#include "raster/ticks.h"
-#include "raster/tile.h"
+#include "core/base/clock.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/frame/backend.h"
+#include "raster/frame/drawing.h"
+#include "raster/frame/tile.h"
+#include "raster/project/clip_lines.h"
+#include "raster/tiles/bins.h"
+#include "raster/view/method.h"
+#include "raster/view/part.h"
+#include "raster/view/ticks.h"
 
 /* Memory that is kept from frame to frame and only ever grows. */
 typedef struct kept {

@@ -3,14 +3,14 @@
 #include <string.h>
 
 #include "conic/render.h"
-#include "core/clock.h"
-#include "core/image.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/drawing.h"
-#include "raster/method.h"
-#include "raster/projected.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/image/image_common.h"
+#include "raster/frame/drawing.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on

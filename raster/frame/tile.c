@@ -1,10 +1,10 @@
-#include "raster/tile.h"
+#include "raster/frame/tile.h"
 
 #include <string.h>
 
-#include "raster/stream.h"
-#include "raster/ticks.h"
-#include "raster/triangle_tile.h"
+#include "core/lanes/stream.h"
+#include "raster/triangles/triangle_tile.h"
+#include "raster/view/ticks.h"
 
 _Static_assert(CONIC_GATHER_SLACK <= CONIC_SELECT_SLACK, "room behind the entries");
 

@@ -1,8 +1,8 @@
 /* One tile: its list of splats, shared out to its rows of blocks, and these drawn one after the other. */
-#ifndef RASTER_TILE_H
-#define RASTER_TILE_H
+#ifndef CONIC_TILE_H
+#define CONIC_TILE_H
 
-#include "raster/tile_kernels.h"
+#include "raster/kernels/tile_kernels.h"
 
 /* What a thread's tiles work in. */
 typedef struct conic_tile_scratch {
@@ -19,7 +19,7 @@ typedef struct conic_tile {
   size_t n_references;
   int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
   int keeps_indices;                  /* the image wants counts or ids */
-  float *hiding;                      /* not null: no picture is drawn, but this raised (raster/part.h) */
+  float *hiding;                      /* not null: no picture is drawn, but this raised (raster/view/part.h) */
   conic_tile_scratch scratch;
   const conic_triangle_frame *triangles; /* null: there are none in it */
   conic_triangle_tile *triangle_tile;    /* what they are drawn in */

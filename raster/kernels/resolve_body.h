@@ -1,6 +1,6 @@
-/* Pass 3 in lanes: conic_band_resolve (raster/resolve.c) a part of a block at a time, with the same operations in the
- * same order. Included by tile_kernels_body.h. */
-#include "raster/resolve.h"
+/* Pass 3 in lanes: conic_band_resolve (raster/tiles/resolve.c) a part of a block at a time, with the same operations in
+ * the same order. Included by tile_kernels_body.h. */
+#include "raster/tiles/resolve.h"
 
 /* The finished pixels of one part of a block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
 typedef struct finished {
@@ -12,7 +12,7 @@ CONIC_INLINE lanes dot_lanes(const lanes a[3], const lanes b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/* conic_shade (raster/shade.c). */
+/* conic_shade (raster/tiles/shade.c). */
 CONIC_INLINE void shade_lanes(const conic_finish *finish, const lanes albedo[3], const lanes normal[3],
                               const lanes mean_normal[3], const lanes viewer[3], lanes shaded[3]) {
   const conic_render_options *options = finish->options;

@@ -1,8 +1,8 @@
-#include "raster/tile_kernels.h"
+#include "raster/kernels/tile_kernels.h"
 
 #include <stddef.h>
 
-#include "core/processor.h"
+#include "core/lanes/processor.h"
 
 const char *conic_isa_name(conic_isa isa) {
   static const char *const names[CONIC_N_ISAS] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon"};

@@ -3,13 +3,13 @@
  * Contract of every slot: it writes what is named here and nothing else. Records are finite; a lane that is not covered
  * may hold anything, and is dropped by a comparison, never by a multiplication with zero. Sums are in the order of the
  * band's list. */
-#ifndef RASTER_TILE_KERNELS_H
-#define RASTER_TILE_KERNELS_H
+#ifndef CONIC_TILE_KERNELS_H
+#define CONIC_TILE_KERNELS_H
 
-#include "raster/bins.h"
-#include "raster/resolve.h"
-#include "raster/texture_places.h"
-#include "raster/triangle_frame.h"
+#include "raster/tiles/bins.h"
+#include "raster/tiles/resolve.h"
+#include "raster/tiles/texture_places.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* select may write so many entries past those that it counts. */
 #define CONIC_SELECT_SLACK 16

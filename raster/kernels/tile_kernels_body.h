@@ -1,8 +1,8 @@
 /* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
-#include "raster/coverage.h"
-#include "raster/lanes_store.h"
-#include "raster/laplace_body.h"
-#include "raster/tile_kernels.h"
+#include "core/lanes/lanes_store.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/project/laplace_body.h"
+#include "raster/tiles/coverage.h"
 
 /* A block is so many vectors. */
 #define CONIC_PARTS (CONIC_BLOCK_PIXELS / CONIC_LANES)
@@ -82,7 +82,7 @@ CONIC_INLINE void stream_record(void *to, const void *from, size_t bytes) {
   lanes_stream(to, from, bytes);
 }
 
-#include "raster/sort_body.h"
+#include "raster/tiles/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
@@ -338,7 +338,7 @@ static kernel_kind kind_of(const conic_kernel *kernel) {
   return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
 }
 
-/* conic_kernel_value of core/kernel.h, for kernels that are no Gaussian. */
+/* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
 CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
   if (kernel->type == CONIC_KERNEL_HAT)
     return 1.0f - lanes_sqrt(q) / kernel->cutoff;
@@ -484,11 +484,11 @@ static void accumulate(conic_band *band) {
   }
 }
 
-#include "raster/nearest_body.h"
-#include "raster/project_body.h"
-#include "raster/triangle_body.h"
+#include "raster/kernels/nearest_body.h"
+#include "raster/project/project_body.h"
+#include "raster/triangles/triangle_body.h"
 
-#include "raster/resolve_body.h"
+#include "raster/kernels/resolve_body.h"
 
 const conic_tile_kernels TABLE = {
     .name = NAME,

@@ -1,10 +1,10 @@
 /* The plain C reference of the kernels: a pixel at a time, by the definitions of coverage.h. */
 #include <string.h>
 
-#include "raster/coverage.h"
-#include "raster/stream.h"
-#include "raster/tile_kernels.h"
-#include "raster/triangle_tile.h"
+#include "core/lanes/stream.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/tiles/coverage.h"
+#include "raster/triangles/triangle_tile.h"
 
 /* The fragment of a footprint at a pixel: 1 where it is covered. */
 static int fragment_at(const conic_band *band, uint32_t i_footprint, int x, int y, conic_fragment *fragment) {
@@ -33,7 +33,7 @@ static inline void stream_record(void *to, const void *from, size_t bytes) {
   conic_stream_copy(to, from, bytes);
 }
 
-#include "raster/sort_body.h"
+#include "raster/tiles/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {

@@ -1,8 +1,8 @@
-#include "raster/clip_box.h"
+#include "raster/project/clip_box.h"
 
 #include <math.h>
 
-#include "raster/clip_disc.h"
+#include "raster/project/clip_disc.h"
 
 /* A part of the disc that lines bound: convex, so that on the screen its extremes are those of the outline, or corners
  * where the outline meets a line, or two lines meet. */
@@ -56,7 +56,7 @@ static void find_extremes(part *p) {
   const conic_disc *d = p->disc;
   double cutoff = (double)p->view->cutoff;
   p->n_points = 0;
-  for (int i = 0; i < 2; i++) /* along x and y: as in raster/clip_disc.c */
+  for (int i = 0; i < 2; i++) /* along x and y: as in raster/project/clip_disc.c */
     consider_outline(p, cutoff * (d->tv[i] * d->tu[2] - d->tu[i] * d->tv[2]), d->tv[i] * d->p[2] - d->p[i] * d->tv[2],
                      d->p[i] * d->tu[2] - d->tu[i] * d->p[2]);
   for (int i = 0; i < p->n_lines; i++) {

@@ -1,8 +1,8 @@
 /* How far what the clip lines leave of a disc reaches on the screen. */
-#ifndef RASTER_CLIP_BOX_H
-#define RASTER_CLIP_BOX_H
+#ifndef CONIC_CLIP_BOX_H
+#define CONIC_CLIP_BOX_H
 
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* The box, in pixels, of the part of the disc before near that `n_lines` lines keep, all of them, or one where `is_or`.
  * Returns 0 where they keep nothing. */

@@ -1,4 +1,4 @@
-#include "raster/clip_disc.h"
+#include "raster/project/clip_disc.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* The projection of a disc that may reach behind the camera, clipped at the near plane. */
-#ifndef RASTER_CLIP_DISC_H
-#define RASTER_CLIP_DISC_H
+#ifndef CONIC_CLIP_DISC_H
+#define CONIC_CLIP_DISC_H
 
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* A point of the clipped disc's outline on the screen. */
 typedef struct conic_screen_point {

@@ -1,10 +1,10 @@
-#include "raster/clip_lines.h"
+#include "raster/project/clip_lines.h"
 
 #include <string.h>
 
-#include "core/clip.h"
-#include "raster/clip_box.h"
-#include "raster/method.h"
+#include "core/splats/clip.h"
+#include "raster/project/clip_box.h"
+#include "raster/view/method.h"
 
 /* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */
 #define OVERLAP_PX (1.0 / 256.0)

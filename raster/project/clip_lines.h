@@ -2,12 +2,12 @@
  *
  * A footprint that has some is marked by the sign of s3, which q does not see: s3 > 0 is an ellipse without lines,
  * s3 < 0 one with lines, +0 a ray without and -0 a ray with them. Its lines are clips[its index]. */
-#ifndef RASTER_CLIP_LINES_H
-#define RASTER_CLIP_LINES_H
+#ifndef CONIC_CLIP_LINES_H
+#define CONIC_CLIP_LINES_H
 
 #include <math.h>
 
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* Two lines, dx and dy counted as for the footprint: line i keeps where (d0 + dy·by_y) + dx·by_x ≥ 0, with d0 the
  * distance of the reference in pixels and 1/256 px more, so that mates overlap. A line that is none keeps everything.

@@ -1,12 +1,12 @@
 /* The ray formula at the place that a pixel mostly sees: Laplace's method for the integral of kernel and filter
  * (docs/picture.md, Laplace). Rays of method `auto` whose perspective changes within a pixel's filter are drawn so;
  * s2, which rays have no other use for, is 1 for them. */
-#ifndef RASTER_LAPLACE_H
-#define RASTER_LAPLACE_H
+#ifndef CONIC_LAPLACE_H
+#define CONIC_LAPLACE_H
 
 #include <math.h>
 
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* A place counts as the disc's while u² is at most so many times F_g². */
 #define CONIC_LAPLACE_REACH 2.0f

@@ -1,5 +1,6 @@
-/* raster/laplace.h lane by lane, with the same operations in the same order. Included by tile_kernels_body.h. */
-#include "raster/laplace.h"
+/* raster/project/laplace.h lane by lane, with the same operations in the same order. Included by tile_kernels_body.h.
+ */
+#include "raster/project/laplace.h"
 
 typedef struct spots {
   lanes iz, r, u, v;

@@ -1,11 +1,11 @@
-/* Projection in lanes: conic_project_one (raster/project.c) for a group of splats at once, with the same operations in
- * the same order. What is not usual (near the camera, drawn by ray, not finite) is left to conic_project_one itself.
- * Included by tile_kernels_body.h. */
+/* Projection in lanes: conic_project_one (raster/project/project_splats.c) for a group of splats at once, with the same
+ * operations in the same order. What is not usual (near the camera, drawn by ray, not finite) is left to
+ * conic_project_one itself. Included by tile_kernels_body.h. */
 #include <math.h>
 
-#include "raster/lanes_double.h"
-#include "raster/method.h"
-#include "raster/projected.h"
+#include "core/lanes/lanes_double.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
 
 /* So many splats are looked at at a time for whether they face away, and what is left of them is packed. */
 enum { BATCH = 512 };
@@ -489,7 +489,7 @@ CONIC_INLINE void project_group(const conic_view *view, const conic_splats *spla
     write_records(&s, &r, usual, projected, chunk);
 }
 
-#include "raster/pack_body.h"
+#include "raster/project/pack_body.h"
 
 static void project(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                     conic_projected *projected, conic_chunk *chunk) {

@@ -1,7 +1,7 @@
 #include <math.h>
 
-#include "raster/clip_disc.h"
-#include "raster/projected.h"
+#include "raster/project/clip_disc.h"
+#include "raster/project/projected.h"
 
 /* The functions here take the few splats that come near the camera (or all of method `ray`), so they compute in double:
  * p may be behind the eye, and M's adjugate has to hold. */

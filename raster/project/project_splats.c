@@ -1,9 +1,9 @@
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "raster/method.h"
+#include "raster/view/method.h"
 
 /* A splat in camera space, divided by p_z: x and y then are on the image plane at distance 1. */
 typedef struct tangents {
@@ -189,7 +189,7 @@ static int is_steep(const conic_view *view, const tangents *t) {
   return view->prefilter * (nx * nx + ny * ny) > limit * (area * area);
 }
 
-/* h·V⁻¹ of the Jacobian at p, for raster/laplace.h. */
+/* h·V⁻¹ of the Jacobian at p, for raster/project/laplace.h. */
 static void set_laplace(const conic_view *view, const tangents *t, conic_footprint *footprint, conic_ray *ray) {
   float h = view->prefilter, area = t->ux * t->vy - t->uy * t->vx;
   float rxx = t->ux * t->ux + t->vx * t->vx, rxy = t->ux * t->uy + t->vx * t->vy, ryy = t->uy * t->uy + t->vy * t->vy;

@@ -1,10 +1,10 @@
 /* Projected splats: what one frame needs to know of each splat that it may draw. */
-#ifndef RASTER_PROJECTED_H
-#define RASTER_PROJECTED_H
+#ifndef CONIC_PROJECTED_H
+#define CONIC_PROJECTED_H
 
 #include <stdint.h>
 
-#include "raster/view.h"
+#include "raster/view/view.h"
 
 /* The part that both passes read, one cache line.
  *
@@ -12,8 +12,8 @@
  * their precision depends neither on the place on the screen nor on the tile. q  = (s1·dx + s2·dy)² + (s3·dy)², the
  * Cholesky form of δᵀV⁻¹δ: without the cancellation that a needle's expanded quadratic has; covered where q < support
  *   iz = iz0 + iz_dy·dy + iz_dx·dx, clamped to [iz_far, iz_near]: inverse depth
- * The sign of s3 says whether the splat has clip lines (raster/clip_lines.h). Where s3 is 0 the splat is drawn by the
- * exact ray–splat parameter, with the coefficients of rays[i_ray]. */
+ * The sign of s3 says whether the splat has clip lines (raster/project/clip_lines.h). Where s3 is 0 the splat is drawn
+ * by the exact ray–splat parameter, with the coefficients of rays[i_ray]. */
 typedef struct conic_footprint {
   float x, y; /* whole numbers */
   float dx0, dy0;
@@ -41,9 +41,9 @@ static inline int conic_box_is_empty(const conic_box *box) {
 
 /* u = U/iz, v = V/iz, each of U, V affine on the screen like iz: the splat's parameter at a pixel.
  *
- * Where the footprint's s2 is not 0 (raster/laplace.h) the reference is the projected p, so that u0 = v0 = 0 and no
- * range of iz is needed. Their places hold h·V⁻¹ of the Jacobian at p: what it makes of (dx, dy) is how far from the
- * pixel the place is that it mostly sees. */
+ * Where the footprint's s2 is not 0 (raster/project/laplace.h) the reference is the projected p, so that u0 = v0 = 0
+ * and no range of iz is needed. Their places hold h·V⁻¹ of the Jacobian at p: what it makes of (dx, dy) is how far from
+ * the pixel the place is that it mostly sees. */
 typedef struct conic_ray {
   union {
     float u0;
@@ -85,8 +85,8 @@ typedef struct conic_chunk {
   size_t n_culled, n_skipped, n_fallback;
 } conic_chunk;
 
-/* Projected splats, chunk by chunk, each in file order until raster/bins.h sorts it. The arrays have room for every
- * splat of the chunks; only what is drawn is touched. */
+/* Projected splats, chunk by chunk, each in file order until raster/tiles/bins.h sorts it. The arrays have room for
+ * every splat of the chunks; only what is drawn is touched. */
 typedef struct conic_projected {
   size_t n_chunks, chunk_size;
   conic_chunk *chunks;

@@ -1,13 +1,13 @@
 /* One row of a tile's blocks of 4 × 4 pixels, the unit of the passes. What they hand to each other stays in the nearest
  * caches: visibility goes splat by splat and keeps its fragments, block by block; accumulation then takes a block's
  * fragments one after the other, with the sums in registers. */
-#ifndef RASTER_BAND_H
-#define RASTER_BAND_H
+#ifndef CONIC_BAND_H
+#define CONIC_BAND_H
 
 #include <string.h>
 
 #include "conic/image.h"
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* The final weight of a visible splat is never below this, so that no sum is zero and no product denormal. */
 #define CONIC_LEAST_WEIGHT 0x1p-60f

@@ -1,10 +1,10 @@
-#include "raster/bins.h"
+#include "raster/tiles/bins.h"
 
 #include <string.h>
 
-#include "raster/bins_tiles.h"
-#include "raster/clip_lines.h"
-#include "raster/tile_kernels.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/project/clip_lines.h"
+#include "raster/tiles/bins_tiles.h"
 
 static size_t rounded(size_t bytes) {
   return (bytes + 63) / 64 * 64;

@@ -1,11 +1,11 @@
 /* Which splats may touch which tile. A chunk's records are brought into the order of their tiles, so that what a tile
  * reads lies together; its entries stay in file order. */
-#ifndef RASTER_BINS_H
-#define RASTER_BINS_H
+#ifndef CONIC_BINS_H
+#define CONIC_BINS_H
 
 #include <stdatomic.h>
 
-#include "raster/band.h"
+#include "raster/tiles/band.h"
 
 struct conic_tile_kernels;
 

@@ -1,8 +1,8 @@
 /* Which tiles a box meets, and by which words: what counting and sorting ask alike. */
-#ifndef RASTER_BINS_TILES_H
-#define RASTER_BINS_TILES_H
+#ifndef CONIC_BINS_TILES_H
+#define CONIC_BINS_TILES_H
 
-#include "raster/bins.h"
+#include "raster/tiles/bins.h"
 
 /* The tiles that a box touches. */
 typedef struct conic_tile_range {

@@ -1,11 +1,11 @@
 /* The one place that says whether a splat covers a pixel, with what weight, and how deep: shared by both passes and by
  * resolving, so that they agree in every bit. */
-#ifndef RASTER_COVERAGE_H
-#define RASTER_COVERAGE_H
+#ifndef CONIC_COVERAGE_H
+#define CONIC_COVERAGE_H
 
-#include "raster/band.h"
-#include "raster/clip_lines.h"
-#include "raster/laplace.h"
+#include "raster/project/clip_lines.h"
+#include "raster/project/laplace.h"
+#include "raster/tiles/band.h"
 
 /* A splat on one row of pixels. */
 typedef struct conic_row {

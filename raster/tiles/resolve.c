@@ -1,9 +1,9 @@
-#include "raster/resolve.h"
+#include "raster/tiles/resolve.h"
 
 #include <math.h>
 
-#include "raster/coverage.h"
-#include "raster/triangle_frame.h"
+#include "raster/tiles/coverage.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* A finished pixel, before it is written to the planes that the image has. */
 typedef struct pixel {

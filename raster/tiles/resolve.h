@@ -1,8 +1,8 @@
 /* Pass 3: normalising, shading, and writing a band's pixels to the planes that the image has. */
-#ifndef RASTER_RESOLVE_H
-#define RASTER_RESOLVE_H
+#ifndef CONIC_RESOLVE_H
+#define CONIC_RESOLVE_H
 
-#include "raster/band.h"
+#include "raster/tiles/band.h"
 
 /* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
  * the scans and meshes: the darkest side stays readable and white does not burn out. */

@@ -1,6 +1,6 @@
 /* A chunk's records into the order of their tiles, with their entries. Included by the tables of kernels, which define
  * how stream_record copies half a cache line or a whole one, both so aligned, past the caches. */
-#include "raster/bins_tiles.h"
+#include "raster/tiles/bins_tiles.h"
 
 /* The entries of a record in all of its tiles, which are many. Kept out of the loop, which needs the registers. */
 static __attribute__((noinline)) void enter_all(const conic_bins *bins, const conic_box *box, uint32_t i_record,

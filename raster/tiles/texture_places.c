@@ -1,4 +1,4 @@
-#include "raster/texture_places.h"
+#include "raster/tiles/texture_places.h"
 
 void conic_texture_at_places(const conic_texture *texture, const conic_texture_places *places, uint32_t pixels,
                              float color[3][CONIC_BLOCK_PIXELS]) {

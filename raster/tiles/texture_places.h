@@ -1,11 +1,11 @@
 /* Where a block's pixels see a texture. */
-#ifndef RASTER_TEXTURE_PLACES_H
-#define RASTER_TEXTURE_PLACES_H
+#ifndef CONIC_TEXTURE_PLACES_H
+#define CONIC_TEXTURE_PLACES_H
 
 #include <stdint.h>
 
 #include "conic/texture.h"
-#include "raster/band.h"
+#include "raster/tiles/band.h"
 
 /* As conic_texture_sample takes them, by the order of a block's pixels. */
 typedef struct conic_texture_places {

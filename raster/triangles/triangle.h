@@ -2,14 +2,14 @@
  * all that must agree in every bit (docs/picture.md, Triangles).
  *
  * Vertices are snapped to 1/256 pixel; from there on coverage is exact, in integers. */
-#ifndef RASTER_TRIANGLE_H
-#define RASTER_TRIANGLE_H
+#ifndef CONIC_TRIANGLE_H
+#define CONIC_TRIANGLE_H
 
 #include <math.h>
 #include <stdint.h>
 
-#include "raster/band.h"
-#include "raster/projected.h"
+#include "raster/project/projected.h"
+#include "raster/tiles/band.h"
 
 /* Before the type of what a frame or a set of triangles holds: a device has a memory of its own for that, and names it
  * here (opencl/triangle_set.cl). */

@@ -1,10 +1,10 @@
 /* The triangles' slots in lanes: the operations of triangle_vertices.c and triangle_tile.c in the same order. Included
  * by tile_kernels_body.h. */
-#include "raster/lanes_double.h"
-#include "raster/texture_body.h"
-#include "raster/triangle_look.h"
-#include "raster/triangle_pixel.h"
-#include "raster/triangle_tile.h"
+#include "core/lanes/lanes_double.h"
+#include "raster/triangles/texture_body.h"
+#include "raster/triangles/triangle_look.h"
+#include "raster/triangles/triangle_pixel.h"
+#include "raster/triangles/triangle_tile.h"
 
 /* half_of_value's vectors of integers as they are compared. */
 CONIC_INLINE half_masks flag_where(half_masks mask, int64_t bits) {

@@ -4,7 +4,7 @@
  * same new corner, bit for bit. */
 #include <string.h>
 
-#include "raster/triangle_frame.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* Whether a comes before b, by their places alone. */
 static int is_first(const conic_clip_corner *a, const conic_clip_corner *b) {

@@ -1,12 +1,12 @@
-#include "raster/triangle_frame.h"
+#include "raster/triangles/triangle_frame.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/tile_kernels.h"
-#include "raster/triangle_sort.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/triangles/triangle_sort.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
 enum { VERTICES_TOGETHER = 8192, TRIANGLES_TOGETHER = 8192 };

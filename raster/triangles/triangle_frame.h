@@ -1,12 +1,12 @@
 /* A frame's triangles: projected, clipped, and shared out to tiles. */
-#ifndef RASTER_TRIANGLE_FRAME_H
-#define RASTER_TRIANGLE_FRAME_H
+#ifndef CONIC_TRIANGLE_FRAME_H
+#define CONIC_TRIANGLE_FRAME_H
 
 #include <stdatomic.h>
 
 #include "conic/triangles.h"
-#include "raster/band.h"
-#include "raster/triangle.h"
+#include "raster/tiles/band.h"
+#include "raster/triangles/triangle.h"
 
 struct conic_tile_kernels;
 

@@ -1,4 +1,4 @@
-#include "raster/triangle_look.h"
+#include "raster/triangles/triangle_look.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* What a triangle looks like within a block of pixels: its attributes, ready to be evaluated a pixel at a time. */
-#ifndef RASTER_TRIANGLE_LOOK_H
-#define RASTER_TRIANGLE_LOOK_H
+#ifndef CONIC_TRIANGLE_LOOK_H
+#define CONIC_TRIANGLE_LOOK_H
 
-#include "raster/triangle_frame.h"
+#include "raster/triangles/triangle_frame.h"
 
 typedef struct conic_triangle_look {
   conic_affine iz, first, second; /* inverse depth; the weights of the record's second and third corner, times theirs */

@@ -1,11 +1,11 @@
 /* What a triangle looks like at one pixel. Shared by plain C and by a device's programs (opencl/triangles.cl);
  * triangle_body.h does the same in lanes. */
-#ifndef RASTER_TRIANGLE_PIXEL_H
-#define RASTER_TRIANGLE_PIXEL_H
+#ifndef CONIC_TRIANGLE_PIXEL_H
+#define CONIC_TRIANGLE_PIXEL_H
 
 #include <math.h>
 
-#include "raster/triangle_look.h"
+#include "raster/triangles/triangle_look.h"
 
 /* The weights of the triangle's second and third corner at a pixel of the block, and how they change from pixel to
  * pixel. */

@@ -1,5 +1,5 @@
 /* From vertices on the screen to records of what may cover a sample. */
-#include "raster/triangle_sort.h"
+#include "raster/triangles/triangle_sort.h"
 
 typedef enum fate { DRAWN, CULLED, SKIPPED } fate;
 

@@ -1,8 +1,8 @@
 /* A chunk of triangles on its way to the tiles. */
-#ifndef RASTER_TRIANGLE_SORT_H
-#define RASTER_TRIANGLE_SORT_H
+#ifndef CONIC_TRIANGLE_SORT_H
+#define CONIC_TRIANGLE_SORT_H
 
-#include "raster/triangle_frame.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* The most pieces that a triangle is clipped into. */
 enum { CONIC_TRIANGLE_PIECES_MOST = CONIC_CLIPPED_CORNERS - 2 };

@@ -1,11 +1,11 @@
 /* The plain C reference of the triangles' slots: a sample at a time. */
-#include "raster/triangle_tile.h"
+#include "raster/triangles/triangle_tile.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "raster/coverage.h"
-#include "raster/triangle_pixel.h"
+#include "raster/tiles/coverage.h"
+#include "raster/triangles/triangle_pixel.h"
 
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,
                              conic_band *band) {

@@ -1,9 +1,9 @@
 /* A tile's triangles: which is the nearest at each pixel, and what that does to the splats' passes. */
-#ifndef RASTER_TRIANGLE_TILE_H
-#define RASTER_TRIANGLE_TILE_H
+#ifndef CONIC_TRIANGLE_TILE_H
+#define CONIC_TRIANGLE_TILE_H
 
-#include "raster/resolve.h"
-#include "raster/triangle_frame.h"
+#include "raster/tiles/resolve.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* Points the band to the tile's row; null where no triangle is in it. */
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row, conic_band *band);

@@ -1,5 +1,5 @@
 /* Vertices on the screen, in plain C; triangle_body.h does the same in lanes. */
-#include "raster/triangle_frame.h"
+#include "raster/triangles/triangle_frame.h"
 
 static double bounded(double value, double most) {
   value = value > -most ? value : -most;

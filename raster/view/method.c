@@ -1,5 +1,5 @@
 /* The methods' names, and what of a frame was drawn by which. */
-#include "raster/method.h"
+#include "raster/view/method.h"
 
 const char *conic_method_name(conic_method method) {
   static const char *const names[CONIC_N_METHODS] = {"conic", "ray", "affine", "point", "disc", "auto"};

@@ -1,6 +1,6 @@
 /* What the methods have in common, apart from how each draws. */
-#ifndef RASTER_METHOD_H
-#define RASTER_METHOD_H
+#ifndef CONIC_METHOD_H
+#define CONIC_METHOD_H
 
 #include "conic/render.h"
 

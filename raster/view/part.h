@@ -1,7 +1,7 @@
 /* Parts of a frame: a window of its pixels, or only how deep it hides. Both are of the whole picture's own arithmetic,
  * bit for bit. */
-#ifndef RASTER_PART_H
-#define RASTER_PART_H
+#ifndef CONIC_PART_H
+#define CONIC_PART_H
 
 #include "conic/render.h"
 

@@ -1,4 +1,4 @@
-#include "raster/scene_scale.h"
+#include "raster/view/scene_scale.h"
 
 conic_status conic_scene_scale(conic_context *context, const conic_splats *splats, conic_render_options *options) {
   if (!(options->near_z > 0.0))

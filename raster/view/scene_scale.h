@@ -1,6 +1,6 @@
 /* What of a scene its picture depends on as a whole. */
-#ifndef RASTER_SCENE_SCALE_H
-#define RASTER_SCENE_SCALE_H
+#ifndef CONIC_SCENE_SCALE_H
+#define CONIC_SCENE_SCALE_H
 
 #include "conic/render.h"
 

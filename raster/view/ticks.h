@@ -1,6 +1,6 @@
 /* A clock that costs next to nothing, for shares of time only: its unit is the machine's. */
-#ifndef RASTER_TICKS_H
-#define RASTER_TICKS_H
+#ifndef CONIC_TICKS_H
+#define CONIC_TICKS_H
 
 #include <stdint.h>
 

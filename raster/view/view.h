@@ -1,12 +1,12 @@
 /* What one frame asks for, brought into the form that the stages compute with. */
-#ifndef RASTER_VIEW_H
-#define RASTER_VIEW_H
+#ifndef CONIC_VIEW_H
+#define CONIC_VIEW_H
 
 #include "conic/camera.h"
 #include "conic/context.h"
 #include "conic/render.h"
 #include "conic/splats.h"
-#include "core/kernel.h"
+#include "core/splats/kernel.h"
 
 /* c of the automatic ε = c·F_g·max(|t_u|, |t_v|). */
 #define CONIC_EPSILON_C 1.0f

@@ -1,6 +1,6 @@
-#include "surface/kernels.h"
+#include "surface/kernels/surface_kernels.h"
 
-#include "core/processor.h"
+#include "core/lanes/processor.h"
 
 #if defined(__x86_64__)
 

@@ -2,8 +2,8 @@
  *
  * Every sum is of eight partial ones: neighbour i is added to number i mod 8, and these are added as
  * ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)). So vectors of any width give the plain loop's bits. */
-#ifndef SURFACE_KERNELS_H
-#define SURFACE_KERNELS_H
+#ifndef CONIC_SURFACE_KERNELS_H
+#define CONIC_SURFACE_KERNELS_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,8 +1,9 @@
 /* The kernels in vectors as wide as a register: included by one file an instruction set, with TABLE and NAME. Eight
  * partial sums a total, whatever the width: a narrow vector goes through all neighbours once for each part of the
- * eight. Each lane does what surface/kernels_scalar.c and surface/weight.h do, in their order. */
-#include "surface/kernels.h"
-#include "surface/weight.h"
+ * eight. Each lane does what surface/kernels/surface_kernels_scalar.c and surface/kernels/weight.h do, in their order.
+ */
+#include "surface/kernels/surface_kernels.h"
+#include "surface/kernels/weight.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>

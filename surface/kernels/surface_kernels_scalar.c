@@ -1,6 +1,6 @@
 /* The kernels in plain C: the reference. */
-#include "surface/kernels.h"
-#include "surface/weight.h"
+#include "surface/kernels/surface_kernels.h"
+#include "surface/kernels/weight.h"
 
 typedef double partial[CONIC_NEAR_LANES];
 

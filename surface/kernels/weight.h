@@ -1,12 +1,12 @@
 /* θ, a sample's weight, and its derivatives: the plain code that the vector bodies repeat operation by operation. */
-#ifndef SURFACE_WEIGHT_H
-#define SURFACE_WEIGHT_H
+#ifndef CONIC_WEIGHT_H
+#define CONIC_WEIGHT_H
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "surface/kernels.h"
+#include "surface/kernels/surface_kernels.h"
 
 /* log₂ e; 1.5·2⁵², which rounds a sum to an integer; ln 2 in two parts, so that k times the first is exact. */
 #define CONIC_WEIGHT_LOG2E 0x1.71547652b82fep+0

@@ -1,11 +1,11 @@
 /* A polynomial patch, and the grids that it is sampled on. */
-#ifndef SURFACE_PATCH_H
-#define SURFACE_PATCH_H
+#ifndef CONIC_PATCH_H
+#define CONIC_PATCH_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 /* The place (s, t) of the unit disc is at center + s·along + t·across + g(s, t)·normal, relative to the set's origin,
  * with g = Σ c_k s^i t^j in world units, k counting 1, s, t, s², st, t² … `along` and `across` are as long as the

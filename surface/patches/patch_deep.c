@@ -1,7 +1,7 @@
 /* Patches near the eye: cut into cells, those out of sight left out, each sampled as finely as it is near. */
 #include <math.h>
 
-#include "surface/patches.h"
+#include "surface/patches/patch_set.h"
 
 enum { CELL_ROWS = 16, DEEPEST_CELL = 22 };
 

@@ -1,8 +1,8 @@
 /* A patch on a grid, by forward differences (PSS §6.2). */
 #include <math.h>
 
-#include "surface/patch.h"
-#include "surface/weight.h"
+#include "surface/kernels/weight.h"
+#include "surface/patches/patch.h"
 
 #define TWO_PI 6.283185307179586
 

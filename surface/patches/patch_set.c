@@ -1,12 +1,12 @@
 /* Laying patches: a polynomial about every point, and how far it is to be trusted. */
-#include "surface/patches.h"
+#include "surface/patches/patch_set.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 

@@ -1,10 +1,10 @@
 /* A set's patches, and what a picture takes of them. */
-#ifndef SURFACE_PATCHES_H
-#define SURFACE_PATCHES_H
+#ifndef CONIC_PATCH_SET_H
+#define CONIC_PATCH_SET_H
 
 #include "conic/patches.h"
-#include "surface/patch.h"
-#include "surface/patches_view.h"
+#include "surface/patches/patch.h"
+#include "surface/patches/patches_view.h"
 
 /* What becomes of a slot in a picture; from PLAN_GRID on, which grid of the pyramid. FADING is beside a grid: the splat
  * is drawn too, so that one goes over into the other. */

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/threads.h"
-#include "surface/patches.h"
+#include "core/base/threads.h"
+#include "surface/patches/patch_set.h"
 
 const int conic_grid_sizes[CONIC_N_GRIDS] = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "surface/patches.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "surface/patches/patch_set.h"
 
 enum { CHUNK = 256 };
 

@@ -1,4 +1,4 @@
-#include "surface/patches_view.h"
+#include "surface/patches/patches_view.h"
 
 #include <math.h>
 

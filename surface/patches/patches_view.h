@@ -1,6 +1,6 @@
 /* What a camera sees, for whoever chooses what to draw: spheres in sight, and lengths on the screen. */
-#ifndef SURFACE_PATCHES_VIEW_H
-#define SURFACE_PATCHES_VIEW_H
+#ifndef CONIC_PATCHES_VIEW_H
+#define CONIC_PATCHES_VIEW_H
 
 #include "conic/camera.h"
 #include "conic/render.h"

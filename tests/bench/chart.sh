@@ -3,7 +3,7 @@
 # and fronts.
 set -uo pipefail
 
-source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
+source "$1/tests/support/program.bash"
 
 run 0 chart -o small --quick --json chart.json
 n_points=$(sed -nE 's/^  "points": ([0-9]+),$/\1/p' chart.json)

@@ -1,7 +1,7 @@
 /* The inside of conic bench: medians, the comparison of pictures, lines that are measured, the model of their work. */
-#include "cli/bench.h"
+#include "bench/bench.h"
 #include "cli/command.h"
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 const cli_command *cli_find_command(const char *name) {
   (void)name;

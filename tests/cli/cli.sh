@@ -2,7 +2,7 @@
 # The program as its users and their scripts rely on it: help, exit codes, messages, and nothing half-written.
 set -uo pipefail
 
-source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
+source "$1/tests/support/program.bash"
 # The same for a run that must fail: one line on standard error, in the one form; nothing on standard output.
 run_wrong() { # EXIT_CODE, PATTERN, ARGUMENTS …
   local pattern=$2

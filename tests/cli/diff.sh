@@ -2,7 +2,7 @@
 # conic diff: exit codes, statistics, heat maps; and EXR files as other programs write and read them.
 set -uo pipefail
 
-source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
+source "$1/tests/support/program.bash"
 
 # run_diff EXIT_CODE ARGUMENTS …
 run_diff() {

@@ -2,7 +2,7 @@
 # conic explain and render --deep: exit codes, what is answered, and that another program reads the deep image.
 set -uo pipefail
 
-source "$(dirname "${BASH_SOURCE[0]}")/program.bash"
+source "$1/tests/support/program.bash"
 has() { # PATTERN: in the output
   grep -qe "$1" out || fail "no \"$1\" in: $(head -c 1500 out)"
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # conic hybrid, conic render and conic info of a .chy: what the command line promises.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 
 value() { # KEY FILE: the first value of a key in a JSON file
   sed -nE "s/^ *\"$1\": \"?([^\",]*)\"?,?$/\1/p" "$2" | head -n 1

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # conic layer, and conic info of a .lpc: what the command line promises.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 
 if ! "$conic" --version | grep '^In this build:' | grep -q zstd; then
   run 0 make sphere -n 100 -o sphere.ply

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # conic render of .lpc files and URLs: what the command line promises, against nginx on the loopback.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 
 export no_proxy=127.0.0.1
 nginx=$(command -v nginx || ls /usr/sbin/nginx 2> /dev/null || true)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # conic octree, conic render --error and --budget, conic info of a .cot: what the command line promises.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 
 
 value() { # KEY FILE: the first value of a key in a JSON file

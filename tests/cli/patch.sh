@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # --method patch: what the command line promises of it.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 
 value() { # KEY FILE: the first number of a key in a JSON file
   sed -nE "s/^ *\"$1\": \"?([^\",]*)\"?,?$/\1/p" "$2" | head -n 1

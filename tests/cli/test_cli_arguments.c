@@ -3,7 +3,7 @@
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "cli/suggest.h"
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 const cli_command *cli_find_command(const char *name) {
   (void)name;

@@ -2,8 +2,8 @@
 #include <float.h>
 
 #include "cli/command.h"
-#include "cli/json.h"
-#include "tests/check.h"
+#include "cli/json_write.h"
+#include "tests/support/check.h"
 
 const cli_command *cli_find_command(const char *name) {
   (void)name;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # conic devices and --device opencl: the same files as the CPU's, exit codes, the cache of built programs.
 set -uo pipefail
-# shellcheck source=tests/program.bash
-source "$1/tests/program.bash"
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
 data=$1/../shared/data
 export XDG_CACHE_HOME=$work/cache
 

@@ -1,6 +1,6 @@
 /* On an OpenCL device, whole pictures are those of the CPU, in every bit of every plane: all methods and kernels, clip
  * lines, both pass modes, splats friendly and hostile, in one part and in several, by tiles and by pixels. */
-#include "tests/opencl_fixture.h"
+#include "tests/support/opencl_fixture.h"
 
 enum { N_RENDERERS = 6 };
 

@@ -3,8 +3,8 @@
  * pass. */
 #include "opencl/frame.h"
 #include "opencl/program.h"
-#include "raster/coverage.h"
-#include "tests/opencl_fixture.h"
+#include "raster/tiles/coverage.h"
+#include "tests/support/opencl_fixture.h"
 
 enum { N_VALUES = 4096, N_ANSWERS = 8, N_FRAGMENT_NUMBERS = 5 };
 

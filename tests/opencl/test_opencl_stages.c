@@ -1,8 +1,8 @@
 /* Each stage of a frame on an OpenCL device, downloaded and compared with plain C's: records, tile lists, thresholds,
  * sums. */
 #include "opencl/frame.h"
-#include "raster/coverage.h"
-#include "tests/opencl_fixture.h"
+#include "raster/tiles/coverage.h"
+#include "tests/support/opencl_fixture.h"
 
 /* What plain C makes of the splats: one chunk of records in file order, and what every pixel then has. */
 typedef struct expectation {

@@ -1,9 +1,9 @@
 /* On an OpenCL device, pictures of triangles, alone and together with splats, are those of the CPU, in every bit of
  * every plane: large and smaller than a pixel, clipped, culled, with all attributes and none, by tiles and by pixels.
  */
-#include "opencl/renderer.h"
-#include "tests/opencl_fixture.h"
-#include "tests/triangle_fixture.h"
+#include "opencl/opencl_renderer.h"
+#include "tests/support/opencl_fixture.h"
+#include "tests/support/triangle_fixture.h"
 
 enum { N_RENDERERS = 4 };
 

@@ -1,6 +1,6 @@
 /* The oracle against what can be worked out by hand, the renderer against the oracle on scenes that are hard on it, and
  * the comparison against errors that it must see. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static const double pi = 3.14159265358979323846;
 

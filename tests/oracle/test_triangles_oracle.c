@@ -1,5 +1,5 @@
 /* Pictures of triangles, alone and among splats, against the oracle. */
-#include "tests/triangle_fixture.h"
+#include "tests/support/triangle_fixture.h"
 
 static void check(fixture *f, const conic_triangles *t, const char *what, int samples) {
   const conic_drawing drawing = {f->splats.count ? &f->splats : NULL, t};

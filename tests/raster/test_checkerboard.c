@@ -1,6 +1,6 @@
 /* A checkerboard that runs towards the horizon (PAS Fig. 6), against the board filtered analytically: the average of
  * the exact board under the pixel's Gaussian. The prefilter must earn its keep where the squares are small. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 enum { WIDTH = 320, HEIGHT = 200, N_SPLATS = 420 };
 

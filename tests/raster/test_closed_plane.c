@@ -1,7 +1,7 @@
 /* A plane of discs whose outlines just cover it (PAS Figs. 3 and 7) has no hole, however flat and far off the axis it
  * is seen; and outlines that touch in space touch on the screen. */
-#include "raster/coverage.h"
-#include "tests/fixture.h"
+#include "raster/tiles/coverage.h"
+#include "tests/support/fixture.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };
 

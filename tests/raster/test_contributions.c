@@ -1,7 +1,7 @@
 /* What stands behind a picture's pixels: added up, it is the picture, bit for bit; and the deep file holds it. */
 #include <unistd.h>
 
-#include "tests/deep_file.h"
+#include "tests/support/deep_file.h"
 
 enum { NEAR_KNOT, INSIDE_TORUS, SHARP_CUBE, N_SCENES };
 

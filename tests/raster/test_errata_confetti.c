@@ -1,8 +1,8 @@
 /* Confetti's formulas as printed against as corrected: each check fails with the one and holds with the other. */
-#include "core/eigen.h"
-#include "core/ellipse.h"
-#include "tests/check.h"
-#include "tests/random.h"
+#include "core/base/eigen.h"
+#include "core/splats/ellipse.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 enum { N_POINTS = 20000 };
 

@@ -1,6 +1,6 @@
 /* Perspective Accurate Splatting as printed and as corrected: each row of docs/errata.md is shown to be wrong as
  * printed and right as corrected, against sampled contours and a numerical convolution. Independent of the renderer. */
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 typedef double matrix3[3][3];
 

@@ -1,7 +1,7 @@
 /* A scene in map coordinates looks as it does at the origin, whichever format it comes in. */
-#include "tests/files.h"
-#include "tests/las_file.h"
-#include "tests/random.h"
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
+#include "tests/support/random_numbers.h"
 
 enum { N_POINTS = 6000, SIZE = 256 };
 

@@ -1,7 +1,7 @@
 /* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
  * And every plane is defined on every pixel. */
-#include "raster/tile_kernels.h"
-#include "tests/fixture.h"
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {
   static const float specials[] = {NAN, INFINITY, -INFINITY, 0.0f, -0.0f, 1e-42f, 1e30f, -1e30f, 1e-20f, 3e38f};

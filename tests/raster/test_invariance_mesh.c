@@ -1,9 +1,9 @@
 /* One image, one set of bits, of meshes and of hybrid models: over threads, tile sizes, instruction sets and passes;
  * and the models themselves over threads. */
-#include "lod/hybrid.h"
-#include "raster/tile_kernels.h"
-#include "tests/hybrid_fixture.h"
-#include "tests/triangle_fixture.h"
+#include "lod/hybrid/hybrid_model.h"
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/hybrid_fixture.h"
+#include "tests/support/triangle_fixture.h"
 
 enum { WIDTH = 190, HEIGHT = 130, N_PASSES = 2 };
 

@@ -1,6 +1,6 @@
 /* Where other splatters open holes: discs that reach the camera plane, the eye in a splat's plane, centres behind the
  * eye. A floor that runs under the camera must fill the picture up to the horizon, and not a pixel above it. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 /* A floor of n × n overlapping discs at `height` below the eye, from behind it to far ahead, rolled about the view
  * axis. */

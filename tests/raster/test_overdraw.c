@@ -1,5 +1,5 @@
 /* The false colours of how many splats a pixel blends. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static void expect(const float *pixel, float red, float green, float blue) {
   CHECK(pixel[0] == red && pixel[1] == green && pixel[2] == blue && pixel[3] == 1.0f);

@@ -1,7 +1,7 @@
 /* The projected outline and box against sampled contours, through the projection stage itself, from frontal to edge-on.
  */
-#include "raster/projected.h"
-#include "tests/fixture.h"
+#include "raster/project/projected.h"
+#include "tests/support/fixture.h"
 
 typedef struct contour {
   double x_min, x_max, y_min, y_max;

@@ -1,5 +1,5 @@
 /* Supersampling: against the fine picture reduced by hand, against the oracle, and that edges have no fringes. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static void render_samples(fixture *f, int samples) {
   conic_image_release(f->context, &f->image);

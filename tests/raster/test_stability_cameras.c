@@ -1,6 +1,6 @@
 /* Cameras that break other renderers: inside a model, close to it, far from it, narrow, wide, rolled, off-centre, of
  * odd shapes (docs/stability.md). */
-#include "tests/stability.h"
+#include "tests/support/stability.h"
 
 enum { N_SPHERE = 3000 };
 

@@ -1,6 +1,6 @@
 /* The splats that break other renderers (docs/stability.md), each against the oracle and against what can be said of it
  * beforehand. */
-#include "tests/stability.h"
+#include "tests/support/stability.h"
 
 static void straight(fixture *f, int width, int height, double focal_px) {
   conic_render_options_init(&f->options);

@@ -1,7 +1,7 @@
 /* The slot `texture` of every kernel table against the plain C one, bit for bit: footprints of all sizes and shapes, a
  * block's alike or each its own, hostile ones, on pictures of all shapes, for all and for some of the pixels. */
-#include "raster/tile_kernels.h"
-#include "tests/fixture.h"
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/fixture.h"
 
 enum { N_BLOCKS = 1200, UNTOUCHED = 0x5a };
 

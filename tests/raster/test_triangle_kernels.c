@@ -1,8 +1,8 @@
 /* The triangles' slots of every kernel table against the plain C one, bit for bit, on wild and on hostile input, and
  * within what they may write. */
-#include "raster/tile_kernels.h"
-#include "raster/triangle_tile.h"
-#include "tests/triangle_fixture.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/triangles/triangle_tile.h"
+#include "tests/support/triangle_fixture.h"
 
 /* A frame of triangles, prepared by a table. */
 static conic_triangle_frame prepare(fixture *f, const conic_triangles *t, conic_view *view,

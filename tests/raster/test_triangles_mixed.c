@@ -1,9 +1,9 @@
 /* Splats and triangles in one picture: no fringe, no hole, no seam; one set of bits. */
 #include <unistd.h>
 
-#include "raster/tile_kernels.h"
-#include "tests/deep_file.h"
-#include "tests/triangle_fixture.h"
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/deep_file.h"
+#include "tests/support/triangle_fixture.h"
 
 /* The square [-1, 1]² in z = 0: its left half splats, its right half two triangles, all of one colour. */
 static conic_triangles fill_halves(fixture *f, int n) {

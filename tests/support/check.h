@@ -1,7 +1,7 @@
 /* The few macros that the tests share: a test is a program that checks, reports every failure, and returns
  * check_result(). */
-#ifndef TESTS_CHECK_H
-#define TESTS_CHECK_H
+#ifndef CONIC_CHECK_H
+#define CONIC_CHECK_H
 
 #include <math.h>
 #include <stdio.h>

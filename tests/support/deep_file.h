@@ -1,9 +1,9 @@
 /* What the tests of deep images share: reading one back, and holding it against the picture. */
-#ifndef TESTS_DEEP_FILE_H
-#define TESTS_DEEP_FILE_H
+#ifndef CONIC_DEEP_FILE_H
+#define CONIC_DEEP_FILE_H
 
-#include "tests/fixture.h"
-#include "tests/image_fixture.h"
+#include "tests/support/fixture.h"
+#include "tests/support/image_fixture.h"
 
 /* Steps over the attributes of an EXR's header; `most` becomes maxSamplesPerPixel. Returns where the table of the
  * lines' places begins. */

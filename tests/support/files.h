@@ -1,12 +1,12 @@
 /* Hand-made files for the readers' tests: a temporary folder, and a context that keeps its last message. */
-#ifndef TESTS_FILES_H
-#define TESTS_FILES_H
+#ifndef CONIC_FILES_H
+#define CONIC_FILES_H
 
 #include <stdarg.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 static char files_folder[64];
 static char files_message[1024];

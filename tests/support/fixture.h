@@ -1,8 +1,8 @@
 /* What the tests that draw share: a context, a renderer, splats filled by hand, a camera, an image. */
-#ifndef TESTS_FIXTURE_H
-#define TESTS_FIXTURE_H
+#ifndef CONIC_FIXTURE_H
+#define CONIC_FIXTURE_H
 
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 #define ALL_PLANES CONIC_DRAWN_PLANES
 

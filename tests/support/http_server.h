@@ -1,7 +1,7 @@
 /* A web server within a test, on the loopback: a good one, or one that misbehaves as the first part of the path says.
  * Its first answer is always good, unless said otherwise below, so that what comes later is what is tested. */
-#ifndef TESTS_HTTP_SERVER_H
-#define TESTS_HTTP_SERVER_H
+#ifndef CONIC_HTTP_SERVER_H
+#define CONIC_HTTP_SERVER_H
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

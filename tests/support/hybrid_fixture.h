@@ -1,9 +1,9 @@
 /* What the tests of hybrid models share: meshes, models of them, and pictures from all around. */
-#ifndef TESTS_HYBRID_FIXTURE_H
-#define TESTS_HYBRID_FIXTURE_H
+#ifndef CONIC_HYBRID_FIXTURE_H
+#define CONIC_HYBRID_FIXTURE_H
 
-#include "lod/hybrid.h"
-#include "tests/check.h"
+#include "lod/hybrid/hybrid_model.h"
+#include "tests/support/check.h"
 
 /* A height field of side × side squares, two triangles each: smooth, with hills of several sizes. */
 static inline void hybrid_terrain(conic_context *context, size_t side, conic_triangles *mesh) {

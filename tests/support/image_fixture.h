@@ -1,12 +1,12 @@
 /* What the image tests share: a folder of their own, pictures with every kind of value, the features of the build. */
-#ifndef TESTS_IMAGE_FIXTURE_H
-#define TESTS_IMAGE_FIXTURE_H
+#ifndef CONIC_IMAGE_FIXTURE_H
+#define CONIC_IMAGE_FIXTURE_H
 
 #include <dirent.h>
 #include <stdint.h>
 #include <unistd.h>
 
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 #define EVERY_PLANE ((1u << CONIC_N_PLANES) - 1u)
 

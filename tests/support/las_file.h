@@ -1,6 +1,6 @@
 /* LAS files made by hand, byte by byte. */
-#ifndef TESTS_LAS_FILE_H
-#define TESTS_LAS_FILE_H
+#ifndef CONIC_LAS_FILE_H
+#define CONIC_LAS_FILE_H
 
 #include <stdint.h>
 #include <stdlib.h>

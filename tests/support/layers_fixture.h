@@ -1,10 +1,10 @@
 /* Layered point clouds for tests: built of a set of splats, and read back whole. */
-#ifndef TESTS_LAYERS_FIXTURE_H
-#define TESTS_LAYERS_FIXTURE_H
+#ifndef CONIC_LAYERS_FIXTURE_H
+#define CONIC_LAYERS_FIXTURE_H
 
-#include "lod/layers_decode.h"
-#include "lod/layers_read.h"
-#include "tests/files.h"
+#include "lod/layers/format/layers_decode.h"
+#include "lod/layers/format/layers_read.h"
+#include "tests/support/files.h"
 
 /* Splats of a scene, circles with colours. */
 static inline void layers_scene(conic_context *context, conic_scene_type type, size_t n, double offset,

@@ -1,9 +1,9 @@
 /* Layered point clouds for tests that draw: shells within shells, so that much is hidden, some of it but for splats
  * seen from their edge. */
-#ifndef TESTS_LAYERS_FRAME_H
-#define TESTS_LAYERS_FRAME_H
+#ifndef CONIC_LAYERS_FRAME_H
+#define CONIC_LAYERS_FRAME_H
 
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 enum { LAYERS_SHELLS = 8, LAYERS_SHELL_SPLATS = 9000 };
 

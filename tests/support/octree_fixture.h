@@ -1,9 +1,9 @@
 /* What the octree's tests share: sets of splats, octrees of them. */
-#ifndef TESTS_OCTREE_FIXTURE_H
-#define TESTS_OCTREE_FIXTURE_H
+#ifndef CONIC_OCTREE_FIXTURE_H
+#define CONIC_OCTREE_FIXTURE_H
 
-#include "lod/octree.h"
-#include "tests/fixture.h"
+#include "lod/octree/octree_nodes.h"
+#include "tests/support/fixture.h"
 
 /* A copy, as building takes the splats over. */
 static inline conic_splats octree_copy(conic_context *context, const conic_splats *splats) {

@@ -1,8 +1,8 @@
 /* What the OpenCL tests share: a device or a skip, splats of all kinds with clip lines, and pictures compared. */
-#ifndef TESTS_OPENCL_FIXTURE_H
-#define TESTS_OPENCL_FIXTURE_H
+#ifndef CONIC_OPENCL_FIXTURE_H
+#define CONIC_OPENCL_FIXTURE_H
 
-#include "tests/cross_desk.h"
+#include "bench/kernels/cross_desk.h"
 
 /* Ends the program with a message where no OpenCL device is. */
 static inline void opencl_need_device(conic_context *context) {

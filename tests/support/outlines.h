@@ -1,9 +1,9 @@
 /* Sets of points for the estimate's tests, and what the outlines that it finds cover. */
-#ifndef TESTS_OUTLINES_H
-#define TESTS_OUTLINES_H
+#ifndef CONIC_OUTLINES_H
+#define CONIC_OUTLINES_H
 
-#include "tests/check.h"
-#include "tests/random.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 /* A model that grows point by point; no array but the positions. */
 static inline conic_model outlines_model(conic_context *context, size_t room, unsigned fields) {

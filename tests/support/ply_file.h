@@ -1,10 +1,10 @@
 /* PLY files put together by hand, in one of the three encodings, and read. */
-#ifndef TESTS_PLY_FILE_H
-#define TESTS_PLY_FILE_H
+#ifndef CONIC_PLY_FILE_H
+#define CONIC_PLY_FILE_H
 
 #include <stdint.h>
 
-#include "tests/files.h"
+#include "tests/support/files.h"
 
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
 #define ASCII "ply\nformat ascii 1.0\n"

@@ -1,6 +1,6 @@
 /* Random numbers for tests: the same on every machine. */
-#ifndef TESTS_RANDOM_H
-#define TESTS_RANDOM_H
+#ifndef CONIC_RANDOM_NUMBERS_H
+#define CONIC_RANDOM_NUMBERS_H
 
 #include <stdint.h>
 

@@ -1,10 +1,10 @@
 /* Points sorted into the cells of a grid, for tests that ask what lies near a place. */
-#ifndef TESTS_SCENE_GRID_H
-#define TESTS_SCENE_GRID_H
+#ifndef CONIC_SCENE_GRID_H
+#define CONIC_SCENE_GRID_H
 
 #include <stdint.h>
 
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 typedef struct scene_grid {
   const conic_splats *splats;

@@ -1,9 +1,9 @@
 /* A small sound file of every kind that is read: what the tests of bad input spoil, and what fuzzing starts from. */
-#ifndef TESTS_SEEDS_H
-#define TESTS_SEEDS_H
+#ifndef CONIC_SEEDS_H
+#define CONIC_SEEDS_H
 
-#include "tests/files.h"
-#include "tests/las_file.h"
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
 
 typedef struct seed {
   const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,

@@ -1,8 +1,8 @@
 /* Pictures of a cube, or of one that lacks an octant, against the solid itself: no holes, and nothing sticks out. */
-#ifndef TESTS_SOLID_H
-#define TESTS_SOLID_H
+#ifndef CONIC_SOLID_H
+#define CONIC_SOLID_H
 
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 /* The part of the ray o + t·d, t > 0, that is in the box [low, high]³; 0 where none is. */
 static inline int solid_box(const double o[3], const double d[3], double low, double high, double range[2]) {

@@ -1,9 +1,9 @@
 /* What the stability tests share: sheets of discs, cameras anywhere, the comparison with the oracle over every method,
  * and the comparison of two pictures of one thing. Every case prints its figures, which docs/stability.md quotes. */
-#ifndef TESTS_STABILITY_H
-#define TESTS_STABILITY_H
+#ifndef CONIC_STABILITY_H
+#define CONIC_STABILITY_H
 
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static const double stability_pi = 3.14159265358979323846;
 

@@ -1,9 +1,9 @@
 /* Samples of shapes whose surface is known, with their exact normals. */
-#ifndef TESTS_SURFACE_SHAPES_H
-#define TESTS_SURFACE_SHAPES_H
+#ifndef CONIC_SURFACE_SHAPES_H
+#define CONIC_SURFACE_SHAPES_H
 
-#include "tests/check.h"
-#include "tests/random.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 typedef enum shape { SHAPE_SPHERE, SHAPE_TORUS, SHAPE_GYROID } shape; /* the last: one cell and what is around it */
 

@@ -1,8 +1,8 @@
 /* What the tests of triangles share: sets filled by hand, and pictures of them beside splats. */
-#ifndef TESTS_TRIANGLE_FIXTURE_H
-#define TESTS_TRIANGLE_FIXTURE_H
+#ifndef CONIC_TRIANGLE_FIXTURE_H
+#define CONIC_TRIANGLE_FIXTURE_H
 
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static inline conic_triangles triangles_make(fixture *f, size_t count, size_t n_vertices, unsigned fields) {
   conic_triangles triangles;

@@ -1,5 +1,5 @@
 /* Projecting cell by cell: the same surface as in one piece, and the same bits whatever memory there is. */
-#include "tests/surface_shapes.h"
+#include "tests/support/surface_shapes.h"
 
 typedef struct feed {
   const conic_splats *points;

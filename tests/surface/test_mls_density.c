@@ -1,6 +1,6 @@
 /* Thinning and densifying: fewer points or more of them, and the same surface. */
-#include "core/neighbours.h"
-#include "tests/surface_shapes.h"
+#include "core/splats/neighbours.h"
+#include "tests/support/surface_shapes.h"
 
 static double greatest_distance(shape s, const conic_splats *splats) {
   double greatest = 0.0;

@@ -1,5 +1,5 @@
 /* Inputs on which a point-set surface has no answer, or the wrong one if it is not careful: what is said of each. */
-#include "tests/surface_shapes.h"
+#include "tests/support/surface_shapes.h"
 
 static conic_surface_options options_of(conic_surface_type type, double h) {
   conic_surface_options options;

@@ -1,10 +1,10 @@
 /* The kernels against plain C bit for bit, their derivatives against differences, and the weights. */
-#include "core/eigen.h"
-#include "core/gaussian.h"
-#include "surface/kernels.h"
+#include "core/base/eigen.h"
+#include "core/base/gaussian.h"
+#include "surface/kernels/surface_kernels.h"
+#include "surface/kernels/weight.h"
 #include "surface/least_spread.h"
-#include "surface/weight.h"
-#include "tests/surface_shapes.h"
+#include "tests/support/surface_shapes.h"
 
 enum { MOST = 100 };
 

@@ -2,7 +2,7 @@
  * n-th report of progress: a clean error each time, and nothing lost. */
 #include <stdatomic.h>
 
-#include "tests/surface_shapes.h"
+#include "tests/support/surface_shapes.h"
 
 static atomic_long n_calls, n_alive;
 static long failing_call; /* from 1; 0: none */

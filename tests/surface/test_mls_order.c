@@ -1,6 +1,6 @@
 /* The order of the error (PSS Eq. 7): with h and the spacing halved together, a surface of degree m comes nearer to the
  * sampled one by 2^(m+1) at least. Even degrees gain one order more where the samples lie evenly about a point. */
-#include "tests/surface_shapes.h"
+#include "tests/support/surface_shapes.h"
 
 /* The order is that of a limit; between two values of h that are not yet small it may be a little less. */
 static const double SLACK = 0.15;

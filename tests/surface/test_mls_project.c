@@ -1,7 +1,7 @@
 /* The projection: it meets its definition, a second time it stays, and nothing changes its bits. */
-#include "core/eigen.h"
-#include "core/neighbours.h"
-#include "tests/surface_shapes.h"
+#include "core/base/eigen.h"
+#include "core/splats/neighbours.h"
+#include "tests/support/surface_shapes.h"
 
 /* --- the definition, by plain sums over all samples --- */
 

@@ -1,7 +1,7 @@
 /* Points drawn as polynomial patches: the grids against plain sums, pictures against the true surface, and the bits. */
-#include "surface/patch.h"
-#include "tests/fixture.h"
-#include "tests/surface_shapes.h"
+#include "surface/patches/patch.h"
+#include "tests/support/fixture.h"
+#include "tests/support/surface_shapes.h"
 
 static const double degrees = 57.29577951308232;
 

@@ -1,6 +1,6 @@
 /* Pictures of surfaces that are known: a tilted plane's depth, a uniform colour, a sphere's silhouette, the weights of
  * a lone splat. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 /* A square grid of splats in the plane through (0, 0, 2) that leans by `tilt` about x; true for pixels well inside. */
 static void fill_plane(fixture *f, int n, double tilt, double half_size, double outline_in_spacings) {

@@ -22,9 +22,10 @@ library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
 c_compiler=$(setting CMAKE_C_COMPILER)
 cpp_compiler=$(setting CMAKE_CXX_COMPILER)
 
-for header in include/conic/*.h core/*.h raster/*.h lod/*.h opencl/*.h cli/*.h; do
+for header in $(find include core raster oracle lod surface opencl bench cli -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
+  [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
   [[ $header != opencl/*.h || -e $build_folder/opencl ]] || continue # a build without OpenCL
   printf '#include "%s"\ntypedef int not_empty;\n' "${header#include/}" > "$work/alone.c"
   "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. \
@@ -58,6 +59,6 @@ while read -r name; do
 done < <(global_names "$library_folder/libconic.a" | grep -v '^conic_' || true)
 while read -r name; do
   fail "$name is global in the program and does not start with cli_"
-done < <(global_names "$build_folder"/CMakeFiles/conic.dir/cli/*.o | grep -vE '^(cli_|main$)' || true)
+done < <(global_names $(find "$build_folder/CMakeFiles/conic.dir" -name '*.o') | grep -vE '^(cli_|main$)' || true)
 
 exit $((failures > 0))

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/layers_branch.h"
-#include "lod/layers_key.h"
+#include "core/base/memory.h"
+#include "lod/layers/build/layers_branch.h"
+#include "lod/layers/format/layers_key.h"
 
 enum { N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
 

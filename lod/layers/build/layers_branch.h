@@ -1,8 +1,8 @@
 /* A node while its tree grows, and the bounds of what lies in its place. */
-#ifndef LOD_LAYERS_BRANCH_H
-#define LOD_LAYERS_BRANCH_H
+#ifndef CONIC_LAYERS_BRANCH_H
+#define CONIC_LAYERS_BRANCH_H
 
-#include "lod/layers_tree.h"
+#include "lod/layers/build/layers_tree.h"
 
 /* A node's bounds are found from the samples that stand for the nodes below whose place holds at most this fraction of
  * its own's samples, or for leaves, and from how far these are off. */

@@ -1,11 +1,11 @@
-#include "lod/layers_buckets.h"
+#include "lod/layers/build/layers_buckets.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_key.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/format/layers_key.h"
 
 /* So many bits of the keys part the samples at a time. */
 enum { SPLIT_BITS = 12, N_SPLIT = 1 << SPLIT_BITS };

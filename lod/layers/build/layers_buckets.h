@@ -1,9 +1,9 @@
 /* Samples sorted roughly: by the first bits of their keys, into buckets that are kept as chains of blocks. */
-#ifndef LOD_LAYERS_BUCKETS_H
-#define LOD_LAYERS_BUCKETS_H
+#ifndef CONIC_LAYERS_BUCKETS_H
+#define CONIC_LAYERS_BUCKETS_H
 
-#include "lod/layers_intake.h"
-#include "lod/layers_tree.h"
+#include "lod/layers/build/layers_intake.h"
+#include "lod/layers/build/layers_tree.h"
 
 /* The samples of a cell of the grid. */
 typedef struct conic_layers_bucket {

@@ -4,13 +4,13 @@
 #include <string.h>
 
 #include "conic/layers.h"
-#include "core/clock.h"
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_file.h"
-#include "lod/layers_intake.h"
-#include "lod/layers_normals.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "lod/layers/build/layers_file.h"
+#include "lod/layers/build/layers_intake.h"
+#include "lod/layers/build/layers_normals.h"
 
 struct conic_layers_builder {
   conic_context *context;

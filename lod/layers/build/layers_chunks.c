@@ -1,10 +1,10 @@
-#include "lod/layers_chunks.h"
+#include "lod/layers/build/layers_chunks.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 
 /* Buckets in a row whose samples are one cell's, and what has grown of them. */
 typedef struct chunk {

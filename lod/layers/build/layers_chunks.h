@@ -1,9 +1,9 @@
 /* From buckets to the whole tree: what fits into memory grows by itself, on all threads; then the pieces are joined. */
-#ifndef LOD_LAYERS_CHUNKS_H
-#define LOD_LAYERS_CHUNKS_H
+#ifndef CONIC_LAYERS_CHUNKS_H
+#define CONIC_LAYERS_CHUNKS_H
 
-#include "lod/layers_buckets.h"
-#include "lod/layers_tree.h"
+#include "lod/layers/build/layers_buckets.h"
+#include "lod/layers/build/layers_tree.h"
 
 /* All nodes, their clouds' bytes put aside. */
 typedef struct conic_layers_forest {

@@ -1,11 +1,11 @@
-#include "lod/layers_file.h"
+#include "lod/layers/build/layers_file.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
 
 /* Where a node goes and where its bytes come from. */
 typedef struct plan {

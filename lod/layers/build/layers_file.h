@@ -1,9 +1,9 @@
 /* From a grown tree to a file. */
-#ifndef LOD_LAYERS_FILE_H
-#define LOD_LAYERS_FILE_H
+#ifndef CONIC_LAYERS_FILE_H
+#define CONIC_LAYERS_FILE_H
 
-#include "lod/layers_chunks.h"
-#include "lod/layers_format.h"
+#include "lod/layers/build/layers_chunks.h"
+#include "lod/layers/format/layers_format.h"
 
 /* Writes the file; `header` says all that does not follow from the clouds, which is filled in. Errors: MEMORY, IO,
  * CANCELLED. */

@@ -1,10 +1,10 @@
-#include "lod/layers_intake.h"
+#include "lod/layers/build/layers_intake.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
                                        conic_layers_intake *intake) {

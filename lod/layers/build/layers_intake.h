@@ -1,11 +1,11 @@
 /* The samples that a layered cloud is built from, as they come: put aside until their box and spacing are known. */
-#ifndef LOD_LAYERS_INTAKE_H
-#define LOD_LAYERS_INTAKE_H
+#ifndef CONIC_LAYERS_INTAKE_H
+#define CONIC_LAYERS_INTAKE_H
 
 #include "conic/splats.h"
-#include "lod/layers_code.h"
-#include "lod/octree_code.h"
-#include "lod/spool.h"
+#include "core/files/spool.h"
+#include "lod/layers/format/layers_code.h"
+#include "lod/octree/octree_code.h"
 
 /* A sample before its place on the grid is known. */
 typedef struct conic_layers_raw {

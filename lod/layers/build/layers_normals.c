@@ -1,11 +1,11 @@
-#include "lod/layers_normals.h"
+#include "lod/layers/build/layers_normals.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/eigen.h"
-#include "core/memory.h"
-#include "lod/layers_key.h"
+#include "core/base/eigen.h"
+#include "core/base/memory.h"
+#include "lod/layers/format/layers_key.h"
 
 /* A plane through fewer is no plane; more than that many, the nearest first, say nothing new. */
 enum { LEAST_NEIGHBOURS = 8, MOST_NEIGHBOURS = 24, MOST_WIDENINGS = 4 };

@@ -1,8 +1,8 @@
 /* Normals for samples that came without, while a layered cloud is built. */
-#ifndef LOD_LAYERS_NORMALS_H
-#define LOD_LAYERS_NORMALS_H
+#ifndef CONIC_LAYERS_NORMALS_H
+#define CONIC_LAYERS_NORMALS_H
 
-#include "lod/layers_tree.h"
+#include "lod/layers/build/layers_tree.h"
 
 /* The largest places with no more samples have their normals found by themselves, a multiple of a leaf's. */
 enum { CONIC_LAYERS_PATCH_LEAVES = 16 };

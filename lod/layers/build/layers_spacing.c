@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_intake.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/build/layers_intake.h"
 
 enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };
 

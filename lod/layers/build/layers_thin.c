@@ -1,11 +1,11 @@
-#include "lod/layers_thin.h"
+#include "lod/layers/build/layers_thin.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/random.h"
-#include "lod/layers_key.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
+#include "lod/layers/format/layers_key.h"
 
 typedef struct point {
   float x, y, z;

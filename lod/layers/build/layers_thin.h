@@ -1,7 +1,7 @@
 /* From many points the few that stand for them: no two nearer than a distance, and none of the many farther from
  * one of them than that (a Poisson-disc set that has room for no more). */
-#ifndef LOD_LAYERS_THIN_H
-#define LOD_LAYERS_THIN_H
+#ifndef CONIC_LAYERS_THIN_H
+#define CONIC_LAYERS_THIN_H
 
 #include <stddef.h>
 #include <stdint.h>

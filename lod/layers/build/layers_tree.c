@@ -1,12 +1,12 @@
-#include "lod/layers_tree.h"
+#include "lod/layers/build/layers_tree.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/layers_branch.h"
-#include "lod/layers_normals.h"
-#include "lod/mapping.h"
+#include "core/base/memory.h"
+#include "core/files/mapping.h"
+#include "lod/layers/build/layers_branch.h"
+#include "lod/layers/build/layers_normals.h"
 
 struct conic_layers_worker {
   conic_layers_plan plan;

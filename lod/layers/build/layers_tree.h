@@ -1,10 +1,10 @@
 /* From sorted samples to a tree of clouds: bottom up, every node takes from its children the samples that stand for
  * all of its place, and what is left of the children's is their clouds (docs/layers.md). */
-#ifndef LOD_LAYERS_TREE_H
-#define LOD_LAYERS_TREE_H
+#ifndef CONIC_LAYERS_TREE_H
+#define CONIC_LAYERS_TREE_H
 
-#include "lod/layers_code.h"
-#include "lod/layers_thin.h"
+#include "lod/layers/build/layers_thin.h"
+#include "lod/layers/format/layers_code.h"
 
 /* What is the same for all of a tree. */
 typedef struct conic_layers_plan {

@@ -1,14 +1,14 @@
-#include "lod/layers_bands.h"
+#include "lod/layers/draw/layers_bands.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "raster/method.h"
-#include "raster/part.h"
-#include "raster/projected.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
+#include "raster/view/part.h"
 
 typedef struct bands {
   const conic_layers_band_drawing *d;

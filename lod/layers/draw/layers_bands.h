@@ -1,8 +1,8 @@
 /* A picture in bands, or parts of them, each with no more splats than memory holds. */
-#ifndef LOD_LAYERS_BANDS_H
-#define LOD_LAYERS_BANDS_H
+#ifndef CONIC_LAYERS_BANDS_H
+#define CONIC_LAYERS_BANDS_H
 
-#include "lod/layers_gather.h"
+#include "lod/layers/draw/layers_gather.h"
 
 typedef struct conic_layers_band_drawing {
   conic_layers *layers;

@@ -1,10 +1,10 @@
-#include "lod/layers_cut.h"
+#include "lod/layers/draw/layers_cut.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
 typedef struct walk {

@@ -1,9 +1,9 @@
 /* Which places of a layered point cloud a picture shows, and how fine: the cut through its tree. */
-#ifndef LOD_LAYERS_CUT_H
-#define LOD_LAYERS_CUT_H
+#ifndef CONIC_LAYERS_CUT_H
+#define CONIC_LAYERS_CUT_H
 
-#include "lod/layers_scene.h"
-#include "lod/layers_view.h"
+#include "lod/layers/draw/layers_scene.h"
+#include "lod/layers/draw/layers_view.h"
 
 /* How much of a place is drawn. */
 typedef enum conic_place_state {

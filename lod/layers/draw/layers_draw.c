@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/clock.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_bands.h"
-#include "lod/layers_hidden.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/draw/layers_bands.h"
+#include "lod/layers/draw/layers_hidden.h"
 
 /* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
 static const double deep = 4.0;

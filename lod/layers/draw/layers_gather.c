@@ -1,10 +1,10 @@
-#include "lod/layers_gather.h"
+#include "lod/layers/draw/layers_gather.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
 
 /* Pieces are small: so many make a task. */
 enum { PIECES_A_TASK = 16 };

@@ -1,8 +1,8 @@
 /* From places to splats: what the clouds have there, in the order of the file. */
-#ifndef LOD_LAYERS_GATHER_H
-#define LOD_LAYERS_GATHER_H
+#ifndef CONIC_LAYERS_GATHER_H
+#define CONIC_LAYERS_GATHER_H
 
-#include "lod/layers_cut.h"
+#include "lod/layers/draw/layers_cut.h"
 
 /* What a cloud has in a place of the cut. */
 typedef struct conic_layers_piece {

@@ -1,11 +1,11 @@
-#include "lod/layers_hidden.h"
+#include "lod/layers/draw/layers_hidden.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/layers_horizon.h"
-#include "raster/part.h"
+#include "core/base/memory.h"
+#include "lod/layers/draw/layers_horizon.h"
+#include "raster/view/part.h"
 
 /* A share of the places is drawn before the rest is looked at again: the first so small a part of all splats, each
  * further one so much larger. */

@@ -1,8 +1,8 @@
 /* Occlusion culling: which places of a cut are hidden by others, tested so that no bit of the picture changes. */
-#ifndef LOD_LAYERS_HIDDEN_H
-#define LOD_LAYERS_HIDDEN_H
+#ifndef CONIC_LAYERS_HIDDEN_H
+#define CONIC_LAYERS_HIDDEN_H
 
-#include "lod/layers_gather.h"
+#include "lod/layers/draw/layers_gather.h"
 
 /* Whether the index promises that much is hidden: how many surfaces lie behind each other, on average over the pixels
  * that the places cover, if each shows the side that its area does from everywhere on average. */

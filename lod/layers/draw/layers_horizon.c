@@ -1,9 +1,9 @@
-#include "lod/layers_horizon.h"
+#include "lod/layers/draw/layers_horizon.h"
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
 
 enum { CELL_BITS = 3, MOST_CELLS = 4 };
 

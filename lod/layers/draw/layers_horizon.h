@@ -1,10 +1,10 @@
 /* How deep a picture hides, at several resolutions: the least of any rectangle of pixels is found by a few looks. */
-#ifndef LOD_LAYERS_HORIZON_H
-#define LOD_LAYERS_HORIZON_H
+#ifndef CONIC_LAYERS_HORIZON_H
+#define CONIC_LAYERS_HORIZON_H
 
 #include <stddef.h>
 
-#include "raster/part.h"
+#include "raster/view/part.h"
 
 enum { CONIC_HORIZON_LEVELS = 16 };
 

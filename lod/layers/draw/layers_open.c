@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_gather.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/draw/layers_gather.h"
 
 /* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
 enum { PIECE_BYTES = 1 << 22 };

@@ -1,11 +1,11 @@
 /* A layered point cloud that is open for drawing. */
-#ifndef LOD_LAYERS_SCENE_H
-#define LOD_LAYERS_SCENE_H
+#ifndef CONIC_LAYERS_SCENE_H
+#define CONIC_LAYERS_SCENE_H
 
 #include "conic/layers_draw.h"
-#include "lod/layers_format.h"
-#include "lod/layers_store.h"
-#include "lod/ranges.h"
+#include "lod/layers/draw/layers_store.h"
+#include "lod/layers/format/layers_format.h"
+#include "lod/ranges/ranges.h"
 
 struct conic_layers {
   conic_context *context;

@@ -1,13 +1,13 @@
-#include "lod/layers_store.h"
+#include "lod/layers/draw/layers_store.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/clock.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
-#include "lod/layers_scene.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/layers/draw/layers_scene.h"
 
 /* So many answers are decoded together. */
 enum { DECODED_TOGETHER = 64 };

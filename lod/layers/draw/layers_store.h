@@ -1,9 +1,9 @@
 /* The clouds of a file that are in memory, decoded: those last used, up to a bound. */
-#ifndef LOD_LAYERS_STORE_H
-#define LOD_LAYERS_STORE_H
+#ifndef CONIC_LAYERS_STORE_H
+#define CONIC_LAYERS_STORE_H
 
 #include "conic/layers_draw.h"
-#include "lod/layers_decode.h"
+#include "lod/layers/format/layers_decode.h"
 
 typedef struct conic_layers_slot {
   void *block; /* null: the cloud is not in memory */

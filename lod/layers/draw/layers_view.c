@@ -1,4 +1,4 @@
-#include "lod/layers_view.h"
+#include "lod/layers/draw/layers_view.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* How the places of a layered point cloud look in one picture: bounds that hold for all that is drawn of them. */
-#ifndef LOD_LAYERS_VIEW_H
-#define LOD_LAYERS_VIEW_H
+#ifndef CONIC_LAYERS_VIEW_H
+#define CONIC_LAYERS_VIEW_H
 
 #include "conic/camera.h"
 #include "conic/render.h"
-#include "lod/layers_format.h"
-#include "raster/part.h"
+#include "lod/layers/format/layers_format.h"
+#include "raster/view/part.h"
 
 typedef struct conic_layers_view {
   int width, height;

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/layers_gather.h"
+#include "core/base/memory.h"
+#include "lod/layers/draw/layers_gather.h"
 
 /* The leaves are the finest of the cut, in the order of their keys. */
 static conic_status list_leaves(const conic_layers *layers, conic_layers_cut *cut, uint32_t *chosen) {

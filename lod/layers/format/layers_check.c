@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "conic/layers.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "lod/layers_decode.h"
-#include "lod/layers_read.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/format/layers_decode.h"
+#include "lod/layers/format/layers_read.h"
 
 /* A sample as it would be drawn. */
 typedef struct sample {

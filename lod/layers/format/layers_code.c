@@ -1,10 +1,10 @@
-#include "lod/layers_code.h"
+#include "lod/layers/format/layers_code.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "lod/layers_key.h"
+#include "core/base/memory.h"
+#include "lod/layers/format/layers_key.h"
 
 /* Each stream is packed by itself: what is alike lies together. */
 enum {

@@ -1,9 +1,9 @@
 /* The streams of a cloud: what the builder packs and the decoder unpacks (docs/format-lpc.md). */
-#ifndef LOD_LAYERS_CODE_H
-#define LOD_LAYERS_CODE_H
+#ifndef CONIC_LAYERS_CODE_H
+#define CONIC_LAYERS_CODE_H
 
-#include "lod/layers_format.h"
-#include "lod/zstd.h"
+#include "core/files/zstd.h"
+#include "lod/layers/format/layers_format.h"
 
 /* A sample while a file is built, and in its cloud: 16 bytes. */
 typedef struct conic_layers_sample {

@@ -1,11 +1,11 @@
-#include "lod/layers_decode.h"
+#include "lod/layers/format/layers_decode.h"
 
-#include "core/color.h"
-#include "core/ellipse.h"
-#include "core/memory.h"
-#include "lod/layers_code.h"
-#include "lod/layers_key.h"
-#include "lod/mapping.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/files/mapping.h"
+#include "core/splats/ellipse.h"
+#include "lod/layers/format/layers_code.h"
+#include "lod/layers/format/layers_key.h"
 
 struct conic_layers_decoder {
   conic_context *context;

@@ -1,8 +1,8 @@
 /* From a cloud's bytes to its samples. */
-#ifndef LOD_LAYERS_DECODE_H
-#define LOD_LAYERS_DECODE_H
+#ifndef CONIC_LAYERS_DECODE_H
+#define CONIC_LAYERS_DECODE_H
 
-#include "lod/layers_format.h"
+#include "lod/layers/format/layers_format.h"
 
 /* The samples of a cloud, in ascending order of their keys, so that those in the place of a node below are a range
  * (conic_layers_range). All pointers lie in one block. */

@@ -1,13 +1,13 @@
-#include "lod/layers_format.h"
+#include "lod/layers/format/layers_format.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "conic/layers.h"
-#include "core/file.h"
-#include "core/message.h"
-#include "lod/file_fields.h"
-#include "lod/mapping.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/file_fields.h"
+#include "core/files/mapping.h"
 
 static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'L', 'P', '\n'};
 

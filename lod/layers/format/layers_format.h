@@ -1,6 +1,6 @@
 /* .lpc files: header and index as they are in memory, and how they come from and go to bytes (docs/format-lpc.md). */
-#ifndef LOD_LAYERS_FORMAT_H
-#define LOD_LAYERS_FORMAT_H
+#ifndef CONIC_LAYERS_FORMAT_H
+#define CONIC_LAYERS_FORMAT_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* Morton codes: the bits of x, y and z in turn, x's first. */
-#ifndef LOD_LAYERS_KEY_H
-#define LOD_LAYERS_KEY_H
+#ifndef CONIC_LAYERS_KEY_H
+#define CONIC_LAYERS_KEY_H
 
 #include <stdint.h>
 

@@ -1,10 +1,10 @@
-#include "lod/layers_read.h"
+#include "lod/layers/format/layers_read.h"
 
 #include <string.h>
 
 #include "conic/layers.h"
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 static conic_status read_view(conic_layers_view *view) {
   conic_status status =

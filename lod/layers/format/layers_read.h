@@ -1,9 +1,9 @@
 /* A whole .lpc file in memory: for looking at it, not for drawing. */
-#ifndef LOD_LAYERS_READ_H
-#define LOD_LAYERS_READ_H
+#ifndef CONIC_LAYERS_READ_H
+#define CONIC_LAYERS_READ_H
 
-#include "lod/layers_format.h"
-#include "lod/mapping.h"
+#include "core/files/mapping.h"
+#include "lod/layers/format/layers_format.h"
 
 typedef struct conic_layers_view {
   conic_context *context;

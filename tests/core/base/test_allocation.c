@@ -3,8 +3,8 @@
 #include <dirent.h>
 #include <stdatomic.h>
 
-#include "tests/files.h"
-#include "tests/las_file.h"
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
 
 /* An allocator that counts, and fails at one call (and at no other, so that what cleans up is seen to work). */
 typedef struct allocator {

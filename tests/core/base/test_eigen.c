@@ -1,7 +1,7 @@
 /* The eigen-solvers against what eigenvalues and eigenvectors are. */
-#include "core/eigen.h"
-#include "tests/check.h"
-#include "tests/random.h"
+#include "core/base/eigen.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 static void check_eigen2(double xx, double xy, double yy) {
   double values[2], major[2], size = fabs(xx) + fabs(xy) + fabs(yy), bound = 4e-16 * size;

@@ -1,8 +1,8 @@
 /* Decimal numbers: against the C library's, which are correctly rounded, too; and back. */
 #include <stdint.h>
 
-#include "core/number.h"
-#include "tests/check.h"
+#include "core/files/number.h"
+#include "tests/support/check.h"
 
 static uint64_t state = 1;
 

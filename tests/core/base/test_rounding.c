@@ -1,7 +1,7 @@
 /* A number that is rounded to float is a float, also where it goes on as a double, and whatever the compiler makes of
  * two such lines side by side: GCC 12 leaves the rounding out of pairs where it is let to pack them (CMakeLists.txt).
  */
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 /* Out of the compiler's sight, one by one. */
 static double rounded(double value) {

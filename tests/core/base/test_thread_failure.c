@@ -2,7 +2,7 @@
 #include <errno.h>
 #include <pthread.h>
 
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 /* The linker sends calls of pthread_create here (tests/CMakeLists.txt). */
 static int n_threads_left;

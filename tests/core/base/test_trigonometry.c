@@ -1,7 +1,7 @@
 /* Own sine, cosine, tangent against the C library's; own sRGB against pow. */
-#include "core/color.h"
-#include "core/trigonometry.h"
-#include "tests/check.h"
+#include "core/base/color.h"
+#include "core/base/trigonometry.h"
+#include "tests/support/check.h"
 
 int main(void) {
   float table[256], thresholds[255];

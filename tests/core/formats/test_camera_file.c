@@ -1,5 +1,5 @@
 /* The camera file reader against hand-made files. */
-#include "tests/files.h"
+#include "tests/support/files.h"
 
 static conic_context *context;
 

@@ -1,7 +1,7 @@
 /* The LAS reader against hand-made files of every version and format. */
-#include "core/color.h"
-#include "tests/files.h"
-#include "tests/las_file.h"
+#include "core/base/color.h"
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
 
 static conic_context *context;
 

@@ -1,7 +1,7 @@
 /* What comes in batches is what reading the whole file gives, bit for bit: PLY, XYZ and LAS with
  * colours of every scale, OBJ. */
-#include "tests/files.h"
-#include "tests/las_file.h"
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
 
 typedef struct gathering {
   conic_context *context;

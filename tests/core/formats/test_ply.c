@@ -1,8 +1,8 @@
 /* The PLY reader against hand-made files of every variant. */
 #include <pthread.h>
 
-#include "core/color.h"
-#include "tests/ply_file.h"
+#include "core/base/color.h"
+#include "tests/support/ply_file.h"
 
 static void test_encodings(void) {
   float table[256];

@@ -1,8 +1,8 @@
 /* The PLY writer: what it writes is read back, bit for bit where the file's types allow it. */
 #include <stdint.h>
 
-#include "core/color.h"
-#include "tests/files.h"
+#include "core/base/color.h"
+#include "tests/support/files.h"
 
 static conic_context *context;
 

@@ -1,5 +1,5 @@
 /* What the PLY reader says of files that are wrong, cut or changed by chance, and where memory runs out. */
-#include "tests/ply_file.h"
+#include "tests/support/ply_file.h"
 
 static void check_fails(const char *text, const char *what, const char *where) {
   conic_model model;

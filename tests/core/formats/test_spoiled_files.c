@@ -1,9 +1,9 @@
 /* Every reader against sound files that were spoiled: cut at every byte, and every byte replaced. Whatever it is, it is
  * read, or refused with one line that names the file and a place; memory stays in proportion to the file, and all of it
  * comes back. The program's side of bad input is bad_input.sh. */
-#include "core/material_file.h"
-#include "tests/random.h"
-#include "tests/seeds.h"
+#include "core/formats/material_file.h"
+#include "tests/support/random_numbers.h"
+#include "tests/support/seeds.h"
 
 /* An allocator that knows how much is out. */
 typedef struct ledger {

@@ -1,5 +1,5 @@
 /* From files to triangles: corners' normals and texture coordinates, materials, strips; sets that are joined. */
-#include "tests/files.h"
+#include "tests/support/files.h"
 
 static conic_context *context;
 

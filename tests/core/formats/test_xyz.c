@@ -1,6 +1,6 @@
 /* The reader of XYZ and PTS against hand-made files. */
-#include "core/color.h"
-#include "tests/files.h"
+#include "core/base/color.h"
+#include "tests/support/files.h"
 
 static conic_context *context;
 

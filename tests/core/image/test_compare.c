@@ -1,6 +1,6 @@
 /* Comparing images: answers worked out by hand, or by the definition written down plainly. */
-#include "core/color.h"
-#include "tests/image_fixture.h"
+#include "core/base/color.h"
+#include "tests/support/image_fixture.h"
 
 static conic_image flat_image(conic_context *context, int width, int height, float value) {
   conic_image image;

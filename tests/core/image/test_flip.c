@@ -1,8 +1,8 @@
 /* ꟻLIP against the values of its authors' own program (flip-evaluator 1.7, 67 pixels a degree) on pictures made by
  * formula; percentiles and counts against plain sorting; powers against the C library's. */
-#include "core/color.h"
-#include "core/power.h"
-#include "tests/image_fixture.h"
+#include "core/base/color.h"
+#include "core/base/power.h"
+#include "tests/support/image_fixture.h"
 
 /* The 8-bit code of a channel of a pixel. */
 typedef int pattern(int x, int y, int c);

@@ -2,8 +2,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include "core/image.h"
-#include "tests/image_fixture.h"
+#include "core/image/image_common.h"
+#include "tests/support/image_fixture.h"
 
 static void test_descriptions(void) {
   static const char *const names[] = {"rgba", "Z", "N", "albedo", "weight", "count", "id", "cluster"};

@@ -1,5 +1,5 @@
 /* EXR files: every bit there and back, what stands in the header, and files that are cut short. */
-#include "tests/image_fixture.h"
+#include "tests/support/image_fixture.h"
 
 static conic_attribute text_attribute(const char *name, const char *text) {
   conic_attribute attribute = {.type = CONIC_ATTRIBUTE_TEXT};

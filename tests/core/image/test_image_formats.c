@@ -1,7 +1,7 @@
 /* PNG, TIFF, JPEG, HDR through OpenImageIO: which codes colours become, and what comes back. */
-#include "core/color.h"
-#include "core/image_samples.h"
-#include "tests/image_fixture.h"
+#include "core/base/color.h"
+#include "core/image/image_samples.h"
+#include "tests/support/image_fixture.h"
 
 static conic_image write_and_read(conic_context *context, const char *name, const conic_image *image) {
   conic_image back;
@@ -13,7 +13,7 @@ static conic_image write_and_read(conic_context *context, const char *name, cons
   return back;
 }
 
-/* The codes are those of core/color.h for every float there is near a border between two, and for odd values. */
+/* The codes are those of core/base/color.h for every float there is near a border between two, and for odd values. */
 static void test_codes(conic_context *context) {
   static const float odd[] = {0.0f, -0.0f, -1.0f, 1.0f, 2.0f, INFINITY, -INFINITY, NAN, 1e-40f, 0.99999994f};
   enum { N = 255 * 3 + sizeof odd / sizeof odd[0] };

@@ -1,5 +1,5 @@
 /* Textures: the pyramid, wrapping, and the elliptical filter against a sum over the finest texels. */
-#include "tests/fixture.h"
+#include "tests/support/fixture.h"
 
 static conic_texture *make(conic_context *context, int width, int height, conic_texture_wrap wrap,
                            float (*color)(int x, int y, int channel)) {

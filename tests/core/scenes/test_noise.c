@@ -1,8 +1,8 @@
 /* Random numbers by number, noise and the terrain made of it, with their derivatives. */
-#include "core/noise.h"
-#include "core/random.h"
-#include "core/scene_terrain.h"
-#include "tests/check.h"
+#include "core/base/random.h"
+#include "core/scenes/noise.h"
+#include "core/scenes/scene_terrain.h"
+#include "tests/support/check.h"
 
 /* A derivative against a difference quotient. */
 static void test_noise_derivatives(void) {

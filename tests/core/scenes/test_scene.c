@@ -1,9 +1,9 @@
 /* The analytic scenes: on their surfaces, closed, even, and the same bits however they are asked for. */
 #include "conic/conic.h"
-#include "core/color.h"
-#include "core/scene_terrain.h"
-#include "tests/check.h"
-#include "tests/scene_grid.h"
+#include "core/base/color.h"
+#include "core/scenes/scene_terrain.h"
+#include "tests/support/check.h"
+#include "tests/support/scene_grid.h"
 
 #define PI 3.14159265358979323846
 

@@ -1,7 +1,7 @@
 /* Clip lines: kept with their splats, read and written, drawn as docs/picture.md says, and verified by the oracle. */
 #include "conic/conic.h"
-#include "tests/files.h"
-#include "tests/solid.h"
+#include "tests/support/files.h"
+#include "tests/support/solid.h"
 
 /* A set whose splat i is at x = i; every third has lines, whose last number is i too. */
 static void fill_numbered(conic_context *context, conic_splats *splats, size_t count, unsigned more_fields) {

@@ -1,5 +1,5 @@
 /* Outlines of a mesh's vertices cover its faces, as seen straight on each. */
-#include "tests/outlines.h"
+#include "tests/support/outlines.h"
 
 static void add_triangle(conic_context *context, conic_model *model, size_t a, size_t b, size_t c) {
   static uint32_t triangles[20000][3];

@@ -1,5 +1,5 @@
 /* Normals of raw points: across the surface, and all outwards where it is closed. */
-#include "tests/outlines.h"
+#include "tests/support/outlines.h"
 
 static const double turn = 6.283185307179586;
 

@@ -1,5 +1,5 @@
 /* What is broken gets repaired, what is good stays bit for bit; threads and scale change nothing. */
-#include "tests/outlines.h"
+#include "tests/support/outlines.h"
 
 static float *const *array_of(const conic_splats *splats, int i) {
   return i < 3 ? &splats->tangent_u[i] : &splats->tangent_v[i - 3];

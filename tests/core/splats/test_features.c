@@ -1,8 +1,8 @@
 /* Sharp features: creases of meshes and of points become clip lines, without holes along them, and nothing sticks out.
  */
 #include "conic/model.h"
-#include "core/memory.h"
-#include "tests/solid.h"
+#include "core/base/memory.h"
+#include "tests/support/solid.h"
 
 static conic_estimate_options options_of(double angle_deg) {
   conic_estimate_options options;

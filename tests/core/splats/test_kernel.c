@@ -1,6 +1,6 @@
 /* Kernels against the C library's: the error bound of the exponential, and Confetti's printed formula against ours. */
-#include "core/kernel.h"
-#include "tests/check.h"
+#include "core/splats/kernel.h"
+#include "tests/support/check.h"
 
 static void test_exponential(void) {
   double worst = 0.0;

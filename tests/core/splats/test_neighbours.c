@@ -1,7 +1,7 @@
 /* The kd-tree against looking at every point: ties, duplicates, points that are nowhere, tiny sets. */
-#include "core/neighbours.h"
-#include "tests/check.h"
-#include "tests/random.h"
+#include "core/splats/neighbours.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 enum { MAX_POINTS = 3000, MAX_K = 64 };
 

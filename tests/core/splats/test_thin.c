@@ -1,5 +1,5 @@
 /* The stable random choice: as many as asked for, in order, nested, even, by the seed alone. */
-#include "tests/check.h"
+#include "tests/support/check.h"
 
 enum { N = 20000 };
 

@@ -1,5 +1,5 @@
 /* Coverage of triangles: exact, whatever they are, and every sample inside a closed mesh once. */
-#include "tests/triangle_fixture.h"
+#include "tests/support/triangle_fixture.h"
 
 /* Closed meshes from all sides, at sizes from triangles of many pixels down to many a pixel: what faces the viewer
  * covers as many samples as what faces away, and a convex mesh covers each pixel once. */

@@ -1,8 +1,8 @@
 /* How far places are from a mesh, by its tree and by asking every face; faces at the same places count once. */
-#include "lod/distance.h"
-#include "lod/face_tree.h"
-#include "tests/check.h"
-#include "tests/random.h"
+#include "lod/mesh/distance.h"
+#include "lod/mesh/face_tree.h"
+#include "tests/support/check.h"
+#include "tests/support/random_numbers.h"
 
 enum { N_OWN = 60, N_TWINS = 20, N_FACES = N_OWN * N_TWINS, N_VERTICES = 2 * 30, N_PLACES = 400 };
 

@@ -1,10 +1,10 @@
 /* Patches at any levels side by side fit to the bit: each edge of the triangles that are drawn has its like on the
  * other side, or is the mesh's own border; and no place of the mesh is farther from them than their errors allow, nor
  * they from it. */
-#include "lod/distance.h"
-#include "lod/hybrid_stitch.h"
-#include "tests/hybrid_fixture.h"
-#include "tests/random.h"
+#include "lod/hybrid/hybrid_stitch.h"
+#include "lod/mesh/distance.h"
+#include "tests/support/hybrid_fixture.h"
+#include "tests/support/random_numbers.h"
 
 /* An edge by the places of its ends, the lower first. */
 typedef struct edge {

@@ -1,9 +1,9 @@
 /* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
 #include <stdatomic.h>
 
-#include "lod/hybrid_point.h"
-#include "lod/hybrid_stitch.h"
-#include "tests/hybrid_fixture.h"
+#include "lod/hybrid/hybrid_point.h"
+#include "lod/hybrid/hybrid_stitch.h"
+#include "tests/support/hybrid_fixture.h"
 
 typedef struct spending {
   conic_context *context;

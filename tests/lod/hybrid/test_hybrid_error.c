@@ -1,9 +1,9 @@
 /* How far pictures of hybrid models are from those of the mesh itself. Of both, a picture of 256 × 256 is taken with
  * 8 × 8 samples a pixel, so that what is measured is the model and not the pixels: how far outlines moved, how far what
  * is drawn lies from the mesh, and how colours differ. What is to be drawn is chosen for the picture of 256 × 256. */
-#include "lod/face_tree.h"
-#include "lod/hybrid.h"
-#include "tests/hybrid_fixture.h"
+#include "lod/hybrid/hybrid_model.h"
+#include "lod/mesh/face_tree.h"
+#include "tests/support/hybrid_fixture.h"
 
 enum { SIZE = 256, FINE = 8, WIDE = SIZE * FINE, N_ERRORS = 4 };
 

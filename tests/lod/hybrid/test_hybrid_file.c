@@ -1,11 +1,11 @@
 /* .chy files: what is written is read, to the bit, and draws the same picture; what was spoiled is refused, also where
  * its sums were made right again, or can be used; what was built is sound. */
-#include "lod/file_fields.h"
-#include "lod/hybrid_layout.h"
-#include "tests/files.h"
-#include "tests/hybrid_fixture.h"
-#include "tests/random.h"
-#include "tests/seeds.h"
+#include "core/files/file_fields.h"
+#include "lod/hybrid/hybrid_layout.h"
+#include "tests/support/files.h"
+#include "tests/support/hybrid_fixture.h"
+#include "tests/support/random_numbers.h"
+#include "tests/support/seeds.h"
 
 static conic_hybrid *build(conic_context *context, size_t side, double phase2, int with_colors) {
   conic_hybrid_options options;

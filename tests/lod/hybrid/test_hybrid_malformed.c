@@ -2,10 +2,10 @@
  * what is wrong; what only contradicts itself is read, and found by the check. */
 #include <stddef.h>
 
-#include "lod/file_fields.h"
-#include "lod/hybrid_layout.h"
-#include "tests/files.h"
-#include "tests/hybrid_fixture.h"
+#include "core/files/file_fields.h"
+#include "lod/hybrid/hybrid_layout.h"
+#include "tests/support/files.h"
+#include "tests/support/hybrid_fixture.h"
 
 /* A sound file, and where its arrays lie. */
 typedef struct sound_file {

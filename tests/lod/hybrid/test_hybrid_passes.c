@@ -1,10 +1,10 @@
 /* Sampling a patch in passes: what one keeps from the last is what it would have found, errors are the same however
  * much of them is known before, and where wider spacings are said to give the same they do. */
-#include "core/memory.h"
-#include "lod/patch_error.h"
-#include "lod/patch_reuse.h"
-#include "lod/patch_shape.h"
-#include "tests/hybrid_fixture.h"
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_error.h"
+#include "lod/clusters/cluster_reuse.h"
+#include "lod/clusters/cluster_shape.h"
+#include "tests/support/hybrid_fixture.h"
 
 /* A terrain that is one patch. */
 typedef struct one_patch {

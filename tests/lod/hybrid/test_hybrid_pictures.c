@@ -1,7 +1,7 @@
 /* Hybrid models are watertight: wherever the mesh itself covers a pixel, so does each way to draw the model of it.
  *   test_hybrid_pictures SOURCE_FOLDER [all]
  * With `all` from 26 directions at three scales (scripts/hybrid-watertight); else a cheap part of that. */
-#include "tests/hybrid_fixture.h"
+#include "tests/support/hybrid_fixture.h"
 
 typedef struct watching {
   conic_context *context;

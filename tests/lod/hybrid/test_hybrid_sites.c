@@ -1,10 +1,10 @@
 /* What surfels are put on: sites by nearness, at several spacings at once, and ellipses that are nearly the smallest.
  */
-#include "core/ellipse.h"
-#include "lod/least_ellipse.h"
-#include "lod/place_table.h"
-#include "tests/hybrid_fixture.h"
-#include "tests/random.h"
+#include "core/splats/ellipse.h"
+#include "lod/clusters/least_ellipse.h"
+#include "lod/clusters/place_table.h"
+#include "tests/support/hybrid_fixture.h"
+#include "tests/support/random_numbers.h"
 
 static double random_between(uint64_t *state, double low, double high) {
   return low + (high - low) * random_unit(state);

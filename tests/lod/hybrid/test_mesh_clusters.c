@@ -1,9 +1,9 @@
 /* Clusters of faces: every face of use in just one, whatever the mesh, and the sums that costs are made of, kept while
  * clusters grow, are those of the clusters as they are. */
-#include "lod/flat_mesh.h"
-#include "lod/mesh_clusters.h"
-#include "tests/hybrid_fixture.h"
-#include "tests/random.h"
+#include "lod/mesh/flat_mesh.h"
+#include "lod/mesh/mesh_clusters.h"
+#include "tests/support/hybrid_fixture.h"
+#include "tests/support/random_numbers.h"
 
 typedef struct clustered {
   conic_context *context;

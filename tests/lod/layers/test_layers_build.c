@@ -1,10 +1,10 @@
 /* Layered point clouds: every sample once and where it was, within the bounds that the index states; the same file
  * whatever the threads and memory; sets of every shape. */
-#include "core/color.h"
-#include "lod/layers_code.h"
-#include "lod/layers_key.h"
-#include "tests/layers_fixture.h"
-#include "tests/random.h"
+#include "core/base/color.h"
+#include "lod/layers/format/layers_code.h"
+#include "lod/layers/format/layers_key.h"
+#include "tests/support/layers_fixture.h"
+#include "tests/support/random_numbers.h"
 
 /* What of an input sample comes back: the step that it lies in on each axis, its normal's and its colour's codes. */
 typedef struct expected {

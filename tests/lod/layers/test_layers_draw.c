@@ -1,8 +1,8 @@
 /* Pictures of layered point clouds: one picture, whatever the memory, the cache, occlusion culling and threads; and
  * what else of it is promised. */
-#include "tests/files.h"
-#include "tests/image_fixture.h"
-#include "tests/layers_frame.h"
+#include "tests/support/files.h"
+#include "tests/support/image_fixture.h"
+#include "tests/support/layers_frame.h"
 
 static const char *path;
 

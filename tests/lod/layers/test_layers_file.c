@@ -1,7 +1,7 @@
 /* .lpc files: whatever is spoiled is refused, or found when its cloud is read, also where its sums were made right
  * again; bounds that lie are found by the check; memory that runs out is an error. */
-#include "tests/layers_fixture.h"
-#include "tests/random.h"
+#include "tests/support/layers_fixture.h"
+#include "tests/support/random_numbers.h"
 
 typedef struct bytes {
   unsigned char *at;

@@ -1,9 +1,9 @@
 /* Layered point clouds from web servers: from a good one the same picture as from the file; from hostile ones an error
  * or, where that is allowed, a coarser picture; never a wrong one, and never a hang. */
-#include "tests/files.h"
-#include "tests/http_server.h"
-#include "tests/image_fixture.h"
-#include "tests/layers_frame.h"
+#include "tests/support/files.h"
+#include "tests/support/http_server.h"
+#include "tests/support/image_fixture.h"
+#include "tests/support/layers_frame.h"
 
 static unsigned char *bytes;
 static size_t n_bytes;

@@ -1,5 +1,5 @@
 /* Octrees of all kinds of sets: every bound holds, found independently; degenerate sets end; threads change no byte. */
-#include "tests/octree_fixture.h"
+#include "tests/support/octree_fixture.h"
 
 typedef struct vector {
   double x, y, z;

@@ -1,8 +1,8 @@
 /* What the bytes of nodes and leaves give back: near what was put in, and never on the wrong side of a bound. */
-#include "core/color.h"
-#include "lod/leaf_code.h"
-#include "lod/octree_cover.h"
-#include "tests/fixture.h"
+#include "core/base/color.h"
+#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_cover.h"
+#include "tests/support/fixture.h"
 
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -1,7 +1,7 @@
 /* .cot files: what is written is read, to the bit; whatever is spoiled is refused, also where its sums were made right
  * again; memory that runs out is an error. */
-#include "tests/files.h"
-#include "tests/octree_fixture.h"
+#include "tests/support/files.h"
+#include "tests/support/octree_fixture.h"
 
 enum { HEADER_BYTES = 256 };
 

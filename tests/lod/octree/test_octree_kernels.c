@@ -1,8 +1,8 @@
 /* The loops of building give the same on every instruction set, and what they leave out would change nothing. */
-#include "core/memory.h"
-#include "core/processor.h"
-#include "lod/octree_kernels.h"
-#include "tests/octree_fixture.h"
+#include "core/base/memory.h"
+#include "core/lanes/processor.h"
+#include "lod/octree/octree_kernels.h"
+#include "tests/support/octree_fixture.h"
 
 enum { N_DISCS = 1000, ROOM = 1024, N_ARRAYS = 13, N_NODES = 300, N_BLOCKS = ROOM / CONIC_DISC_BLOCK };
 

@@ -1,7 +1,7 @@
 /* Moments that are merged against moments that are computed at once, also in map coordinates; with the sums kept about
  * the world's origin, as Confetti has them, the latter would come out wrong. */
-#include "lod/moments.h"
-#include "tests/fixture.h"
+#include "lod/octree/moments.h"
+#include "tests/support/fixture.h"
 
 enum { N = 4000 };
 

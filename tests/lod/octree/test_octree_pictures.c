@@ -6,8 +6,8 @@
  * closes gaps of up to three pixels in a scan, and more of them the smaller the splats are. Where pixels side by side
  * are farther apart than four pixels' sizes one sheet ends before another, and two borders may each move by the error:
  * what opens between them is no hole in either. */
-#include "core/memory.h"
-#include "tests/octree_fixture.h"
+#include "core/base/memory.h"
+#include "tests/support/octree_fixture.h"
 
 enum { SIZE = 256, N_SIDES = 26, N_ERRORS = 5, REACH = 10 };
 

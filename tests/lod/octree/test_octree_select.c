@@ -1,7 +1,7 @@
 /* What is chosen: everything once, in a stable order, with the error that was asked for; budgets against brute force;
  * and error 0 draws the very picture of the splats. */
-#include "lod/octree_view.h"
-#include "tests/octree_fixture.h"
+#include "lod/octree/octree_view.h"
+#include "tests/support/octree_fixture.h"
 
 /* The leaves that an id stands for. */
 static void leaves_of(const conic_octree *octree, uint32_t id, const uint32_t *leaf_of_index, size_t *begin,

@@ -1,10 +1,10 @@
 /* The access layer: ranges of a file from a map and from web servers, good and hostile. Never wrong bytes, never a
  * hang: that it ends at all, within the test's time, is part of what is tested. */
-#include "lod/ranges.h"
-#include "tests/files.h"
-#include "tests/http_server.h"
-#include "tests/image_fixture.h"
-#include "tests/random.h"
+#include "lod/ranges/ranges.h"
+#include "tests/support/files.h"
+#include "tests/support/http_server.h"
+#include "tests/support/image_fixture.h"
+#include "tests/support/random_numbers.h"
 
 enum { N_BYTES = 3 << 20, N_RANGES = 200 };
 
