@@ -1,15 +1,12 @@
 #!/usr/bin/env bash
 # Every command's JSON is as docs/reference/json.schema.json says, and has the keys that scripts rely on; no fault in it
 # would go unseen. The checks themselves stand in json_schema.py.
-set -euo pipefail
+set -uo pipefail
 
-source_folder=$1
-program=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-mkdir out
-failures=0
+source "$1/tests/support/program.bash"
+schema=$1/docs/reference/json.schema.json
+check=$1/tests/cli/json_schema.py
+mkdir runs
 
 python=
 for candidate in python3 /usr/bin/python3; do
@@ -19,26 +16,25 @@ if [[ -z $python ]]; then
   echo "skipped: python3-jsonschema is not installed"
   exit 77
 fi
-if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
+if ! "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   echo "skipped: the runs draw EXR files, which this build does not write"
   exit 77
 fi
 has_zstd=0
-if "$program" --version | grep -q '^In this build:.*zstd'; then
+if "$conic" --version | grep -q '^In this build:.*zstd'; then
   has_zstd=1
 fi
 
-# run NAME DEFINITION ARGUMENTS …: NAME is one of `wanted` or the run's own.
-run() {
-  local name=$1 definition=$2 status=0
+# write NAME DEFINITION ARGUMENTS …: what a run writes goes to runs/NAME.json.
+write() {
+  local name=$1 definition=$2 exit_code=0
   shift 2
-  "$program" "$@" --json - > "out/$name.json" 2> err < /dev/null || status=$?
-  if [[ $status -ne 0 && ! ($status -eq 1 && $definition == diff) ]]; then
-    echo "FAILED: $name: $(cat err)"
-    failures=$((failures + 1))
-  else
-    echo "$definition" > "out/$name.definition"
+  if [[ $name == diff* ]]; then
+    exit_code=1
   fi
+  run $exit_code "$@" --json -
+  cp out "runs/$name.json"
+  echo "$definition" > "runs/$name.definition"
 }
 
 # The keys that scripts rely on.
@@ -85,69 +81,62 @@ printf 'f %s\n' '1 5 2' '2 5 3' '3 5 4' '4 5 1' '2 3 7 6' >> tent.obj
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > triangle.obj
 printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
 
-run make make make knot -n 50k -o knot.ply
-run prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
-run octree octree octree knot.ply -o knot.cot
-run hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
-run mls-project mls_project mls project knot.ply -o clean.ply
-run mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
-run mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
-run mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
-run render render render knot.ply -o knot.exr --aov all
-run render-octree render_octree render knot.cot -o lod.exr --error 2
-run render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
-run render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
-run render-hybrid render_hybrid render tent.chy -o tent.exr
-run render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
-run render-auto render render knot.ply -o auto.exr --method auto --zoom 20
-run render-other render render thin.ply -o other.exr --method disc --samples 2 --epsilon 2x
-run diff diff diff knot.exr lod.exr
-run diff-sizes diff diff knot.exr triangle.exr
-run verify verify verify thinner.ply --size 160x120
-run verify-samples verify verify thinner.ply --size 40x30 --samples 2
-run make-one make make plane -n 1 -o one.ply
-run verify-exact verify verify one.ply --size 12x9 --against exact
-run explain explain explain one.ply --size 64x48 --pixel 30,20
-run explain-splat explain explain one.ply --size 64x48 --splat 0
-run explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
-run explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
-run explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
-run explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
-run chart chart chart -o chart --quick
-run bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
-cp out/bench-old.json old.json
-run bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
-run info info_model info knot.ply --check
-run info-mesh info_model info triangle.obj
-run info-far info_model info far.xyz --check
-run info-image info_image info knot.exr --check
-run info-octree info_octree info knot.cot --check
-run info-hybrid info_hybrid info tent.chy --check
-run devices devices devices
+write make make make knot -n 50k -o knot.ply
+write prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
+write octree octree octree knot.ply -o knot.cot
+write hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
+write mls-project mls_project mls project knot.ply -o clean.ply
+write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
+write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
+write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
+write render render render knot.ply -o knot.exr --aov all
+write render-octree render_octree render knot.cot -o lod.exr --error 2
+write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
+write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
+write render-hybrid render_hybrid render tent.chy -o tent.exr
+write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
+write render-auto render render knot.ply -o auto.exr --method auto --zoom 20
+write render-other render render thin.ply -o other.exr --method disc --samples 2 --epsilon 2x
+write diff diff diff knot.exr lod.exr
+write diff-sizes diff diff knot.exr triangle.exr
+write verify verify verify thinner.ply --size 160x120
+write verify-samples verify verify thinner.ply --size 40x30 --samples 2
+write make-one make make plane -n 1 -o one.ply
+write verify-exact verify verify one.ply --size 12x9 --against exact
+write explain explain explain one.ply --size 64x48 --pixel 30,20
+write explain-splat explain explain one.ply --size 64x48 --splat 0
+write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
+write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
+write explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
+write explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
+write chart chart chart -o chart --quick
+write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
+cp runs/bench-old.json old.json
+write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
+write info info_model info knot.ply --check
+write info-mesh info_model info triangle.obj
+write info-far info_model info far.xyz --check
+write info-image info_image info knot.exr --check
+write info-octree info_octree info knot.cot --check
+write info-hybrid info_hybrid info tent.chy --check
+write devices devices devices
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
   device.rounds_correctly device.compute_units device.memory_bytes"
 if [[ $has_zstd -eq 1 ]]; then
-  run layer layer layer knot.ply -o knot.lpc
-  run render-layers render_layers render knot.lpc -o layers.exr --error 4
-  run render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
-  run info-layers info_layers info knot.lpc --check
+  write layer layer layer knot.ply -o knot.lpc
+  write render-layers render_layers render knot.lpc -o layers.exr --error 4
+  write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
+  write info-layers info_layers info knot.lpc --check
 else
   unset "wanted[layer]" "wanted[render-layers]" "wanted[info-layers]"
-  unseen+=" $("$python" -c 'import json, sys
-def keys(part, path):
-  for key, inner in part.get("properties", {}).items():
-    yield path + "." + key
-    yield from keys(inner, path + "." + key)
-definitions = json.load(open(sys.argv[1]))["$defs"]
-print(*(key for name in ("layer", "layers_drawn", "info_layers") for key in keys(definitions[name], name)))' \
-    "$source_folder/docs/reference/json.schema.json") render.layers"
+  unseen+=" layer.* layers_drawn.* info_layers.* render.layers"
 fi
 
 for name in "${!wanted[@]}"; do
   # shellcheck disable=SC2086 # the keys are words
   echo "$name" ${wanted[$name]}
-done > out/wanted
-echo "$unseen" > out/unseen
-"$python" "$source_folder/tests/json_schema.py" "$source_folder/docs/reference/json.schema.json" out || failures=$((failures + 1))
-[[ $failures -eq 0 ]]
+done > runs/wanted
+echo "$unseen" > runs/unseen
+[[ $failures -eq 0 ]] || exit 1
+"$python" "$check" "$schema" runs
