@@ -5,6 +5,9 @@
 #define CONIC_LANES 16
 #define CONIC_HALF_LANES 8
 #define CONIC_INLINE static inline
+#define CONIC_OUTLINE static
+/* A block of 4 × 4 pixels is one vector, column by column. */
+#define CONIC_PARTS 1
 
 typedef float16 lanes;
 typedef int16 int_lanes;
@@ -20,6 +23,10 @@ typedef int16 lanes_mask;
 #define lanes_to_bits(value) as_uint16((lanes)(value))
 #define ints_of_indices(value) as_int16((index_lanes)(value))
 #define indices_of_ints(value) as_uint16((int_lanes)(value))
+#define lanes_columns() ((int_lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
+#define lanes_rows() ((int_lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+#define lanes_load(from) vload16(0, from)
+#define lanes_store(to, value) vstore16(value, 0, to)
 #define lanes_sqrt(value) sqrt((lanes)(value))
 #define lanes_absolute(value) fabs((lanes)(value))
 
@@ -47,6 +54,14 @@ CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, 
   return mask ? yes : no;
 }
 
+CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {
+  return mask ? yes : no;
+}
+
+CONIC_INLINE void lanes_replace_indices(uint *to, lanes_mask mask, index_lanes value) {
+  vstore16(mask ? value : vload16(0, to), 0, to);
+}
+
 CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
   return mask ? value : (lanes)0.0f;
 }
@@ -72,6 +87,13 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   int4 b = a.lo | a.hi;
   long2 c = as_long2(b);
   return (c.x | c.y) != 0;
+}
+
+CONIC_INLINE uint lanes_count(lanes_mask mask) {
+  int8 a = mask.lo + mask.hi;
+  int4 b = a.lo + a.hi;
+  int2 c = b.lo + b.hi;
+  return (uint)-(c.x + c.y);
 }
 
 #include "core/lanes/lanes_exponential.h"

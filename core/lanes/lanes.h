@@ -23,8 +23,11 @@
 #endif
 
 #define CONIC_BLOCK_ROWS 4
+/* A block of 4 × 4 pixels is so many vectors. */
+#define CONIC_PARTS (CONIC_BLOCK_ROWS * 4 / CONIC_LANES)
 
 #define CONIC_INLINE static inline __attribute__((always_inline))
+#define CONIC_OUTLINE static __attribute__((noinline))
 
 typedef float lanes __attribute__((vector_size(4 * CONIC_LANES)));
 typedef int32_t int_lanes __attribute__((vector_size(4 * CONIC_LANES)));
@@ -322,6 +325,10 @@ CONIC_INLINE lanes lanes_sqrt(lanes a) {
 
 #endif
 #endif
+
+CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {
+  return (int_lanes)lanes_select_indices(mask, (index_lanes)yes, (index_lanes)no);
+}
 
 CONIC_INLINE lanes lanes_absolute(lanes value) {
   return (lanes)((int_lanes)value & 0x7fffffff);
