@@ -1,6 +1,6 @@
 /* Command-line arguments, by table. Long options take `--name value` and `--name=value`; `--` ends them. */
-#ifndef CLI_ARGUMENTS_H
-#define CLI_ARGUMENTS_H
+#ifndef CONIC_ARGUMENTS_H
+#define CONIC_ARGUMENTS_H
 
 #include "cli/session.h"
 

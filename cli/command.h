@@ -1,6 +1,6 @@
 /* The sub-commands, one file each: cli/NAME.c. */
-#ifndef CLI_COMMAND_H
-#define CLI_COMMAND_H
+#ifndef CONIC_COMMAND_H
+#define CONIC_COMMAND_H
 
 #include "cli/session.h"
 

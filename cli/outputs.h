@@ -1,6 +1,6 @@
 /* What a run writes, asked about before the work: whether it can be written, and what it would be written over. */
-#ifndef CLI_OUTPUTS_H
-#define CLI_OUTPUTS_H
+#ifndef CONIC_OUTPUTS_H
+#define CONIC_OUTPUTS_H
 
 #include "cli/session.h"
 

@@ -1,6 +1,6 @@
 /* What every sub-command shares: the context with its messages and progress bar, exit codes, the clock, JSON output. */
-#ifndef CLI_SESSION_H
-#define CLI_SESSION_H
+#ifndef CONIC_SESSION_H
+#define CONIC_SESSION_H
 
 #include <stdio.h>
 

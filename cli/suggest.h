@@ -1,6 +1,6 @@
 /* What a mistyped word may have meant. */
-#ifndef CLI_SUGGEST_H
-#define CLI_SUGGEST_H
+#ifndef CONIC_SUGGEST_H
+#define CONIC_SUGGEST_H
 
 /* How many letters must be inserted, left out, replaced or swapped with their neighbour to make one of the other. */
 int cli_word_distance(const char *a, const char *b);

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "core/message.h"
+#include "core/base/message.h"
 
 /* A line that is put together piece by piece; what is too long is cut. */
 typedef struct line {

@@ -1,7 +1,7 @@
 /* What --verbose adds on standard error, in the same words from every command. Other lines go there by conic_log with
  * CONIC_LOG_INFO. */
-#ifndef CLI_TELL_H
-#define CLI_TELL_H
+#ifndef CONIC_TELL_H
+#define CONIC_TELL_H
 
 #include "cli/session.h"
 

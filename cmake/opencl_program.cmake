@@ -1,9 +1,9 @@
 # The programs for OpenCL devices: each opencl/NAME.cl with all that it includes, the C path's own text among it, as one
 # text within the library. The preprocessor knows nothing of this machine, so that the text is the same from every one.
-set(conic_opencl_sources ${PROJECT_SOURCE_DIR}/opencl/device.c ${PROJECT_SOURCE_DIR}/opencl/program.c
+set(conic_opencl_sources ${PROJECT_SOURCE_DIR}/opencl/opencl_device.c ${PROJECT_SOURCE_DIR}/opencl/program.c
   ${PROJECT_SOURCE_DIR}/opencl/cache.c ${PROJECT_SOURCE_DIR}/opencl/queue.c ${PROJECT_SOURCE_DIR}/opencl/frame.c
   ${PROJECT_SOURCE_DIR}/opencl/frame_setup.c ${PROJECT_SOURCE_DIR}/opencl/frame_tiles.c ${PROJECT_SOURCE_DIR}/opencl/frame_triangles.c
-  ${PROJECT_SOURCE_DIR}/opencl/host_setup.c ${PROJECT_SOURCE_DIR}/opencl/renderer.c)
+  ${PROJECT_SOURCE_DIR}/opencl/host_setup.c ${PROJECT_SOURCE_DIR}/opencl/opencl_renderer.c)
 foreach(program setup raster triangles)
   set(text ${CMAKE_BINARY_DIR}/opencl/${program}.cl)
   set(source ${CMAKE_BINARY_DIR}/opencl/${program}_text.c)

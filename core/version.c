@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "core/openimageio_bridge.h"
+#include "core/image/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "conic/opencl.h"
-#include "core/message.h"
+#include "core/base/message.h"
 
 static conic_status refuse(conic_context *context) {
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "opencl: this build has no OpenCL; it draws on the CPU only");

@@ -3,7 +3,7 @@
 #include "opencl/shared.h"
 
 #include "opencl/layout.h"
-#include "raster/projected.h"
+#include "raster/project/projected.h"
 
 /* Exclusive prefix sums in three steps: of each item's numbers, of those sums, and places within. */
 __kernel void scan_sums(uint n, __global const uint *numbers, __global ulong *sums) {

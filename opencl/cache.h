@@ -1,7 +1,7 @@
 /* Bytes kept from run to run, in files that are whole or not there: written beside and renamed, and with a checksum,
  * since a driver that is given half a binary may do anything. */
-#ifndef OPENCL_CACHE_H
-#define OPENCL_CACHE_H
+#ifndef CONIC_CACHE_H
+#define CONIC_CACHE_H
 
 #include <stdint.h>
 

@@ -2,11 +2,11 @@
 
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "raster/clip_lines.h"
-#include "raster/method.h"
-#include "raster/projected.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "raster/project/clip_lines.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
 
 /* A tile's fragments are counted in 32 bits: no more splats than this are on a device at a time. */
 #define MOST_PART_SPLATS (((size_t)1 << 24) - 1)

@@ -1,10 +1,10 @@
 /* One frame on its way through a device's stages. Who wants to look at what a stage has made calls the stages one by
  * one and reads their buffers with conic_queue_read. */
-#ifndef OPENCL_FRAME_H
-#define OPENCL_FRAME_H
+#ifndef CONIC_FRAME_H
+#define CONIC_FRAME_H
 
 #include "opencl/layout.h"
-#include "opencl/renderer.h"
+#include "opencl/opencl_renderer.h"
 
 typedef struct conic_frame {
   conic_opencl *opencl;

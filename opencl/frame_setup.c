@@ -1,8 +1,8 @@
 /* Set-up: the splats of a part to the device, their records, and these in order. */
 #include "opencl/frame.h"
-#include "raster/clip_lines.h"
-#include "raster/method.h"
-#include "raster/projected.h"
+#include "raster/project/clip_lines.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
 
 /* One column of the part's splats: a CPU's device reads it where it is. */
 static conic_status write_column(const conic_frame *f, int column, const float *values) {

@@ -2,14 +2,14 @@
  */
 
 #include "conic/triangles.h"
-#include "core/clock.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/texture.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/texture_levels.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"
-#include "raster/tile_kernels.h"
-#include "raster/triangle_frame.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/triangles/triangle_frame.h"
 
 _Static_assert(CONIC_DEVICE_TEXTURE_LEVELS == CONIC_TEXTURE_LEVELS, "a device's texture has all levels");
 

@@ -1,4 +1,4 @@
-/* Triangles a pixel a work-item: raster/triangle_tile.c in its order of arithmetic. */
+/* Triangles a pixel a work-item: raster/triangles/triangle_tile.c in its order of arithmetic. */
 
 /* Adds to a number of 64 bits, low word first. */
 static void gather_count(__global uint *sum, uint n) {

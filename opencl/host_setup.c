@@ -2,11 +2,11 @@
  * have made them. */
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/threads.h"
 #include "opencl/frame.h"
-#include "raster/clip_lines.h"
-#include "raster/projected.h"
+#include "raster/project/clip_lines.h"
+#include "raster/project/projected.h"
 
 typedef struct host_setup {
   const conic_frame *frame;

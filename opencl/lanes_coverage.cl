@@ -1,5 +1,5 @@
 /* Whether a splat covers a block's 16 pixels, with what weight, and how deep: in every lane the same operations in the
- * same order as raster/coverage.h and core/kernel.h have. What does not concern a lane is masked by selection. */
+ * same order as raster/tiles/coverage.h and core/splats/kernel.h have. What does not concern a lane is masked by selection. */
 
 typedef struct lanes_fragment {
   lanes q, iz, plane_iz, scale;

@@ -1,4 +1,4 @@
-/* What core/kernel.h has for one pixel, a pixel a lane. */
+/* What core/splats/kernel.h has for one pixel, a pixel a lane. */
 
 /* conic_exp_negative */
 static lanes lanes_exp_negative(lanes x) {

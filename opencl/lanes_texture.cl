@@ -1,4 +1,4 @@
-/* Textures a block at a time, a pixel a lane: raster/texture_body.h in its order of arithmetic. */
+/* Textures a block at a time, a pixel a lane: raster/triangles/texture_body.h in its order of arithmetic. */
 
 /* A texture's coordinates and the footprints' variances, in texels² of the first level. */
 typedef struct lanes_footprints {

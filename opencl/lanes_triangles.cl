@@ -1,4 +1,4 @@
-/* Triangles a tile a work-item: raster/triangle_body.h in its order of arithmetic. */
+/* Triangles a tile a work-item: raster/triangles/triangle_body.h in its order of arithmetic. */
 
 /* The nearest triangles of a block: their depth, 0 where there is none, and their records. */
 typedef struct lanes_nearest_triangles {

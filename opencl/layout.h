@@ -1,7 +1,7 @@
 /* What the host and the device's programs tell each other: read by both compilers. Beside it they share the records of
- * raster/projected.h and conic_view, whose layouts are the same in both. */
-#ifndef OPENCL_LAYOUT_H
-#define OPENCL_LAYOUT_H
+ * raster/project/projected.h and conic_view, whose layouts are the same in both. */
+#ifndef CONIC_LAYOUT_H
+#define CONIC_LAYOUT_H
 
 #include <stdint.h>
 

@@ -1,8 +1,8 @@
 /* Programs for a device: built from the text within this library, or taken from where an earlier run has kept them. */
-#ifndef OPENCL_PROGRAM_H
-#define OPENCL_PROGRAM_H
+#ifndef CONIC_PROGRAM_H
+#define CONIC_PROGRAM_H
 
-#include "opencl/device.h"
+#include "opencl/opencl_device.h"
 
 /* The text of a program, preprocessed when conic was built (cmake/opencl_program.cmake). */
 typedef struct conic_opencl_text {

@@ -1,8 +1,8 @@
 /* A device's queue: its kernels, memory that grows, and how long each stage took. */
-#ifndef OPENCL_QUEUE_H
-#define OPENCL_QUEUE_H
+#ifndef CONIC_QUEUE_H
+#define CONIC_QUEUE_H
 
-#include "opencl/device.h"
+#include "opencl/opencl_device.h"
 
 typedef enum conic_stage {
   CONIC_STAGE_SETUP,

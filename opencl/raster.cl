@@ -4,8 +4,8 @@
 #define double ulong /* of conic_view: never looked at */
 #include "opencl/bins.cl"
 
-#include "raster/coverage.h"
-#include "raster/shade.c"
+#include "raster/tiles/coverage.h"
+#include "raster/tiles/shade.c"
 
 #include "opencl/gather.cl"
 #include "opencl/lanes.cl"

@@ -1,22 +1,22 @@
-/* Set-up on a device: the very text of raster/project.c and its neighbours, and the kernel that hands it splats. */
+/* Set-up on a device: the very text of raster/project/project_splats.c and its neighbours, and the kernel that hands it splats. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #include "opencl/shared.h"
 
 #include "opencl/layout.h"
-#include "raster/clip_disc.c"
+#include "raster/project/clip_disc.c"
 
 #define cross conic_cross_of_rays
-#include "raster/project_ray.c"
+#include "raster/project/project_ray.c"
 #undef cross
-#include "raster/project.c"
+#include "raster/project/project_splats.c"
 #define consider conic_consider_of_parts
-#include "raster/clip_box.c"
+#include "raster/project/clip_box.c"
 #undef consider
 #define cross conic_cross_of_lines
 #define row_times conic_row_times_of_lines
 #define set_box conic_set_box_of_lines
 #define set_range conic_set_range_of_lines
-#include "raster/clip_lines.c"
+#include "raster/project/clip_lines.c"
 #undef cross
 #undef row_times
 #undef set_box

@@ -1,4 +1,4 @@
-/* Set-up of 16 splats at a time, for CPUs: the usual splats, in the order of arithmetic of raster/project.c. What is
+/* Set-up of 16 splats at a time, for CPUs: the usual splats, in the order of arithmetic of raster/project/project_splats.c. What is
  * not usual (near the camera, not finite, not to be held by float) goes to project_one. */
 
 typedef float16 lanes;

@@ -1,7 +1,7 @@
 /* What stands before the text that plain C and OpenCL C share: names that OpenCL C keeps for itself are changed, and
  * what has no place on a device is left out. Only for the preprocessor (cmake/opencl_program.cmake). */
-#ifndef OPENCL_SHARED_H
-#define OPENCL_SHARED_H
+#ifndef CONIC_SHARED_H
+#define CONIC_SHARED_H
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -18,7 +18,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* conic/context.h and core/clip.h have pointers to functions, which OpenCL C has not. */
+/* conic/context.h and core/splats/clip.h have pointers to functions, which OpenCL C has not. */
 #define CONIC_CONTEXT_H
 #include "conic/status.h"
 typedef struct conic_context conic_context;

@@ -8,8 +8,8 @@
 #undef conic_texture
 #undef conic_texture_sample
 
-/* core/texture.h */
-#define CORE_TEXTURE_H
+/* core/image/texture_levels.h */
+#define CONIC_TEXTURE_LEVELS_H
 typedef __global conic_device_texture conic_texture;
 typedef __global conic_device_texture_level conic_texture_level;
 typedef __global float conic_texel;
@@ -30,9 +30,9 @@ typedef struct conic_triangles {
 
 typedef conic_device_material conic_material;
 
-/* raster/triangle_frame.h */
-#define RASTER_TRIANGLE_FRAME_H
-#include "raster/triangle.h"
+/* raster/triangles/triangle_frame.h */
+#define CONIC_TRIANGLE_FRAME_H
+#include "raster/triangles/triangle.h"
 
 typedef struct conic_triangle_frame {
   const conic_view *view;

@@ -4,13 +4,13 @@
 #include "opencl/shared.h"
 
 #include "opencl/layout.h"
-#include "raster/shade.c"
+#include "raster/tiles/shade.c"
 
 #include "opencl/triangle_set.cl"
 
-#include "core/texture_sample.c"
-#include "raster/triangle_look.c"
-#include "raster/triangle_pixel.h"
+#include "core/image/texture_sample.c"
+#include "raster/triangles/triangle_look.c"
+#include "raster/triangles/triangle_pixel.h"
 
 /* Where the nearest triangles are looked for. */
 #define TRIANGLE_LISTS                                                                                                 \

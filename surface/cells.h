@@ -1,6 +1,6 @@
 /* The cells of a lattice that hold something, and how much. */
-#ifndef SURFACE_CELLS_H
-#define SURFACE_CELLS_H
+#ifndef CONIC_CELLS_H
+#define CONIC_CELLS_H
 
 #include <stddef.h>
 #include <stdint.h>

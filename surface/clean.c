@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
 #include "surface/own_points.h"
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };

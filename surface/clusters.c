@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 /* The sums over a node's slots, each weighed by its mass. */
 typedef struct node_sums {

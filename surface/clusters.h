@@ -1,8 +1,8 @@
 /* Cells of the tree as single samples (PSS §3.4.2). */
-#ifndef SURFACE_CLUSTERS_H
-#define SURFACE_CLUSTERS_H
+#ifndef CONIC_CLUSTERS_H
+#define CONIC_CLUSTERS_H
 
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 /* Errors: MEMORY. */
 conic_status conic_clusters_create(conic_surface *surface);

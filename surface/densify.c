@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/builder.h"
-#include "core/memory.h"
-#include "core/message.h"
-#include "core/threads.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/splats/builder.h"
 #include "surface/gap.h"
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 enum { CHUNK = 64, MAX_TOUCHED = 256 };
 

@@ -1,7 +1,7 @@
 /* The polynomial over the local plane (PSS Eq. 3), by orthogonal columns and never by normal equations. */
 #include <string.h>
 
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 /* What must be left of a monomial, as a share of its square, when the ones before it are taken out. */
 static const double LEAST_SHARE = 1e-9;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/voronoi_cell.h"
+#include "core/splats/voronoi_cell.h"
 
 enum { N_NEIGHBOURS = 32 };
 

@@ -1,8 +1,8 @@
 /* The widest gap about a point: a vertex of its Voronoi cell among its neighbours, seen in its tangent plane. */
-#ifndef SURFACE_GAP_H
-#define SURFACE_GAP_H
+#ifndef CONIC_GAP_H
+#define CONIC_GAP_H
 
-#include "core/neighbours.h"
+#include "core/splats/neighbours.h"
 
 typedef struct conic_gap {
   double center[3]; /* in the tangent plane */

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "surface/surface.h"
+#include "core/base/memory.h"
+#include "surface/mls_surface.h"
 
 enum { MAX_DEPTH = 34 };
 

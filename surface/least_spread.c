@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "core/eigen.h"
+#include "core/base/eigen.h"
 
 enum { MAX_STEPS = 24 };
 

@@ -1,6 +1,6 @@
 /* Across which way samples spread least. */
-#ifndef SURFACE_LEAST_SPREAD_H
-#define SURFACE_LEAST_SPREAD_H
+#ifndef CONIC_LEAST_SPREAD_H
+#define CONIC_LEAST_SPREAD_H
 
 /* A right-handed frame whose third row is the unit eigenvector of the least eigenvalue of the covariance {xx, xy, xz,
  * yy, yz, zz}. Where two eigenvalues are the same it is one of those that there are. */

@@ -1,8 +1,8 @@
 /* A surface's own points, projected. */
-#ifndef SURFACE_OWN_POINTS_H
-#define SURFACE_OWN_POINTS_H
+#ifndef CONIC_OWN_POINTS_H
+#define CONIC_OWN_POINTS_H
 
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 /* By slot; positions relative to the set's origin. What is not DONE has its old position. */
 typedef struct conic_own_points {

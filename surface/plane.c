@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "surface/least_spread.h"
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 enum { MAX_STEPS = 40, MAX_TURNS = 30, MAX_SEARCH = 40 };
 

@@ -2,7 +2,7 @@
  * places and normals, on which the point finds its foot; weights about the foot, until both agree. */
 #include <math.h>
 
-#include "surface/surface.h"
+#include "surface/mls_surface.h"
 
 enum { MAX_ROUNDS = 100, LEAST_SAMPLES = 4 };
 

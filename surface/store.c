@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/memory.h"
-#include "core/message.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
 
 static conic_status complain(const conic_store *store, const char *what) {
   return conic_fail(store->context, CONIC_ERROR_IO, "%s: %s of what is put aside beside it failed: %s", store->path,

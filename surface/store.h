@@ -1,6 +1,6 @@
 /* Records of one size, in memory or in a file without a name. */
-#ifndef SURFACE_STORE_H
-#define SURFACE_STORE_H
+#ifndef CONIC_STORE_H
+#define CONIC_STORE_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* What of C's <math.h> the shared text uses. OpenCL C's functions go by their argument's type. */
-#ifndef OPENCL_C_LIBRARY_MATH_H
-#define OPENCL_C_LIBRARY_MATH_H
+#ifndef CONIC_MATH_H
+#define CONIC_MATH_H
 
 #define sqrtf(x) sqrt((float)(x))
 #define fabsf(x) fabs((float)(x))

@@ -1,6 +1,6 @@
 /* The types of C's <stdint.h> for OpenCL C, whose own have fixed sizes. */
-#ifndef OPENCL_C_LIBRARY_STDINT_H
-#define OPENCL_C_LIBRARY_STDINT_H
+#ifndef CONIC_STDINT_H
+#define CONIC_STDINT_H
 
 typedef uchar uint8_t;
 typedef ushort uint16_t;

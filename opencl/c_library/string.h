@@ -1,6 +1,6 @@
 /* What of C's <string.h> the shared text uses, for private memory. */
-#ifndef OPENCL_C_LIBRARY_STRING_H
-#define OPENCL_C_LIBRARY_STRING_H
+#ifndef CONIC_STRING_H
+#define CONIC_STRING_H
 
 static inline void conic_copy_bytes(void *to, const void *from, size_t n) {
   for (size_t i = 0; i < n; i++)

@@ -1,6 +1,6 @@
 /* What the fuzz targets share: the input as a file that exists in memory only, and a context that says nothing. */
-#ifndef TESTS_FUZZ_FUZZ_H
-#define TESTS_FUZZ_FUZZ_H
+#ifndef CONIC_FUZZ_H
+#define CONIC_FUZZ_H
 
 /* For memfd_create. */
 #ifndef _GNU_SOURCE

@@ -3,7 +3,7 @@
 /* First, for what it defines. */
 #include "tests/fuzz/fuzz.h"
 
-#include "lod/hybrid_layout.h"
+#include "lod/hybrid/hybrid_layout.h"
 
 /* What is read can be used, whatever it says of itself. */
 static void use(fuzz_input *input, conic_hybrid *hybrid) {

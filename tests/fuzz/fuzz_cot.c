@@ -2,7 +2,7 @@
 /* First, for what it defines. */
 #include "tests/fuzz/fuzz.h"
 
-#include "lod/octree.h"
+#include "lod/octree/octree_nodes.h"
 
 enum { HEADER_BYTES = 256 };
 

@@ -1,7 +1,7 @@
 /* The pictures' targets: PFM is ours, EXR the library's with our layout around it. What is neither would only fuzz
  * other people's decoders and is left out. */
-#ifndef TESTS_FUZZ_FUZZ_IMAGE_H
-#define TESTS_FUZZ_FUZZ_IMAGE_H
+#ifndef CONIC_FUZZ_IMAGE_H
+#define CONIC_FUZZ_IMAGE_H
 
 #include "tests/fuzz/fuzz.h"
 

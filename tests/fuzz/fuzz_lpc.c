@@ -3,7 +3,7 @@
 /* First, for what it defines. */
 #include "tests/fuzz/fuzz.h"
 
-#include "lod/layers_format.h"
+#include "lod/layers/format/layers_format.h"
 
 /* What is read can be looked at, whatever it says of itself. */
 static void read_and_use(const uint8_t *bytes, size_t n_bytes) {

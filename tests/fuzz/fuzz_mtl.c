@@ -1,7 +1,7 @@
 #include "tests/fuzz/fuzz.h"
 
-#include "core/material_file.h"
-#include "core/memory.h"
+#include "core/base/memory.h"
+#include "core/formats/material_file.h"
 
 /* A file of the materials that have these names. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {

@@ -1,5 +1,5 @@
 /* Writes the seeds of every fuzz target: FOLDER/TARGET/NAME. */
-#include "tests/seeds.h"
+#include "tests/support/seeds.h"
 
 static void write_seed(const char *folder, const seed *from) {
   char path[4096];

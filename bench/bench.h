@@ -1,0 +1,157 @@
+/* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath. docs/benchmark.md
+ * has the definitions. */
+#ifndef CONIC_BENCH_H
+#define CONIC_BENCH_H
+
+#include "cli/device_option.h"
+#include "cli/json_write.h"
+#include "cli/session.h"
+
+/* --- scenes (bench/bench_scene.c) --- */
+
+/* How files are looked at; what is made has a way of its own. */
+typedef struct cli_bench_look {
+  const char *camera_path; /* null: framed; its size is not taken */
+  int culls_back;
+} cli_bench_look;
+
+typedef struct cli_bench_scene {
+  char name[32]; /* "sphere-1M" */
+  conic_splats splats;
+  int is_framed, has_camera; /* a file's camera; neither: the built-in one */
+  conic_camera camera;       /* of has_camera */
+  int cull_back;
+  double low[3], high[3]; /* its box */
+  double near_z, splat_length;
+} cli_bench_scene;
+
+/* Makes the scene of a name, or, where there is a look at it, reads the file of that name. The splats are the
+ * session's: released by cli_bench_scene_release, also after a failure. Returns the exit code, after a message. */
+int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench_look *look, cli_bench_scene *scene);
+void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene);
+/* Whether a scene of that name can be made: CLI_DONE, or CLI_USAGE after a message. */
+int cli_bench_scene_check(const char *name);
+/* What can be asked for, for the help. */
+void cli_bench_scene_list(void);
+/* The camera that it is seen by, brought to the size. */
+conic_status cli_bench_scene_camera(cli_session *session, const cli_bench_scene *scene, int width, int height,
+                                    conic_camera *camera);
+
+/* --- methods --- */
+
+/* conic, ray, affine, point, disc, auto; and nearest: conic's single pass, where the nearest splat wins. */
+typedef struct cli_bench_method {
+  const char *name;
+  conic_method method;
+  int passes;
+} cli_bench_method;
+
+enum { CLI_BENCH_N_METHODS = 7 };
+extern const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS];
+
+/* --- what a stage must at least do (bench/bench_work.c) --- */
+
+enum { CLI_BENCH_N_STAGES = 5 };
+extern const char *const cli_bench_stages[CLI_BENCH_N_STAGES]; /* "setup", "bin" … */
+
+typedef struct cli_bench_work {
+  double read_bytes, written_bytes; /* to and from memory, if caches held everything that is used twice in a row */
+  double operations;                /* + − × ÷ √ and comparisons of single numbers */
+} cli_bench_work;
+
+void cli_bench_work_of(const conic_render_statistics *statistics, const conic_splats *splats, const conic_image *image,
+                       int passes, cli_bench_work work[CLI_BENCH_N_STAGES]);
+
+double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage);
+
+/* --- one line (bench/bench_frame.c) --- */
+
+enum { CLI_BENCH_MOST_FRAMES = 1000 };
+
+typedef struct cli_bench_line {
+  /* What is measured. */
+  char name[96]; /* "sphere-1M/conic/avx512/2": what --compare finds it by */
+  char scene_name[32];
+  int i_scene, i_method;
+  conic_isa isa;
+  cli_device *device; /* null: this machine's processor */
+  int threads, width, height;
+
+  /* What came of it. */
+  conic_render_statistics statistics; /* ms are medians over the warm frames */
+  int n_frames;                       /* warm ones */
+  double first_ms, quartile_ms[2];    /* of the first frame; of the warm ones */
+  double cycles;                      /* of a frame, over all threads, median; NaN where nobody counts */
+  cli_bench_work work[CLI_BENCH_N_STAGES];
+  uint64_t hash[CONIC_N_PLANES];         /* 0 where the plane was not drawn */
+  int i_wrong_plane;                     /* the first that differs from the scalar reference; -1: none */
+  double old_ms[CLI_BENCH_N_STAGES + 1]; /* of --compare: stages and frame; NaN where it has no such line */
+} cli_bench_line;
+
+/* The pictures of one scene and method. */
+typedef struct cli_bench_pictures {
+  conic_image reference, drawn;
+  unsigned timed_planes; /* of those that both have */
+} cli_bench_pictures;
+
+/* The first plane that both images have and that differs in a bit; -1 where none does. */
+int cli_bench_difference(const conic_image *a, const conic_image *b);
+
+/* Median of n ≥ 1 values, and the quartiles on both sides where `quartiles` is not null; sorts them. */
+double cli_bench_median(double *values, size_t n, double quartiles[2]);
+
+/* Draws the reference of the line's scene, method and size by plain C. */
+conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene, const cli_bench_line *line,
+                             conic_image *reference);
+
+/* Measures the line with the worker's threads: one first frame, then warm ones until there are `most`, or at least
+ * `least` and the seconds are over. `counter` counts cycles, -1: nobody does. */
+typedef struct cli_bench_patience {
+  int least, most;
+  double seconds;
+} cli_bench_patience;
+
+conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
+                               int counter, cli_bench_pictures *pictures, cli_bench_line *line);
+
+/* --- cycles (bench/bench_cycles.c) --- */
+
+/* A counter of the cycles that this process and the threads that it will start spend outside the kernel; -1 where the
+ * machine has none or keeps it to itself. */
+int cli_bench_cycles_open(void);
+/* NaN where there is no counter. */
+double cli_bench_cycles_read(int counter);
+void cli_bench_cycles_close(int counter);
+
+/* --- the machine (bench/bench_machine.c) --- */
+
+typedef struct cli_bench_machine {
+  int threads;
+  double read_bytes_per_s, write_bytes_per_s, copy_bytes_per_s; /* past all caches; a copy counts its bytes once */
+  double operations_per_s; /* multiplications and additions, apart, in the widest vectors */
+} cli_bench_machine;
+
+conic_status cli_bench_machine_measure(cli_session *worker, cli_bench_machine *machine);
+
+/* --- reports (bench/bench_report.c, bench_floor.c, bench_compare.c) --- */
+
+void cli_bench_print_head(void);
+void cli_bench_print_line(const cli_bench_line *line);
+void cli_bench_report_line(cli_json *json, const cli_bench_line *line);
+
+void cli_bench_print_machine(const cli_bench_machine *machine);
+void cli_bench_report_machine(cli_json *json, const cli_bench_machine *machines, int n_machines);
+
+/* What each stage must take at least, beside what it takes. */
+double cli_bench_floor_ms(const cli_bench_work *work, const cli_bench_machine *machine);
+void cli_bench_print_floor(const cli_bench_line *line, const cli_bench_machine *machine);
+void cli_bench_report_floor(cli_json *json, const cli_bench_line *line, const cli_bench_machine *machine);
+
+/* The cost of a line's frame over what it is made of. */
+void cli_bench_print_curve(const cli_bench_line *lines, int n_lines);
+
+/* Reads the times of an earlier run into the lines of the same names. Errors: INPUT, MEMORY. */
+conic_status cli_bench_read_old(cli_session *session, const char *path, cli_bench_line *lines, int n_lines);
+void cli_bench_print_comparison(const char *path, const cli_bench_line *lines, int n_lines);
+
+#endif

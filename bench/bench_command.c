@@ -1,0 +1,140 @@
+/* conic bench: how fast, where the time goes, and that the pictures are right meanwhile. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench_job.h"
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/outputs.h"
+
+static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job) {
+  static const char *const cull_words[] = {"none", "back", NULL};
+  job->size[0] = job->size[1] = 1024;
+  job->device.name = "cpu";
+  const cli_option options[] = {
+      {"scenes", CLI_TEXT, &job->scenes_text, "LIST", "scenes, or all; files are IN [all, or the files alone]"},
+      {"methods", CLI_TEXT, &job->methods_text, "LIST",
+       "conic, ray, affine, point, disc, auto, nearest, or all [conic]"},
+      {"isa", CLI_TEXT, &job->isa_text, "LIST", "auto, scalar, sse2, avx2, avx512, neon, or all [auto]"},
+      {"threads", CLI_TEXT, &job->threads_text, "LIST", "numbers of threads; 0: all that there are [1,0]"},
+      {"size", CLI_SIZE, job->size, "WxH", "pixels [1024x1024]", 1, 65535},
+      {"camera", CLI_TEXT, &job->look.camera_path, "FILE", "camera of the files, in JSON [framed as by conic render]"},
+      {"cull", CLI_CHOICE, &job->look.culls_back, "WHAT", "of the files: none, or back [none]", .choices = cull_words},
+      {"device", CLI_TEXT, &job->device.name, "NAME", "each scene and method on opencl or opencl:P.D too [cpu]"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL, "also a device that does not round correctly"},
+      {"repeat", CLI_INT, &job->repeat, "N", "warm frames a line [3 to 21, about a second]", 1, CLI_BENCH_MOST_FRAMES},
+      {"quick", CLI_FLAG, &job->is_quick, NULL, "fewer scenes, fewer frames"},
+      {"compare", CLI_TEXT, &job->old_path, "OLD.json", "ratios to an earlier run's --json"},
+      {"curve", CLI_FLAG, &job->is_curve, NULL, "the cost over 10 k to 16 M splats, and over 256² to 8192² pixels"},
+      {"machine", CLI_FLAG, &job->is_machine, NULL, "how fast the machine reads, writes, copies and computes"},
+      {"floor", CLI_FLAG, &job->is_floor, NULL, "what each stage must take at least, beside what it takes"},
+  };
+  job->files = calloc((size_t)argc, sizeof *job->files);
+  if (!job->files)
+    return cli_error(CLI_RESOURCE, "bench: out of memory");
+  int exit_code =
+      cli_parse(session, options, (int)(sizeof options / sizeof *options), argc, argv, job->files, &job->n_files);
+  if (exit_code < 0)
+    cli_bench_scene_list();
+  if (exit_code == CLI_DONE)
+    exit_code = cli_device_check(session, &job->device);
+  if (exit_code == CLI_DONE && job->look.camera_path && !job->n_files)
+    exit_code = cli_usage("bench: --camera is for files; what is made has a camera of its own");
+  if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))
+    exit_code = cli_usage("bench: --curve has scenes of its own");
+  return exit_code == CLI_DONE ? cli_bench_plan(job) : exit_code;
+}
+
+static const cli_bench_machine *machine_of(const cli_bench_job *job, const cli_bench_line *line) {
+  for (int i = 0; i < job->n_machines; i++)
+    if (job->machines[i].threads == line->threads)
+      return &job->machines[i];
+  return NULL;
+}
+
+static void print(const cli_session *session, const cli_bench_job *job) {
+  if (session->is_quiet || (session->json_path && strcmp(session->json_path, "-") == 0))
+    return;
+  if (job->is_curve)
+    cli_bench_print_curve(job->lines, job->n_lines);
+  if (job->n_machines && job->n_lines)
+    puts("");
+  for (int i = 0; i < job->n_machines; i++)
+    cli_bench_print_machine(&job->machines[i]);
+  for (int i = 0; i < job->n_lines && job->is_floor; i++)
+    cli_bench_print_floor(&job->lines[i], machine_of(job, &job->lines[i]));
+  if (job->old_path)
+    cli_bench_print_comparison(job->old_path, job->lines, job->n_lines);
+}
+
+static int report(cli_session *session, const cli_bench_job *job) {
+  cli_json_file *file;
+  int exit_code = CLI_DONE;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_text(json, "version", conic_version());
+  if (job->n_machines)
+    cli_bench_report_machine(json, job->machines, job->n_machines);
+  cli_json_object(json, "lines");
+  for (int i = 0; i < job->n_lines; i++)
+    cli_bench_report_line(json, &job->lines[i]);
+  cli_json_close(json);
+  if (job->is_floor) {
+    cli_json_object(json, "floor_ms");
+    for (int i = 0; i < job->n_lines; i++)
+      cli_bench_report_floor(json, &job->lines[i], machine_of(job, &job->lines[i]));
+    cli_json_close(json);
+  }
+  cli_json_count(json, "wrong_pictures", (uint64_t)job->n_wrong);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  return cli_json_finish(file);
+}
+
+/* That the device is there is known before the minutes are spent, too. */
+static conic_status find_device(cli_session *session, cli_bench_job *job) {
+  conic_renderer *renderer;
+  conic_status status = cli_device_open(session, &job->device, &renderer);
+  if (status == CONIC_OK)
+    conic_renderer_destroy(renderer);
+  return status;
+}
+
+static int measure(cli_session *session, cli_bench_job *job) {
+  if (job->old_path) { /* that it can be read is known before the minutes are spent */
+    conic_status status = cli_bench_read_old(session, job->old_path, NULL, 0);
+    if (status != CONIC_OK)
+      return cli_exit_of(status);
+  }
+  int exit_code = cli_exit_of(find_device(session, job));
+  if (exit_code == CLI_DONE)
+    exit_code = cli_bench_run(session, job);
+  if (exit_code == CLI_DONE && job->old_path)
+    exit_code = cli_exit_of(cli_bench_read_old(session, job->old_path, job->lines, job->n_lines));
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  print(session, job);
+  exit_code = report(session, job);
+  return exit_code == CLI_DONE && job->n_wrong ? CLI_DIFFERENT : exit_code;
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  cli_bench_job *job = calloc(1, sizeof *job);
+  if (!job)
+    return cli_error(CLI_RESOURCE, "bench: out of memory");
+  int exit_code = parse(session, argc, argv, job);
+  session->draws_many_frames = 1;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_session_open(session);
+  if (exit_code == CLI_DONE)
+    exit_code = measure(session, job);
+  free(job->lines);
+  free(job->files);
+  free(job);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_bench = {"bench", "measures stages, methods and instruction sets", "conic bench [IN…] [options]",
+                               run};

@@ -1,0 +1,189 @@
+/* One line of a benchmark: frames drawn, timed, and compared with what plain C draws. */
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+
+const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
+    {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},
+    {"point", CONIC_METHOD_POINT, 3},  {"disc", CONIC_METHOD_DISC, 3}, {"auto", CONIC_METHOD_AUTO, 3},
+    {"nearest", CONIC_METHOD_CONIC, 1}};
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* The value that a share of the sorted ones is below, straight between neighbours. */
+static double quantile(const double *sorted, size_t n, double share) {
+  double place = share * (double)(n - 1);
+  size_t below = (size_t)place;
+  double rest = place - (double)below;
+  return below + 1 < n ? sorted[below] + rest * (sorted[below + 1] - sorted[below]) : sorted[below];
+}
+
+double cli_bench_median(double *values, size_t n, double quartiles[2]) {
+  qsort(values, n, sizeof *values, compare_doubles);
+  if (quartiles) {
+    quartiles[0] = quantile(values, n, 0.25);
+    quartiles[1] = quantile(values, n, 0.75);
+  }
+  return quantile(values, n, 0.5);
+}
+
+static size_t plane_bytes(const conic_image *image, int plane) {
+  return (size_t)image->width * (size_t)image->height * 4 *
+         (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
+}
+
+int cli_bench_difference(const conic_image *a, const conic_image *b) {
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+    if (a->planes[plane] && b->planes[plane] &&
+        (a->width != b->width || a->height != b->height ||
+         memcmp(a->planes[plane], b->planes[plane], plane_bytes(a, plane)) != 0))
+      return plane;
+  return -1;
+}
+
+/* So that a plane that nobody draws does not pass for the one that was drawn before. */
+static void spoil(conic_image *image) {
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+    if (image->planes[plane])
+      memset(image->planes[plane], 0x5a, plane_bytes(image, plane));
+}
+
+static void note_difference(const conic_image *reference, const conic_image *drawn, cli_bench_line *line) {
+  int plane = cli_bench_difference(reference, drawn);
+  if (line->i_wrong_plane < 0)
+    line->i_wrong_plane = plane;
+}
+
+static conic_render_options options_of(const cli_bench_scene *scene, const cli_bench_line *line) {
+  conic_render_options options;
+  conic_render_options_init(&options);
+  options.method = cli_bench_methods[line->i_method].method;
+  options.passes = cli_bench_methods[line->i_method].passes;
+  options.cull_back = scene->cull_back;
+  options.near_z = scene->near_z;
+  options.splat_length = scene->splat_length;
+  options.isa = line->isa;
+  return options;
+}
+
+/* The image with some of its planes only; they stay the image's own. */
+static conic_image with_planes(const conic_image *image, unsigned planes) {
+  conic_image part = *image;
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+    if (!(planes & 1u << plane))
+      part.planes[plane] = NULL;
+  return part;
+}
+
+/* What a line's frames are drawn with, and the times that they took. */
+typedef struct bench {
+  const cli_bench_scene *scene;
+  conic_renderer *renderer;
+  conic_camera camera;
+  conic_render_options options;
+  conic_image timed; /* the planes that are drawn while the clock runs */
+  int counter;
+  size_t n;
+  double *ms[CLI_BENCH_N_STAGES + 1], *cycles;
+} bench;
+
+static conic_status draw_timed(bench *b, conic_render_statistics *statistics) {
+  double cycles = cli_bench_cycles_read(b->counter);
+  conic_status status = conic_render(b->renderer, &b->scene->splats, &b->camera, &b->options, &b->timed, statistics);
+  b->cycles[b->n] = cli_bench_cycles_read(b->counter) - cycles;
+  return status;
+}
+
+static conic_status draw_warm(bench *b, const cli_bench_patience *patience, conic_render_statistics *statistics) {
+  double start = cli_seconds();
+  while (b->n < (size_t)patience->most &&
+         (b->n < (size_t)patience->least || cli_seconds() - start < patience->seconds)) {
+    conic_status status = draw_timed(b, statistics);
+    if (status != CONIC_OK)
+      return status;
+    for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
+      b->ms[i][b->n] = cli_bench_stage_ms(&statistics->ms, i);
+    b->ms[CLI_BENCH_N_STAGES][b->n++] = statistics->ms.frame;
+  }
+  return CONIC_OK;
+}
+
+static void take_medians(bench *b, cli_bench_line *line) {
+  conic_render_milliseconds *ms = &line->statistics.ms;
+  double *stages[CLI_BENCH_N_STAGES] = {&ms->setup, &ms->bin, &ms->visibility, &ms->accumulate, &ms->resolve};
+  for (int i = 0; i < CLI_BENCH_N_STAGES; i++)
+    *stages[i] = cli_bench_median(b->ms[i], b->n, NULL);
+  ms->frame = cli_bench_median(b->ms[CLI_BENCH_N_STAGES], b->n, line->quartile_ms);
+  line->cycles = cli_bench_median(b->cycles, b->n, NULL);
+  line->n_frames = (int)b->n;
+}
+
+/* The pictures of the first and of the last timed frame are compared, and one with all planes; nothing is compared
+ * between the warm ones, which would take the caches from them. */
+static conic_status draw_all(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
+                             cli_bench_line *line) {
+  spoil(&pictures->drawn);
+  conic_status status = draw_timed(b, &line->statistics);
+  if (status != CONIC_OK)
+    return status;
+  line->first_ms = line->statistics.ms.frame;
+  note_difference(&pictures->reference, &b->timed, line);
+  spoil(&pictures->drawn);
+  status = draw_warm(b, patience, &line->statistics);
+  if (status != CONIC_OK)
+    return status;
+  note_difference(&pictures->reference, &b->timed, line);
+  take_medians(b, line);
+  conic_render_statistics statistics;
+  status = conic_render(b->renderer, &b->scene->splats, &b->camera, &b->options, &pictures->drawn, &statistics);
+  note_difference(&pictures->reference, &pictures->drawn, line);
+  return status;
+}
+
+conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene, const cli_bench_line *line,
+                             conic_image *reference) {
+  conic_renderer *renderer = NULL;
+  conic_camera camera;
+  conic_render_options options = options_of(scene, line);
+  options.isa = CONIC_ISA_SCALAR;
+  conic_status status = cli_bench_scene_camera(session, scene, line->width, line->height, &camera);
+  if (status == CONIC_OK)
+    status = conic_renderer_create(session->context, &renderer);
+  if (status == CONIC_OK)
+    status = conic_render(renderer, &scene->splats, &camera, &options, reference, NULL);
+  conic_renderer_destroy(renderer);
+  return status;
+}
+
+conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
+                               int counter, cli_bench_pictures *pictures, cli_bench_line *line) {
+  size_t most = (size_t)patience->most + 1;
+  bench b = {.scene = scene, .counter = counter, .options = options_of(scene, line)};
+  line->i_wrong_plane = -1;
+  b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
+  b.cycles = calloc(most * (CLI_BENCH_N_STAGES + 2), sizeof *b.cycles);
+  if (!b.cycles)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i <= CLI_BENCH_N_STAGES; i++)
+    b.ms[i] = b.cycles + (i + 1) * most;
+  conic_status status = cli_bench_scene_camera(worker, scene, line->width, line->height, &b.camera);
+  if (status == CONIC_OK)
+    status = line->device ? cli_device_open(worker, line->device, &b.renderer)
+                          : conic_renderer_create(worker->context, &b.renderer);
+  if (status == CONIC_OK)
+    status = draw_all(&b, patience, pictures, line);
+  if (status == CONIC_OK) {
+    cli_bench_work_of(&line->statistics, &scene->splats, &b.timed, b.options.passes, line->work);
+    for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+      line->hash[plane] = conic_image_hash(&pictures->drawn, (conic_plane)plane);
+  }
+  conic_renderer_destroy(b.renderer);
+  free(b.cycles);
+  return status;
+}

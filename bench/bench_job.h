@@ -1,0 +1,41 @@
+/* One `conic bench`: what was asked for, the lines that this means, and what they are measured with. */
+#ifndef CONIC_BENCH_JOB_H
+#define CONIC_BENCH_JOB_H
+
+#include "bench/bench.h"
+
+enum { CLI_BENCH_MOST_SCENES = 64, CLI_BENCH_MOST_THREADS = 8 };
+
+typedef struct cli_bench_job {
+  /* What was asked for; texts are null where nothing was. */
+  const char *scenes_text, *methods_text, *isa_text, *threads_text, *old_path;
+  const char **files;
+  int n_files;
+  cli_bench_look look; /* at the files */
+  cli_device device;
+  int size[2], repeat;
+  int is_quick, is_curve, is_machine, is_floor;
+
+  /* What it means (bench/bench_plan.c). */
+  char scene_names[CLI_BENCH_MOST_SCENES][32];
+  const char *scenes[CLI_BENCH_MOST_SCENES]; /* names, or the paths of files */
+  int is_file[CLI_BENCH_MOST_SCENES], n_scenes;
+  int methods[CLI_BENCH_N_METHODS], n_methods;
+  conic_isa isas[CONIC_N_ISAS];
+  int n_isas;
+  int threads[CLI_BENCH_MOST_THREADS], n_threads;
+  cli_bench_line *lines;
+  int n_lines;
+
+  /* What came of it. */
+  cli_bench_machine machines[CLI_BENCH_MOST_THREADS];
+  int n_machines, n_wrong;
+} cli_bench_job;
+
+/* Fills in the lines. Returns the exit code, after a message. The caller frees job->lines. */
+int cli_bench_plan(cli_bench_job *job);
+
+/* Measures every line. Returns the exit code, after a message; 1 where a picture was wrong. */
+int cli_bench_run(cli_session *session, cli_bench_job *job);
+
+#endif

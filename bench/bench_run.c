@@ -1,0 +1,174 @@
+/* Measures the lines of a plan: opens their scenes, keeps the threads and the pictures that they share. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench_job.h"
+
+/* What the lines of a run share. */
+typedef struct bench_run {
+  cli_session *session; /* owns splats and pictures */
+  cli_bench_job *job;
+  int counter;
+  cli_session workers[CLI_BENCH_MOST_THREADS]; /* one a number of threads */
+  int n_workers;
+  cli_bench_scene scene;
+  int i_scene, i_method, width, height; /* what `scene` and `pictures` are of; -1: nothing yet */
+  cli_bench_pictures pictures;
+} bench_run;
+
+static int open_workers(bench_run *r) {
+  cli_bench_job *job = r->job;
+  for (int i = 0; i < job->n_threads; i++) {
+    cli_session *worker = &r->workers[i];
+    *worker = *r->session;
+    worker->context = NULL;
+    worker->threads = job->threads[i];
+    int exit_code = cli_session_open(worker);
+    if (exit_code != CLI_DONE)
+      return exit_code;
+    r->n_workers++;
+  }
+  return CLI_DONE;
+}
+
+/* Numbers of threads that turn out the same (a machine of one) are measured once. */
+static int is_repeated(const bench_run *r, int i_worker) {
+  for (int i = 0; i < i_worker; i++)
+    if (conic_context_threads(r->workers[i].context) == conic_context_threads(r->workers[i_worker].context))
+      return 1;
+  return 0;
+}
+
+static void close_pictures(bench_run *r) {
+  conic_image_release(r->session->context, &r->pictures.reference);
+  conic_image_release(r->session->context, &r->pictures.drawn);
+}
+
+/* A curve goes to pictures of gigabytes: it has the timed planes only. */
+static conic_status open_pictures(bench_run *r, const cli_bench_line *line) {
+  unsigned timed = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_NORMAL | 1u << CONIC_PLANE_WEIGHT;
+  unsigned planes = r->job->is_curve ? timed : CONIC_DRAWN_PLANES;
+  close_pictures(r);
+  r->pictures.timed_planes = timed;
+  conic_context *context = r->session->context;
+  conic_status status = conic_image_allocate(context, line->width, line->height, planes, &r->pictures.reference);
+  return status == CONIC_OK ? conic_image_allocate(context, line->width, line->height, planes, &r->pictures.drawn)
+                            : status;
+}
+
+/* The scene, the pictures and the reference that the line needs, where the line before had others. */
+static int turn_to(bench_run *r, const cli_bench_line *line) {
+  int is_new_scene = r->i_scene != line->i_scene;
+  int is_new_size = r->width != line->width || r->height != line->height;
+  if (is_new_scene) {
+    cli_bench_scene_release(r->session, &r->scene);
+    r->i_scene = -1;
+    int i = line->i_scene;
+    const cli_bench_look *look = r->job->is_file[i] ? &r->job->look : NULL;
+    int exit_code = cli_bench_scene_open(r->session, r->job->scenes[i], look, &r->scene);
+    if (exit_code != CLI_DONE)
+      return exit_code;
+  }
+  conic_status status = is_new_size ? open_pictures(r, line) : CONIC_OK;
+  if (status == CONIC_OK && (is_new_scene || is_new_size || r->i_method != line->i_method))
+    status = cli_bench_refer(r->session, &r->scene, line, &r->pictures.reference);
+  r->i_scene = line->i_scene;
+  r->i_method = line->i_method;
+  r->width = line->width;
+  r->height = line->height;
+  return cli_exit_of(status);
+}
+
+static void name_line(const bench_run *r, cli_bench_line *line) {
+  char size[32] = "";
+  if (line->width != 1024 || line->height != 1024)
+    snprintf(size, sizeof size, "@%dx%d", line->width, line->height);
+  snprintf(line->scene_name, sizeof line->scene_name, "%s", r->scene.name);
+  snprintf(line->name, sizeof line->name, "%.31s%.15s/%.15s/%.15s/%d", r->scene.name, size,
+           cli_bench_methods[line->i_method].name, line->device ? line->device->name : conic_isa_name(line->isa),
+           line->threads);
+}
+
+static int measure_line(bench_run *r, cli_bench_line *line, cli_session *worker) {
+  const cli_bench_job *job = r->job;
+  cli_bench_patience patience = {3, 21, 1.0};
+  if (job->is_quick)
+    patience = (cli_bench_patience){3, 5, 0.2};
+  if (job->repeat)
+    patience = (cli_bench_patience){job->repeat, job->repeat, 0.0};
+  int exit_code = turn_to(r, line);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  line->threads = conic_context_threads(worker->context);
+  name_line(r, line);
+  conic_status status = cli_bench_measure(worker, &r->scene, &patience, r->counter, &r->pictures, line);
+  if (status == CONIC_OK && line->i_wrong_plane >= 0) {
+    r->job->n_wrong++;
+    cli_error(CLI_DIFFERENT, "%s: plane %s is not what plain C draws", line->name,
+              conic_plane_describe((conic_plane)line->i_wrong_plane)->name);
+  }
+  return cli_exit_of(status);
+}
+
+/* Which of the workers has the line's threads. */
+static int worker_of(const bench_run *r, const cli_bench_line *line) {
+  int i = 0;
+  while (r->job->threads[i] != line->threads)
+    i++;
+  return i;
+}
+
+static int measure_lines(bench_run *r, int prints) {
+  cli_bench_job *job = r->job;
+  int n_measured = 0, exit_code = CLI_DONE;
+  for (int i = 0; i < job->n_lines && exit_code == CLI_DONE; i++) {
+    cli_bench_line *line = &job->lines[n_measured];
+    *line = job->lines[i];
+    int i_worker = worker_of(r, line);
+    if (!line->device && is_repeated(r, i_worker))
+      continue;
+    exit_code = measure_line(r, line, &r->workers[i_worker]);
+    if (prints && exit_code == CLI_DONE && n_measured == 0)
+      cli_bench_print_head();
+    if (prints && exit_code == CLI_DONE)
+      cli_bench_print_line(line);
+    n_measured++;
+  }
+  job->n_lines = n_measured;
+  return exit_code;
+}
+
+static int measure_machines(bench_run *r) {
+  for (int i = 0; i < r->n_workers; i++) {
+    if (is_repeated(r, i))
+      continue;
+    conic_status status = cli_bench_machine_measure(&r->workers[i], &r->job->machines[r->job->n_machines]);
+    if (status != CONIC_OK)
+      return cli_exit_of(status);
+    r->job->n_machines++;
+  }
+  return CLI_DONE;
+}
+
+int cli_bench_run(cli_session *session, cli_bench_job *job) {
+  int prints = !session->is_quiet && !(session->json_path && strcmp(session->json_path, "-") == 0);
+  bench_run *r = calloc(1, sizeof *r);
+  if (!r)
+    return cli_error(CLI_RESOURCE, "bench: out of memory");
+  r->session = session;
+  r->job = job;
+  r->i_scene = r->i_method = -1;
+  r->counter = cli_bench_cycles_open();
+  int exit_code = open_workers(r);
+  if (exit_code == CLI_DONE && (job->is_machine || job->is_floor))
+    exit_code = measure_machines(r);
+  if (exit_code == CLI_DONE)
+    exit_code = measure_lines(r, prints);
+  close_pictures(r);
+  cli_bench_scene_release(session, &r->scene);
+  for (int i = 0; i < r->n_workers; i++)
+    cli_session_close(&r->workers[i]);
+  cli_bench_cycles_close(r->counter);
+  free(r);
+  return exit_code;
+}

@@ -1,0 +1,278 @@
+/* The scenes of `conic bench`: analytic ones, mixes of splats by their size on the screen, files. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "cli/arguments.h"
+#include "cli/render/render_job.h"
+#include "cli/suggest.h"
+#include "core/base/random.h"
+
+/* The camera of the rates that are quoted: the unit sphere from a little above, some 900 pixels across. */
+static const double focal_px = 1406.708438760767; /* for 1024 pixels */
+static const double distance = 3.2;
+static const double cam_from_world[3][4] = {{0.9438583563660174, 0.0, -0.33035042472810605, 0.0},
+                                            {0.09000264042231507, -0.9621710845147493, 0.25715040120661453, 0.0},
+                                            {-0.3178536264305498, -0.2724459655118999, -0.9081532183729997, distance}};
+
+/* Splats of every direction all over the unit ball, their outlines between two lengths (logarithmically even). */
+typedef struct mix {
+  const char *name, *summary;
+  unsigned long long count; /* where none is asked for */
+  double low_px, high_px;   /* the longer diameter, at the ball's centre, 1024 pixels wide */
+  double ratio;             /* shorter over longer axis, at least */
+} mix;
+
+static const mix mixes[] = {
+    {"mixed", "outlines of 1 to 100 pixels", 50000, 1.0, 100.0, 0.2},
+    {"subpixel", "outlines of 0.01 to 1 pixel", 1000000, 0.01, 1.0, 0.2},
+    {"needles", "20 to 200 pixels long, a thousandth as wide", 100000, 20.0, 200.0, 0.001},
+    {"huge", "outlines of 200 to 2000 pixels", 300, 200.0, 2000.0, 0.2},
+};
+
+enum { N_MIXES = sizeof mixes / sizeof mixes[0] };
+
+/* --- mixes --- */
+
+/* 2^t, but straight between the powers: even enough, and the same everywhere. */
+static double doubled(double t) {
+  double whole = floor(t), power = 1.0;
+  for (int i = 0; i < (int)fabs(whole); i++)
+    power *= whole > 0.0 ? 2.0 : 0.5;
+  return power * (1.0 + (t - whole));
+}
+
+/* The t of which that is `value`. */
+static double halvings(double value) {
+  double t = 0.0;
+  for (; value >= 2.0; value *= 0.5)
+    t += 1.0;
+  for (; value < 1.0; value *= 2.0)
+    t -= 1.0;
+  return t + (value - 1.0);
+}
+
+static double norm(const double v[3]) {
+  return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
+}
+
+/* Evenly in the unit ball, but not at its very centre. */
+static void place_in_ball(uint64_t i, uint64_t dimension, double p[3]) {
+  do {
+    for (int axis = 0; axis < 3; axis++)
+      p[axis] = 2.0 * conic_random_uniform(1, i, dimension++) - 1.0;
+  } while (norm(p) > 1.0 || norm(p) < 1e-3);
+}
+
+/* Two perpendicular unit directions. */
+static void point_axes(uint64_t i, double u[3], double v[3]) {
+  double other[3], length;
+  place_in_ball(i, 1000, u);
+  length = norm(u);
+  for (int axis = 0; axis < 3; axis++)
+    u[axis] /= length;
+  for (uint64_t dimension = 2000;; dimension += 1000) {
+    place_in_ball(i, dimension, other);
+    for (int axis = 0; axis < 3; axis++)
+      v[axis] = u[(axis + 1) % 3] * other[(axis + 2) % 3] - u[(axis + 2) % 3] * other[(axis + 1) % 3];
+    length = norm(v);
+    if (length > 1e-3)
+      break;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] /= length;
+}
+
+static void set_splat(const mix *m, size_t i, conic_splats *splats) {
+  const double cutoff = 1.5, low = halvings(m->low_px), high = halvings(m->high_px);
+  double p[3], u[3], v[3];
+  double diameter_px = doubled(low + (high - low) * conic_random_uniform(1, i, 0));
+  double ratio = m->ratio * (1.0 + conic_random_uniform(1, i, 1));
+  double sigma = diameter_px * (distance / focal_px) / (2.0 * cutoff);
+  place_in_ball(i, 10, p);
+  point_axes(i, u, v);
+  for (int axis = 0; axis < 3; axis++) {
+    splats->position[axis][i] = (float)p[axis];
+    splats->tangent_u[axis][i] = (float)(sigma * u[axis]);
+    splats->tangent_v[axis][i] = (float)(sigma * ratio * v[axis]);
+    splats->color[axis][i] = (float)(0.5 + 0.5 * p[axis]);
+  }
+}
+
+static conic_status make_mix(cli_session *session, const mix *m, size_t count, conic_splats *splats) {
+  conic_status status =
+      conic_splats_allocate(session->context, count, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, splats);
+  for (size_t i = 0; i < count && status == CONIC_OK; i++)
+    set_splat(m, i, splats);
+  return status;
+}
+
+/* --- names --- */
+
+/* What a name asks for: a mix or an analytic scene, and how many splats. */
+typedef struct wish {
+  const mix *mix; /* null: analytic */
+  conic_scene_type type;
+  unsigned long long count;
+} wish;
+
+static int find_base(const char *base, size_t length, wish *w) {
+  for (int i = 0; i < N_MIXES; i++)
+    if (strlen(mixes[i].name) == length && strncmp(mixes[i].name, base, length) == 0) {
+      w->mix = &mixes[i];
+      w->count = mixes[i].count;
+      return 1;
+    }
+  for (int i = 0; i < CONIC_N_SCENES; i++)
+    if (strlen(conic_scene_name((conic_scene_type)i)) == length &&
+        strncmp(conic_scene_name((conic_scene_type)i), base, length) == 0) {
+      w->mix = NULL;
+      w->type = (conic_scene_type)i;
+      w->count = 1000000;
+      return 1;
+    }
+  return 0;
+}
+
+static int refuse_scene(const char *name, size_t length) {
+  char base[32];
+  const char *nearest = NULL;
+  snprintf(base, sizeof base, "%.*s", (int)length, name);
+  for (int i = 0; i < N_MIXES; i++)
+    nearest = cli_nearer_word(base, nearest, mixes[i].name);
+  for (int i = 0; i < CONIC_N_SCENES; i++)
+    nearest = cli_nearer_word(base, nearest, conic_scene_name((conic_scene_type)i));
+  if (nearest)
+    return cli_usage("bench: unknown scene %s; did you mean %s?", name, nearest);
+  return cli_usage("bench: unknown scene %s; see conic help bench", name);
+}
+
+/* "sphere", "sphere-4M", "needles-10k" */
+static int understand(const char *name, wish *w) {
+  size_t length = strcspn(name, "-");
+  if (!find_base(name, length, w))
+    return refuse_scene(name, length);
+  if (name[length] && (!cli_parse_count(name + length + 1, &w->count) || w->count < 1 || w->count > 4294967294u))
+    return cli_usage("bench: scene %s: how many splats is %s?", name, name + length + 1);
+  if (strlen(name) >= sizeof((cli_bench_scene *)NULL)->name)
+    return cli_usage("bench: scene %s: the name is too long", name);
+  return CLI_DONE;
+}
+
+int cli_bench_scene_check(const char *name) {
+  wish w;
+  return understand(name, &w);
+}
+
+void cli_bench_scene_list(void) {
+  puts("\nscenes, each also with a number of splats (sphere-4M):");
+  for (int i = 0; i < CONIC_N_SCENES; i++)
+    printf("  %-10s %s\n", conic_scene_name((conic_scene_type)i), conic_scene_summary((conic_scene_type)i));
+  for (int i = 0; i < N_MIXES; i++)
+    printf("  %-10s splats all over a ball: %s\n", mixes[i].name, mixes[i].summary);
+}
+
+/* --- opening --- */
+
+static conic_status make_analytic(cli_session *session, const wish *w, conic_splats *splats) {
+  conic_scene_options options;
+  conic_scene *scene = NULL;
+  conic_scene_options_init(&options);
+  options.type = w->type;
+  options.count = (size_t)w->count;
+  conic_status status = conic_scene_create(session->context, &options, &scene);
+  if (status == CONIC_OK)
+    status =
+        conic_splats_allocate(session->context, options.count, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, splats);
+  if (status == CONIC_OK)
+    status = conic_scene_sample(scene, 0, options.count, splats);
+  conic_scene_destroy(scene);
+  return status;
+}
+
+static conic_status read_file(cli_session *session, const char *path, const cli_bench_look *look,
+                              cli_bench_scene *scene) {
+  cli_render_job job;
+  cli_scene_defaults(&job);
+  const char *slash = strrchr(path, '/');
+  snprintf(scene->name, sizeof scene->name, "%.31s", slash ? slash + 1 : path);
+  job.inputs = &path;
+  job.n_inputs = 1;
+  scene->cull_back = look->culls_back;
+  scene->is_framed = !look->camera_path;
+  scene->has_camera = look->camera_path != NULL;
+  conic_status status = CONIC_OK;
+  if (conic_hybrid_is_file(path)) {
+    cli_error(CLI_USAGE, "%s: hybrid models are measured by conic render --repeat", path);
+    return CONIC_ERROR_ARGUMENT;
+  }
+  if (look->camera_path)
+    status = conic_camera_read(session->context, look->camera_path, &scene->camera);
+  return status == CONIC_OK ? cli_scene_read(session, &job, &scene->splats) : status;
+}
+
+static conic_status measure(cli_session *session, cli_bench_scene *scene) {
+  conic_splats_bounds(&scene->splats, scene->low, scene->high);
+  scene->near_z = conic_default_near(&scene->splats);
+  return conic_splats_length(session->context, &scene->splats, &scene->splat_length);
+}
+
+static conic_status make(cli_session *session, const wish *w, const char *name, cli_bench_scene *scene) {
+  snprintf(scene->name, sizeof scene->name, "%s", name);
+  scene->cull_back = !w->mix && w->type == CONIC_SCENE_SPHERE;
+  return w->mix ? make_mix(session, w->mix, (size_t)w->count, &scene->splats)
+                : make_analytic(session, w, &scene->splats);
+}
+
+int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench_look *look, cli_bench_scene *scene) {
+  wish w;
+  memset(scene, 0, sizeof *scene);
+  int exit_code = look ? CLI_DONE : understand(name, &w);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = look ? read_file(session, name, look, scene) : make(session, &w, name, scene);
+  if (status == CONIC_OK)
+    status = measure(session, scene);
+  return cli_exit_of(status);
+}
+
+void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene) {
+  conic_splats_release(session->context, &scene->splats);
+}
+
+static void build_in(conic_camera *camera) {
+  camera->width = camera->height = 1024;
+  camera->fx = camera->fy = focal_px;
+  camera->cx = camera->cy = 512.0;
+  memcpy(camera->cam_from_world, cam_from_world, sizeof cam_from_world);
+}
+
+/* The same view in another size: what the shorter side showed it shows again. */
+static void resize(conic_camera *camera, int width, int height) {
+  int shorter = width < height ? width : height;
+  double factor = (double)shorter / (double)(camera->width < camera->height ? camera->width : camera->height);
+  camera->cx = 0.5 * (double)width + factor * (camera->cx - 0.5 * (double)camera->width);
+  camera->cy = 0.5 * (double)height + factor * (camera->cy - 0.5 * (double)camera->height);
+  camera->fx *= factor;
+  camera->fy *= factor;
+  camera->width = width;
+  camera->height = height;
+}
+
+conic_status cli_bench_scene_camera(cli_session *session, const cli_bench_scene *scene, int width, int height,
+                                    conic_camera *camera) {
+  if (scene->is_framed) {
+    conic_framing framing;
+    conic_framing_init(&framing);
+    framing.width = width;
+    framing.height = height;
+    return conic_camera_frame(session->context, &framing, scene->low, scene->high, camera);
+  }
+  if (scene->has_camera)
+    *camera = scene->camera;
+  else
+    build_in(camera);
+  resize(camera, width, height);
+  return CONIC_OK;
+}

@@ -1,0 +1,45 @@
+/* The speed–accuracy chart: what was measured, and drawing it. */
+#ifndef CONIC_CHART_H
+#define CONIC_CHART_H
+
+#include <stddef.h>
+
+#include "bench/chart_scene.h"
+#include "cli/session.h"
+
+/* How far a picture is from what it should be; of R, G, B. */
+typedef struct cli_chart_error {
+  int is_measured;
+  double max, rmse; /* linear */
+  double psnr, flip;
+} cli_chart_error;
+
+/* One method with one kernel on one scene. */
+typedef struct cli_chart_point {
+  const cli_chart_scene *scene;
+  conic_method method;
+  conic_kernel kernel;
+  double ms; /* a frame */
+  size_t fragments;
+  cli_chart_error oracle, truth; /* against the exact kernel, in a window; against the surface */
+  double weight_max;             /* the largest error of a weight in that window */
+  size_t holes, largest_hole;    /* pixels */
+  int is_front[2];               /* no other of its scene is faster and nearer to the oracle, the surface */
+} cli_chart_point;
+
+/* "gauss", "confetti" … */
+const char *cli_kernel_name(conic_kernel_type type);
+
+/* Runs gnuplot on FOLDER/SCRIPT, which draws the tables there: SVG and PNG. Returns 0 where there is no gnuplot or it
+ * failed. */
+int cli_chart_plot(const char *folder, const char *script);
+
+/* FOLDER/chart.gp; the points are those of chart.csv. */
+conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
+                                    int n_points);
+
+static inline const cli_chart_error *cli_chart_error_of(const cli_chart_point *point, int against_truth) {
+  return against_truth ? &point->truth : &point->oracle;
+}
+
+#endif

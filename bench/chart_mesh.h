@@ -1,0 +1,53 @@
+/* The chart of representations: what draws a mesh best, by the size of its triangles on the screen. */
+#ifndef CONIC_CHART_MESH_H
+#define CONIC_CHART_MESH_H
+
+#include "bench/chart.h"
+#include "bench/chart_models.h"
+
+#define CLI_MAX_MESH_SIZES 10
+
+/* The picture of one size. */
+typedef struct cli_mesh_size {
+  double pixels_per_triangle; /* mean area on the screen, hidden or not */
+  int edge;                   /* of the picture, in pixels */
+  double zoom;                /* above 1 where the mesh does not fit into the largest picture */
+  size_t covered;             /* pixels that the mesh touches */
+} cli_mesh_size;
+
+/* One representation at one size. */
+typedef struct cli_mesh_point {
+  double ms, lod_ms; /* a frame, and what of it was the choice of what to draw */
+  size_t primitives; /* chosen */
+  cli_chart_error error;
+  size_t holes; /* pixels that the mesh fills and nothing was drawn in */
+  int is_front; /* no other representation of this size is faster and nearer to the mesh */
+} cli_mesh_point;
+
+typedef struct cli_mesh_chart {
+  const char *path; /* of the mesh; null: a generated terrain */
+  int is_quick;
+  size_t n_triangles;
+  int n_sizes;
+  cli_mesh_size sizes[CLI_MAX_MESH_SIZES];
+  cli_mesh_point points[CLI_N_CHART_MODELS][CLI_MAX_MESH_SIZES];
+} cli_mesh_chart;
+
+/* Measures into a chart with path and is_quick set. */
+conic_status cli_mesh_chart_measure(cli_session *session, cli_mesh_chart *chart);
+
+/* Writes FOLDER/representations.csv. */
+conic_status cli_mesh_chart_write(cli_session *session, const char *folder, const cli_mesh_chart *chart);
+
+/* Where two representations take equally long: the pixels a triangle, from large to small, into `at`; returns how
+ * many. */
+int cli_mesh_chart_cross(const cli_mesh_chart *chart, cli_chart_model a, cli_chart_model b,
+                         double at[CLI_MAX_MESH_SIZES]);
+
+/* What is best for its time at each size, and where the others become cheaper than triangles. */
+void cli_mesh_chart_print(const cli_mesh_chart *chart);
+
+/* FOLDER/representations.gp, for cli_chart_plot. */
+conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart);
+
+#endif

@@ -1,0 +1,268 @@
+/* The desk on which tests/cross sets out all that a slot of the kernel tables reads and writes, between guard bands;
+ * and the splats that it sets out. */
+#ifndef CONIC_CROSS_DESK_H
+#define CONIC_CROSS_DESK_H
+
+#include "raster/kernels/tile_kernels.h"
+#include "tests/support/fixture.h"
+
+enum {
+  N_SPLATS = 2501,
+  GUARD = 256,
+  PATTERN = 0xa5,
+  MAX_ARENAS = 30,
+  N_KERNELS = 4,
+  GREATEST_LIST = 1 << 15,
+  MOST_TILES = 64
+};
+
+/* Memory between two guard bands. */
+typedef struct arena {
+  unsigned char *memory, *inside;
+  size_t bytes;
+  size_t compared; /* what of it has to be the same */
+} arena;
+
+/* The arenas of a desk, in this order; the image's planes follow. */
+enum {
+  FOOTPRINTS,
+  BOXES,
+  SURFACES,
+  RAYS,
+  LIST,
+  WORDS,
+  REFERENCES,
+  SELECTED,
+  SELECTED_WORDS,
+  KEPT,
+  NEAREST,
+  SUMS,
+  TILES,
+  KEYS,
+  BEYOND,
+  ORDER,
+  MOVED_FOOTPRINTS,
+  MOVED_SURFACES,
+  NEXT_RECORD,
+  NEXT_ENTRY,
+  TILE_BEGIN,
+  ENTRIES,
+  IMAGE
+};
+
+/* All that the slots read and write: a chunk of splats and its records, a band of blocks, an image. */
+typedef struct desk {
+  const fixture *f;
+  conic_view view;
+  conic_finish finish;
+  conic_chunk chunk;
+  conic_projected projected;
+  uint32_t *list, *words, *selected, *selected_words;
+  uint32_t *tiles, *keys, *beyond, *order; /* of records */
+  conic_footprint *moved_footprints;
+  conic_surface *moved_surfaces;
+  conic_bins bins;
+  conic_sorter sorter;
+  uint32_t *next_record, *next_entry, *tile_begin;
+  conic_tile_entry *entries;
+  conic_tile_entry *references;
+  conic_band band;
+  conic_tile_rays rays;
+  conic_image image;
+  size_t n_answered; /* what the slot returned */
+  int n_arenas;
+  arena arenas[MAX_ARENAS];
+} desk;
+
+/* One way through the slots. */
+typedef struct setting {
+  int number;
+  double share_of_specials;
+  unsigned planes; /* that the image has */
+} setting;
+
+static inline float any_value(uint64_t *state, double scale, double share_of_specials) {
+  static const float specials[] = {NAN,     INFINITY, -INFINITY, 0.0f,   -0.0f, 1e-42f,
+                                   -1e-42f, 1e30f,    -1e30f,    1e-20f, 3e38f};
+  if (fixture_random(state) < share_of_specials)
+    return specials[(int)(fixture_random(state) * 11.0)];
+  return (float)(scale * (fixture_random(state) - 0.5));
+}
+
+/* Sizes down to 10^-decades: with less than one, most splats cover most blocks. */
+static inline void fill(fixture *f, uint64_t *state, double decades, double share_of_specials) {
+  unsigned fields = CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES;
+  conic_splats_release(f->context, &f->splats);
+  CHECK_OK(conic_splats_allocate(f->context, N_SPLATS, fields, &f->splats));
+  for (size_t i = 0; i < N_SPLATS; i++) {
+    f->splats.opacity[i] = any_value(state, 2.0, share_of_specials) + 0.5f;
+    double size = pow(10.0, -decades * fixture_random(state)), thin = i % 7 ? 1.0 : 1e-5;
+    for (int axis = 0; axis < 3; axis++) {
+      float center = any_value(state, decades < 1.0 ? 0.7 : 3.0, share_of_specials);
+      f->splats.position[axis][i] = axis == 2 ? center + 1.6f : center;
+      f->splats.tangent_u[axis][i] = any_value(state, size, share_of_specials);
+      f->splats.tangent_v[axis][i] = any_value(state, size * thin, share_of_specials);
+      f->splats.color[axis][i] = any_value(state, 2.0, share_of_specials);
+    }
+    if (share_of_specials > 0.0 && i % 50 == 0) { /* frontal giants: the determinant of their variance overflows */
+      for (int axis = 0; axis < 3; axis++)
+        f->splats.tangent_u[axis][i] = f->splats.tangent_v[axis][i] = 0.0f;
+      f->splats.tangent_u[0][i] = f->splats.tangent_v[1][i] = (float)pow(10.0, 4.0 + (double)(i % 9));
+    }
+  }
+}
+
+/* Options for each way through the kernels: every method with every kernel, the rest as it comes. */
+static inline void choose(fixture *f, int number) {
+  conic_render_options_init(&f->options);
+  f->options.method = (conic_method)(number % CONIC_N_METHODS);
+  f->options.kernel.type = (conic_kernel_type)(number / CONIC_N_METHODS % N_KERNELS);
+  f->options.shading = (conic_shading)(number % 2 ? CONIC_SHADE_PHONG : number % 3);
+  f->options.has_light = number % 4 == 1;
+  f->options.has_background = number % 8 == 6;
+  f->options.cull_back = number % 5 == 2;
+  f->options.prefilter = number % 7 == 3 ? 0.0f : 1.0f;
+  f->options.epsilon = number % 11 == 4 ? 0.0 : -1.0;
+}
+
+static inline conic_finish finish_of(const fixture *f) {
+  conic_finish finish = {.options = &f->options, .light = {0.6f, 0.64f, 0.48f}, .exposure = 1.25f};
+  for (int i = 0; i < 3; i++)
+    finish.world_from_cam[i][i] = 1.0f;
+  for (int i = 0; f->options.has_background && i < 4; i++)
+    finish.background[i] = i < 3 ? 0.25f : 1.0f;
+  return finish;
+}
+
+static inline void *room(desk *d, size_t bytes) {
+  arena *a = &d->arenas[d->n_arenas++];
+  a->bytes = bytes;
+  a->compared = bytes;
+  size_t whole = (bytes + 2 * GUARD + 63) / 64 * 64;
+  a->memory = aligned_alloc(64, whole);
+  if (!a->memory)
+    exit(1);
+  a->inside = a->memory + GUARD;
+  memset(a->memory, PATTERN, whole);
+  memset(a->inside, 0, bytes);
+  return a->inside;
+}
+
+static inline void open_records(desk *d, size_t n) {
+  d->projected.n_chunks = 1;
+  d->projected.chunk_size = n;
+  d->projected.chunks = &d->chunk;
+  size_t with_slack = n + CONIC_PROJECT_SLACK;
+  d->projected.footprints = room(d, with_slack * sizeof *d->projected.footprints);
+  d->projected.boxes = room(d, with_slack * sizeof *d->projected.boxes);
+  d->projected.surfaces = room(d, with_slack * sizeof *d->projected.surfaces);
+  d->projected.rays = room(d, n * sizeof *d->projected.rays);
+}
+
+static inline void open_band(desk *d, size_t n, unsigned planes) {
+  n = n < GREATEST_LIST ? n : GREATEST_LIST;
+  d->list = room(d, n * sizeof *d->list);
+  d->words = room(d, n * sizeof *d->words);
+  d->references = room(d, n * sizeof *d->references);
+  d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
+  d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
+  d->band.kept = room(d, (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
+  d->band.nearest = room(d, sizeof *d->band.nearest);
+  d->band.sums = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
+  d->band.view = &d->view;
+  d->band.projected = &d->projected;
+  d->band.indices = d->list;
+  d->band.words = d->words;
+  d->band.keeps_indices = (planes & (1u << CONIC_PLANE_COUNT | 1u << CONIC_PLANE_ID)) != 0;
+}
+
+/* What records are turned into. */
+static inline void open_turned(desk *d, size_t n) {
+  d->tiles = room(d, n * sizeof *d->tiles);
+  d->keys = room(d, n * sizeof *d->keys);
+  d->beyond = room(d, n * sizeof *d->beyond);
+  d->order = room(d, n * sizeof *d->order);
+  d->moved_footprints = room(d, n * sizeof *d->moved_footprints);
+  d->moved_surfaces = room(d, n * sizeof *d->moved_surfaces);
+  d->next_record = room(d, MOST_TILES * sizeof *d->next_record);
+  d->next_entry = room(d, MOST_TILES * sizeof *d->next_entry);
+  d->tile_begin = room(d, MOST_TILES * sizeof *d->tile_begin);
+  d->entries = room(d, (n * MOST_TILES + 1) * sizeof *d->entries);
+}
+
+static inline void open_image(desk *d, unsigned planes) {
+  d->image.width = d->view.width;
+  d->image.height = d->view.height;
+  for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
+    if (planes & 1u << plane)
+      d->image.planes[plane] = room(d, (size_t)d->view.width * (size_t)d->view.height * sizeof(float) *
+                                           (size_t)conic_plane_describe((conic_plane)plane)->n_channels);
+}
+
+static inline desk *open_desk(const fixture *f, const setting *s) {
+  desk *d = calloc(1, sizeof *d);
+  if (!d)
+    exit(1);
+  d->f = f;
+  CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &d->view));
+  d->finish = finish_of(f);
+  open_records(d, f->splats.count);
+  open_band(d, f->splats.count, s->planes);
+  open_turned(d, f->splats.count);
+  open_image(d, s->planes);
+  return d;
+}
+
+static inline void close_desk(desk *d) {
+  for (int i = 0; i < d->n_arenas; i++) {
+    const arena *a = &d->arenas[i];
+    for (size_t k = 0; k < GUARD; k++)
+      CHECK(a->memory[k] == PATTERN && a->inside[a->bytes + k] == PATTERN);
+    free(a->memory);
+  }
+  free(d);
+}
+
+/* Says where the arena differs first, and how. */
+static inline void compare_arena(const desk *a, const desk *b, int i) {
+  static const char *const names[] = {"footprints",
+                                      "boxes",
+                                      "surfaces",
+                                      "rays",
+                                      "list",
+                                      "words",
+                                      "references",
+                                      "selected",
+                                      "selected words",
+                                      "kept",
+                                      "nearest",
+                                      "sums",
+                                      "tiles",
+                                      "keys",
+                                      "beyond",
+                                      "order",
+                                      "moved footprints",
+                                      "moved surfaces",
+                                      "next record",
+                                      "next entry",
+                                      "tile begin",
+                                      "entries"};
+  const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
+  size_t n = a->arenas[i].compared, at = 0;
+  CHECK(n == b->arenas[i].compared);
+  if (n != b->arenas[i].compared || memcmp(of_a, of_b, n) == 0)
+    return;
+  while (of_a[at] == of_b[at])
+    at++;
+  fprintf(stderr, "%s differ from byte %zu of %zu on: %02x and %02x\n", i < IMAGE ? names[i] : "an image's planes", at,
+          n, of_a[at], of_b[at]);
+  check_failures++;
+}
+
+/* The arenas first … last - 1. */
+static inline void compare_arenas(const desk *a, const desk *b, int first, int last) {
+  for (int i = first; i < last; i++)
+    compare_arena(a, b, i);
+}
+
+#endif

@@ -1,0 +1,387 @@
+/* conic mls: point-set surfaces. Points in; cleaner, fewer or more of them out. */
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/commands/mls_cells.h"
+#include "cli/device_option.h"
+#include "cli/json_write.h"
+#include "cli/outputs.h"
+#include "cli/tell.h"
+#include "core/base/message.h"
+
+typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
+
+static const char *const action_names[N_MLS_ACTIONS + 1] = {"project", "thin", "densify", NULL};
+static const char *const type_names[] = {"mls", "apss", NULL};
+static const char *const plane_names[] = {"full", "fast", NULL};
+static const char *const weight_names[] = {"gauss", "compact", "flat", NULL};
+static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
+
+typedef struct mls_job {
+  cli_session *session;
+  mls_action action;
+  const char *input, *output;
+  int type, plane, weight, isa; /* indices of the words above, which are in the order of the enumerations */
+  conic_surface_options options;
+  cli_length h, max_error, spacing, hole;
+  unsigned long long count;
+  int has_count;
+  unsigned long long memory_mib;
+  int has_memory;
+
+  conic_model model;
+  conic_surface *surface;
+  conic_splats result;
+  conic_surface_report report;
+  conic_repairs repairs;
+  size_t n_in, n_out;
+  double unit; /* the median spacing, where a length is in it */
+  double read_seconds, estimate_seconds, work_seconds, write_seconds;
+} mls_job;
+
+/* Where a length is in spacings: the median one of the points. */
+static conic_status find_unit(mls_job *job) {
+  if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
+      !job->hole.is_in_spacings)
+    return CONIC_OK;
+  conic_status status = conic_splats_spacing(job->session->context, &job->model.points, &job->unit);
+  if (status != CONIC_OK || job->unit > 0.0)
+    return status;
+  cli_error(CLI_INPUT, "%s: no two points are apart, so that a length in spacings has no meaning", job->input);
+  return CONIC_ERROR_INPUT;
+}
+
+/* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
+static conic_status read_points(mls_job *job) {
+  conic_context *context = job->session->context;
+  double start = cli_seconds();
+  conic_status status = conic_model_read(context, job->input, NULL, &job->model);
+  double read = cli_seconds();
+  job->read_seconds = read - start;
+  if (status != CONIC_OK)
+    return status;
+  conic_splats *points = &job->model.points;
+  double low[3], high[3];
+  job->n_in = points->count;
+  if (conic_splats_bounds(points, low, high) == 0) {
+    cli_error(CLI_INPUT, "%s: %s", job->input, points->count ? "no point is finite" : "it holds no points");
+    return CONIC_ERROR_INPUT;
+  }
+  if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
+    conic_estimate_options estimate;
+    conic_estimate_options_init(&estimate);
+    status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
+  }
+  if (status == CONIC_OK)
+    status = find_unit(job);
+  job->estimate_seconds = cli_seconds() - read;
+  return status;
+}
+
+static double in_world(const mls_job *job, const cli_length *length) {
+  return length->value * (length->is_in_spacings ? job->unit : 1.0);
+}
+
+static conic_status thin(mls_job *job) {
+  conic_thin_options options;
+  conic_thin_options_init(&options);
+  options.count = job->has_count ? (size_t)job->count : 0;
+  options.max_error = in_world(job, &job->max_error);
+  options.is_measured = 1;
+  return conic_surface_thin(job->surface, &options, &job->result, &job->report);
+}
+
+static conic_status densify(mls_job *job) {
+  conic_densify_options options;
+  conic_densify_options_init(&options);
+  options.spacing = in_world(job, &job->spacing);
+  options.hole = in_world(job, &job->hole);
+  options.max_count = job->has_count ? (size_t)job->count : 0;
+  return conic_surface_densify(job->surface, &options, &job->result, &job->report);
+}
+
+static conic_status project(mls_job *job) {
+  return conic_surface_clean(job->surface, &job->result, &job->report);
+}
+
+/* One h for all: cell by cell, which needs not all of them at a time. */
+static int is_by_cells(const mls_job *job) {
+  return job->action == MLS_PROJECT && job->h.value > 0.0 && job->options.cluster == 0.0;
+}
+
+static conic_status clean_cells(mls_job *job) {
+  conic_clean_options options;
+  conic_clean_options_init(&options);
+  options.surface = job->options;
+  options.name = job->input;
+  options.memory_bytes = (size_t)job->memory_mib << 20;
+  options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
+  double start = cli_seconds();
+  conic_status status = cli_mls_clean(job->session, &options, job->has_memory ? NULL : &job->model.points, job->input,
+                                      job->output, &job->report, &job->work_seconds);
+  job->write_seconds = cli_seconds() - start - job->work_seconds;
+  job->n_in = job->report.n_in;
+  job->n_out = job->report.n_out;
+  return status;
+}
+
+static conic_status act(mls_job *job) {
+  switch (job->action) {
+  case MLS_THIN:
+    return thin(job);
+  case MLS_DENSIFY:
+    return densify(job);
+  default:
+    return project(job);
+  }
+}
+
+static conic_status work(mls_job *job) {
+  double start = cli_seconds();
+  job->options.type = (conic_surface_type)job->type;
+  job->options.plane = (conic_surface_plane)job->plane;
+  job->options.weight = (conic_surface_weight)job->weight;
+  job->options.isa = (conic_isa)job->isa;
+  job->options.h = in_world(job, &job->h);
+  if (is_by_cells(job))
+    return clean_cells(job);
+  conic_status status = conic_surface_create(job->session->context, &job->model.points, &job->options, &job->surface);
+  if (status == CONIC_OK)
+    status = act(job);
+  job->n_out = job->result.count;
+  job->work_seconds = cli_seconds() - start;
+  return status;
+}
+
+/* Points that have no surface about them are left out: some always are, many mean that h is too small. */
+static void warn(const mls_job *job) {
+  const size_t *outcomes = job->report.outcomes;
+  size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
+  if (n_lost > job->n_in / 10)
+    conic_log(
+        job->session->context, CONIC_LOG_WARNING,
+        "%s: %zu of %zu points are left out: %zu too few neighbours, %zu no minimum, %zu ill-conditioned; a larger "
+        "--h reaches more",
+        job->input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
+        outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+}
+
+static void tell(const mls_job *job, double total_seconds) {
+  conic_context *context = job->session->context;
+  const conic_surface_report *r = &job->report;
+  const cli_stage stages[] = {{"read", job->read_seconds},
+                              {"estimate", job->estimate_seconds},
+                              {"work", job->work_seconds},
+                              {"write", job->write_seconds}};
+  conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->input, job->n_in,
+            job->n_out, r->h);
+  cli_tell_repairs(job->session, job->input, &job->repairs);
+  if (job->action == MLS_PROJECT)
+    conic_log(context, CONIC_LOG_INFO,
+              "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "
+              "neighbours, %zu without a minimum, %zu ill-conditioned",
+              job->input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
+              r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
+              r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
+  if (job->action == MLS_THIN)
+    conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->input,
+              r->there.max > r->back.max ? r->there.max : r->back.max);
+  cli_tell_run(job->session, stages, 4, total_seconds);
+}
+
+static int write_points(mls_job *job) {
+  double start = cli_seconds();
+  if (job->n_out == 0)
+    return cli_error(CLI_INPUT, "%s: no point has a surface about it (%zu too few neighbours, %zu no minimum)",
+                     job->input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
+                     job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
+  if (is_by_cells(job)) /* it is written */
+    return CLI_DONE;
+  int exit_code = cli_exit_of(conic_splats_write(job->session->context, job->output, &job->result, NULL));
+  job->write_seconds = cli_seconds() - start;
+  return exit_code;
+}
+
+/* --- statistics --- */
+
+static void write_surface(cli_json *json, const mls_job *job) {
+  cli_json_text(json, "action", action_names[job->action]);
+  cli_json_text(json, "type", type_names[job->type]);
+  cli_json_text(json, "plane", job->type == CONIC_SURFACE_MLS ? plane_names[job->plane] : NULL);
+  cli_json_text(json, "weight", weight_names[job->weight]);
+  cli_json_number(json, "h", job->report.h);
+  cli_json_number(json, "neglect", job->options.neglect);
+  if (job->type == CONIC_SURFACE_MLS)
+    cli_json_count(json, "degree", (uint64_t)job->options.degree);
+}
+
+static void write_projected(cli_json *json, const conic_surface_report *report) {
+  static const char *const keys[CONIC_N_SURFACE_OUTCOMES] = {"done", "not_finite", "too_few", "no_minimum",
+                                                             "ill_conditioned"};
+  cli_json_object(json, "outcomes");
+  for (int i = 0; i < CONIC_N_SURFACE_OUTCOMES; i++)
+    cli_json_count(json, keys[i], report->outcomes[i]);
+  cli_json_close(json);
+  cli_json_object(json, "moved");
+  cli_json_number(json, "rms", report->moved_rms);
+  cli_json_number(json, "max", report->moved_max);
+  cli_json_close(json);
+  cli_json_number(json, "mean_neighbours", report->mean_neighbours);
+}
+
+static void write_distance(cli_json *json, const char *key, const conic_surface_distance *distance) {
+  cli_json_object(json, key);
+  cli_json_number(json, "max", distance->max);
+  cli_json_number(json, "rms", distance->rms);
+  cli_json_count(json, "measured", distance->n_measured);
+  cli_json_count(json, "failed", distance->n_failed);
+  cli_json_close(json);
+}
+
+static void write_seconds(cli_json *json, const mls_job *job, double total_seconds) {
+  cli_json_object(json, "seconds");
+  cli_json_number(json, "read", job->read_seconds);
+  cli_json_number(json, "estimate", job->estimate_seconds);
+  cli_json_number(json, "work", job->work_seconds);
+  cli_json_number(json, "write", job->write_seconds);
+  cli_json_number(json, "total", total_seconds);
+  cli_json_close(json);
+}
+
+static int write_statistics(mls_job *job, double total_seconds) {
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(job->session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  const conic_surface_report *report = &job->report;
+  cli_json_count(json, "points_in", job->n_in);
+  cli_json_count(json, "points_out", job->n_out);
+  write_surface(json, job);
+  if (job->action == MLS_PROJECT)
+    write_projected(json, report);
+  if (job->action == MLS_THIN) {
+    cli_json_number(json, "error", report->error);
+    write_distance(json, "to_thinned", &report->there);
+    write_distance(json, "from_thinned", &report->back);
+    cli_json_number(json, "hausdorff", report->there.max > report->back.max ? report->there.max : report->back.max);
+  }
+  cli_json_count(json, "evaluations", report->n_evaluations);
+  write_seconds(json, job, total_seconds);
+  cli_json_number(json, "points_per_s", (double)job->n_in / job->work_seconds);
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+  job->repairs.nan = report->outcomes[CONIC_SURFACE_NOT_FINITE];
+  job->repairs.failed = report->outcomes[CONIC_SURFACE_TOO_FEW] + report->outcomes[CONIC_SURFACE_NO_MINIMUM] +
+                        report->outcomes[CONIC_SURFACE_ILL_CONDITIONED];
+  cli_json_skipped(json, &job->repairs);
+  return cli_json_finish(file);
+}
+
+static int run_job(mls_job *job) {
+  double start = cli_seconds();
+  int exit_code = cli_session_open(job->session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  conic_status status = job->has_memory ? CONIC_OK : read_points(job);
+  if (status == CONIC_OK)
+    status = work(job);
+  exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
+  double total_seconds = cli_seconds() - start;
+  if (exit_code == CLI_DONE) {
+    warn(job);
+    tell(job, total_seconds);
+    exit_code = write_statistics(job, total_seconds);
+  }
+  conic_splats_release(job->session->context, &job->result);
+  conic_surface_destroy(job->surface);
+  conic_model_release(job->session->context, &job->model);
+  return exit_code;
+}
+
+/* --- arguments --- */
+
+static int check_job(mls_job *job, const char *const *positional, int n_positional) {
+  if (n_positional == 0)
+    return cli_usage("mls: what to do? project, thin or densify; see conic help mls");
+  for (int i = 0; i < N_MLS_ACTIONS; i++)
+    if (strcmp(positional[0], action_names[i]) == 0)
+      job->action = (mls_action)i;
+  if (job->action == N_MLS_ACTIONS)
+    return cli_usage("mls: %s is neither project, thin nor densify", positional[0]);
+  const char *name = action_names[job->action];
+  if (n_positional != 2)
+    return cli_usage("mls %s: %s; see conic help mls", name,
+                     n_positional > 2 ? "one input at a time" : "no input given");
+  if (!job->output)
+    return cli_usage("mls %s: no output given (-o OUT.ply)", name);
+  if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
+    return cli_usage("mls thin: needs --count N or --max-error E");
+  if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
+    return cli_usage("mls densify: needs --spacing S");
+  if ((job->action == MLS_PROJECT && job->has_count) || (job->action != MLS_THIN && job->max_error.value > 0.0) ||
+      (job->action != MLS_DENSIFY && (job->spacing.value > 0.0 || job->hole.value > 0.0)))
+    return cli_usage("mls %s: --count is of thin and densify, --max-error of thin, --spacing and --hole of densify",
+                     name);
+  if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
+    return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
+                     name);
+  job->input = positional[1];
+  int exit_code = cli_check_ending(job->output, "ply");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(job->session, &job->output, 1);
+  if (exit_code == CLI_DONE) /* the output may be the input: it appears when all is read */
+    exit_code = cli_check_inputs_stay(job->session, &job->input, 1, NULL, 0);
+  return exit_code == CLI_DONE ? cli_isa_check(job->session, (conic_isa)job->isa) : exit_code;
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  mls_job job = {.session = session, .action = N_MLS_ACTIONS};
+  const char *positional[argc];
+  int n_positional;
+  conic_surface_options_init(&job.options);
+  const cli_option options[] = {
+      {"o", CLI_TEXT, &job.output, "OUT.ply", "the file to write"},
+      {"type", CLI_CHOICE, &job.type, "T", "mls: polynomials over planes; apss: algebraic spheres [mls]",
+       .choices = type_names},
+      {"plane", CLI_CHOICE, &job.plane, "P",
+       "full: the plane that makes a projection; fast: through the point itself [full]", .choices = plane_names},
+      {"degree", CLI_INT, &job.options.degree, "D", "of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE},
+      {"weight", CLI_CHOICE, &job.weight, "W", "of a sample by its distance: gauss, compact or flat [gauss]",
+       .choices = weight_names},
+      {"h", CLI_PARSED, &job.h, "H",
+       "what is smaller is smoothed away; world units, or 2x: two spacings [local, by -k]", .parse = cli_parse_length,
+       .dashes = "--"},
+      {"k", CLI_INT, &job.options.n_local, "K",
+       "of a local h: the neglect distance is that of the K-th neighbour, 6 to 64 [32]", 6, 64},
+      {"neglect", CLI_NUMBER, &job.options.neglect, "C", "samples farther than C h weigh nothing, 1 to 6 [2]", 1, 6},
+      {"cluster", CLI_NUMBER, &job.options.cluster, "T",
+       "project: cells smaller than T times their distance count as one sample, 0 to 1 [0]", 0, 1},
+      {"count", CLI_COUNT, &job.count, "N", "thin: points to keep; densify: points to stop at", 1, 4294967294.0,
+       .is_given = &job.has_count},
+      {"max-error", CLI_PARSED, &job.max_error, "E", "thin: keep the surface within E of what it was",
+       .parse = cli_parse_length},
+      {"spacing", CLI_PARSED, &job.spacing, "S", "densify: no circle of a greater radius stays empty",
+       .parse = cli_parse_length},
+      {"hole", CLI_PARSED, &job.hole, "R", "densify: circles of a greater radius are holes and stay [h]",
+       .parse = cli_parse_length},
+      {"memory", CLI_COUNT, &job.memory_mib, "MIB",
+       "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
+      {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = isa_names},
+  };
+  int exit_code =
+      cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
+  if (exit_code != CLI_DONE)
+    return exit_code < 0 ? CLI_DONE : exit_code;
+  exit_code = check_job(&job, positional, n_positional);
+  return exit_code == CLI_DONE ? run_job(&job) : exit_code;
+}
+
+const cli_command cli_mls = {
+    .name = "mls",
+    .summary = "point-set surfaces: smooths, thins or densifies points",
+    .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
+             "                 [--count N] [--max-error E] [--spacing S] [--hole R]",
+    .run = run,
+};

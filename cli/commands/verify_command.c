@@ -1,0 +1,264 @@
+/* conic verify: how far a picture is from what the oracle says it should be. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/json_write.h"
+#include "cli/outputs.h"
+#include "cli/render/render_job.h"
+
+typedef struct verify_job {
+  cli_render_job scene;
+  int question;
+  const char *image_path; /* null: drawn here */
+
+  conic_image image;
+  conic_reference reference;
+  conic_oracle_verdict verdict;
+  double render_ms, oracle_ms;
+} verify_job;
+
+static conic_status get_image(cli_session *session, verify_job *job, const conic_drawing *drawing,
+                              const conic_camera *camera) {
+  if (job->image_path) /* it was read before the scene */
+    return CONIC_OK;
+  conic_status status =
+      conic_image_allocate(session->context, camera->width, camera->height, job->scene.planes, &job->image);
+  if (status != CONIC_OK)
+    return status;
+  double start = cli_seconds();
+  status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.options,
+                                job->scene.samples, &job->image, &job->scene.statistics);
+  job->render_ms = 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* An image of another size is an input that can't be used, and is told before the oracle has worked. */
+static conic_status check_size(const verify_job *job, const conic_camera *camera) {
+  if (job->image.width == camera->width && job->image.height == camera->height)
+    return CONIC_OK;
+  cli_error(CLI_INPUT, "%s: it has %d x %d pixels, and the picture to compare with %d x %d", job->image_path,
+            job->image.width, job->image.height, camera->width, camera->height);
+  return CONIC_ERROR_INPUT;
+}
+
+/* A picture from a file has the names of what was chosen, where the oracle counts. */
+static void name_reference(verify_job *job) {
+  const conic_selection *leaves = &job->scene.selection;
+  const conic_patch_selection *samples = &job->scene.patch_selection;
+  const uint32_t *names = job->scene.octree ? leaves->ids : job->scene.patches ? samples->points : NULL;
+  size_t n_names = job->scene.octree ? leaves->splats.count : samples->splats.count;
+  double *ids = job->reference.planes[CONIC_PLANE_ID];
+  uint32_t *tied = job->reference.tied_id;
+  for (size_t i = 0; names && i < (size_t)job->reference.width * (size_t)job->reference.height; i++) {
+    if (ids[i] < (double)n_names)
+      ids[i] = (double)names[(size_t)ids[i]];
+    if (tied[i] < n_names)
+      tied[i] = names[tied[i]];
+  }
+}
+
+static conic_status compare(cli_session *session, verify_job *job, const conic_splats *splats) {
+  conic_camera camera;
+  conic_drawing drawing;
+  double ms;
+  conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &camera);
+  if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
+    status = cli_scene_select(&job->scene, &camera, splats, &drawing, &ms);
+  if (status == CONIC_OK)
+    status = get_image(session, job, &drawing, &camera);
+  if (status == CONIC_OK)
+    status = check_size(job, &camera);
+  conic_render_options options = job->scene.options;
+  if (!job->scene.octree && !job->scene.hybrid)
+    options.splat_length = 0.0; /* the oracle sees all splats, and measures them by itself */
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &options,
+                                         (conic_oracle_question)job->question, job->scene.samples, &job->reference);
+  job->oracle_ms = 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK && job->image_path)
+    name_reference(job);
+  if (status == CONIC_OK)
+    status = conic_oracle_compare(session->context, &job->reference, &job->image, &job->verdict);
+  return status;
+}
+
+static void report_planes(cli_json *json, const verify_job *job) {
+  cli_json_object(json, "planes");
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (!job->verdict.planes[i].is_compared)
+      continue;
+    cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
+    cli_json_number(json, "max_abs", job->verdict.planes[i].max_abs);
+    cli_json_number(json, "p999", job->verdict.planes[i].p999);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  cli_json_object(json, "bound");
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (job->verdict.planes[i].is_compared)
+      cli_json_number(json, conic_plane_describe((conic_plane)i)->name, job->verdict.planes[i].bound);
+  cli_json_close(json);
+}
+
+static void report_pixels(cli_json *json, const verify_job *job) {
+  const conic_oracle_verdict *verdict = &job->verdict;
+  cli_json_count(json, "compared_pixels", verdict->compared_pixels);
+  cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
+  cli_json_count(json, "covered_pixels", verdict->covered_pixels);
+  if (job->scene.samples > 1) {
+    cli_json_count(json, "unstable_samples", job->reference.unstable_samples);
+    cli_json_count(json, "covered_samples", job->reference.covered_samples);
+  }
+  cli_json_count(json, "undecided_ids", job->reference.undecided_ids);
+  cli_json_number(json, "unstable_limit", verdict->unstable_limit);
+  cli_json_object(json, "unstable_by_reason");
+  for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
+    cli_json_count(json, conic_unstable_reason_name((conic_unstable_reason)i), job->reference.unstable_by_reason[i]);
+  cli_json_close(json);
+}
+
+static void report_weights(cli_json *json, const conic_weight_error *error) {
+  cli_json_object(json, "weight_error");
+  cli_json_number(json, "max_abs", error->max_abs);
+  cli_json_number(json, "p999", error->p999);
+  cli_json_number(json, "max_of_peak", error->max_of_peak);
+  cli_json_number(json, "p999_of_peak", error->p999_of_peak);
+  cli_json_number(json, "quadrature", error->quadrature);
+  cli_json_count(json, "weights", error->n_weights);
+  cli_json_close(json);
+}
+
+static int write_statistics(cli_session *session, const verify_job *job) {
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
+  cli_json_text(json, "method", cli_method_name(&job->scene));
+  if (job->scene.samples > 1)
+    cli_json_count(json, "samples", (uint64_t)job->scene.samples);
+  report_planes(json, job);
+  report_pixels(json, job);
+  if (job->question == CONIC_ORACLE_EXACT)
+    report_weights(json, &job->reference.weight_error);
+  cli_json_object(json, "ms");
+  cli_json_number(json, "render", job->render_ms);
+  cli_json_number(json, "oracle", job->oracle_ms);
+  cli_json_close(json);
+  cli_json_bool(json, "pass", job->verdict.pass);
+  return cli_json_finish(file);
+}
+
+/* Too much is in doubt for the rest to say anything. */
+static int is_too_unstable(const verify_job *job) {
+  const conic_oracle_verdict *verdict = &job->verdict;
+  int has_samples = job->scene.samples > 1;
+  size_t unstable = has_samples ? job->reference.unstable_samples : verdict->unstable_pixels;
+  size_t covered = has_samples ? job->reference.covered_samples : verdict->covered_pixels;
+  return job->question == CONIC_ORACLE_METHOD && (double)unstable > verdict->unstable_limit * (double)covered;
+}
+
+static void print_unstable(const verify_job *job) {
+  const conic_oracle_verdict *verdict = &job->verdict;
+  double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
+  printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
+         100.0 * (double)verdict->unstable_pixels / covered);
+  if (job->scene.samples > 1)
+    printf(", %zu of %zu samples", job->reference.unstable_samples, job->reference.covered_samples);
+  const char *separator = ": ";
+  for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
+    if (job->reference.unstable_by_reason[i]) {
+      printf("%s%s %zu", separator, conic_unstable_reason_name((conic_unstable_reason)i),
+             job->reference.unstable_by_reason[i]);
+      separator = ", ";
+    }
+  if (is_too_unstable(job))
+    printf("; at most %g %% may be  FAILED", 100.0 * verdict->unstable_limit);
+  putchar('\n');
+}
+
+static void print_result(const verify_job *job) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    const conic_oracle_plane_verdict *plane = &job->verdict.planes[i];
+    if (!plane->is_compared)
+      continue;
+    printf("%-9s max %-12.4g p99.9 %-12.4g", conic_plane_describe((conic_plane)i)->name, plane->max_abs, plane->p999);
+    if (plane->bound == plane->bound)
+      printf("bound %-8.4g%s", plane->bound, plane->max_abs <= plane->bound ? "" : "  FAILED");
+    putchar('\n');
+  }
+  print_unstable(job);
+  if (job->question == CONIC_ORACLE_EXACT) {
+    const conic_weight_error *error = &job->reference.weight_error;
+    printf("weights   max %-12.4g p99.9 %-12.4g of the peak: max %.4g, p99.9 %.4g (%zu weights, integrals to %.1g)\n",
+           error->max_abs, error->p999, error->max_of_peak, error->p999_of_peak, error->n_weights, error->quadrature);
+  }
+  puts(job->verdict.pass ? "pass" : "FAILED");
+}
+
+static int finish(cli_session *session, const verify_job *job) {
+  int exit_code = write_statistics(session, job);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  if (!session->is_quiet && (!session->json_path || strcmp(session->json_path, "-") != 0))
+    print_result(job);
+  return job->verdict.pass ? CLI_DONE : CLI_DIFFERENT;
+}
+
+static int verify(cli_session *session, verify_job *job) {
+  conic_splats splats;
+  int exit_code = cli_session_open(session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  memset(&splats, 0, sizeof splats);
+  conic_status status = cli_scene_begin(session, &job->scene);
+  if (status == CONIC_OK && job->image_path)
+    status = conic_image_read(session->context, job->image_path, &job->image);
+  if (status == CONIC_OK)
+    status = cli_scene_read(session, &job->scene, &splats);
+  if (status == CONIC_OK)
+    status = cli_scene_measure(session, &job->scene, &splats);
+  if (status == CONIC_OK)
+    status = compare(session, job, &splats);
+  exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
+  conic_reference_release(session->context, &job->reference);
+  conic_image_release(session->context, &job->image);
+  cli_scene_release(session, &job->scene, &splats);
+  return exit_code;
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  static const char *const questions[] = {"method", "exact", NULL};
+  verify_job job = {.question = CONIC_ORACLE_METHOD};
+  cli_scene_defaults(&job.scene);
+  job.scene.planes = CONIC_DRAWN_PLANES;
+  const cli_option own[] = {
+      {"against", CLI_CHOICE, &job.question, "WHAT",
+       "method: its own formula in double precision; exact: the kernel itself, projected and filtered [method]",
+       .choices = questions},
+      {"image", CLI_TEXT, &job.image_path, "FILE", "the picture to verify, of whatever renderer [drawn anew]"},
+  };
+  int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
+  if (exit_code == CLI_DONE && job.scene.planes & 1u << CONIC_PLANE_CLUSTER)
+    exit_code = cli_usage("verify: the plane cluster holds names; the oracle knows what is drawn");
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(session, NULL, 0);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_scene_inputs_stay(session, &job.scene, &job.image_path, 0);
+  if (exit_code == CLI_DONE)
+    exit_code = verify(session, &job);
+  free(job.scene.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_verify = {
+    .name = "verify",
+    .summary = "measures pictures against a slow, exact reference",
+    .usage = "conic verify IN… [--against method|exact] [--image FILE] [camera and render options]",
+    .run = run,
+};

@@ -1,0 +1,66 @@
+#include "cli/device_option.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* P.D: two numbers of up to four digits. */
+static int is_place(const char *text) {
+  static const char digits[] = "0123456789";
+  size_t n_platform = strspn(text, digits);
+  if (n_platform < 1 || n_platform > 4 || text[n_platform] != '.')
+    return 0;
+  text += n_platform + 1;
+  size_t n_device = strspn(text, digits);
+  return n_device >= 1 && n_device <= 4 && !text[n_device];
+}
+
+int cli_device_check(const cli_session *session, const cli_device *device) {
+  const char *name = device->name;
+  if (strcmp(name, "cpu") == 0 || strcmp(name, "opencl") == 0)
+    return CLI_DONE;
+  if (strncmp(name, "opencl:", 7) == 0 && is_place(name + 7))
+    return CLI_DONE;
+  return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", session->command, name);
+}
+
+int cli_isa_is_here(conic_isa isa) {
+  conic_isa best = conic_isa_best();
+  if (isa == CONIC_ISA_AUTO || isa == CONIC_ISA_SCALAR || isa == best)
+    return 1;
+  return best != CONIC_ISA_NEON && isa != CONIC_ISA_NEON && isa < best && best != CONIC_ISA_SCALAR;
+}
+
+int cli_isa_check(const cli_session *session, conic_isa isa) {
+  if (cli_isa_is_here(isa))
+    return CLI_DONE;
+  return cli_error(CLI_RESOURCE, "%s: this machine or build has no %s", session->command, conic_isa_name(isa));
+}
+
+/* Where programs that were built for a device are kept: $XDG_CACHE_HOME/conic, else ~/.cache/conic; null where there is
+ * neither. */
+static const char *cache_folder(char *folder, size_t room) {
+  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+  int n = -1;
+  if (cache && cache[0] == '/')
+    n = snprintf(folder, room, "%s/conic", cache);
+  else if (home && home[0] == '/')
+    n = snprintf(folder, room, "%s/.cache/conic", home);
+  return n > 0 && (size_t)n < room ? folder : NULL;
+}
+
+conic_status cli_device_open(cli_session *session, cli_device *device, conic_renderer **renderer) {
+  char folder[3072];
+  conic_opencl_options options;
+  conic_opencl_device found;
+  snprintf(device->used, sizeof device->used, "cpu");
+  if (!device->name || strcmp(device->name, "cpu") == 0)
+    return conic_renderer_create(session->context, renderer);
+  conic_opencl_options_init(&options);
+  options.device = device->name;
+  options.allow_inexact = device->allow_inexact;
+  options.cache_folder = cache_folder(folder, sizeof folder);
+  conic_status status = conic_opencl_renderer_create(session->context, &options, &found, renderer);
+  if (status == CONIC_OK)
+    snprintf(device->used, sizeof device->used, "opencl:%d.%d", found.i_platform, found.i_device);
+  return status;
+}

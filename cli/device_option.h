@@ -1,0 +1,24 @@
+/* --device, --isa: what draws. */
+#ifndef CONIC_DEVICE_OPTION_H
+#define CONIC_DEVICE_OPTION_H
+
+#include "cli/session.h"
+
+typedef struct cli_device {
+  const char *name; /* cpu, opencl or opencl:P.D */
+  int allow_inexact;
+  char used[32]; /* "cpu", "opencl:0.0": what it turned out to be */
+} cli_device;
+
+/* CLI_DONE where the name is one, or CLI_USAGE after a message. */
+int cli_device_check(const cli_session *session, const cli_device *device);
+
+/* Whether this machine and this build have an instruction set; CONIC_ISA_AUTO they always have. */
+int cli_isa_is_here(conic_isa isa);
+/* CLI_DONE where they have, or CLI_RESOURCE after a message. */
+int cli_isa_check(const cli_session *session, conic_isa isa);
+
+/* A renderer that draws there, which the caller destroys. Errors: UNSUPPORTED, MEMORY. */
+conic_status cli_device_open(cli_session *session, cli_device *device, conic_renderer **renderer);
+
+#endif

@@ -1,0 +1,187 @@
+#include "cli/json_write.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/session.h"
+#include "core/files/file.h"
+
+/* What has_items remembers of each open object or array. */
+enum { HAS_ITEMS = 1, IS_ARRAY = 2, HAS_LINES = 4, MAX_DEPTH = 32 };
+
+/* The length of the UTF-8 sequence that begins at `text`; 0 where it is none. */
+static int sequence_length(const unsigned char *text) {
+  int length = text[0] < 0x80   ? 1
+               : text[0] < 0xC2 ? 0
+               : text[0] < 0xE0 ? 2
+               : text[0] < 0xF0 ? 3
+               : text[0] < 0xF5 ? 4
+                                : 0;
+  for (int i = 1; i < length; i++)
+    if ((text[i] & 0xC0) != 0x80)
+      return 0;
+  int is_overlong = (text[0] == 0xE0 && text[1] < 0xA0) || (text[0] == 0xF0 && text[1] < 0x90);
+  int is_no_character = (text[0] == 0xED && text[1] >= 0xA0) || (text[0] == 0xF4 && text[1] >= 0x90);
+  return is_overlong || is_no_character ? 0 : length;
+}
+
+/* File names may hold any byte; the JSON stays valid: what is not UTF-8 becomes the replacement character. */
+static void print_text(FILE *to, const char *value) {
+  const unsigned char *text = (const unsigned char *)value;
+  fputc('"', to);
+  while (*text) {
+    int length = sequence_length(text);
+    if (length == 0)
+      fputs("\xEF\xBF\xBD", to);
+    else if (*text == '"' || *text == '\\')
+      fprintf(to, "\\%c", *text);
+    else if (*text < 0x20)
+      fprintf(to, "\\u%04x", *text);
+    else
+      fwrite(text, 1, (size_t)length, to);
+    text += length ? length : 1;
+  }
+  fputc('"', to);
+}
+
+static void new_line(cli_json *json) {
+  fprintf(json->to, "\n%*s", 2 * json->depth, "");
+}
+
+/* Objects have an item a line; arrays of plain values stay on one line. */
+static void begin_item(cli_json *json, const char *key, int is_object) {
+  int *state = &json->has_items[json->depth - 1];
+  if (*state & HAS_ITEMS)
+    fputc(',', json->to);
+  if (!(*state & IS_ARRAY) || is_object) {
+    new_line(json);
+    *state |= HAS_LINES;
+  } else if (*state & HAS_ITEMS)
+    fputc(' ', json->to);
+  *state |= HAS_ITEMS;
+  if (key) {
+    print_text(json->to, key);
+    fputs(": ", json->to);
+  }
+}
+
+static void open_level(cli_json *json, char bracket, int state) {
+  if (json->depth >= MAX_DEPTH)
+    abort(); /* a command's mistake, not an input's: what is nested is written in its source */
+  fputc(bracket, json->to);
+  json->has_items[json->depth++] = state;
+}
+
+void cli_json_begin(cli_json *json, FILE *to) {
+  memset(json, 0, sizeof *json);
+  json->to = to;
+  open_level(json, '{', 0);
+}
+
+void cli_json_object(cli_json *json, const char *key) {
+  begin_item(json, key, 1);
+  open_level(json, '{', 0);
+}
+
+void cli_json_array(cli_json *json, const char *key) {
+  begin_item(json, key, 0);
+  open_level(json, '[', IS_ARRAY);
+}
+
+void cli_json_close(cli_json *json) {
+  int state = json->has_items[--json->depth];
+  if (state & HAS_LINES)
+    new_line(json);
+  fputc(state & IS_ARRAY ? ']' : '}', json->to);
+}
+
+int cli_json_end(cli_json *json) {
+  while (json->depth > 0)
+    cli_json_close(json);
+  fputc('\n', json->to);
+  return fflush(json->to) == 0 && !ferror(json->to);
+}
+
+void cli_json_text(cli_json *json, const char *key, const char *value) {
+  begin_item(json, key, 0);
+  if (value)
+    print_text(json->to, value);
+  else
+    fputs("null", json->to);
+}
+
+void cli_json_number(cli_json *json, const char *key, double value) {
+  char text[40];
+  begin_item(json, key, 0);
+  if (!(value - value == 0.0)) {
+    fputs("null", json->to);
+    return;
+  }
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, sizeof text, "%.*g", digits, value);
+    if (strtod(text, NULL) == value)
+      break;
+  }
+  fputs(text, json->to);
+}
+
+void cli_json_count(cli_json *json, const char *key, uint64_t value) {
+  begin_item(json, key, 0);
+  fprintf(json->to, "%" PRIu64, value);
+}
+
+void cli_json_bool(cli_json *json, const char *key, int value) {
+  begin_item(json, key, 0);
+  fputs(value ? "true" : "false", json->to);
+}
+
+void cli_json_hash(cli_json *json, const char *key, uint64_t value) {
+  begin_item(json, key, 0);
+  fprintf(json->to, "\"%016" PRIx64 "\"", value);
+}
+
+struct cli_json_file {
+  conic_output *output;
+  cli_json json;
+};
+
+cli_json *cli_json_open(cli_session *session, cli_json_file **file, int *exit_code) {
+  *file = NULL;
+  if (!session->json_path)
+    return NULL;
+  cli_json_file *made = malloc(sizeof *made);
+  if (!made) {
+    *exit_code = cli_error(CLI_RESOURCE, "%s: out of memory", session->json_path);
+    return NULL;
+  }
+  conic_status status = conic_output_open(session->context, session->json_path, &made->output);
+  if (status != CONIC_OK) {
+    free(made);
+    *exit_code = cli_exit_of(status);
+    return NULL;
+  }
+  cli_json_begin(&made->json, conic_output_stream(made->output));
+  *file = made;
+  return &made->json;
+}
+
+int cli_json_finish(cli_json_file *file) {
+  if (!file)
+    return CLI_DONE;
+  cli_json_end(&file->json); /* what it says of the stream, commit finds again */
+  conic_status status = conic_output_commit(file->output);
+  free(file);
+  return cli_exit_of(status);
+}
+
+void cli_json_skipped(cli_json *json, const conic_repairs *repairs) {
+  cli_json_object(json, "skipped");
+  cli_json_count(json, "nan", repairs->nan);
+  cli_json_count(json, "zero", repairs->zero);
+  cli_json_count(json, "duplicate", repairs->duplicate);
+  cli_json_count(json, "isolated", repairs->isolated);
+  cli_json_count(json, "failed", repairs->failed);
+  cli_json_count(json, "clip", repairs->clip);
+  cli_json_close(json);
+}

@@ -1,0 +1,292 @@
+/* conic render: splats, raw points or meshes in, pictures out. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/render/render_job.h"
+#include "cli/tell.h"
+#include "core/base/message.h"
+
+static int compare_frames(const void *a, const void *b) {
+  const conic_render_statistics *first = a, *second = b;
+  return (first->ms.frame > second->ms.frame) - (first->ms.frame < second->ms.frame);
+}
+
+/* Each time's own median over the frames. */
+static double median_of(conic_render_statistics *frames, size_t n, size_t offset) {
+  for (size_t i = 0; i < n; i++) /* sorted by the frame's time, so each other time takes its turn there */
+    memmove(&frames[i].ms.frame, (const char *)&frames[i].ms + offset, sizeof(double));
+  qsort(frames, n, sizeof *frames, compare_frames);
+  return n % 2 ? frames[n / 2].ms.frame : 0.5 * (frames[n / 2 - 1].ms.frame + frames[n / 2].ms.frame);
+}
+
+static void take_medians(cli_render_job *job, conic_render_statistics *frames, size_t n) {
+  conic_render_milliseconds ms;
+  conic_render_statistics last = frames[n - 1];
+  job->first_frame_ms = frames[0].ms.frame;
+  if (n > 1) {
+    frames++;
+    n--;
+  }
+  ms.frame = median_of(frames, n, offsetof(conic_render_milliseconds, frame));
+  ms.lod = median_of(frames, n, offsetof(conic_render_milliseconds, lod));
+  ms.setup = median_of(frames, n, offsetof(conic_render_milliseconds, setup));
+  ms.bin = median_of(frames, n, offsetof(conic_render_milliseconds, bin));
+  ms.visibility = median_of(frames, n, offsetof(conic_render_milliseconds, visibility));
+  ms.accumulate = median_of(frames, n, offsetof(conic_render_milliseconds, accumulate));
+  ms.resolve = median_of(frames, n, offsetof(conic_render_milliseconds, resolve));
+  job->statistics = last;
+  job->statistics.ms = ms;
+}
+
+static void name_attribute(conic_image *image, const char *name, const char *text, double value) {
+  conic_attribute *attribute = &image->attributes[image->n_attributes++];
+  memset(attribute, 0, sizeof *attribute);
+  snprintf(attribute->name, sizeof attribute->name, "%s", name);
+  attribute->type = text ? CONIC_ATTRIBUTE_TEXT : CONIC_ATTRIBUTE_DOUBLE;
+  if (text)
+    snprintf(attribute->text, sizeof attribute->text, "%s", text);
+  attribute->values[0] = value;
+}
+
+/* What the picture says of itself in its header. */
+static void describe(const cli_render_job *job, const conic_camera *camera, conic_image *image) {
+  const conic_render_statistics *s = &job->statistics;
+  image->n_attributes = 0;
+  name_attribute(image, "conicVersion", conic_version(), 0);
+  name_attribute(image, "conicMethod", cli_method_name(job), 0);
+  name_attribute(image, "conicEpsilonMode", s->epsilon_is_fixed ? "fixed" : "auto", 0);
+  name_attribute(image, "conicEpsilon", NULL, s->epsilon);
+  name_attribute(image, "conicNear", NULL, s->near_z);
+  name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
+  name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicSamples", NULL, (double)job->samples);
+  name_attribute(image, "conicFx", NULL, camera->fx);
+  name_attribute(image, "conicFy", NULL, camera->fy);
+  name_attribute(image, "conicCx", NULL, camera->cx);
+  name_attribute(image, "conicCy", NULL, camera->cy);
+  conic_attribute *matrix = &image->attributes[image->n_attributes++];
+  memset(matrix, 0, sizeof *matrix);
+  snprintf(matrix->name, sizeof matrix->name, "conicWorldToCamera");
+  matrix->type = CONIC_ATTRIBUTE_MATRIX;
+  memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
+  matrix->values[15] = 1.0;
+}
+
+/* "dir/name.exr" becomes "dir/name.0001.exr" in a turntable. */
+static char *frame_path(const cli_render_job *job, const char *path, int i_frame) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+  size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path), room = strlen(path) + 16;
+  char *name = malloc(room);
+  if (name && job->is_turntable)
+    snprintf(name, room, "%.*s.%04d%s", (int)stem, path, i_frame + 1, path + stem);
+  else if (name)
+    snprintf(name, room, "%s", path);
+  return name;
+}
+
+static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  double start = cli_seconds();
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
+    char *path = frame_path(job, job->outputs[i], i_frame);
+    status = path ? conic_image_write(session->context, path, image) : CONIC_ERROR_MEMORY;
+    free(path);
+  }
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --overdraw: the count plane in false colours. */
+static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  conic_image map;
+  double start = cli_seconds();
+  if (!job->overdraw_path)
+    return CONIC_OK;
+  conic_status status = conic_image_overdraw(session->context, image, &map);
+  char *path = frame_path(job, job->overdraw_path, i_frame);
+  if (status == CONIC_OK) {
+    status = path ? conic_image_write(session->context, path, &map) : CONIC_ERROR_MEMORY;
+    conic_image_release(session->context, &map);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --clusters: the patches of a hybrid in false colours. */
+static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
+  double start = cli_seconds();
+  if (!job->clusters_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->clusters_path, i_frame);
+  conic_status status = path ? cli_hybrid_write_clusters(session, path, image) : CONIC_ERROR_MEMORY;
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --deep: what is behind the picture's pixels. */
+static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                               const conic_camera *camera, const conic_image *image, int i_frame) {
+  const conic_drawing drawing = cli_scene_drawing(job, splats);
+  conic_contributions *contributions;
+  double start = cli_seconds();
+  if (!job->deep_path)
+    return CONIC_OK;
+  char *path = frame_path(job, job->deep_path, i_frame);
+  conic_status status =
+      path ? conic_contributions_create_drawing(session->context, &drawing, camera, &job->options, &contributions)
+           : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    status = conic_contributions_write(contributions, path, image);
+    conic_contributions_destroy(contributions);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* One picture; where what is drawn is chosen for it, that counts among the frame's time. */
+static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
+                         const conic_camera *camera, conic_image *image, conic_render_statistics *statistics) {
+  double lod_ms;
+  conic_drawing drawing;
+  if (job->layers.file)
+    return cli_layers_draw(session, job, camera, image, statistics);
+  conic_status status = cli_scene_select(job, camera, splats, &drawing, &lod_ms);
+  if (status == CONIC_OK)
+    status = conic_render_drawing(session->context, job->renderer, &drawing, camera, &job->options, job->samples, image,
+                                  statistics);
+  if (status == CONIC_OK)
+    cli_scene_name(job, image);
+  statistics->ms.lod = lod_ms;
+  statistics->ms.frame += lod_ms;
+  return status;
+}
+
+/* A picture without anything in it is more often a mistaken camera than what was wanted. */
+static void warn_of_empty(cli_session *session, cli_render_job *job) {
+  const conic_render_statistics *s = &job->statistics;
+  uint64_t skipped = s->splats_skipped + s->triangles_skipped;
+  if (s->pixels_covered || job->is_warned)
+    return;
+  job->is_warned = 1;
+  if (skipped)
+    conic_log(session->context, CONIC_LOG_WARNING,
+              "%s: the picture is empty: %llu cannot be drawn, all else is out of sight", job->inputs[0],
+              (unsigned long long)skipped);
+  else
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
+}
+
+static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats, int i_frame,
+                                 conic_image *image, conic_render_statistics *repeats) {
+  conic_camera camera;
+  conic_status status = cli_scene_camera(session, job, splats, i_frame, &camera);
+  if (status == CONIC_OK && !conic_image_planes(image))
+    status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
+  for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
+    status = draw(session, job, splats, &camera, image, &repeats[i]);
+  if (status != CONIC_OK)
+    return status;
+  take_medians(job, repeats, (size_t)job->repeat);
+  warn_of_empty(session, job);
+  describe(job, &camera, image);
+  status = write_frame(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_overdraw(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_clusters(session, job, image, i_frame);
+  return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
+}
+
+static void tell(cli_session *session, const cli_render_job *job) {
+  const conic_render_statistics *s = &job->statistics;
+  const conic_render_milliseconds *ms = &s->ms;
+  const cli_stage of_frame[] = {{"choose", ms->lod > 0.0 ? 1e-3 * ms->lod : -1.0},
+                                {"set up", 1e-3 * ms->setup},
+                                {"bin", 1e-3 * ms->bin},
+                                {"visibility", 1e-3 * ms->visibility},
+                                {"accumulate", 1e-3 * ms->accumulate},
+                                {"resolve", 1e-3 * ms->resolve}};
+  const cli_stage stages[] = {
+      {"read", 1e-3 * job->read_ms}, {"estimate", 1e-3 * job->estimate_ms}, {"write", 1e-3 * job->write_ms}};
+  conic_context *context = session->context;
+  if (s->triangles_in)
+    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
+              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
+  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
+            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
+            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
+  cli_tell_stages(session, of_frame, 6, job->n_frames * job->repeat > 1 ? "a frame" : "for the frame",
+                  1e-3 * ms->frame);
+  cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
+}
+
+static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
+  conic_image image;
+  int exit_code = CLI_DONE;
+  memset(&image, 0, sizeof image);
+  conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
+  conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
+    if (job->is_turntable)
+      cli_session_part(session, "frame", i + 1, job->n_frames);
+    status = render_frame(session, job, splats, i, &image, repeats);
+  }
+  job->total_ms = 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK) {
+    tell(session, job);
+    exit_code = cli_render_report(session, job, &image);
+  } else
+    exit_code = cli_exit_of(status);
+  conic_image_release(session->context, &image);
+  free(repeats);
+  return exit_code;
+}
+
+/* What cannot be written is said before anything is read. */
+static conic_status check_formats(const cli_session *session, const cli_render_job *job) {
+  const char *const maps[] = {job->overdraw_path, job->clusters_path};
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++)
+    status = conic_image_check_output(session->context, job->outputs[i], job->planes);
+  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+    if (maps[i])
+      status = conic_image_check_output(session->context, maps[i], 1u << CONIC_PLANE_RGBA);
+  return status;
+}
+
+static int run(cli_session *session, int argc, char **argv) {
+  cli_render_job job;
+  conic_splats splats;
+  double start = cli_seconds();
+  int exit_code = cli_render_parse(session, argc, argv, &job);
+  enum { MANY = 16 };
+  job.layers.start_seconds = start;
+  session->draws_many_frames = (double)job.repeat * job.n_frames >= MANY;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_session_open(session);
+  if (exit_code == CLI_DONE) {
+    conic_status status = check_formats(session, &job);
+    memset(&splats, 0, sizeof splats);
+    if (status == CONIC_OK)
+      status = cli_scene_begin(session, &job);
+    if (status == CONIC_OK)
+      status = cli_scene_read(session, &job, &splats);
+    if (status == CONIC_OK)
+      status = cli_scene_measure(session, &job, &splats);
+    exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
+    cli_scene_release(session, &job, &splats);
+  }
+  free(job.inputs);
+  return exit_code < 0 ? CLI_DONE : exit_code;
+}
+
+const cli_command cli_render = {
+    "render", "draws splats, points or meshes into pictures",
+    "conic render IN… -o OUT [options]\n"
+    "       IN: PLY, OBJ, LAS, XYZ, PTS, .cot, .chy, .lpc or its http:// URL; - is standard input",
+    run};

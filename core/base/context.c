@@ -1,0 +1,181 @@
+#include "core/base/context_struct.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+static void *default_allocate(void *cookie, size_t bytes) {
+  (void)cookie;
+  return malloc(bytes);
+}
+
+static void default_release(void *cookie, void *pointer) {
+  (void)cookie;
+  free(pointer);
+}
+
+void conic_context_options_init(conic_context_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+}
+
+static int machine_threads(void) {
+  long n = sysconf(_SC_NPROCESSORS_ONLN);
+  return n < 1 ? 1 : n > CONIC_MAX_THREADS ? CONIC_MAX_THREADS : (int)n;
+}
+
+conic_status conic_context_create(const conic_context_options *options, conic_context **context) {
+  conic_context_options settings;
+  if (!context)
+    return CONIC_ERROR_ARGUMENT;
+  *context = NULL;
+  conic_context_options_init(&settings);
+  if (options) {
+    if (options->size != sizeof settings || options->threads < 0 || options->threads > CONIC_MAX_THREADS ||
+        !options->allocate != !options->release)
+      return CONIC_ERROR_ARGUMENT;
+    settings = *options;
+  }
+  if (!settings.allocate) {
+    settings.allocate = default_allocate;
+    settings.release = default_release;
+  }
+  if (!settings.threads)
+    settings.threads = machine_threads();
+  conic_context *made = settings.allocate(settings.allocator_cookie, sizeof *made);
+  if (!made)
+    return CONIC_ERROR_MEMORY;
+  memset(made, 0, sizeof *made);
+  made->options = settings;
+  conic_status status = conic_pool_create(made, &made->pool);
+  if (status != CONIC_OK) {
+    settings.release(settings.allocator_cookie, made);
+    return status;
+  }
+  *context = made;
+  return CONIC_OK;
+}
+
+void conic_context_destroy(conic_context *context) {
+  if (!context)
+    return;
+  conic_pool_destroy(context, context->pool);
+  context->options.release(context->options.allocator_cookie, context);
+}
+
+int conic_context_threads(const conic_context *context) {
+  return context->options.threads;
+}
+
+/* Each block is preceded by the pointer that the allocator gave, so that any allocator serves aligned blocks. */
+static const size_t alignment_bytes = 64;
+
+void *conic_memory_allocate(conic_context *context, size_t count, size_t size) {
+  size_t limit = context->options.max_allocation_bytes ? context->options.max_allocation_bytes : SIZE_MAX;
+  if (limit > SIZE_MAX - 2 * alignment_bytes)
+    limit = SIZE_MAX - 2 * alignment_bytes;
+  if (size && count > limit / size) {
+    conic_fail(context, CONIC_ERROR_MEMORY, "%zu × %zu bytes of memory are over the limit", count, size);
+    return NULL;
+  }
+  char *raw = context->options.allocate(context->options.allocator_cookie, count * size + 2 * alignment_bytes);
+  if (!raw) {
+    conic_fail(context, CONIC_ERROR_MEMORY, "out of memory: %zu bytes asked for", count * size);
+    return NULL;
+  }
+  size_t past = (uintptr_t)raw % alignment_bytes;
+  char *aligned = raw + (2 * alignment_bytes - past);
+  memcpy(aligned - sizeof raw, &raw, sizeof raw);
+  return aligned;
+}
+
+void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size) {
+  void *pointer = conic_memory_allocate(context, count, size);
+  if (pointer)
+    memset(pointer, 0, count * size);
+  return pointer;
+}
+
+conic_status conic_memory_grow(conic_context *context, void **pointer, size_t used, size_t count, size_t size) {
+  void *larger = conic_memory_allocate(context, count, size);
+  if (!larger)
+    return CONIC_ERROR_MEMORY;
+  if (*pointer && used)
+    memcpy(larger, *pointer, used * size);
+  conic_memory_release(context, *pointer);
+  *pointer = larger;
+  return CONIC_OK;
+}
+
+void conic_memory_release(conic_context *context, void *pointer) {
+  if (!pointer)
+    return;
+  void *raw;
+  memcpy(&raw, (char *)pointer - sizeof raw, sizeof raw);
+  context->options.release(context->options.allocator_cookie, raw);
+}
+
+/* A message is one line. Names and words out of files may hold what ends lines, or what terminals obey. */
+static void blank_controls(char *message) {
+  for (char *c = message; *c; c++)
+    if ((unsigned char)*c < 0x20 || *c == 0x7F)
+      *c = '?';
+}
+
+static void log_arguments(conic_context *context, conic_log_level level, const char *format, va_list arguments) {
+  char message[1024];
+  if (!context || !context->options.log)
+    return;
+  vsnprintf(message, sizeof message, format, arguments);
+  blank_controls(message);
+  context->options.log(context->options.log_cookie, level, message);
+}
+
+conic_status conic_fail(conic_context *context, conic_status status, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  log_arguments(context, CONIC_LOG_ERROR, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+void conic_log(conic_context *context, conic_log_level level, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  log_arguments(context, level, format, arguments);
+  va_end(arguments);
+}
+
+conic_status conic_progress(conic_context *context, const char *task, double fraction) {
+  if (!context->options.progress)
+    return CONIC_OK;
+  if (context->options.progress(context->options.progress_cookie, task, fraction))
+    return conic_fail(context, CONIC_ERROR_CANCELLED, "%s: cancelled", task);
+  return CONIC_OK;
+}
+
+const char *conic_status_string(conic_status status) {
+  switch (status) {
+  case CONIC_OK:
+    return "done";
+  case CONIC_ERROR_ARGUMENT:
+    return "wrong argument";
+  case CONIC_ERROR_INPUT:
+    return "unusable input";
+  case CONIC_ERROR_MEMORY:
+    return "out of memory";
+  case CONIC_ERROR_IO:
+    return "cannot write";
+  case CONIC_ERROR_UNSUPPORTED:
+    return "not available";
+  case CONIC_ERROR_CANCELLED:
+    return "cancelled";
+  }
+  return "unknown status";
+}

@@ -1,0 +1,27 @@
+/* Memory through the context's allocator: counted sizes, no overflow, aligned for vectors. */
+#ifndef CONIC_MEMORY_H
+#define CONIC_MEMORY_H
+
+#include <stddef.h>
+
+#include "conic/context.h"
+
+/* Room for `count` elements of `size` bytes, aligned to 64 bytes, contents undefined; null where memory or the limit
+ * is exceeded, which is then already logged. Zero elements give a valid pointer. Thread-safe. */
+void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
+
+/* The same, all bytes zero. */
+void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
+
+/* Moves `used` elements of *pointer into room for `count` (not below `used`) and releases the old. On failure *pointer
+ * stays as it was. */
+conic_status conic_memory_grow(conic_context *context, void **pointer, size_t used, size_t count, size_t size);
+
+/* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be
+ * used from end to end. Where the system has none, nothing happens. Thread-safe. */
+void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
+
+/* Releases what allocate gave; null is allowed. */
+void conic_memory_release(conic_context *context, void *pointer);
+
+#endif

@@ -1,0 +1,27 @@
+/* The context's thread pool. */
+#ifndef CONIC_THREADS_H
+#define CONIC_THREADS_H
+
+#include <stddef.h>
+
+#include "conic/context.h"
+
+/* Does item `i_item`; `i_thread` is below conic_context_threads and no two items at a time share one. */
+typedef void conic_task(void *data, size_t i_item, int i_thread);
+
+/* Calls `task` once for each of n_items, in any order, on all threads, and returns when all are done. Items should
+ * be coarse (a tile, a chunk of splats). What they compute must not depend on which thread runs them. Cannot fail; must
+ * not be called from inside a task. */
+void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task, void *data);
+
+/* The same for what takes longer than a user who wants to stop it should wait: in runs of `n_a_run` items, before each
+ * of which the progress of `name` is reported. Errors: CANCELLED. */
+conic_status conic_parallel_runs(conic_context *context, const char *name, size_t n_items, size_t n_a_run,
+                                 conic_task *task, void *data);
+
+/* The same for items that take long each: the calling thread reports the progress of `name`, between the two fractions,
+ * before each of its own; nobody begins another where that was to stop. Errors: CANCELLED. */
+conic_status conic_parallel_told(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                 conic_task *task, void *data);
+
+#endif

@@ -1,0 +1,186 @@
+#include "core/files/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+struct conic_output {
+  conic_context *context;
+  FILE *stream;
+  char *path, *temporary_path; /* temporary_path is null for standard output and for what is no regular file */
+};
+
+static char *copy_text(conic_context *context, const char *text) {
+  size_t n = strlen(text) + 1;
+  char *copy = conic_memory_allocate(context, n, 1);
+  if (copy)
+    memcpy(copy, text, n);
+  return copy;
+}
+
+static void release(conic_output *output) {
+  conic_context *context = output->context;
+  conic_memory_release(context, output->path);
+  conic_memory_release(context, output->temporary_path);
+  conic_memory_release(context, output);
+}
+
+/* PATH "dir/name.ext" is written as "dir/.name.PID-N.ext": hidden, beside it, with its ending. */
+static char *temporary_name(conic_context *context, const char *path, int attempt) {
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  const char *dot = strrchr(name, '.');
+  size_t n = strlen(path) + 48;
+  char *temporary = conic_memory_allocate(context, n, 1);
+  if (!temporary)
+    return NULL;
+  int stem = (int)(dot && dot != name ? dot - name : (long)strlen(name));
+  snprintf(temporary, n, "%.*s.%.*s.%ld-%d%s", (int)(name - path), path, stem, name, (long)getpid(), attempt,
+           name + stem);
+  return temporary;
+}
+
+static conic_status open_temporary(conic_output *output) {
+  for (int attempt = 0; attempt < 100; attempt++) {
+    conic_memory_release(output->context, output->temporary_path);
+    output->temporary_path = temporary_name(output->context, output->path, attempt);
+    if (!output->temporary_path)
+      return CONIC_ERROR_MEMORY;
+    int descriptor = open(output->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      output->stream = fdopen(descriptor, "wb");
+      if (output->stream)
+        return CONIC_OK;
+      close(descriptor);
+      unlink(output->temporary_path);
+      break;
+    }
+    if (errno != EEXIST)
+      break;
+  }
+  return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path, strerror(errno));
+}
+
+conic_status conic_output_open(conic_context *context, const char *path, conic_output **output) {
+  struct stat existing;
+  conic_status status = CONIC_OK;
+  *output = NULL;
+  conic_output *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  if (!made)
+    return CONIC_ERROR_MEMORY;
+  made->context = context;
+  made->path = copy_text(context, path);
+  if (!made->path)
+    status = CONIC_ERROR_MEMORY;
+  else if (strcmp(path, "-") == 0)
+    made->stream = stdout;
+  else if (stat(path, &existing) == 0 && S_ISDIR(existing.st_mode))
+    status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: it is a directory", path);
+  else if (stat(path, &existing) == 0 && !S_ISREG(existing.st_mode)) { /* a device or a pipe: written as it is */
+    made->stream = fopen(path, "wb");
+    if (!made->stream)
+      status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
+  } else
+    status = open_temporary(made);
+  if (status != CONIC_OK) {
+    release(made);
+    return status;
+  }
+  *output = made;
+  return CONIC_OK;
+}
+
+FILE *conic_output_stream(conic_output *output) {
+  return output->stream;
+}
+
+const char *conic_output_temporary_path(const conic_output *output) {
+  return output->temporary_path;
+}
+
+conic_status conic_output_commit(conic_output *output) {
+  conic_status status = CONIC_OK;
+  int is_wrong = ferror(output->stream) || fflush(output->stream) != 0;
+  if (output->stream != stdout && fclose(output->stream) != 0)
+    is_wrong = 1;
+  if (!is_wrong && output->temporary_path && rename(output->temporary_path, output->path) != 0)
+    is_wrong = 1;
+  if (is_wrong) {
+    status = conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path,
+                        errno ? strerror(errno) : "the device failed");
+    if (output->temporary_path)
+      unlink(output->temporary_path);
+  }
+  release(output);
+  return status;
+}
+
+void conic_output_abandon(conic_output *output) {
+  if (!output)
+    return;
+  if (output->stream != stdout)
+    fclose(output->stream);
+  if (output->temporary_path)
+    unlink(output->temporary_path);
+  release(output);
+}
+
+/* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more. */
+static int is_left_over(const char *name, const char *stem, size_t n_stem, const char *ending) {
+  char *end;
+  if (name[0] != '.' || strncmp(name + 1, stem, n_stem) != 0 || name[1 + n_stem] != '.')
+    return 0;
+  long process = strtol(name + n_stem + 2, &end, 10);
+  if (process <= 0 || *end != '-')
+    return 0;
+  long attempt = strtol(end + 1, &end, 10);
+  return attempt >= 0 && strcmp(end, ending) == 0 && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+static void remove_if_old(int folder, const char *name) {
+  struct stat found;
+  time_t now = time(NULL);
+  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(found.st_mode) && now - found.st_mtime > 60)
+    unlinkat(folder, name, 0);
+}
+
+void conic_output_sweep(conic_context *context, const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+  size_t n_stem = dot && dot != name ? (size_t)(dot - name) : strlen(name);
+  char *folder = conic_memory_allocate(context, (size_t)(name - path) + 2, 1);
+  if (!folder)
+    return;
+  memcpy(folder, slash ? path : ".", slash ? (size_t)(name - path) : 1);
+  folder[slash ? name - path : 1] = '\0';
+  DIR *listing = opendir(folder);
+  for (struct dirent *entry; listing && (entry = readdir(listing));)
+    if (is_left_over(entry->d_name, name, n_stem, name + n_stem))
+      remove_if_old(dirfd(listing), entry->d_name);
+  if (listing)
+    closedir(listing);
+  conic_memory_release(context, folder);
+}
+
+int conic_file_is_there(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}
+
+int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {
+  unsigned char head[16];
+  FILE *file = strcmp(path, "-") != 0 && conic_file_is_there(path) ? fopen(path, "rb") : NULL;
+  if (!file)
+    return 0;
+  size_t n = fread(head, 1, n_bytes, file);
+  fclose(file);
+  return n == n_bytes && memcmp(head, bytes, n_bytes) == 0;
+}

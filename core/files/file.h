@@ -1,0 +1,39 @@
+/* Output files that appear under their name only when they are whole: written beside it, then renamed. */
+#ifndef CONIC_FILE_H
+#define CONIC_FILE_H
+
+#include <stdio.h>
+
+#include "conic/context.h"
+
+typedef struct conic_output conic_output;
+
+/* Opens PATH for writing ("-" is standard output). On success the caller owns *output. Errors: MEMORY, IO. */
+conic_status conic_output_open(conic_context *context, const char *path, conic_output **output);
+
+/* Where to write; never null. */
+FILE *conic_output_stream(conic_output *output);
+
+/* The name of the file that is being written, for libraries that want a name and not a stream; null for standard
+ * output. It has the ending of PATH. */
+const char *conic_output_temporary_path(const conic_output *output);
+
+/* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
+conic_status conic_output_commit(conic_output *output);
+
+/* Removes what was written and releases `output`; null is allowed. */
+void conic_output_abandon(conic_output *output);
+
+/* Removes what programs that were killed have left beside PATH of their outputs to it: hidden files named after
+ * processes that are no more, untouched for a minute, since others may write to the same disk from elsewhere. For
+ * outputs that are too large to be left lying about. */
+void conic_output_sweep(conic_context *context, const char *path);
+
+/* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
+ * lead to. */
+int conic_file_is_there(const char *path);
+
+/* Whether such a file begins with these bytes, 16 at most. */
+int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);
+
+#endif

@@ -1,0 +1,27 @@
+/* Structures in files: members in the order of a table, little-endian, one after the other. What is written and what is
+ * read so cannot differ, on any machine. */
+#ifndef CONIC_FILE_FIELDS_H
+#define CONIC_FILE_FIELDS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A member by its place in memory: n values of 2, 4 or 8 bytes. */
+typedef struct conic_file_field {
+  size_t offset, n_bytes, n;
+} conic_file_field;
+
+#define CONIC_FILE_FIELD(type, member, n_values)                                                                       \
+  { offsetof(type, member), sizeof(((type *)0)->member) / (n_values), n_values }
+
+/* The bytes that so many fields take in a file. */
+size_t conic_file_fields_bytes(const conic_file_field *fields, size_t n);
+
+void conic_file_fields_write(const conic_file_field *fields, size_t n, const void *from, unsigned char *bytes);
+void conic_file_fields_read(const conic_file_field *fields, size_t n, const unsigned char *bytes, void *to);
+
+/* A number of up to eight bytes. */
+void conic_file_put(unsigned char *to, size_t n_bytes, uint64_t bits);
+uint64_t conic_file_get(const unsigned char *from, size_t n_bytes);
+
+#endif

@@ -1,0 +1,32 @@
+/* The 256 bytes that files begin with which are mapped and used as they lie: eight that say what the file is, numbers,
+ * zeros, and the sum of all that. */
+#ifndef CONIC_FILE_HEADER_H
+#define CONIC_FILE_HEADER_H
+
+#include "conic/context.h"
+#include "core/files/file_fields.h"
+
+enum { CONIC_FILE_HEADER_BYTES = 256 };
+
+typedef struct conic_file_kind {
+  unsigned char magic[8];
+  const char *ending; /* with its dot */
+  uint32_t version;
+  const conic_file_field *fields; /* the first is the version, a uint32_t */
+  size_t n_fields;
+} conic_file_kind;
+
+/* Whether a regular file that can be read begins like that. */
+int conic_file_is_of_kind(const conic_file_kind *kind, const char *path);
+
+/* Refuses machines of the other byte order, on which nothing would lie as it must. Errors: UNSUPPORTED. */
+conic_status conic_file_refuse_order(conic_context *context, const char *path, const conic_file_kind *kind);
+
+void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
+                            unsigned char bytes[CONIC_FILE_HEADER_BYTES]);
+
+/* Reads the numbers of a file's first n_bytes; whether they go together the caller must see. Errors: INPUT. */
+conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
+                                    const unsigned char *bytes, size_t n_bytes, void *numbers);
+
+#endif

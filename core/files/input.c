@@ -1,0 +1,174 @@
+#include "core/files/input.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+/* Progress is reported this often: a few times a second on a fast disk. */
+static const uint64_t report_bytes = 64u << 20;
+
+static conic_status check_kind(conic_input *input) {
+  struct stat found;
+  if (fstat(input->descriptor, &found) != 0)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", input->name, strerror(errno));
+  if (S_ISDIR(found.st_mode))
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", input->name);
+  if (S_ISREG(found.st_mode)) { /* standard input may be a file that was read in part */
+    off_t start = lseek(input->descriptor, 0, SEEK_CUR);
+    input->has_size = start >= 0 && found.st_size >= start;
+    input->size_bytes = input->has_size ? (uint64_t)(found.st_size - start) : 0;
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_input_open(conic_context *context, const char *path, conic_input *input) {
+  int is_standard = strcmp(path, "-") == 0;
+  memset(input, 0, sizeof *input);
+  input->context = context;
+  input->name = is_standard ? "standard input" : path;
+  input->line = 1;
+  input->descriptor = is_standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+  if (input->descriptor < 0)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+  conic_status status = check_kind(input);
+  if (status == CONIC_OK) {
+    input->window = conic_memory_allocate(context, CONIC_INPUT_WINDOW, 1);
+    status = input->window ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  if (status != CONIC_OK)
+    conic_input_close(input);
+  return status;
+}
+
+void conic_input_close(conic_input *input) {
+  if (input->descriptor > STDIN_FILENO)
+    close(input->descriptor);
+  conic_memory_release(input->context, input->window);
+  memset(input, 0, sizeof *input);
+}
+
+static conic_status report(conic_input *input) {
+  uint64_t end = input->window_offset + input->filled;
+  int is_last = end >= input->size_bytes && input->reported_bytes > 0 && input->reported_bytes < end;
+  if (!input->has_size || (end - input->reported_bytes < report_bytes && !is_last))
+    return CONIC_OK;
+  input->reported_bytes = end;
+  double fraction = (double)end / (double)input->size_bytes;
+  return conic_progress(input->context, "read", fraction < 1.0 ? fraction : 1.0);
+}
+
+conic_status conic_input_fill(conic_input *input, size_t count) {
+  if (conic_input_available(input) >= count || input->is_at_end)
+    return CONIC_OK;
+  input->filled -= input->next;
+  memmove(input->window, input->window + input->next, input->filled);
+  input->window_offset += input->next;
+  input->next = 0;
+  while (input->filled < count && !input->is_at_end) {
+    ssize_t n = read(input->descriptor, input->window + input->filled, CONIC_INPUT_WINDOW - input->filled);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0)
+      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %llu)", input->name,
+                        strerror(errno), (unsigned long long)input->window_offset + input->filled);
+    input->filled += (size_t)n;
+    input->is_at_end = n == 0;
+  }
+  return report(input);
+}
+
+uint64_t conic_input_remaining_bytes(const conic_input *input) {
+  uint64_t offset = conic_input_offset(input);
+  if (!input->has_size)
+    return UINT64_MAX;
+  return offset < input->size_bytes ? input->size_bytes - offset : 0;
+}
+
+conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped) {
+  for (*skipped = 0; *skipped < count;) {
+    conic_status status = conic_input_fill(input, 1);
+    if (status != CONIC_OK)
+      return status;
+    uint64_t n = conic_input_available(input), left = count - *skipped;
+    if (n == 0)
+      break;
+    n = n < left ? n : left;
+    input->next += (size_t)n;
+    *skipped += n;
+  }
+  return CONIC_OK;
+}
+
+/* The length of a \ and line end, 0 where the text at `c` is something else. */
+static size_t continuation(const conic_input *input, const char *c, const char *end) {
+  if (!input->continues_lines || *c != '\\')
+    return 0;
+  if (end - c >= 2 && c[1] == '\n')
+    return 2;
+  return end - c >= 3 && c[1] == '\r' && c[2] == '\n' ? 3 : 0;
+}
+
+static int is_blank(const conic_input *input, char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || (c == ',' && input->has_commas);
+}
+
+/* To the next byte that is neither blank nor continuation. */
+static conic_status skip_blanks(conic_input *input) {
+  for (;;) {
+    conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD + 4);
+    if (status != CONIC_OK)
+      return status;
+    const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
+    while (c < end && is_blank(input, *c))
+      c++;
+    input->next = (size_t)(c - (const char *)input->window);
+    size_t continued = c < end ? continuation(input, c, end) : 0;
+    input->next += continued;
+    input->line += continued != 0;
+    if (!continued && (c < end || input->is_at_end))
+      break;
+  }
+  return conic_input_fill(input, CONIC_INPUT_LONGEST_WORD + 4);
+}
+
+conic_status conic_input_word(conic_input *input, const char **word, size_t *length) {
+  conic_status status = skip_blanks(input);
+  if (status != CONIC_OK)
+    return status;
+  const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
+  *word = c;
+  while (c < end && *c != '\n' && !is_blank(input, *c) && !continuation(input, c, end))
+    c++;
+  *length = (size_t)(c - *word);
+  if (*length > CONIC_INPUT_LONGEST_WORD)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a word of more than %d bytes (line %llu)", input->name,
+                      CONIC_INPUT_LONGEST_WORD, (unsigned long long)input->line);
+  input->next += *length;
+  return CONIC_OK;
+}
+
+conic_status conic_input_next_line(conic_input *input, int *is_done) {
+  *is_done = 0;
+  for (;;) {
+    conic_status status = conic_input_fill(input, 1);
+    if (status != CONIC_OK)
+      return status;
+    size_t available = conic_input_available(input);
+    const unsigned char *bytes = conic_input_bytes(input), *line_end = memchr(bytes, '\n', available);
+    if (line_end) {
+      input->next += (size_t)(line_end - bytes) + 1;
+      input->line++;
+      return CONIC_OK;
+    }
+    input->next = input->filled;
+    if (available == 0) {
+      *is_done = 1;
+      return CONIC_OK;
+    }
+  }
+}

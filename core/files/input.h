@@ -1,0 +1,65 @@
+/* Input files as a stream of bytes through a window of bounded size; text files word by word. */
+#ifndef CONIC_INPUT_H
+#define CONIC_INPUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+/* No more bytes than this can be asked for at once. */
+enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096 };
+
+typedef struct conic_input {
+  conic_context *context;
+  const char *name; /* for messages */
+  int descriptor;
+  int has_size;          /* size_bytes is known: no pipe or terminal */
+  uint64_t size_bytes;   /* from the first byte read */
+  unsigned char *window; /* the bytes from `next` to before `filled` are there */
+  size_t next, filled;
+  uint64_t window_offset;  /* of window[0] in the file */
+  uint64_t reported_bytes; /* when progress was reported last */
+  uint64_t line;           /* of the next byte, from 1; counted by the functions for text only */
+  int is_at_end;           /* nothing follows the window's bytes */
+  int continues_lines;     /* text: a line that ends with \ goes on in the next */
+  int has_commas;          /* text: commas part words as blanks do */
+} conic_input;
+
+/* Opens PATH ("-" is standard input) for reading; `path` must outlive *input. On success the caller ends it with
+ * conic_input_close. Errors: INPUT (missing, unreadable, a folder), MEMORY. */
+conic_status conic_input_open(conic_context *context, const char *path, conic_input *input);
+void conic_input_close(conic_input *input);
+
+/* Reads on until `count` bytes are in the window; fewer are there afterwards only where the file ends. Errors: INPUT
+ * (reading failed), CANCELLED. */
+conic_status conic_input_fill(conic_input *input, size_t count);
+
+static inline size_t conic_input_available(const conic_input *input) {
+  return input->filled - input->next;
+}
+
+static inline const unsigned char *conic_input_bytes(const conic_input *input) {
+  return input->window + input->next;
+}
+
+/* The offset of the next byte. */
+static inline uint64_t conic_input_offset(const conic_input *input) {
+  return input->window_offset + input->next;
+}
+
+/* Bytes from the next one to the end; UINT64_MAX where that is not known. */
+uint64_t conic_input_remaining_bytes(const conic_input *input);
+
+/* Passes over `count` bytes, or to the end where there are fewer; *skipped says how many. Errors: as fill. */
+conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
+
+/* The next word of the line and past it; *length 0 where the line (or file) ends. Valid until the next call. Words are
+ * parted by blanks, carriage returns and, with has_commas, commas. Errors: as fill, and INPUT (longer than
+ * CONIC_INPUT_LONGEST_WORD). */
+conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
+
+/* To the start of the next line; *is_done where the file ends before one. Errors: as fill. */
+conic_status conic_input_next_line(conic_input *input, int *is_done);
+
+#endif

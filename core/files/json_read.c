@@ -1,0 +1,281 @@
+#include "core/files/json_read.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/input.h"
+#include "core/files/number.h"
+
+static const size_t largest_file = 16u << 20;
+
+static conic_status read_all(conic_json *json, conic_input *input) {
+  size_t n = 0, capacity = 0;
+  for (;;) {
+    void *text = json->text;
+    conic_status status = conic_input_fill(input, 1);
+    size_t available = conic_input_available(input);
+    if (status != CONIC_OK)
+      return status;
+    if (n + available > largest_file)
+      return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: too long for such a file (at byte %zu)", json->name, n);
+    if (n + available >= capacity) {
+      capacity = 2 * (n + available) + 4096;
+      status = conic_memory_grow(json->context, &text, n, capacity, 1);
+      json->text = text;
+      if (status != CONIC_OK)
+        return status;
+    }
+    if (available == 0)
+      break;
+    memcpy(json->text + n, conic_input_bytes(input), available);
+    n += available;
+    input->next += available;
+  }
+  if (n == 0)
+    return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: the file is empty (line 1)", json->name);
+  json->next = json->text;
+  json->end = json->text + n;
+  return CONIC_OK;
+}
+
+conic_status conic_json_open(conic_context *context, const char *path, conic_json *json) {
+  conic_input input;
+  memset(json, 0, sizeof *json);
+  json->context = context;
+  json->line = 1;
+  conic_status status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  json->name = input.name;
+  status = read_all(json, &input);
+  conic_input_close(&input);
+  if (status != CONIC_OK)
+    conic_json_close(json);
+  return status;
+}
+
+void conic_json_close(conic_json *json) {
+  conic_memory_release(json->context, json->text);
+  memset(json, 0, sizeof *json);
+}
+
+conic_status conic_json_wrong(conic_json *json, const char *what) {
+  if (json->status == CONIC_OK)
+    json->status = conic_fail(json->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", json->name, what,
+                              (unsigned long long)json->line);
+  return json->status;
+}
+
+static void skip_blanks(conic_json *json) {
+  for (; json->next < json->end; json->next++) {
+    char c = *json->next;
+    if (c != ' ' && c != '\t' && c != '\r' && c != '\n')
+      break;
+    json->line += c == '\n';
+  }
+}
+
+/* The next character that is no blank; 0 at the end. */
+static char peek(conic_json *json) {
+  skip_blanks(json);
+  return (char)(json->next < json->end ? *json->next : 0);
+}
+
+static conic_status begin(conic_json *json, char opening, const char *what) {
+  if (json->status != CONIC_OK)
+    return json->status;
+  if (peek(json) != opening)
+    return conic_json_wrong(json, what);
+  if (json->depth == CONIC_JSON_DEPTH)
+    return conic_json_wrong(json, "nested too deeply");
+  json->next++;
+  json->is_first[json->depth++] = 1;
+  return CONIC_OK;
+}
+
+conic_status conic_json_begin_object(conic_json *json) {
+  return begin(json, '{', "an object is expected");
+}
+
+conic_status conic_json_begin_array(conic_json *json) {
+  return begin(json, '[', "an array is expected");
+}
+
+/* Past the comma to the next part of an object or array, or past its end. */
+static int next_part(conic_json *json, char closing) {
+  if (json->status != CONIC_OK)
+    return 0;
+  char c = peek(json);
+  if (c == closing) {
+    json->next++;
+    json->depth--;
+    return 0;
+  }
+  if (!json->is_first[json->depth - 1]) {
+    if (c != ',') {
+      conic_json_wrong(json, c ? "a comma or the end of the list is expected" : "the file ends too early");
+      return 0;
+    }
+    json->next++;
+  }
+  json->is_first[json->depth - 1] = 0;
+  return 1;
+}
+
+static int hex_digit(char c) {
+  return c >= '0' && c <= '9' ? c - '0' : (c | 0x20) >= 'a' && (c | 0x20) <= 'f' ? (c | 0x20) - 'a' + 10 : -1;
+}
+
+/* One character of a string, escaped or not, as one byte; what is not ASCII is of no use in keys, and becomes '?' where
+ * it is escaped. Returns -1 after a message. */
+static int read_character(conic_json *json) {
+  static const char escapes[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
+  unsigned char c = (unsigned char)*json->next++;
+  if (c < 0x20) {
+    conic_json_wrong(json, "a string has a control character or is not ended");
+    return -1;
+  }
+  if (c != '\\')
+    return c;
+  c = (unsigned char)(json->next < json->end ? *json->next++ : 0);
+  const char *escape = c ? strchr(escapes, c) : NULL;
+  if (escape)
+    return meanings[escape - escapes];
+  int code = 0, n = 0;
+  for (; c == 'u' && n < 4 && json->next < json->end && hex_digit(*json->next) >= 0; n++)
+    code = code * 16 + hex_digit(*json->next++);
+  if (n == 4)
+    return code < 0x80 ? code : '?';
+  conic_json_wrong(json, "a string has a wrong escape");
+  return -1;
+}
+
+/* Reads a string into `text`, cut to its room. */
+static conic_status read_string(conic_json *json, char *text, size_t room) {
+  size_t n = 0;
+  json->next++;
+  while (json->next < json->end && *json->next != '"') {
+    int c = read_character(json);
+    if (c < 0)
+      return json->status;
+    if (n + 1 < room)
+      text[n++] = (char)c;
+  }
+  text[n] = 0;
+  if (json->next == json->end)
+    return conic_json_wrong(json, "a string is not ended");
+  json->next++;
+  return CONIC_OK;
+}
+
+int conic_json_next_member(conic_json *json, char key[CONIC_JSON_KEY_ROOM]) {
+  if (!next_part(json, '}'))
+    return 0;
+  if (peek(json) != '"') {
+    conic_json_wrong(json, "a key in quotes is expected");
+    return 0;
+  }
+  if (read_string(json, key, CONIC_JSON_KEY_ROOM) != CONIC_OK)
+    return 0;
+  if (peek(json) != ':') {
+    conic_json_wrong(json, "a colon is expected after a key");
+    return 0;
+  }
+  json->next++;
+  return 1;
+}
+
+int conic_json_next_item(conic_json *json) {
+  return next_part(json, ']');
+}
+
+static int is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+static const char *skip_digits(const char *c, const char *end) {
+  while (c < end && is_digit(*c))
+    c++;
+  return c;
+}
+
+/* Past a number as JSON defines it (no leading zeros, digits on both sides of the point); null where there is none. */
+static const char *match_number(const char *c, const char *end) {
+  if (c < end && *c == '-')
+    c++;
+  const char *digits = c;
+  c = skip_digits(c, end);
+  if (c == digits || (*digits == '0' && c - digits > 1))
+    return NULL;
+  if (c < end && *c == '.') {
+    digits = ++c;
+    c = skip_digits(c, end);
+    if (c == digits)
+      return NULL;
+  }
+  if (c < end && (*c | 0x20) == 'e') {
+    c++;
+    if (c < end && (*c == '-' || *c == '+'))
+      c++;
+    digits = c;
+    c = skip_digits(c, end);
+    if (c == digits)
+      return NULL;
+  }
+  return c;
+}
+
+conic_status conic_json_number(conic_json *json, double *value) {
+  if (json->status != CONIC_OK)
+    return json->status;
+  skip_blanks(json);
+  const char *after = match_number(json->next, json->end);
+  if (!after)
+    return conic_json_wrong(json, "a number is expected");
+  conic_number_parse(json->next, (size_t)(after - json->next), value);
+  json->next = after;
+  return CONIC_OK;
+}
+
+static conic_status skip_word(conic_json *json) {
+  static const char *const words[] = {"true", "false", "null"};
+  for (int i = 0; i < 3; i++) {
+    size_t n = strlen(words[i]);
+    if ((size_t)(json->end - json->next) >= n && memcmp(json->next, words[i], n) == 0) {
+      json->next += n;
+      return CONIC_OK;
+    }
+  }
+  return conic_json_wrong(json, json->next < json->end ? "a value is expected" : "the file ends too early");
+}
+
+conic_status conic_json_skip(conic_json *json) {
+  char key[CONIC_JSON_KEY_ROOM];
+  double number;
+  if (json->status != CONIC_OK)
+    return json->status;
+  char c = peek(json);
+  if (c == '{') {
+    conic_json_begin_object(json);
+    while (conic_json_next_member(json, key))
+      conic_json_skip(json);
+  } else if (c == '[') {
+    conic_json_begin_array(json);
+    while (conic_json_next_item(json))
+      conic_json_skip(json);
+  } else if (c == '"')
+    return read_string(json, key, sizeof key);
+  else if (c == '-' || is_digit(c))
+    return conic_json_number(json, &number);
+  else
+    return skip_word(json);
+  return json->status;
+}
+
+conic_status conic_json_end(conic_json *json) {
+  skip_blanks(json);
+  if (json->status == CONIC_OK && json->next < json->end)
+    conic_json_wrong(json, "something follows the end");
+  return json->status;
+}

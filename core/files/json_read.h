@@ -1,0 +1,52 @@
+/* A strict reader of JSON files, value by value in the file's order. Once something was wrong, every call says so again
+ * (with one message), so that callers may check at the end. */
+#ifndef CONIC_JSON_READ_H
+#define CONIC_JSON_READ_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+enum { CONIC_JSON_DEPTH = 64, CONIC_JSON_KEY_ROOM = 64 };
+
+typedef struct conic_json {
+  conic_context *context;
+  const char *name; /* of the file, for messages */
+  char *text;
+  const char *next, *end;
+  uint64_t line;
+  int depth;
+  int is_first[CONIC_JSON_DEPTH]; /* nothing has been read of the object or array at that depth */
+  conic_status status;
+} conic_json;
+
+/* Reads the whole file, of at most 16 MiB ("-" is standard input); `path` must outlive *json. On success the caller
+ * ends it with conic_json_close. Errors: INPUT, MEMORY. */
+conic_status conic_json_open(conic_context *context, const char *path, conic_json *json);
+void conic_json_close(conic_json *json);
+
+/* Enters an object or array: the next value must be one. */
+conic_status conic_json_begin_object(conic_json *json);
+conic_status conic_json_begin_array(conic_json *json);
+
+/* To the next member's value; 0 at the end of the object, which is then left, and after an error. Keys are cut to the
+ * room. */
+int conic_json_next_member(conic_json *json, char key[CONIC_JSON_KEY_ROOM]);
+
+/* To the next item's value; 0 at the end of the array, which is then left, and after an error. */
+int conic_json_next_item(conic_json *json);
+
+/* The value that comes next, which must be a number. */
+conic_status conic_json_number(conic_json *json, double *value);
+
+/* Passes over the value that comes next, whatever it is. */
+conic_status conic_json_skip(conic_json *json);
+
+/* Nothing may follow. */
+conic_status conic_json_end(conic_json *json);
+
+/* Logs "FILE: what (line N)" unless something was wrong before. */
+conic_status conic_json_wrong(conic_json *json, const char *what);
+
+#endif

@@ -1,0 +1,22 @@
+/* A whole file in memory, read-only. */
+#ifndef CONIC_MAPPING_H
+#define CONIC_MAPPING_H
+
+#include <stddef.h>
+
+#include "conic/context.h"
+
+typedef struct conic_mapping {
+  unsigned char *bytes;
+  size_t n_bytes;
+  int is_mapped; /* or allocated, where the file is a pipe */
+} conic_mapping;
+
+/* "-" is standard input. The caller closes it. Errors: INPUT, MEMORY. */
+conic_status conic_mapping_open(conic_context *context, const char *path, conic_mapping *mapping);
+void conic_mapping_close(conic_context *context, conic_mapping *mapping);
+
+/* 64 bits that change with any word of the bytes, at the speed of memory. */
+unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes);
+
+#endif

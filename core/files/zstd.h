@@ -1,0 +1,25 @@
+/* zstd, where it is in this build: bytes to fewer bytes and back. */
+#ifndef CONIC_ZSTD_H
+#define CONIC_ZSTD_H
+
+#include <stddef.h>
+
+#include "conic/context.h"
+
+/* What one thread needs for it; zstd takes that memory itself. */
+typedef struct conic_zstd conic_zstd;
+
+/* For packing and unpacking. Errors: MEMORY, UNSUPPORTED (not in this build). */
+conic_status conic_zstd_create(conic_context *context, conic_zstd **zstd);
+void conic_zstd_destroy(conic_context *context, conic_zstd *zstd);
+
+/* Room that packing may need for so many bytes. */
+size_t conic_zstd_bound(size_t n_bytes);
+
+/* Packs; returns how many bytes it came to, 0 where that are not fewer than before. */
+size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to);
+
+/* Unpacks; whether it came to n_bytes exactly. */
+int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes);
+
+#endif

@@ -1,0 +1,141 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "conic/camera.h"
+#include "core/files/json_read.h"
+
+typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, N_KEYS } camera_key;
+
+static const char *const key_names[N_KEYS] = {"width", "height", "fx", "fy", "cx", "cy", "world_to_camera"};
+
+/* How far the rotation's rows may be from orthonormal: files are written with few digits. */
+static const double rotation_tolerance = 1e-3;
+
+static conic_status read_size(conic_json *json, int *size) {
+  double value;
+  conic_status status = conic_json_number(json, &value);
+  if (status != CONIC_OK)
+    return status;
+  if (!(value >= 1.0 && value <= 65535.0) || value != (double)(int)value)
+    return conic_json_wrong(json, "width and height are whole numbers from 1 to 65535");
+  *size = (int)value;
+  return CONIC_OK;
+}
+
+/* What a camera may be is what drawing takes. */
+static const double largest_pixel_value = 1e12, largest_matrix_value = 1e30;
+
+static conic_status read_bounded(conic_json *json, double limit, double *value) {
+  conic_status status = conic_json_number(json, value);
+  if (status == CONIC_OK && !(fabs(*value) < limit))
+    return conic_json_wrong(json, "a number is too large");
+  return status;
+}
+
+static conic_status read_focal_length(conic_json *json, double *value) {
+  conic_status status = read_bounded(json, largest_pixel_value, value);
+  if (status == CONIC_OK && !(*value > 0.0))
+    return conic_json_wrong(json, "focal lengths are above 0");
+  return status;
+}
+
+static conic_status read_row(conic_json *json, double row[4]) {
+  int n = 0;
+  conic_json_begin_array(json);
+  while (conic_json_next_item(json)) {
+    if (n == 4)
+      return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+    read_bounded(json, largest_matrix_value, &row[n++]);
+  }
+  return n == 4 ? json->status : conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+}
+
+static conic_status check_matrix(conic_json *json, double rows[4][4]) {
+  if (rows[3][0] != 0.0 || rows[3][1] != 0.0 || rows[3][2] != 0.0 || rows[3][3] != 1.0)
+    return conic_json_wrong(json, "the last row of world_to_camera is 0 0 0 1");
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1] + rows[i][2] * rows[j][2];
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < rotation_tolerance))
+        return conic_json_wrong(json, "world_to_camera is no rotation and translation: its rows are not orthonormal");
+    }
+  double determinant = rows[0][0] * (rows[1][1] * rows[2][2] - rows[1][2] * rows[2][1]) -
+                       rows[0][1] * (rows[1][0] * rows[2][2] - rows[1][2] * rows[2][0]) +
+                       rows[0][2] * (rows[1][0] * rows[2][1] - rows[1][1] * rows[2][0]);
+  return determinant > 0.0 ? CONIC_OK : conic_json_wrong(json, "world_to_camera mirrors");
+}
+
+static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {
+  double rows[4][4];
+  int n = 0;
+  conic_json_begin_array(json);
+  while (conic_json_next_item(json)) {
+    if (n == 4)
+      return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+    read_row(json, rows[n++]);
+  }
+  if (json->status != CONIC_OK)
+    return json->status;
+  if (n != 4)
+    return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+  memcpy(cam_from_world, rows, 3 * sizeof *rows);
+  return check_matrix(json, rows);
+}
+
+static conic_status read_value(conic_json *json, camera_key key, conic_camera *camera) {
+  switch (key) {
+  case WIDTH:
+    return read_size(json, &camera->width);
+  case HEIGHT:
+    return read_size(json, &camera->height);
+  case FX:
+    return read_focal_length(json, &camera->fx);
+  case FY:
+    return read_focal_length(json, &camera->fy);
+  case CX:
+    return read_bounded(json, largest_pixel_value, &camera->cx);
+  case CY:
+    return read_bounded(json, largest_pixel_value, &camera->cy);
+  case MATRIX:
+    return read_matrix(json, camera->cam_from_world);
+  case N_KEYS:
+    break;
+  }
+  return conic_json_skip(json);
+}
+
+static conic_status read_camera(conic_json *json, conic_camera *camera) {
+  char key[CONIC_JSON_KEY_ROOM], missing[64];
+  int is_given[N_KEYS] = {0};
+  conic_json_begin_object(json);
+  while (conic_json_next_member(json, key)) {
+    int i_key = 0;
+    while (i_key < N_KEYS && strcmp(key, key_names[i_key]) != 0)
+      i_key++;
+    if (i_key < N_KEYS && is_given[i_key]++)
+      return conic_json_wrong(json, "a key is given twice");
+    read_value(json, (camera_key)i_key, camera);
+  }
+  conic_json_end(json);
+  for (int i = 0; i < N_KEYS; i++)
+    if (!is_given[i]) {
+      snprintf(missing, sizeof missing, "the camera lacks %s", key_names[i]);
+      return conic_json_wrong(json, missing);
+    }
+  return json->status;
+}
+
+conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera) {
+  conic_json json;
+  conic_camera found;
+  memset(&found, 0, sizeof found);
+  conic_status status = conic_json_open(context, path, &json);
+  if (status != CONIC_OK)
+    return status;
+  status = read_camera(&json, &found);
+  conic_json_close(&json);
+  if (status == CONIC_OK)
+    *camera = found;
+  return status;
+}

@@ -1,0 +1,240 @@
+#include "core/formats/las.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/message.h"
+#include "core/formats/ply_source.h"
+#include "core/formats/raw_colors.h"
+#include "core/splats/builder.h"
+
+/* Where the fields of the public header stand. */
+enum {
+  AT_MAJOR = 24,
+  AT_MINOR = 25,
+  AT_HEADER_BYTES = 94,
+  AT_POINTS = 96,
+  AT_N_RECORDS = 100,
+  AT_FORMAT = 104,
+  AT_POINT_BYTES = 105,
+  AT_N_POINTS_32 = 107,
+  AT_SCALE = 131,
+  AT_OFFSET = 155,
+  AT_N_POINTS_64 = 247,
+};
+
+enum {
+  LEAST_HEADER_BYTES = 227,
+  HEADER_BYTES_1_3 = 235,
+  HEADER_BYTES_1_4 = 375,
+  RECORD_HEADER_BYTES = 54,
+  BLOCK = 256
+};
+
+/* The fewest bytes of a point, and where its colour stands in them; 0: it has none. Formats 4, 5, 9 and 10 have
+ * waveforms. */
+static const struct {
+  int n_bytes, color;
+} formats[] = {{20, 0}, {28, 0}, {26, 20}, {34, 28}, {0, 0}, {0, 0}, {30, 0}, {36, 30}, {38, 30}};
+
+enum { N_FORMATS = sizeof formats / sizeof *formats };
+
+typedef struct las_reader {
+  conic_input *input;
+  unsigned char header[HEADER_BYTES_1_4];
+  size_t point_bytes;
+  uint64_t n_points, points_offset;
+  int color; /* as in `formats` */
+  double scale[3], offset[3];
+  double first[3]; /* the first point's integers */
+  conic_builder builder;
+  double block[3][BLOCK];
+} las_reader;
+
+static conic_status wrong(const las_reader *reader, const char *what, uint64_t at) {
+  return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (at byte %llu)", reader->input->name, what,
+                    (unsigned long long)at);
+}
+
+static uint64_t unsigned_at(const las_reader *reader, int at, int n_bytes) {
+  uint64_t value = 0;
+  for (int i = n_bytes - 1; i >= 0; i--)
+    value = value << 8 | reader->header[at + i];
+  return value;
+}
+
+static double double_at(const las_reader *reader, int at) {
+  uint64_t bits = unsigned_at(reader, at, 8);
+  double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/* Copies what there is of the public header, of the size that its version has. */
+static conic_status read_header(las_reader *reader) {
+  conic_status status = conic_input_fill(reader->input, HEADER_BYTES_1_4);
+  size_t available = conic_input_available(reader->input);
+  if (status != CONIC_OK)
+    return status;
+  memset(reader->header, 0, sizeof reader->header);
+  memcpy(reader->header, conic_input_bytes(reader->input), available < HEADER_BYTES_1_4 ? available : HEADER_BYTES_1_4);
+  if (available < LEAST_HEADER_BYTES)
+    return wrong(reader, "the file ends within the header", available);
+  unsigned major = reader->header[AT_MAJOR], minor = reader->header[AT_MINOR];
+  if (major != 1 || minor > 4)
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                      "%s: version %u.%u of LAS; 1.0 to 1.4 are read (at byte %d)", reader->input->name, major, minor,
+                      AT_MAJOR);
+  uint64_t least = minor == 4 ? HEADER_BYTES_1_4 : minor == 3 ? HEADER_BYTES_1_3 : LEAST_HEADER_BYTES;
+  if (unsigned_at(reader, AT_HEADER_BYTES, 2) < least)
+    return wrong(reader, "the header is shorter than that of its version", AT_HEADER_BYTES);
+  if (available < least)
+    return wrong(reader, "the file ends within the header", available);
+  return CONIC_OK;
+}
+
+static conic_status check_format(las_reader *reader) {
+  unsigned format = reader->header[AT_FORMAT];
+  reader->point_bytes = (size_t)unsigned_at(reader, AT_POINT_BYTES, 2);
+  if (format & 0xC0u)
+    return wrong(reader, "the points are compressed (LAZ), which is not read: decompress the file first", AT_FORMAT);
+  if (format >= N_FORMATS || !formats[format].n_bytes)
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                      "%s: point format %u; 0 to 3 and 6 to 8 are read (at byte %d)", reader->input->name, format,
+                      AT_FORMAT);
+  if (reader->point_bytes < (size_t)formats[format].n_bytes)
+    return wrong(reader, "a point is shorter than its format", AT_POINT_BYTES);
+  reader->color = formats[format].color;
+  return CONIC_OK;
+}
+
+static conic_status read_scale(las_reader *reader) {
+  for (int axis = 0; axis < 3; axis++) {
+    int at_scale = AT_SCALE + 8 * axis, at_offset = AT_OFFSET + 8 * axis;
+    reader->scale[axis] = double_at(reader, at_scale);
+    reader->offset[axis] = double_at(reader, at_offset);
+    if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
+      return wrong(reader, "a scale is zero or not finite", (uint64_t)at_scale);
+    if (!(reader->offset[axis] - reader->offset[axis] == 0.0))
+      return wrong(reader, "an offset is not finite", (uint64_t)at_offset);
+    double farthest = fabs(reader->scale[axis]) * 0x1p31 + fabs(reader->offset[axis]);
+    if (!(farthest - farthest == 0.0))
+      return wrong(reader, "a scale is too large", (uint64_t)at_scale);
+  }
+  return CONIC_OK;
+}
+
+/* Every size that the header states, against each other and the file. Since 1.4 the number of points has 64 bits; the
+ * older field still stands for it where a writer has left the new one 0. */
+static conic_status check_sizes(las_reader *reader) {
+  uint64_t header_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2), n_records = unsigned_at(reader, AT_N_RECORDS, 4);
+  uint64_t remaining = conic_input_remaining_bytes(reader->input);
+  int count_at = AT_N_POINTS_32;
+  reader->points_offset = unsigned_at(reader, AT_POINTS, 4);
+  reader->n_points = unsigned_at(reader, AT_N_POINTS_32, 4);
+  if (reader->header[AT_MINOR] == 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0) {
+    reader->n_points = unsigned_at(reader, AT_N_POINTS_64, 8);
+    count_at = AT_N_POINTS_64;
+  }
+  if (reader->points_offset < header_bytes)
+    return wrong(reader, "the points begin within the header", AT_POINTS);
+  if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
+    return wrong(reader, "more variable-length records than fit before the points", AT_N_RECORDS);
+  if (reader->points_offset > remaining)
+    return wrong(reader, "the points begin past the end of the file", AT_POINTS);
+  if (reader->n_points > CONIC_MAX_POINTS)
+    return wrong(reader, "too many points", (uint64_t)count_at);
+  if (reader->n_points > (remaining - reader->points_offset) / reader->point_bytes)
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                      "%s: the file is too short for the %llu points that it declares (at byte %d)",
+                      reader->input->name, (unsigned long long)reader->n_points, count_at);
+  return CONIC_OK;
+}
+
+static conic_status truncated(const las_reader *reader) {
+  return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                    "%s: the file ends within point %llu of %llu (at byte %llu)", reader->input->name,
+                    (unsigned long long)conic_builder_points(&reader->builder), (unsigned long long)reader->n_points,
+                    (unsigned long long)conic_input_offset(reader->input));
+}
+
+static conic_status skip_to_points(las_reader *reader) {
+  uint64_t skipped;
+  conic_status status = conic_input_skip(reader->input, reader->points_offset, &skipped);
+  return status == CONIC_OK && skipped < reader->points_offset ? truncated(reader) : status;
+}
+
+/* Three integers of each of n points, as doubles, into the reader's block. */
+static void convert(las_reader *reader, size_t at, size_t step, conic_ply_type type, size_t n) {
+  for (size_t i = 0; i < 3; i++)
+    conic_ply_convert(conic_input_bytes(reader->input) + at + i * step, reader->point_bytes, n, type,
+                      CONIC_PLY_LITTLE_ENDIAN, reader->block[i]);
+}
+
+/* Differences of the integers are exact, and rounded once. */
+static void store(las_reader *reader, size_t n) {
+  conic_splats *points = &reader->builder.model->points;
+  convert(reader, 0, 4, CONIC_PLY_INT32, n);
+  for (int axis = 0; axis < 3; axis++) {
+    if (conic_builder_points(&reader->builder) == 0) {
+      reader->first[axis] = reader->block[axis][0];
+      points->origin[axis] = reader->block[axis][0] * reader->scale[axis] + reader->offset[axis];
+    }
+    for (size_t i = 0; i < n; i++)
+      points->position[axis][points->count + i] =
+          (float)((reader->block[axis][i] - reader->first[axis]) * reader->scale[axis]);
+  }
+  if (reader->color)
+    convert(reader, (size_t)reader->color, 2, CONIC_PLY_UINT16, n);
+  for (int channel = 0; channel < 3 && reader->color; channel++)
+    for (size_t i = 0; i < n; i++)
+      points->color[channel][points->count + i] = (float)reader->block[channel][i];
+  points->count += n;
+}
+
+static conic_status read_points(las_reader *reader) {
+  conic_input *input = reader->input;
+  conic_status status = CONIC_OK;
+  const conic_splats *points = &reader->builder.model->points;
+  if (input->has_size && !reader->builder.delivery)
+    status = conic_builder_reserve_points_exactly(&reader->builder, (size_t)reader->n_points);
+  while (status == CONIC_OK && conic_builder_points(&reader->builder) < reader->n_points) {
+    uint64_t left = reader->n_points - conic_builder_points(&reader->builder);
+    status = conic_input_fill(input, reader->point_bytes);
+    size_t n = conic_input_available(input) / reader->point_bytes;
+    if (status != CONIC_OK)
+      break;
+    if (n == 0)
+      return truncated(reader);
+    n = n < BLOCK ? n : BLOCK;
+    n = n < left ? n : (size_t)left;
+    status = conic_builder_reserve_points(&reader->builder, points->count + n);
+    if (status == CONIC_OK) {
+      store(reader, n);
+      status = conic_builder_deliver(&reader->builder, 0);
+    }
+    input->next += n * reader->point_bytes;
+  }
+  return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
+}
+
+conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
+  las_reader reader = {.input = input};
+  conic_status status = read_header(&reader);
+  if (status == CONIC_OK)
+    status = check_format(&reader);
+  if (status == CONIC_OK)
+    status = read_scale(&reader);
+  if (status == CONIC_OK)
+    status = check_sizes(&reader);
+  if (status == CONIC_OK)
+    status =
+        conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, delivery, &reader.builder);
+  if (status == CONIC_OK)
+    status = skip_to_points(&reader);
+  if (status == CONIC_OK)
+    status = read_points(&reader);
+  if (status == CONIC_OK && !delivery)
+    status = conic_raw_colors_decode(input->context, &model->points, 0);
+  return status;
+}

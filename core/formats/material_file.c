@@ -1,0 +1,117 @@
+#include "core/formats/material_file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/input.h"
+#include "core/files/number.h"
+
+typedef struct material_reader {
+  conic_input input;
+  const conic_texts *names;
+  conic_material *materials, *current; /* null: one that nobody uses */
+} material_reader;
+
+static int is_word(const char *word, size_t length, const char *keyword) {
+  return length == strlen(keyword) && memcmp(word, keyword, length) == 0;
+}
+
+static conic_status read_name(material_reader *reader) {
+  const char *word;
+  size_t length;
+  conic_status status = conic_input_word(&reader->input, &word, &length);
+  if (status != CONIC_OK)
+    return status;
+  size_t i = conic_texts_find(reader->names, word, length);
+  reader->current = i < reader->names->count ? &reader->materials[i] : NULL;
+  return CONIC_OK;
+}
+
+/* Kd r g b, or one value for all; linear. */
+static conic_status read_color(material_reader *reader) {
+  for (int channel = 0; channel < 3; channel++) {
+    const char *word;
+    size_t length;
+    double value;
+    conic_status status = conic_input_word(&reader->input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0 && channel > 0) {
+      for (; channel < 3 && reader->current; channel++)
+        reader->current->color[channel] = reader->current->color[0];
+      return CONIC_OK;
+    }
+    if (conic_number_parse(word, length, &value) != length || length == 0 || !(value >= 0.0 && value <= 1e6))
+      return conic_fail(reader->input.context, CONIC_ERROR_INPUT,
+                        "%s: a colour's value is no number in range (line %llu)", reader->input.name,
+                        (unsigned long long)reader->input.line);
+    if (reader->current)
+      reader->current->color[channel] = (float)value;
+  }
+  return CONIC_OK;
+}
+
+/* map_Kd [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. */
+static conic_status read_map(material_reader *reader) {
+  char file[CONIC_INPUT_LONGEST_WORD + 1] = "", path[2 * CONIC_INPUT_LONGEST_WORD];
+  int is_clamp_next = 0;
+  conic_texture_wrap wrap = CONIC_WRAP_REPEAT;
+  for (;;) {
+    const char *word;
+    size_t length;
+    conic_status status = conic_input_word(&reader->input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0)
+      break;
+    if (is_clamp_next && is_word(word, length, "on"))
+      wrap = CONIC_WRAP_CLAMP;
+    is_clamp_next = is_word(word, length, "-clamp");
+    snprintf(file, sizeof file, "%.*s", (int)length, word);
+  }
+  if (!file[0] || !reader->current || reader->current->texture)
+    return CONIC_OK;
+  const char *slash = strrchr(reader->input.name, '/');
+  int folder = slash && file[0] != '/' ? (int)(slash + 1 - reader->input.name) : 0;
+  int n = snprintf(path, sizeof path, "%.*s%s", folder, reader->input.name, file);
+  if (n < 0 || (size_t)n >= sizeof path)
+    return conic_fail(reader->input.context, CONIC_ERROR_INPUT, "%s: a picture's name is too long (line %llu)",
+                      reader->input.name, (unsigned long long)reader->input.line);
+  if (!conic_file_is_there(path)) {
+    conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
+              reader->input.name, path, (unsigned long long)reader->input.line);
+    return CONIC_OK;
+  }
+  return conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
+}
+
+static conic_status read_statement(material_reader *reader) {
+  const char *word;
+  size_t length;
+  conic_status status = conic_input_word(&reader->input, &word, &length);
+  if (status != CONIC_OK)
+    return status;
+  if (is_word(word, length, "newmtl"))
+    return read_name(reader);
+  if (is_word(word, length, "Kd"))
+    return read_color(reader);
+  return is_word(word, length, "map_Kd") ? read_map(reader) : CONIC_OK;
+}
+
+conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
+                                      conic_material *materials) {
+  material_reader reader = {.names = names, .materials = materials};
+  int is_done = 0;
+  conic_status status = conic_input_open(context, path, &reader.input);
+  if (status != CONIC_OK)
+    return status;
+  while (status == CONIC_OK && !is_done) {
+    status = read_statement(&reader);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(&reader.input, &is_done);
+  }
+  conic_input_close(&reader.input);
+  return status;
+}

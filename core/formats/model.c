@@ -1,0 +1,170 @@
+#include "core/formats/model_read.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/input.h"
+#include "core/formats/las.h"
+#include "core/formats/obj.h"
+#include "core/formats/ply_read.h"
+#include "core/formats/xyz.h"
+#include "core/splats/faces.h"
+
+void conic_read_options_init(conic_read_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->cutoff = 1.5f;
+}
+
+const char *conic_model_kind_name(conic_model_kind kind) {
+  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
+}
+
+void conic_model_release(conic_context *context, conic_model *model) {
+  conic_splats_release(context, &model->points);
+  conic_memory_release(context, model->triangles);
+  conic_faces_destroy(context, model->faces);
+  memset(model, 0, sizeof *model);
+}
+
+typedef struct signature {
+  const char *kind;
+  const char *bytes;
+  size_t n_bytes;
+} signature;
+
+/* Files that are easily taken for models, or given by mistake. */
+static const signature other_kinds[] = {
+    {"a point-octree", "CONICOT\n", 8}, {"a layered point cloud", "CONICLP\n", 8},
+    {"a hybrid model", "CONICHY\n", 8}, {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
+    {"a PNG image", "\x89PNG", 4},      {"a JPEG image", "\xff\xd8\xff", 3},
+    {"a binary glTF file", "glTF", 4},  {"a gzip archive", "\x1f\x8b", 2},
+    {"a ZIP archive", "PK\x03\x04", 4}, {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
+    {"an STL file", "solid ", 6},
+};
+
+static int has_ending(const char *path, const char *ending) {
+  size_t n = strlen(path), n_ending = strlen(ending);
+  if (n < n_ending)
+    return 0;
+  for (size_t i = 0; i < n_ending; i++)
+    if ((path[n - n_ending + i] | 0x20) != (ending[i] | 0x20))
+      return 0;
+  return 1;
+}
+
+static int is_ply(const char *bytes, size_t n) {
+  return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
+}
+
+/* Whether the first line that is neither empty nor a comment begins with a word of OBJ. */
+static int is_obj(const char *bytes, size_t n) {
+  static const char *const keywords[] = {"v ", "v\t", "vn ", "vt ", "f ", "o ", "g ", "s ", "mtllib ", "usemtl "};
+  const char *c = bytes, *end = bytes + n;
+  while (c < end && (*c == '#' || *c == '\n' || *c == '\r')) {
+    const char *line_end = memchr(c, '\n', (size_t)(end - c));
+    c = line_end ? line_end + 1 : end;
+  }
+  for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++) {
+    size_t length = strlen(keywords[i]);
+    if ((size_t)(end - c) >= length && memcmp(c, keywords[i], length) == 0)
+      return 1;
+  }
+  return 0;
+}
+
+static conic_status refuse(const conic_input *input, const char *bytes, size_t n) {
+  if (n == 0)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
+  for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds; i++)
+    if (n >= other_kinds[i].n_bytes && memcmp(bytes, other_kinds[i].bytes, other_kinds[i].n_bytes) == 0)
+      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: this is %s, no PLY, OBJ, XYZ or LAS file (at byte 0)",
+                        input->name, other_kinds[i].kind);
+  return CONIC_OK;
+}
+
+/* By content; then by the ending; then by content that is less certain. */
+static conic_status find_kind(const conic_input *input, const char *path, conic_model_kind *kind) {
+  const char *bytes = (const char *)conic_input_bytes(input);
+  size_t n = conic_input_available(input);
+  int is_xyz_name = has_ending(path, ".xyz") || has_ending(path, ".pts");
+  conic_status status = refuse(input, bytes, n);
+  if (status != CONIC_OK)
+    return status;
+  if (is_ply(bytes, n))
+    *kind = CONIC_MODEL_PLY;
+  else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
+    *kind = CONIC_MODEL_LAS;
+  else if (has_ending(path, ".ply"))
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
+                      input->name);
+  else if (has_ending(path, ".las") || has_ending(path, ".laz"))
+    return conic_fail(input->context, CONIC_ERROR_INPUT,
+                      "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
+  else if (has_ending(path, ".obj") || (!is_xyz_name && is_obj(bytes, n)))
+    *kind = CONIC_MODEL_OBJ;
+  else if (is_xyz_name || conic_xyz_is_likely(bytes, n))
+    *kind = CONIC_MODEL_XYZ;
+  else
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no PLY, OBJ, XYZ or LAS file (at byte 0)", input->name);
+  return CONIC_OK;
+}
+
+conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  return status == CONIC_OK ? find_kind(input, path, kind) : status;
+}
+
+conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
+                                   const conic_delivery *delivery, conic_model *model) {
+  conic_status status = CONIC_OK;
+  switch (kind) {
+  case CONIC_MODEL_PLY:
+    status = conic_ply_read(input, options, delivery, model);
+    break;
+  case CONIC_MODEL_OBJ:
+    status = conic_obj_read(input, options, model);
+    break;
+  case CONIC_MODEL_XYZ:
+    status = conic_xyz_read(input, delivery, model);
+    break;
+  case CONIC_MODEL_LAS:
+    status = conic_las_read(input, delivery, model);
+    break;
+  }
+  model->kind = kind;
+  return status;
+}
+
+conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
+                                      conic_read_options *settings) {
+  conic_read_options_init(settings);
+  if (!options)
+    return CONIC_OK;
+  if (options->size != sizeof *settings || !(options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
+  *settings = *options;
+  return CONIC_OK;
+}
+
+conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
+                              conic_model *model) {
+  conic_read_options settings;
+  conic_model_kind kind = CONIC_MODEL_PLY;
+  conic_input input;
+  memset(model, 0, sizeof *model);
+  conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK)
+    status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&input, path, &kind);
+  if (status == CONIC_OK)
+    status = conic_model_read_kind(&input, kind, &settings, NULL, model);
+  conic_input_close(&input);
+  if (status != CONIC_OK)
+    conic_model_release(context, model);
+  return status;
+}

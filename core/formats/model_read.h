@@ -1,0 +1,21 @@
+/* What reading a model and streaming its points share. */
+#ifndef CONIC_MODEL_READ_H
+#define CONIC_MODEL_READ_H
+
+#include "conic/model.h"
+#include "core/files/input.h"
+#include "core/splats/builder.h"
+
+/* The format of a file that stands at its start. Errors: INPUT, CANCELLED. */
+conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind);
+
+/* Reads the file; with a delivery the points go there, but for an OBJ's. On failure *model is for the caller to
+ * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
+conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, const conic_read_options *options,
+                                   const conic_delivery *delivery, conic_model *model);
+
+/* Null options become the defaults. Errors: ARGUMENT. */
+conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
+                                      conic_read_options *settings);
+
+#endif

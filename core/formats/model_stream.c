@@ -1,0 +1,96 @@
+#include <string.h>
+#include <unistd.h>
+
+#include "core/base/memory.h"
+#include "core/formats/model_read.h"
+#include "core/formats/raw_colors.h"
+
+/* Points in memory at a time. */
+enum { BATCH = 1 << 16 };
+
+/* What stands between the reader and the receiver: colours whose scale only the whole file tells. */
+typedef struct streaming {
+  conic_context *context;
+  const conic_read_options *options;
+  conic_model_kind kind;
+  conic_batch_receiver *receive;
+  void *cookie;
+  float largest;
+  conic_raw_scale scale;
+} streaming;
+
+static conic_status find_largest(void *cookie, const conic_splats *batch) {
+  streaming *s = cookie;
+  s->largest = conic_raw_colors_largest(batch, s->largest);
+  return CONIC_OK;
+}
+
+/* The batch is the reader's own, whose colours may be changed. */
+static conic_status decode_batch(void *cookie, const conic_splats *batch) {
+  streaming *s = cookie;
+  conic_splats decoded = *batch;
+  for (int channel = 0; channel < 3 && decoded.color[channel]; channel++)
+    if (s->scale.table)
+      conic_raw_colors_apply(&s->scale, decoded.color[channel], decoded.count);
+    else
+      decoded.color[channel] = NULL;
+  return s->receive(s->cookie, &decoded);
+}
+
+/* Reads on from where the input stands, handing batches to `receive`. */
+static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
+  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH};
+  conic_model model;
+  conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
+  conic_model_release(s->context, &model);
+  return status;
+}
+
+static conic_status read_whole(streaming *s, conic_input *input) {
+  conic_model model;
+  conic_status status = conic_model_read_kind(input, s->kind, s->options, NULL, &model);
+  if (status == CONIC_OK)
+    status = s->receive(s->cookie, &model.points);
+  conic_model_release(s->context, &model);
+  return status;
+}
+
+/* A first pass finds what the colours are fractions of, a second hands over. */
+static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
+  conic_input again;
+  conic_status status = pass(s, input, find_largest, s);
+  if (status == CONIC_OK)
+    status = conic_raw_colors_scale(s->context, s->largest, s->kind == CONIC_MODEL_XYZ, &s->scale);
+  if (status == CONIC_OK)
+    status = conic_input_open(s->context, path, &again);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_model_find_kind(&again, path, &s->kind);
+  if (status == CONIC_OK)
+    status = pass(s, &again, decode_batch, s);
+  conic_input_close(&again);
+  return status;
+}
+
+conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
+                                conic_batch_receiver *receive, void *cookie) {
+  conic_read_options settings;
+  conic_input input;
+  streaming s = {.context = context, .options = &settings, .receive = receive, .cookie = cookie};
+  conic_status status = conic_read_options_check(context, path, options, &settings);
+  if (status == CONIC_OK)
+    status = conic_input_open(context, path, &input);
+  if (status != CONIC_OK)
+    return status;
+  int is_pipe = input.descriptor == STDIN_FILENO || !input.has_size;
+  status = conic_model_find_kind(&input, path, &s.kind);
+  if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
+    status = pass(&s, &input, receive, cookie);
+  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || is_pipe))
+    status = read_whole(&s, &input);
+  else if (status == CONIC_OK)
+    status = pass_twice(&s, &input, path);
+  conic_input_close(&input);
+  conic_memory_release(context, s.scale.table);
+  return status;
+}

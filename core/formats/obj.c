@@ -1,0 +1,368 @@
+#include "core/formats/obj.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/number.h"
+#include "core/splats/builder.h"
+#include "core/splats/faces.h"
+
+/* Where the first vertex lies farther out than this, positions are kept from it as their origin, since a file in map
+ * coordinates has digits that a float has not. */
+static const double far_out = 65536.0;
+
+/* A corner of a face that names a normal. Which normal it is may be read later. */
+typedef struct corner {
+  uint32_t i_vertex, i_normal;
+} corner;
+
+/* The largest index that faces use, and the first line that does: whether there is such a line is known at the end. */
+typedef struct largest_index {
+  uint64_t index, line;
+} largest_index;
+
+enum { VERTEX, TEXTURE, NORMAL, N_KINDS };
+static const char *const kind_names[N_KINDS] = {"vertices", "texture coordinates", "normals"};
+
+typedef struct obj_reader {
+  conic_input *input;
+  conic_builder builder;
+  uint64_t counts[N_KINDS];
+  largest_index used[N_KINDS];
+  double (*normals)[3];
+  size_t normal_capacity;
+  corner *corners;
+  size_t n_corners, corner_capacity;
+  conic_faces *faces; /* the model's, where the reader keeps what faces have besides vertices */
+  int is_origin_set;
+} obj_reader;
+
+/* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
+typedef uint32_t face_corner[3];
+
+static conic_status wrong(const obj_reader *reader, const char *what) {
+  return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
+                    (unsigned long long)reader->input->line);
+}
+
+/* Room for one more in an array that grows by half. */
+static conic_status make_room(const obj_reader *reader, void **array, size_t n, size_t *capacity, size_t size) {
+  size_t larger = *capacity + *capacity / 2 + 1024;
+  if (n < *capacity)
+    return CONIC_OK;
+  conic_status status = conic_memory_grow(reader->input->context, array, n, larger, size);
+  if (status == CONIC_OK)
+    *capacity = larger;
+  return status;
+}
+
+/* The numbers up to the end of the line; more than `room` of them are wrong. */
+static conic_status read_numbers(const obj_reader *reader, double *numbers, int room, int *n) {
+  for (*n = 0;;) {
+    const char *word;
+    size_t length;
+    double value;
+    conic_status status = conic_input_word(reader->input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0 || word[0] == '#')
+      return CONIC_OK;
+    if (conic_number_parse(word, length, &value) != length)
+      return wrong(reader, "a value is not a number");
+    if (*n == room)
+      return wrong(reader, "too many values");
+    numbers[(*n)++] = value;
+  }
+}
+
+static void store_position(obj_reader *reader, const double position[3]) {
+  conic_splats *points = &reader->builder.model->points;
+  double x = position[0], y = position[1], z = position[2];
+  if (!reader->is_origin_set && x - x == 0.0 && y - y == 0.0 && z - z == 0.0) {
+    if (fabs(x) > far_out || fabs(y) > far_out || fabs(z) > far_out)
+      memcpy(points->origin, position, sizeof points->origin);
+    reader->is_origin_set = 1;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    points->position[axis][points->count] = (float)(position[axis] - points->origin[axis]);
+}
+
+/* v x y z, then nothing, a weight (of no use here), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
+static conic_status read_vertex(obj_reader *reader) {
+  double values[7];
+  int n;
+  conic_splats *points = &reader->builder.model->points;
+  conic_status status = read_numbers(reader, values, 7, &n);
+  if (status != CONIC_OK)
+    return status;
+  if (n < 3 || n == 5)
+    return wrong(reader, "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
+  if (points->count >= CONIC_MAX_POINTS)
+    return wrong(reader, "too many vertices");
+  status = conic_builder_reserve_points(&reader->builder, points->count + 1);
+  if (status == CONIC_OK && n >= 6)
+    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
+  if (status != CONIC_OK)
+    return status;
+  store_position(reader, values);
+  for (int channel = 0; channel < 3 && points->color[0]; channel++)
+    points->color[channel][points->count] = n >= 6 ? (float)conic_srgb_decode(values[3 + channel]) : 1.0f;
+  points->count++;
+  reader->counts[VERTEX]++;
+  return CONIC_OK;
+}
+
+static conic_status read_normal(obj_reader *reader) {
+  double values[3];
+  int n;
+  void *normals = reader->normals;
+  conic_status status = read_numbers(reader, values, 3, &n);
+  if (status == CONIC_OK && n != 3)
+    status = wrong(reader, "a normal has 3 values");
+  if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
+    status = wrong(reader, "too many normals");
+  if (status == CONIC_OK)
+    status = make_room(reader, &normals, reader->counts[NORMAL], &reader->normal_capacity, sizeof *reader->normals);
+  reader->normals = normals;
+  if (status == CONIC_OK)
+    memcpy(reader->normals[reader->counts[NORMAL]++], values, sizeof values);
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add_normal(reader->input->context, reader->faces, values);
+  return status;
+}
+
+/* Texture coordinates are counted, so that indices can be checked, and kept only where that is asked for. */
+static conic_status read_texture(obj_reader *reader) {
+  double values[3] = {0.0, 0.0, 0.0};
+  int n;
+  conic_status status = read_numbers(reader, values, 3, &n);
+  if (status == CONIC_OK && n < 1)
+    return wrong(reader, "a texture coordinate has 1 to 3 values");
+  if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)
+    return wrong(reader, "too many texture coordinates");
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add_coordinate(reader->input->context, reader->faces, values);
+  reader->counts[TEXTURE]++;
+  return status;
+}
+
+/* Reads an integer that is not 0; returns past it, or null. */
+static const char *parse_index(const char *text, const char *end, int64_t *index) {
+  const char *c = text;
+  int is_negative = c < end && *c == '-';
+  if (c < end && (*c == '-' || *c == '+'))
+    c++;
+  const char *digits = c;
+  for (*index = 0; c < end && *c >= '0' && *c <= '9'; c++)
+    if (*index < INT64_C(1) << 40)
+      *index = *index * 10 + (*c - '0');
+  if (c == digits || *index == 0)
+    return NULL;
+  if (is_negative)
+    *index = -*index;
+  return c;
+}
+
+/* From the file's numbering, from 1 or back from the last, to indices from 0. */
+static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, uint32_t *resolved) {
+  uint64_t count = reader->counts[kind];
+  char what[96];
+  if (index < 0 && (uint64_t)-index > count) {
+    snprintf(what, sizeof what, "index %lld, but there are only %llu %s so far", (long long)index,
+             (unsigned long long)count, kind_names[kind]);
+    return wrong(reader, what);
+  }
+  uint64_t found = index < 0 ? count - (uint64_t)-index : (uint64_t)index - 1;
+  if (found >= CONIC_MAX_POINTS)
+    return wrong(reader, "an index is out of range");
+  if (found >= count && found + 1 > reader->used[kind].index) {
+    reader->used[kind].index = found + 1;
+    reader->used[kind].line = reader->input->line;
+  }
+  *resolved = (uint32_t)found;
+  return CONIC_OK;
+}
+
+/* v, v/t, v//n or v/t/n. */
+static conic_status read_corner(obj_reader *reader, const char *word, size_t length, face_corner resolved) {
+  const char *c = word, *end = word + length;
+  resolved[VERTEX] = resolved[TEXTURE] = resolved[NORMAL] = CONIC_NO_CORNER;
+  for (int kind = VERTEX; kind < N_KINDS; kind++) {
+    int64_t index;
+    if (kind > VERTEX) {
+      if (c == end)
+        break;
+      if (*c++ != '/')
+        return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+      if (kind == TEXTURE && c < end && *c == '/')
+        continue;
+      if (kind == NORMAL && c == end) /* v/t/ is written, too */
+        break;
+    }
+    c = parse_index(c, end, &index);
+    if (!c)
+      return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+    conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
+    if (status != CONIC_OK)
+      return status;
+  }
+  if (c != end)
+    return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+  if (resolved[NORMAL] == CONIC_NO_CORNER)
+    return CONIC_OK;
+  void *corners = reader->corners;
+  conic_status status =
+      make_room(reader, &corners, reader->n_corners, &reader->corner_capacity, sizeof *reader->corners);
+  reader->corners = corners;
+  if (status == CONIC_OK)
+    reader->corners[reader->n_corners++] = (corner){resolved[VERTEX], resolved[NORMAL]};
+  return status;
+}
+
+static conic_status add_triangle(obj_reader *reader, const face_corner a, const face_corner b, const face_corner c) {
+  const uint32_t normals[3] = {a[NORMAL], b[NORMAL], c[NORMAL]};
+  const uint32_t coordinates[3] = {a[TEXTURE], b[TEXTURE], c[TEXTURE]};
+  conic_status status = conic_builder_add_triangle(&reader->builder, a[VERTEX], b[VERTEX], c[VERTEX]);
+  if (status == CONIC_OK && reader->faces)
+    status = conic_faces_add(reader->input->context, reader->faces, normals, coordinates);
+  return status;
+}
+
+static conic_status read_face(obj_reader *reader) {
+  face_corner first = {0, 0, 0}, previous = {0, 0, 0}, current;
+  for (uint64_t n = 0;; n++) {
+    const char *word;
+    size_t length;
+    conic_status status = conic_input_word(reader->input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0 || word[0] == '#')
+      return n < 3 ? wrong(reader, "a face has at least 3 corners") : CONIC_OK;
+    status = read_corner(reader, word, length, current);
+    if (status == CONIC_OK && n >= 2)
+      status = add_triangle(reader, first, previous, current);
+    if (status != CONIC_OK)
+      return status;
+    if (n == 0)
+      memcpy(first, current, sizeof first);
+    memcpy(previous, current, sizeof previous);
+  }
+}
+
+/* usemtl NAME */
+static conic_status read_material(obj_reader *reader) {
+  const char *word;
+  size_t length;
+  conic_status status = conic_input_word(reader->input, &word, &length);
+  if (status != CONIC_OK || !reader->faces)
+    return status;
+  if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
+    return wrong(reader, "too many materials");
+  return conic_faces_use_material(reader->input->context, reader->faces, word, length);
+}
+
+/* mtllib FILE …: paths are relative to the model's folder. */
+static conic_status read_libraries(obj_reader *reader) {
+  const char *word, *name = reader->input->name, *slash = strrchr(name, '/');
+  char path[2 * CONIC_INPUT_LONGEST_WORD];
+  size_t length;
+  for (;;) {
+    conic_status status = conic_input_word(reader->input, &word, &length);
+    if (status != CONIC_OK || length == 0 || !reader->faces)
+      return status;
+    size_t folder = slash && word[0] != '/' ? (size_t)(slash + 1 - name) : 0;
+    if (folder + length > sizeof path || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
+      return wrong(reader, "a material file's name is too long, or there are too many");
+    memcpy(path, name, folder);
+    memcpy(path + folder, word, length);
+    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, folder + length);
+    if (status != CONIC_OK)
+      return status;
+  }
+}
+
+/* One statement; those that mean nothing here are passed over by the caller's step to the next line. */
+static conic_status read_statement(obj_reader *reader) {
+  static const struct {
+    const char *keyword;
+    conic_status (*read)(obj_reader *reader);
+  } statements[] = {{"v", read_vertex}, {"vn", read_normal},       {"vt", read_texture},
+                    {"f", read_face},   {"usemtl", read_material}, {"mtllib", read_libraries}};
+  const char *word;
+  size_t length;
+  conic_status status = conic_input_word(reader->input, &word, &length);
+  if (status != CONIC_OK)
+    return status;
+  for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
+    if (length == strlen(statements[i].keyword) && memcmp(word, statements[i].keyword, length) == 0)
+      return statements[i].read(reader);
+  return CONIC_OK;
+}
+
+static conic_status check_indices(const obj_reader *reader) {
+  for (int kind = VERTEX; kind < N_KINDS; kind++)
+    if (reader->used[kind].index > reader->counts[kind])
+      return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
+                        "%s: index %llu, but there are only %llu %s (line %llu)", reader->input->name,
+                        (unsigned long long)reader->used[kind].index, (unsigned long long)reader->counts[kind],
+                        kind_names[kind], (unsigned long long)reader->used[kind].line);
+  if (reader->counts[VERTEX] == 0)
+    return wrong(reader, "the file ends without a vertex");
+  return CONIC_OK;
+}
+
+static void normalize(double vector[3]) {
+  double length = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+  for (int axis = 0; axis < 3; axis++)
+    vector[axis] = length > 0.0 && length - length == 0.0 ? vector[axis] / length : 0.0;
+}
+
+/* A vertex's normal is the sum over all corners, in the file's order, made unit; zero where no corner names one. */
+static conic_status gather_normals(obj_reader *reader) {
+  conic_splats *points = &reader->builder.model->points;
+  if (reader->n_corners == 0)
+    return CONIC_OK;
+  conic_status status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
+  if (status != CONIC_OK)
+    return status;
+  double(*sums)[3] = conic_memory_allocate_zeroed(reader->input->context, points->count, sizeof *sums);
+  if (!sums)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < reader->n_corners; i++)
+    for (int axis = 0; axis < 3; axis++)
+      sums[reader->corners[i].i_vertex][axis] += reader->normals[reader->corners[i].i_normal][axis];
+  for (size_t i = 0; i < points->count; i++) {
+    normalize(sums[i]);
+    for (int axis = 0; axis < 3; axis++)
+      points->normal[axis][i] = (float)sums[i][axis];
+  }
+  conic_memory_release(reader->input->context, sums);
+  return CONIC_OK;
+}
+
+conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
+  obj_reader reader = {.input = input};
+  int is_done = 0;
+  input->continues_lines = 1;
+  conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
+  if (status == CONIC_OK && options->keeps_faces) {
+    status = conic_faces_create(input->context, &model->faces);
+    reader.faces = model->faces;
+  }
+  while (status == CONIC_OK && !is_done) {
+    status = read_statement(&reader);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(input, &is_done);
+  }
+  if (status == CONIC_OK)
+    status = check_indices(&reader);
+  if (status == CONIC_OK)
+    status = gather_normals(&reader);
+  conic_memory_release(input->context, reader.normals);
+  conic_memory_release(input->context, reader.corners);
+  return status;
+}

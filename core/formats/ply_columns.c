@@ -1,0 +1,289 @@
+#include "core/formats/ply_columns.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/gaussian.h"
+#include "core/base/message.h"
+#include "core/splats/ellipse.h"
+
+typedef struct column_name {
+  conic_ply_column column;
+  const char *name;
+} column_name;
+
+/* Where a file has several names of one column, the first listed here is taken. */
+static const column_name names[] = {
+    {CONIC_PLY_X, "x"},
+    {CONIC_PLY_X + 1, "y"},
+    {CONIC_PLY_X + 2, "z"},
+    {CONIC_PLY_TANGENT_U, "tu_x"},
+    {CONIC_PLY_TANGENT_U + 1, "tu_y"},
+    {CONIC_PLY_TANGENT_U + 2, "tu_z"},
+    {CONIC_PLY_TANGENT_V, "tv_x"},
+    {CONIC_PLY_TANGENT_V + 1, "tv_y"},
+    {CONIC_PLY_TANGENT_V + 2, "tv_z"},
+    {CONIC_PLY_NORMAL, "nx"},
+    {CONIC_PLY_NORMAL + 1, "ny"},
+    {CONIC_PLY_NORMAL + 2, "nz"},
+    {CONIC_PLY_RADIUS, "radius"},
+    {CONIC_PLY_RED, "red"},
+    {CONIC_PLY_RED + 1, "green"},
+    {CONIC_PLY_RED + 2, "blue"},
+    {CONIC_PLY_RED, "diffuse_red"},
+    {CONIC_PLY_RED + 1, "diffuse_green"},
+    {CONIC_PLY_RED + 2, "diffuse_blue"},
+    {CONIC_PLY_RED, "r"},
+    {CONIC_PLY_RED + 1, "g"},
+    {CONIC_PLY_RED + 2, "b"},
+    {CONIC_PLY_OPACITY, "opacity"},
+    {CONIC_PLY_SCALE, "scale_0"},
+    {CONIC_PLY_SCALE + 1, "scale_1"},
+    {CONIC_PLY_SCALE + 2, "scale_2"},
+    {CONIC_PLY_ROTATION, "rot_0"},
+    {CONIC_PLY_ROTATION + 1, "rot_1"},
+    {CONIC_PLY_ROTATION + 2, "rot_2"},
+    {CONIC_PLY_ROTATION + 3, "rot_3"},
+    {CONIC_PLY_HARMONIC, "f_dc_0"},
+    {CONIC_PLY_HARMONIC + 1, "f_dc_1"},
+    {CONIC_PLY_HARMONIC + 2, "f_dc_2"},
+};
+
+enum { N_NAMES = sizeof names / sizeof *names };
+
+static int has_columns(const conic_ply_layout *layout, conic_ply_column first, int n) {
+  for (int i = 0; i < n; i++)
+    if (layout->property[(int)first + i] < 0)
+      return 0;
+  return 1;
+}
+
+static void drop_columns(conic_ply_layout *layout, conic_ply_column first, int n) {
+  for (int i = 0; i < n; i++)
+    layout->property[(int)first + i] = -1;
+}
+
+static void find_columns(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
+  for (int i = 0; i < CONIC_PLY_N_COLUMNS; i++)
+    layout->property[i] = -1;
+  for (int i = 0; i < N_NAMES; i++) {
+    int i_property = conic_ply_find_property(header, vertices, names[i].name);
+    if (i_property < 0 || layout->property[names[i].column] >= 0)
+      continue;
+    const conic_ply_property *property = &header->properties[vertices->first_property + (size_t)i_property];
+    if (property->is_list)
+      continue;
+    layout->property[names[i].column] = i_property;
+    layout->type[names[i].column] = property->type;
+  }
+}
+
+/* Whether the vertices have a value of that name; which property it is. */
+static int find_value(const conic_ply_header *header, const conic_ply_element *vertices, const char *name,
+                      int *i_property) {
+  *i_property = conic_ply_find_property(header, vertices, name);
+  return *i_property >= 0 && !header->properties[vertices->first_property + (size_t)*i_property].is_list;
+}
+
+/* The first pair of names of which both are there. */
+static void find_coordinates(const conic_ply_header *header, const conic_ply_element *vertices,
+                             conic_ply_layout *layout) {
+  static const char *const pairs[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs && !layout->has_coordinates; i++) {
+    int of_pair[2];
+    if (!find_value(header, vertices, pairs[i][0], &of_pair[0]) ||
+        !find_value(header, vertices, pairs[i][1], &of_pair[1]))
+      continue;
+    layout->has_coordinates = 1;
+    for (int k = 0; k < 2; k++) {
+      layout->property[CONIC_PLY_COORDINATE + k] = of_pair[k];
+      layout->type[CONIC_PLY_COORDINATE + k] = header->properties[vertices->first_property + (size_t)of_pair[k]].type;
+    }
+  }
+}
+
+/* Clip lines are given in units of the tangent axes, and so need them. */
+static void find_clip_lists(const conic_ply_header *header, const conic_ply_element *vertices,
+                            conic_ply_layout *layout) {
+  static const char *const list_names[2] = {[CONIC_CLIP_AND] = "clip_and", [CONIC_CLIP_OR] = "clip_or"};
+  for (int i = 0; i < 2; i++) {
+    int i_property = conic_ply_find_property(header, vertices, list_names[i]);
+    layout->clip_property[i] = -1;
+    if (i_property >= 0 && layout->form == CONIC_PLY_AXES &&
+        header->properties[vertices->first_property + (size_t)i_property].is_list)
+      layout->clip_property[i] = i_property;
+  }
+}
+
+/* An opacity is a logit beside scales and rotations, a factor beside axes or radii if it is no integer, and elsewhere
+ * nothing that is known. */
+static void choose_opacity(conic_ply_layout *layout) {
+  int is_factor = (layout->form == CONIC_PLY_AXES || layout->form == CONIC_PLY_CIRCLES) &&
+                  !conic_ply_type_is_integer(layout->type[CONIC_PLY_OPACITY]);
+  if (layout->form != CONIC_PLY_GAUSSIANS && !is_factor)
+    drop_columns(layout, CONIC_PLY_OPACITY, 1);
+}
+
+static void choose_form(conic_ply_layout *layout) {
+  int has_normals = has_columns(layout, CONIC_PLY_NORMAL, 3);
+  layout->form = has_normals ? CONIC_PLY_NORMALS : CONIC_PLY_POINTS;
+  if (has_normals && has_columns(layout, CONIC_PLY_RADIUS, 1))
+    layout->form = CONIC_PLY_CIRCLES;
+  if (has_columns(layout, CONIC_PLY_SCALE, 2) && has_columns(layout, CONIC_PLY_ROTATION, 4))
+    layout->form = CONIC_PLY_GAUSSIANS;
+  if (has_columns(layout, CONIC_PLY_TANGENT_U, 6))
+    layout->form = CONIC_PLY_AXES;
+  if (layout->form != CONIC_PLY_AXES)
+    drop_columns(layout, CONIC_PLY_TANGENT_U, 6);
+  if (layout->form != CONIC_PLY_NORMALS && layout->form != CONIC_PLY_CIRCLES)
+    drop_columns(layout, CONIC_PLY_NORMAL, 3);
+  if (layout->form != CONIC_PLY_CIRCLES)
+    drop_columns(layout, CONIC_PLY_RADIUS, 1);
+  layout->n_scales = has_columns(layout, CONIC_PLY_SCALE, 3) ? 3 : 2;
+  layout->has_harmonics = layout->form == CONIC_PLY_GAUSSIANS && has_columns(layout, CONIC_PLY_HARMONIC, 3);
+  if (layout->form != CONIC_PLY_GAUSSIANS)
+    drop_columns(layout, CONIC_PLY_SCALE, 7);
+  if (!layout->has_harmonics)
+    drop_columns(layout, CONIC_PLY_HARMONIC, 3);
+  if (layout->has_harmonics || !has_columns(layout, CONIC_PLY_RED, 3))
+    drop_columns(layout, CONIC_PLY_RED, 3);
+  choose_opacity(layout);
+}
+
+/* A float holds no double and no 32-bit integer: such positions are kept from an origin near them. */
+static int needs_origin(conic_ply_type type) {
+  return type == CONIC_PLY_DOUBLE || type == CONIC_PLY_INT32 || type == CONIC_PLY_UINT32;
+}
+
+conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
+                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
+                                   conic_ply_layout *layout) {
+  memset(layout, 0, sizeof *layout);
+  find_columns(header, vertices, layout);
+  if (!has_columns(layout, CONIC_PLY_X, 3))
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the vertices lack x, y or z (line %llu)", input->name,
+                      (unsigned long long)vertices->line);
+  choose_form(layout);
+  find_clip_lists(header, vertices, layout);
+  if (keeps_coordinates)
+    find_coordinates(header, vertices, layout);
+  layout->cutoff = cutoff;
+  conic_srgb_decode_table(layout->srgb);
+  for (int axis = 0; axis < 3; axis++)
+    layout->has_origin_positions |= needs_origin(layout->type[CONIC_PLY_X + axis]);
+  if (layout->form >= CONIC_PLY_CIRCLES)
+    layout->fields |= CONIC_SPLATS_TANGENTS;
+  if (layout->form == CONIC_PLY_NORMALS)
+    layout->fields |= CONIC_SPLATS_NORMALS;
+  if (layout->has_harmonics || has_columns(layout, CONIC_PLY_RED, 3))
+    layout->fields |= CONIC_SPLATS_COLORS;
+  if (has_columns(layout, CONIC_PLY_OPACITY, 1))
+    layout->fields |= CONIC_SPLATS_OPACITIES;
+  return CONIC_OK;
+}
+
+static void find_origin(conic_ply_layout *layout, const conic_ply_block block, size_t n, conic_splats *points) {
+  for (size_t i = 0; i < n && !layout->is_origin_set; i++) {
+    double x = block[CONIC_PLY_X][i], y = block[CONIC_PLY_X + 1][i], z = block[CONIC_PLY_X + 2][i];
+    if (!(x - x == 0.0 && y - y == 0.0 && z - z == 0.0))
+      continue;
+    points->origin[0] = x;
+    points->origin[1] = y;
+    points->origin[2] = z;
+    layout->is_origin_set = 1;
+  }
+}
+
+static void store(const double *values, size_t n, double origin, float *to) {
+  for (size_t i = 0; i < n; i++)
+    to[i] = (float)(values[i] - origin);
+}
+
+static void store_vectors(const conic_ply_block block, conic_ply_column first_column, size_t n, size_t first,
+                          float *const to[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    store(block[(int)first_column + axis], n, 0.0, to[axis] + first);
+}
+
+static void store_axes(conic_splats *points, size_t i, const double tangent_u[3], const double tangent_v[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    points->tangent_u[axis][i] = (float)tangent_u[axis];
+    points->tangent_v[axis][i] = (float)tangent_v[axis];
+  }
+}
+
+/* Zero axes, which are repaired later, where the normal or the radius cannot be used. */
+static void store_circles(const conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
+                          conic_splats *points) {
+  for (size_t i = 0; i < n; i++) {
+    double tangent_u[3], tangent_v[3], sigma = block[CONIC_PLY_RADIUS][i] / (double)layout->cutoff;
+    double normal[3] = {block[CONIC_PLY_NORMAL][i], block[CONIC_PLY_NORMAL + 1][i], block[CONIC_PLY_NORMAL + 2][i]};
+    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    int is_usable = length > 0.0 && length - length == 0.0 && sigma > 0.0 && sigma - sigma == 0.0;
+    for (int axis = 0; axis < 3; axis++)
+      normal[axis] = is_usable ? normal[axis] / length : 0.0;
+    conic_tangent_basis(normal, tangent_u, tangent_v);
+    for (int axis = 0; axis < 3; axis++) {
+      tangent_u[axis] = is_usable ? tangent_u[axis] * sigma : 0.0;
+      tangent_v[axis] = is_usable ? tangent_v[axis] * sigma : 0.0;
+    }
+    store_axes(points, first + i, tangent_u, tangent_v);
+  }
+}
+
+static void store_gaussians(const conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
+                            conic_splats *points) {
+  for (size_t i = 0; i < n; i++) {
+    double scales[3] = {0, 0, 0}, rotation[4], tangent_u[3], tangent_v[3];
+    for (int k = 0; k < layout->n_scales; k++)
+      scales[k] = block[CONIC_PLY_SCALE + k][i];
+    for (int k = 0; k < 4; k++)
+      rotation[k] = block[CONIC_PLY_ROTATION + k][i];
+    conic_gaussian_axes(scales, layout->n_scales, rotation, tangent_u, tangent_v);
+    store_axes(points, first + i, tangent_u, tangent_v);
+  }
+}
+
+/* Integers are sRGB codes, of 16 bits or else of 8; floats are linear. */
+static void store_colors(const conic_ply_layout *layout, const double *values, size_t n, conic_ply_type type,
+                         float *to) {
+  for (size_t i = 0; i < n; i++) {
+    double value = values[i];
+    if (layout->has_harmonics)
+      to[i] = (float)conic_gaussian_color(value);
+    else if (!conic_ply_type_is_integer(type))
+      to[i] = (float)value;
+    else if (type == CONIC_PLY_UINT16)
+      to[i] = (float)conic_srgb_decode(value / 65535.0);
+    else
+      to[i] = layout->srgb[value > 0.0 ? value < 255.0 ? (int)value : 255 : 0];
+  }
+}
+
+static void store_opacities(const conic_ply_layout *layout, const double *values, size_t n, float *to) {
+  for (size_t i = 0; i < n; i++)
+    to[i] = (float)(layout->form == CONIC_PLY_GAUSSIANS ? conic_gaussian_opacity(values[i]) : values[i]);
+}
+
+void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
+                              conic_splats *points) {
+  int first_color = layout->has_harmonics ? CONIC_PLY_HARMONIC : CONIC_PLY_RED;
+  if (layout->has_origin_positions && !layout->is_origin_set)
+    find_origin(layout, block, n, points);
+  for (int axis = 0; axis < 3; axis++)
+    store(block[CONIC_PLY_X + axis], n, points->origin[axis], points->position[axis] + first);
+  if (layout->form == CONIC_PLY_AXES) {
+    store_vectors(block, CONIC_PLY_TANGENT_U, n, first, points->tangent_u);
+    store_vectors(block, CONIC_PLY_TANGENT_V, n, first, points->tangent_v);
+  } else if (layout->form == CONIC_PLY_CIRCLES)
+    store_circles(layout, block, n, first, points);
+  else if (layout->form == CONIC_PLY_GAUSSIANS)
+    store_gaussians(layout, block, n, first, points);
+  else if (layout->form == CONIC_PLY_NORMALS)
+    store_vectors(block, CONIC_PLY_NORMAL, n, first, points->normal);
+  for (int axis = 0; axis < 3 && points->color[0]; axis++)
+    store_colors(layout, block[first_color + axis], n, layout->type[first_color + axis], points->color[axis] + first);
+  if (points->opacity)
+    store_opacities(layout, block[CONIC_PLY_OPACITY], n, points->opacity + first);
+}

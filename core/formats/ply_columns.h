@@ -1,0 +1,64 @@
+/* From the columns of a PLY's vertices to splats: which properties mean what, and how they are converted. */
+#ifndef CONIC_PLY_COLUMNS_H
+#define CONIC_PLY_COLUMNS_H
+
+#include "conic/splats.h"
+#include "core/formats/ply_header.h"
+
+/* What a vertex property can mean. Three-component ones are consecutive. */
+typedef enum conic_ply_column {
+  CONIC_PLY_X = 0,
+  CONIC_PLY_TANGENT_U = 3,
+  CONIC_PLY_TANGENT_V = 6,
+  CONIC_PLY_NORMAL = 9,
+  CONIC_PLY_RADIUS = 12,
+  CONIC_PLY_RED = 13,
+  CONIC_PLY_OPACITY = 16,
+  CONIC_PLY_SCALE = 17,
+  CONIC_PLY_ROTATION = 20,
+  CONIC_PLY_HARMONIC = 24,
+  CONIC_PLY_COORDINATE = 27, /* of a texture: two */
+  CONIC_PLY_N_COLUMNS = 29
+} conic_ply_column;
+
+/* Rows that are converted at a time, column by column. */
+enum { CONIC_PLY_BLOCK = 256 };
+
+typedef double conic_ply_block[CONIC_PLY_N_COLUMNS][CONIC_PLY_BLOCK];
+
+/* Which of the known ways the file describes splats in. */
+typedef enum conic_ply_form {
+  CONIC_PLY_POINTS,   /* positions */
+  CONIC_PLY_NORMALS,  /* and normals */
+  CONIC_PLY_CIRCLES,  /* normal and radius */
+  CONIC_PLY_AXES,     /* tangent axes */
+  CONIC_PLY_GAUSSIANS /* scales and rotation */
+} conic_ply_form;
+
+typedef struct conic_ply_layout {
+  int property[CONIC_PLY_N_COLUMNS]; /* the property, counted within the element, that is read into the column; -1: none
+                                      */
+  conic_ply_type type[CONIC_PLY_N_COLUMNS];
+  conic_ply_form form;
+  unsigned fields;     /* of the splat set, bits of conic_splats_field */
+  int has_coordinates; /* of textures, which are not converted */
+  int n_scales;        /* of GAUSSIANS: 2 or 3 */
+  int has_harmonics, has_origin_positions;
+  int is_origin_set;
+  int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
+  float cutoff;
+  float srgb[256]; /* linear values of 8-bit codes */
+} conic_ply_layout;
+
+/* Finds what the vertices hold; `cutoff` turns radii into standard deviations. Texture coordinates are left out unless
+ * `keeps_coordinates`. Errors: INPUT (no x, y, z). */
+conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
+                                   const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
+                                   conic_ply_layout *layout);
+
+/* Converts the first `n` rows of `block` into `points` from `first` on; sets the origin from the first finite position
+ * where positions need one. */
+void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block block, size_t n, size_t first,
+                              conic_splats *points);
+
+#endif

@@ -1,0 +1,268 @@
+#include "core/formats/ply_header.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+typedef struct type_description {
+  const char *names[2];
+  size_t n_bytes;
+  double least, largest; /* of integers */
+} type_description;
+
+static const type_description types[] = {
+    [CONIC_PLY_INT8] = {{"char", "int8"}, 1, -128.0, 127.0},
+    [CONIC_PLY_UINT8] = {{"uchar", "uint8"}, 1, 0.0, 255.0},
+    [CONIC_PLY_INT16] = {{"short", "int16"}, 2, -32768.0, 32767.0},
+    [CONIC_PLY_UINT16] = {{"ushort", "uint16"}, 2, 0.0, 65535.0},
+    [CONIC_PLY_INT32] = {{"int", "int32"}, 4, -2147483648.0, 2147483647.0},
+    [CONIC_PLY_UINT32] = {{"uint", "uint32"}, 4, 0.0, 4294967295.0},
+    [CONIC_PLY_FLOAT] = {{"float", "float32"}, 4, 0.0, 0.0},
+    [CONIC_PLY_DOUBLE] = {{"double", "float64"}, 8, 0.0, 0.0},
+};
+
+enum { N_TYPES = sizeof types / sizeof *types, WORDS_PER_LINE = 5, WORD_ROOM = 128 };
+
+/* One line of the header: its first words, cut to WORD_ROOM, and how many there are in all. */
+typedef struct header_line {
+  char words[WORDS_PER_LINE][WORD_ROOM];
+  int n_words;
+  uint64_t line;
+} header_line;
+
+size_t conic_ply_type_bytes(conic_ply_type type) {
+  return types[type].n_bytes;
+}
+
+int conic_ply_type_is_integer(conic_ply_type type) {
+  return type < CONIC_PLY_FLOAT;
+}
+
+void conic_ply_type_range(conic_ply_type type, double *least, double *largest) {
+  *least = types[type].least;
+  *largest = types[type].largest;
+}
+
+static void copy_word(char *to, size_t room, const char *from, size_t length) {
+  length = length < room - 1 ? length : room - 1;
+  memcpy(to, from, length);
+  to[length] = 0;
+}
+
+static int is_word(const header_line *line, int i_word, const char *word) {
+  return i_word < line->n_words && strcmp(line->words[i_word], word) == 0;
+}
+
+/* What a comment says does not matter, nor how long it is, but for one that names a texture. */
+static int is_comment(const header_line *line) {
+  return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
+}
+
+static conic_status wrong(conic_input *input, const header_line *line, const char *what, const char *word) {
+  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s%s%s%s (line %llu)", input->name, what, word ? " '" : "",
+                    word ? word : "", word ? "'" : "", (unsigned long long)line->line);
+}
+
+static int is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* comment TextureFile NAME: the name is the rest of the line, and may have blanks in it. */
+static conic_status read_comment(conic_input *input, const header_line *line, conic_texts *textures) {
+  static const char keyword[] = "TextureFile";
+  size_t n_keyword = sizeof keyword - 1;
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  if (status != CONIC_OK)
+    return status;
+  const char *c = (const char *)conic_input_bytes(input), *end = c + conic_input_available(input);
+  while (c < end && is_blank(*c))
+    c++;
+  if ((size_t)(end - c) <= n_keyword || memcmp(c, keyword, n_keyword) != 0 || !is_blank(c[n_keyword]))
+    return CONIC_OK;
+  const char *name = c + n_keyword, *name_end = memchr(name, '\n', (size_t)(end - name));
+  while (name < end && is_blank(*name))
+    name++;
+  if (!name_end || name_end - name > CONIC_INPUT_LONGEST_WORD / 2)
+    return wrong(input, line, "a texture's name is too long", NULL);
+  while (name_end > name && is_blank(name_end[-1]))
+    name_end--;
+  if (name_end <= name)
+    return wrong(input, line, "a texture without a name", NULL);
+  if (textures->count == CONIC_MAX_MATERIALS)
+    return wrong(input, line, "too many textures", NULL);
+  return conic_texts_add(input->context, textures, name, (size_t)(name_end - name));
+}
+
+static conic_status read_line(conic_input *input, header_line *line, conic_texts *textures) {
+  int is_done = 0;
+  line->n_words = 0;
+  line->line = input->line;
+  for (;;) {
+    const char *word;
+    size_t length;
+    conic_status status = conic_input_word(input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length == 0)
+      break;
+    if (line->n_words < WORDS_PER_LINE)
+      copy_word(line->words[line->n_words], WORD_ROOM, word, length);
+    line->n_words++;
+    if (line->n_words == 1 && is_comment(line))
+      break;
+  }
+  conic_status status = is_word(line, 0, "comment") ? read_comment(input, line, textures) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = conic_input_next_line(input, &is_done);
+  if (status == CONIC_OK && is_done)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file ends within the header (line %llu)", input->name,
+                      (unsigned long long)line->line);
+  return status;
+}
+
+static conic_status parse_format(conic_input *input, const header_line *line, conic_ply_header *header) {
+  static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+  if (line->n_words != 3)
+    return wrong(input, line, "a format line is 'format ENCODING 1.0'", NULL);
+  if (!is_word(line, 2, "1.0"))
+    return wrong(input, line, "unknown PLY version", line->words[2]);
+  for (int i = 0; i < 3; i++)
+    if (is_word(line, 1, names[i])) {
+      header->format = (conic_ply_format)i;
+      return CONIC_OK;
+    }
+  return wrong(input, line, "unknown PLY encoding", line->words[1]);
+}
+
+/* A natural number without sign; 0 where it is none or does not fit. */
+static int parse_count(const char *text, uint64_t *count) {
+  *count = 0;
+  for (const char *c = text; *c; c++) {
+    if (*c < '0' || *c > '9' || *count > (UINT64_MAX - 9) / 10)
+      return 0;
+    *count = *count * 10 + (uint64_t)(*c - '0');
+  }
+  return *text != 0;
+}
+
+/* Room for one more in an array that doubles. */
+static conic_status make_room(conic_context *context, void **array, size_t n, size_t *capacity, size_t size) {
+  if (n < *capacity)
+    return CONIC_OK;
+  conic_status status = conic_memory_grow(context, array, n, *capacity * 2 + 8, size);
+  if (status == CONIC_OK)
+    *capacity = *capacity * 2 + 8;
+  return status;
+}
+
+static conic_status parse_element(conic_input *input, const header_line *line, conic_ply_header *header) {
+  conic_ply_element element = {.line = line->line, .first_property = header->n_properties};
+  void *elements = header->elements;
+  if (line->n_words != 3 || !parse_count(line->words[2], &element.count))
+    return wrong(input, line, "an element line is 'element NAME COUNT'", NULL);
+  copy_word(element.name, sizeof element.name, line->words[1], strlen(line->words[1]));
+  if (conic_ply_find_element(header, element.name))
+    return wrong(input, line, "a second element", element.name);
+  conic_status status =
+      make_room(input->context, &elements, header->n_elements, &header->element_capacity, sizeof element);
+  header->elements = elements;
+  if (status == CONIC_OK)
+    header->elements[header->n_elements++] = element;
+  return status;
+}
+
+static conic_status parse_type(conic_input *input, const header_line *line, int i_word, conic_ply_type *type) {
+  for (int i = 0; i < N_TYPES; i++)
+    if (is_word(line, i_word, types[i].names[0]) || is_word(line, i_word, types[i].names[1])) {
+      *type = (conic_ply_type)i;
+      return CONIC_OK;
+    }
+  return wrong(input, line, "unknown type", line->words[i_word]);
+}
+
+static conic_status parse_property(conic_input *input, const header_line *line, conic_ply_header *header) {
+  conic_ply_property property = {.is_list = is_word(line, 1, "list")};
+  void *properties = header->properties;
+  int n_words = property.is_list ? 5 : 3;
+  conic_status status = CONIC_OK;
+  if (header->n_elements == 0)
+    return wrong(input, line, "a property before any element", NULL);
+  if (line->n_words != n_words)
+    return wrong(input, line, "a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'", NULL);
+  if (property.is_list)
+    status = parse_type(input, line, 2, &property.count_type);
+  if (status == CONIC_OK && !conic_ply_type_is_integer(property.count_type))
+    status = wrong(input, line, "the length of a list cannot be of type", line->words[2]);
+  if (status == CONIC_OK)
+    status = parse_type(input, line, n_words - 2, &property.type);
+  if (status == CONIC_OK)
+    status = make_room(input->context, &properties, header->n_properties, &header->property_capacity, sizeof property);
+  header->properties = properties;
+  if (status != CONIC_OK)
+    return status;
+  conic_ply_element *element = &header->elements[header->n_elements - 1];
+  copy_word(property.name, sizeof property.name, line->words[n_words - 1], strlen(line->words[n_words - 1]));
+  property.row_offset = element->least_row_bytes;
+  element->least_row_bytes += conic_ply_type_bytes(property.is_list ? property.count_type : property.type);
+  element->has_lists |= property.is_list;
+  element->n_properties++;
+  header->properties[header->n_properties++] = property;
+  return CONIC_OK;
+}
+
+static conic_status read_lines(conic_input *input, conic_ply_header *header) {
+  header_line line;
+  int has_format = 0;
+  conic_status status = read_line(input, &line, &header->textures);
+  if (status == CONIC_OK && !(line.n_words == 1 && is_word(&line, 0, "ply")))
+    status = wrong(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
+  while (status == CONIC_OK) {
+    status = read_line(input, &line, &header->textures);
+    if (status != CONIC_OK || is_comment(&line))
+      continue;
+    if (is_word(&line, 0, "end_header"))
+      break;
+    if (is_word(&line, 0, "format") && !has_format) {
+      status = parse_format(input, &line, header);
+      has_format = 1;
+    } else if (is_word(&line, 0, "element"))
+      status = parse_element(input, &line, header);
+    else if (is_word(&line, 0, "property"))
+      status = parse_property(input, &line, header);
+    else
+      status = wrong(input, &line, "a header line cannot begin with", line.words[0]);
+  }
+  if (status == CONIC_OK && !has_format)
+    status = wrong(input, &line, "the header has no format line", NULL);
+  return status;
+}
+
+conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header) {
+  memset(header, 0, sizeof *header);
+  conic_status status = read_lines(input, header);
+  if (status != CONIC_OK)
+    conic_ply_header_release(input->context, header);
+  return status;
+}
+
+void conic_ply_header_release(conic_context *context, conic_ply_header *header) {
+  conic_memory_release(context, header->elements);
+  conic_memory_release(context, header->properties);
+  conic_memory_release(context, header->textures.bytes);
+  memset(header, 0, sizeof *header);
+}
+
+const conic_ply_element *conic_ply_find_element(const conic_ply_header *header, const char *name) {
+  for (size_t i = 0; i < header->n_elements; i++)
+    if (strcmp(header->elements[i].name, name) == 0)
+      return &header->elements[i];
+  return NULL;
+}
+
+int conic_ply_find_property(const conic_ply_header *header, const conic_ply_element *element, const char *name) {
+  for (size_t i = 0; i < element->n_properties; i++)
+    if (strcmp(header->properties[element->first_property + i].name, name) == 0)
+      return (int)i;
+  return -1;
+}

@@ -1,0 +1,65 @@
+/* The header of a PLY file: which elements it holds, and how their values are stored. */
+#ifndef CONIC_PLY_HEADER_H
+#define CONIC_PLY_HEADER_H
+
+#include "core/files/input.h"
+#include "core/splats/faces.h"
+
+typedef enum conic_ply_format { CONIC_PLY_TEXT, CONIC_PLY_LITTLE_ENDIAN, CONIC_PLY_BIG_ENDIAN } conic_ply_format;
+
+typedef enum conic_ply_type {
+  CONIC_PLY_INT8,
+  CONIC_PLY_UINT8,
+  CONIC_PLY_INT16,
+  CONIC_PLY_UINT16,
+  CONIC_PLY_INT32,
+  CONIC_PLY_UINT32,
+  CONIC_PLY_FLOAT,
+  CONIC_PLY_DOUBLE
+} conic_ply_type;
+
+/* Longer names are cut: none that means anything here is that long. */
+enum { CONIC_PLY_NAME_ROOM = 40 };
+
+typedef struct conic_ply_property {
+  char name[CONIC_PLY_NAME_ROOM];
+  conic_ply_type type; /* of the value, or of a list's items */
+  int is_list;
+  conic_ply_type count_type; /* of a list's length */
+  size_t row_offset;         /* bytes from the row's start, where the element has no lists */
+} conic_ply_property;
+
+typedef struct conic_ply_element {
+  char name[CONIC_PLY_NAME_ROOM];
+  uint64_t count, line; /* line: where it is declared */
+  size_t first_property, n_properties;
+  int has_lists;
+  size_t least_row_bytes; /* of a binary row whose lists are empty: its exact size where there are none */
+} conic_ply_element;
+
+typedef struct conic_ply_header {
+  conic_ply_format format;
+  conic_ply_element *elements;
+  conic_ply_property *properties;
+  size_t n_elements, n_properties, element_capacity, property_capacity;
+  conic_texts textures; /* comment TextureFile NAME */
+} conic_ply_header;
+
+/* Reads from "ply" to past "end_header". On success the caller releases *header; on failure it is empty.
+ * Errors: INPUT, MEMORY. */
+conic_status conic_ply_header_read(conic_input *input, conic_ply_header *header);
+void conic_ply_header_release(conic_context *context, conic_ply_header *header);
+
+/* The element of that name, or null. */
+const conic_ply_element *conic_ply_find_element(const conic_ply_header *header, const char *name);
+
+/* The index, within the element, of the first property of that name, or -1. */
+int conic_ply_find_property(const conic_ply_header *header, const conic_ply_element *element, const char *name);
+
+size_t conic_ply_type_bytes(conic_ply_type type);
+int conic_ply_type_is_integer(conic_ply_type type);
+
+/* The least and largest value of an integer type. */
+void conic_ply_type_range(conic_ply_type type, double *least, double *largest);
+
+#endif

@@ -1,0 +1,232 @@
+#include "core/formats/ply_read.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/formats/ply_columns.h"
+#include "core/formats/ply_texture.h"
+
+/* What the reading of the vertices shares. */
+typedef struct vertex_reader {
+  conic_ply_source *source;
+  const conic_ply_property *properties;
+  conic_ply_layout layout;
+  conic_builder *builder;
+  conic_ply_block block;
+} vertex_reader;
+
+/* The texture coordinates of the block's first `n` rows. */
+static conic_status keep_coordinates(const vertex_reader *reader, size_t n) {
+  conic_faces *faces = reader->builder->model->faces;
+  conic_status status = CONIC_OK;
+  if (!reader->layout.has_coordinates)
+    return CONIC_OK;
+  if (faces->n_coordinates + n > CONIC_MAX_POINTS)
+    return conic_ply_wrong(reader->source, "too many texture coordinates");
+  for (size_t i = 0; status == CONIC_OK && i < n; i++) {
+    const double coordinate[2] = {reader->block[CONIC_PLY_COORDINATE][i], reader->block[CONIC_PLY_COORDINATE + 1][i]};
+    status = conic_faces_add_coordinate(reader->builder->context, faces, coordinate);
+  }
+  return status;
+}
+
+/* Appends the block's first `n` rows to the points. A known file size has shown that all rows can be there; behind a
+ * pipe the arrays grow with what has really come. */
+static conic_status append_block(vertex_reader *reader, size_t n) {
+  conic_splats *points = &reader->builder->model->points;
+  conic_status status = conic_builder_reserve_points(reader->builder, points->count + n);
+  if (status != CONIC_OK)
+    return status;
+  conic_ply_layout_convert(&reader->layout, (const double(*)[CONIC_PLY_BLOCK])reader->block, n, points->count, points);
+  points->count += n;
+  status = keep_coordinates(reader, n);
+  return status == CONIC_OK ? conic_builder_deliver(reader->builder, 0) : status;
+}
+
+/* Binary rows of one size: column by column, straight from the window. */
+static conic_status read_blocks(vertex_reader *reader) {
+  conic_ply_source *source = reader->source;
+  conic_input *input = source->input;
+  size_t row_bytes = source->element->least_row_bytes;
+  while (source->i_row < source->element->count) {
+    uint64_t left = source->element->count - source->i_row;
+    conic_status status = conic_input_fill(input, row_bytes);
+    size_t n = conic_input_available(input) / row_bytes;
+    if (status != CONIC_OK)
+      return status;
+    if (n == 0)
+      return conic_ply_truncated(source);
+    n = n < CONIC_PLY_BLOCK ? n : CONIC_PLY_BLOCK;
+    n = n < left ? n : (size_t)left;
+    for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++) {
+      int i_property = reader->layout.property[column];
+      if (i_property >= 0)
+        conic_ply_convert(conic_input_bytes(input) + reader->properties[i_property].row_offset, row_bytes, n,
+                          reader->layout.type[column], source->format, reader->block[column]);
+    }
+    status = append_block(reader, n);
+    if (status != CONIC_OK)
+      return status;
+    input->next += n * row_bytes;
+    source->i_row += n;
+  }
+  return CONIC_OK;
+}
+
+/* A list of clip lines, three values each, into the row's record. Both of a row's lists may be there, but one of them
+ * empty. */
+static conic_status read_clip_list(vertex_reader *reader, const conic_ply_property *property,
+                                   conic_clip_operator operation, conic_clip *clip) {
+  conic_ply_source *source = reader->source;
+  uint64_t count;
+  conic_status status = conic_ply_read_list_length(source, property, &count);
+  if (status != CONIC_OK || count == 0)
+    return status;
+  if (count != 3 && count != 6)
+    return conic_ply_wrong(source, "a list of clip lines holds neither 0 nor 3 nor 6 values");
+  if (clip->n_lines)
+    return conic_ply_wrong(source, "a vertex has clip lines in both clip_and and clip_or");
+  clip->operation = (uint16_t)operation;
+  for (uint64_t i = 0; status == CONIC_OK && i < count; i++) {
+    double value = 0.0;
+    status = conic_ply_read_value(source, property->type, &value);
+    clip->lines[i / 3][i % 3] = (float)value;
+  }
+  clip->n_lines = (uint16_t)(count / 3);
+  return status;
+}
+
+/* One row, value by value, into row `i_row` of the block. */
+static conic_status read_row(vertex_reader *reader, const int *column_of_property, size_t i_row) {
+  conic_ply_source *source = reader->source;
+  const int *clip_property = reader->layout.clip_property;
+  conic_clip clip = {.splat = (uint32_t)(reader->builder->model->points.count + i_row)};
+  conic_status status = conic_ply_begin_row(source);
+  for (size_t i = 0; status == CONIC_OK && i < source->element->n_properties; i++) {
+    const conic_ply_property *property = &reader->properties[i];
+    uint64_t count = 1;
+    if (column_of_property[i] >= 0) {
+      status = conic_ply_read_value(source, property->type, &reader->block[column_of_property[i]][i_row]);
+      continue;
+    }
+    if ((int)i == clip_property[CONIC_CLIP_AND] || (int)i == clip_property[CONIC_CLIP_OR]) {
+      status = read_clip_list(reader, property, (int)i == clip_property[CONIC_CLIP_OR] ? CONIC_CLIP_OR : CONIC_CLIP_AND,
+                              &clip);
+      continue;
+    }
+    if (property->is_list)
+      status = conic_ply_read_list_length(source, property, &count);
+    if (status == CONIC_OK)
+      status = conic_ply_skip_values(source, property->type, count);
+  }
+  if (status == CONIC_OK && clip.n_lines)
+    status = conic_builder_add_clip(reader->builder, &clip);
+  return status == CONIC_OK ? conic_ply_end_row(source) : status;
+}
+
+static conic_status read_rows(vertex_reader *reader) {
+  const conic_ply_element *element = reader->source->element;
+  conic_context *context = reader->source->input->context;
+  conic_status status = CONIC_OK;
+  int *column_of_property = conic_memory_allocate(context, element->n_properties, sizeof *column_of_property);
+  if (!column_of_property)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < element->n_properties; i++)
+    column_of_property[i] = -1;
+  for (int column = 0; column < CONIC_PLY_N_COLUMNS; column++)
+    if (reader->layout.property[column] >= 0)
+      column_of_property[reader->layout.property[column]] = column;
+  for (uint64_t done = 0; status == CONIC_OK && done < element->count;) {
+    uint64_t left = element->count - done;
+    size_t n = left < CONIC_PLY_BLOCK ? (size_t)left : CONIC_PLY_BLOCK;
+    for (size_t i = 0; status == CONIC_OK && i < n; i++)
+      status = read_row(reader, column_of_property, i);
+    if (status == CONIC_OK)
+      status = append_block(reader, n);
+    done += n;
+  }
+  conic_memory_release(context, column_of_property);
+  return status;
+}
+
+static conic_status read_vertices(vertex_reader *reader) {
+  const conic_ply_source *source = reader->source;
+  const conic_ply_element *element = source->element;
+  conic_status status = CONIC_OK;
+  if (reader->layout.has_coordinates)
+    conic_faces_begin_vertices(reader->builder->model->faces);
+  if (source->input->has_size && !reader->builder->delivery)
+    status = conic_builder_reserve_points_exactly(reader->builder, (size_t)element->count);
+  if (status != CONIC_OK)
+    return status;
+  int is_plain =
+      source->format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
+  return is_plain ? read_blocks(reader) : read_rows(reader);
+}
+
+/* Elements stand in the file in the header's order; those that mean nothing here are passed over. */
+static conic_status read_elements(vertex_reader *reader, const conic_ply_header *header,
+                                  const conic_ply_element *vertices) {
+  conic_ply_source *source = reader->source;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; status == CONIC_OK && i < header->n_elements; i++) {
+    const conic_ply_element *element = &header->elements[i];
+    status = conic_ply_begin_element(source, element);
+    if (status != CONIC_OK)
+      break;
+    if (element == vertices)
+      status = read_vertices(reader);
+    else if (!reader->builder->delivery && element->count > 0 &&
+             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
+      status = conic_ply_read_faces(source, header, vertices->count, reader->builder);
+    else
+      status = conic_ply_skip_element(source, header);
+  }
+  return status;
+}
+
+static conic_status read_body(conic_input *input, const conic_read_options *options, const conic_ply_header *header,
+                              const conic_delivery *delivery, conic_model *model) {
+  conic_builder builder;
+  conic_ply_source source = {.input = input, .format = header->format};
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  if (!vertices)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no element 'vertex' in the header (line %llu)",
+                      input->name, (unsigned long long)(input->line - 1));
+  if (vertices->count > CONIC_MAX_POINTS)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %llu vertices are too many (line %llu)", input->name,
+                      (unsigned long long)vertices->count, (unsigned long long)vertices->line);
+  vertex_reader *reader = conic_memory_allocate(input->context, 1, sizeof *reader);
+  if (!reader)
+    return CONIC_ERROR_MEMORY;
+  reader->source = &source;
+  reader->builder = &builder;
+  int keeps_coordinates = options->keeps_faces && !delivery;
+  conic_status status =
+      conic_ply_layout_find(input, header, vertices, options->cutoff, keeps_coordinates, &reader->layout);
+  if (status == CONIC_OK) {
+    reader->properties = header->properties + vertices->first_property; /* there are some, as x, y and z were found */
+    status = conic_builder_begin(input->context, model, reader->layout.fields, delivery, &builder);
+  }
+  if (status == CONIC_OK && keeps_coordinates &&
+      (reader->layout.has_coordinates || conic_ply_has_texture_corners(header)))
+    status = conic_ply_begin_textures(input, header, model);
+  if (status == CONIC_OK)
+    status = read_elements(reader, header, vertices);
+  if (status == CONIC_OK)
+    status = conic_builder_deliver(&builder, 1);
+  conic_memory_release(input->context, reader);
+  return status;
+}
+
+conic_status conic_ply_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
+  conic_ply_header header;
+  conic_status status = conic_ply_header_read(input, &header);
+  if (status != CONIC_OK)
+    return status;
+  status = read_body(input, options, &header, delivery, model);
+  conic_ply_header_release(input->context, &header);
+  return status;
+}

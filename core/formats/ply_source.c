@@ -1,0 +1,244 @@
+#include "core/formats/ply_source.h"
+
+#include <string.h>
+
+#include "core/base/message.h"
+#include "core/files/number.h"
+
+conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {
+  const conic_input *input = source->input;
+  if (source->format == CONIC_PLY_TEXT)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s %llu: %s (line %llu)", input->name,
+                      source->element->name, (unsigned long long)source->i_row, what, (unsigned long long)input->line);
+  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s %llu: %s (at byte %llu)", input->name,
+                    source->element->name, (unsigned long long)source->i_row, what,
+                    (unsigned long long)conic_input_offset(input));
+}
+
+conic_status conic_ply_truncated(const conic_ply_source *source) {
+  const conic_input *input = source->input;
+  int is_text = source->format == CONIC_PLY_TEXT;
+  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file ends within %s %llu of %llu (%s %llu)",
+                    input->name, source->element->name, (unsigned long long)source->i_row,
+                    (unsigned long long)source->element->count, is_text ? "line" : "at byte",
+                    (unsigned long long)(is_text ? input->line : conic_input_offset(input)));
+}
+
+/* The fewest bytes of a row: in ascii a digit and a blank for each value. */
+static uint64_t least_row_bytes(const conic_ply_source *source, const conic_ply_element *element) {
+  return source->format == CONIC_PLY_TEXT ? 2 * (uint64_t)element->n_properties : (uint64_t)element->least_row_bytes;
+}
+
+conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element) {
+  conic_input *input = source->input;
+  uint64_t row_bytes = least_row_bytes(source, element), remaining = conic_input_remaining_bytes(input);
+  source->element = element;
+  source->i_row = 0;
+  remaining += source->format == CONIC_PLY_TEXT && remaining < UINT64_MAX; /* the last line may lack its end */
+  if (row_bytes && element->count > remaining / row_bytes)
+    return conic_fail(input->context, CONIC_ERROR_INPUT,
+                      "%s: the file is too short for the %llu rows of '%s' that line %llu declares (at byte %llu)",
+                      input->name, (unsigned long long)element->count, element->name, (unsigned long long)element->line,
+                      (unsigned long long)conic_input_offset(input));
+  return CONIC_OK;
+}
+
+/* Past empty lines, to the next word. */
+conic_status conic_ply_begin_row(conic_ply_source *source) {
+  conic_input *input = source->input;
+  int is_done = 0;
+  while (source->format == CONIC_PLY_TEXT) {
+    const char *word;
+    size_t length;
+    conic_status status = conic_input_word(input, &word, &length);
+    if (status != CONIC_OK)
+      return status;
+    if (length > 0) {
+      input->next -= length; /* is read again as the row's first value */
+      break;
+    }
+    status = conic_input_next_line(input, &is_done);
+    if (status != CONIC_OK)
+      return status;
+    if (is_done)
+      return conic_ply_truncated(source);
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_ply_end_row(conic_ply_source *source) {
+  if (source->format == CONIC_PLY_TEXT) {
+    const char *word;
+    size_t length;
+    int is_done;
+    conic_status status = conic_input_word(source->input, &word, &length);
+    if (status == CONIC_OK && length > 0)
+      status = conic_ply_wrong(source, "the line has more values than the header declares");
+    if (status == CONIC_OK)
+      status = conic_input_next_line(source->input, &is_done);
+    if (status != CONIC_OK)
+      return status;
+  }
+  source->i_row++;
+  return CONIC_OK;
+}
+
+static conic_status read_text(conic_ply_source *source, conic_ply_type type, double *value) {
+  const char *word;
+  size_t length;
+  double least, largest;
+  conic_status status = conic_input_word(source->input, &word, &length);
+  if (status != CONIC_OK)
+    return status;
+  if (length == 0 && source->input->is_at_end && conic_input_available(source->input) == 0)
+    return conic_ply_truncated(source);
+  if (length == 0)
+    return conic_ply_wrong(source, "the line has fewer values than the header declares");
+  if (conic_number_parse(word, length, value) != length)
+    return conic_ply_wrong(source, "a value is not a number");
+  if (!conic_ply_type_is_integer(type))
+    return CONIC_OK;
+  conic_ply_type_range(type, &least, &largest);
+  if (!(*value >= least && *value <= largest) || *value != (double)(int64_t)*value)
+    return conic_ply_wrong(source, "a value is not an integer within its type's range");
+  return CONIC_OK;
+}
+
+conic_status conic_ply_read_value(conic_ply_source *source, conic_ply_type type, double *value) {
+  conic_input *input = source->input;
+  size_t n_bytes = conic_ply_type_bytes(type);
+  if (source->format == CONIC_PLY_TEXT)
+    return read_text(source, type, value);
+  if (conic_input_available(input) < n_bytes) {
+    conic_status status = conic_input_fill(input, n_bytes);
+    if (status != CONIC_OK)
+      return status;
+    if (conic_input_available(input) < n_bytes)
+      return conic_ply_truncated(source);
+  }
+  conic_ply_convert(conic_input_bytes(input), n_bytes, 1, type, source->format, value);
+  input->next += n_bytes;
+  return CONIC_OK;
+}
+
+conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_ply_property *property,
+                                        uint64_t *length) {
+  double value = 0.0;
+  conic_status status = conic_ply_read_value(source, property->count_type, &value);
+  if (status != CONIC_OK)
+    return status;
+  if (value < 0.0)
+    return conic_ply_wrong(source, "a list has a negative length");
+  *length = (uint64_t)value;
+  int is_text = source->format == CONIC_PLY_TEXT;
+  uint64_t item_bytes = is_text ? 2 : conic_ply_type_bytes(property->type);
+  uint64_t remaining = conic_input_remaining_bytes(source->input);
+  remaining += is_text && remaining < UINT64_MAX; /* the last line may lack its end */
+  if (*length > remaining / item_bytes)
+    return conic_ply_wrong(source, "a list runs past the end of the file");
+  return CONIC_OK;
+}
+
+conic_status conic_ply_skip_values(conic_ply_source *source, conic_ply_type type, uint64_t count) {
+  if (source->format != CONIC_PLY_TEXT) {
+    uint64_t n_bytes = count * conic_ply_type_bytes(type), skipped;
+    conic_status status = conic_input_skip(source->input, n_bytes, &skipped);
+    return status == CONIC_OK && skipped < n_bytes ? conic_ply_truncated(source) : status;
+  }
+  for (uint64_t i = 0; i < count; i++) {
+    double value;
+    conic_status status = read_text(source, type, &value);
+    if (status != CONIC_OK)
+      return status;
+  }
+  return CONIC_OK;
+}
+
+static conic_status skip_row(conic_ply_source *source, const conic_ply_property *properties) {
+  conic_status status = conic_ply_begin_row(source);
+  for (size_t i = 0; status == CONIC_OK && i < source->element->n_properties; i++) {
+    uint64_t count = 1;
+    if (properties[i].is_list)
+      status = conic_ply_read_list_length(source, &properties[i], &count);
+    if (status == CONIC_OK)
+      status = conic_ply_skip_values(source, properties[i].type, count);
+  }
+  return status == CONIC_OK ? conic_ply_end_row(source) : status;
+}
+
+conic_status conic_ply_skip_element(conic_ply_source *source, const conic_ply_header *header) {
+  const conic_ply_element *element = source->element;
+  conic_status status = CONIC_OK;
+  if (element->n_properties == 0)
+    return CONIC_OK;
+  for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++)
+    status = skip_row(source, header->properties + element->first_property);
+  return status;
+}
+
+static uint16_t load_16(const unsigned char *p, int is_big) {
+  return (uint16_t)(is_big ? p[0] << 8 | p[1] : p[1] << 8 | p[0]);
+}
+
+static uint32_t load_32(const unsigned char *p, int is_big) {
+  uint32_t a = p[0], b = p[1], c = p[2], d = p[3];
+  return is_big ? a << 24 | b << 16 | c << 8 | d : d << 24 | c << 16 | b << 8 | a;
+}
+
+static uint64_t load_64(const unsigned char *p, int is_big) {
+  uint64_t first = load_32(p, is_big), second = load_32(p + 4, is_big);
+  return is_big ? first << 32 | second : second << 32 | first;
+}
+
+static void convert_floats(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
+  for (size_t i = 0; i < n; i++) {
+    uint32_t bits = load_32(bytes + i * stride, is_big);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    values[i] = (double)value;
+  }
+}
+
+static void convert_doubles(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
+  for (size_t i = 0; i < n; i++) {
+    uint64_t bits = load_64(bytes + i * stride, is_big);
+    memcpy(values + i, &bits, sizeof *values);
+  }
+}
+
+static void convert_integers(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type, int is_big,
+                             double *values) {
+  for (size_t i = 0; i < n; i++, bytes += stride)
+    switch (type) {
+    case CONIC_PLY_INT8:
+      values[i] = (double)(bytes[0] - (bytes[0] & 0x80) * 2);
+      break;
+    case CONIC_PLY_INT16:
+      values[i] = (double)(load_16(bytes, is_big) - (load_16(bytes, is_big) & 0x8000) * 2);
+      break;
+    case CONIC_PLY_UINT16:
+      values[i] = (double)load_16(bytes, is_big);
+      break;
+    case CONIC_PLY_INT32:
+      values[i] = (double)((int64_t)load_32(bytes, is_big) - (int64_t)(load_32(bytes, is_big) & 0x80000000u) * 2);
+      break;
+    case CONIC_PLY_UINT32:
+      values[i] = (double)load_32(bytes, is_big);
+      break;
+    default:
+      values[i] = (double)bytes[0];
+    }
+}
+
+void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type,
+                       conic_ply_format format, double *values) {
+  int is_big = format == CONIC_PLY_BIG_ENDIAN;
+  if (type == CONIC_PLY_FLOAT && is_big)
+    convert_floats(bytes, stride, n, 1, values);
+  else if (type == CONIC_PLY_FLOAT)
+    convert_floats(bytes, stride, n, 0, values);
+  else if (type == CONIC_PLY_DOUBLE)
+    convert_doubles(bytes, stride, n, is_big, values);
+  else
+    convert_integers(bytes, stride, n, type, is_big, values);
+}

@@ -1,0 +1,42 @@
+/* The values behind a PLY file's header, one at a time and whatever the encoding. */
+#ifndef CONIC_PLY_SOURCE_H
+#define CONIC_PLY_SOURCE_H
+
+#include "core/formats/ply_header.h"
+
+typedef struct conic_ply_source {
+  conic_input *input;
+  conic_ply_format format;
+  const conic_ply_element *element; /* the one that is being read, for messages */
+  uint64_t i_row;
+} conic_ply_source;
+
+/* Starts with the element; refuses more rows than the rest of the file can hold. Errors: INPUT. */
+conic_status conic_ply_begin_element(conic_ply_source *source, const conic_ply_element *element);
+
+/* Around every row. An ascii row is one line. Errors: INPUT, CANCELLED. */
+conic_status conic_ply_begin_row(conic_ply_source *source);
+conic_status conic_ply_end_row(conic_ply_source *source);
+
+/* The next value as a double, which holds every type exactly. Errors: INPUT, CANCELLED. */
+conic_status conic_ply_read_value(conic_ply_source *source, conic_ply_type type, double *value);
+
+/* The next list's length; refuses what the rest of the file can't hold. Errors: INPUT, CANCELLED. */
+conic_status conic_ply_read_list_length(conic_ply_source *source, const conic_ply_property *property, uint64_t *length);
+
+/* Passes over `count` values. Errors: INPUT, CANCELLED. */
+conic_status conic_ply_skip_values(conic_ply_source *source, conic_ply_type type, uint64_t count);
+
+/* Passes over a whole element. Errors: INPUT, CANCELLED. */
+conic_status conic_ply_skip_element(conic_ply_source *source, const conic_ply_header *header);
+
+/* Values of one type, `stride` bytes apart, as doubles. */
+void conic_ply_convert(const unsigned char *bytes, size_t stride, size_t n, conic_ply_type type,
+                       conic_ply_format format, double *values);
+
+/* "FILE: what is wrong (line N)", or "(at byte N)" in a binary file. */
+conic_status conic_ply_wrong(const conic_ply_source *source, const char *what);
+/* The file ends too early. */
+conic_status conic_ply_truncated(const conic_ply_source *source);
+
+#endif

@@ -1,0 +1,58 @@
+#include "core/formats/raw_colors.h"
+
+#include "core/base/color.h"
+#include "core/base/memory.h"
+
+float conic_raw_colors_largest(const conic_splats *points, float largest) {
+  for (int channel = 0; channel < 3 && points->color[0]; channel++)
+    for (size_t i = 0; i < points->count; i++)
+      largest = points->color[channel][i] > largest ? points->color[channel][i] : largest;
+  return largest;
+}
+
+static void drop(conic_context *context, conic_splats *points) {
+  for (int channel = 0; channel < 3; channel++) {
+    conic_memory_release(context, points->color[channel]);
+    points->color[channel] = NULL;
+  }
+}
+
+conic_status conic_raw_colors_scale(conic_context *context, float largest, int may_be_fractions,
+                                    conic_raw_scale *scale) {
+  *scale = (conic_raw_scale){0, NULL};
+  if (!(largest > 0.0f))
+    return CONIC_OK;
+  int whole = may_be_fractions && largest <= 1.0f ? 1 : largest <= 255.0f ? 255 : 65535;
+  float *table = conic_memory_allocate(context, (size_t)whole + 1, sizeof *table);
+  if (!table)
+    return CONIC_ERROR_MEMORY;
+  for (int code = 0; code <= whole; code++)
+    table[code] = (float)conic_srgb_decode((double)code / (double)whole);
+  *scale = (conic_raw_scale){whole, table};
+  return CONIC_OK;
+}
+
+/* Whole codes, which is nearly all, are looked up. */
+void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n) {
+  for (size_t i = 0; i < n; i++) {
+    float value = values[i];
+    int is_code = value >= 0.0f && value <= (float)scale->whole && value == (float)(int)value;
+    values[i] = is_code ? scale->table[(int)value] : (float)conic_srgb_decode((double)value / (double)scale->whole);
+  }
+}
+
+conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions) {
+  conic_raw_scale scale;
+  if (!points->color[0])
+    return CONIC_OK;
+  conic_status status =
+      conic_raw_colors_scale(context, conic_raw_colors_largest(points, 0.0f), may_be_fractions, &scale);
+  if (status != CONIC_OK)
+    return status;
+  if (!scale.table)
+    drop(context, points);
+  for (int channel = 0; channel < 3 && scale.table; channel++)
+    conic_raw_colors_apply(&scale, points->color[channel], points->count);
+  conic_memory_release(context, scale.table);
+  return CONIC_OK;
+}

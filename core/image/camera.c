@@ -1,0 +1,91 @@
+#include "conic/camera.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
+
+void conic_framing_init(conic_framing *framing) {
+  memset(framing, 0, sizeof *framing);
+  framing->width = framing->height = 1024;
+  framing->azimuth_deg = 30.0;
+  framing->elevation_deg = 15.0;
+  framing->fov_deg = 40.0;
+  framing->zoom = 1.0;
+  framing->up[1] = 1.0;
+}
+
+static int framing_makes_sense(const conic_framing *framing) {
+  double up_squared = 0.0;
+  for (int i = 0; i < 3; i++)
+    up_squared += framing->up[i] * framing->up[i];
+  return framing->width >= 1 && framing->width <= 65535 && framing->height >= 1 && framing->height <= 65535 &&
+         fabs(framing->azimuth_deg) < 1e6 && fabs(framing->elevation_deg) <= 90.0 && framing->fov_deg > 0.0 &&
+         framing->fov_deg < 180.0 && framing->zoom > 0.0 && framing->zoom < 1e9 && up_squared > 1e-200 &&
+         up_squared < 1e200;
+}
+
+/* The smallest rotation that takes y to `up`, which is unit: azimuth 0 then looks along what it takes z to. */
+static void rotation_from_y(const double up[3], double rotation[3][3]) {
+  double c = 1.0 + up[1];
+  if (c < 1e-12) { /* straight down: half a turn around z */
+    double half_turn[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+    memcpy(rotation, half_turn, sizeof half_turn);
+    return;
+  }
+  double x = up[0], z = up[2];
+  double made[3][3] = {{1.0 - x * x / c, x, -x * z / c}, {-x, up[1], -z}, {-x * z / c, z, 1.0 - z * z / c}};
+  memcpy(rotation, made, sizeof made);
+}
+
+static void rotate(const double rotation[3][3], const double v[3], double result[3]) {
+  for (int i = 0; i < 3; i++)
+    result[i] = rotation[i][0] * v[0] + rotation[i][1] * v[1] + rotation[i][2] * v[2];
+}
+
+conic_status conic_camera_frame(conic_context *context, const conic_framing *framing, const double minimum[3],
+                                const double maximum[3], conic_camera *camera) {
+  if (!framing || !camera || !framing_makes_sense(framing))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the framing makes no sense");
+  double up[3], rotation[3][3], center[3], diagonal_squared = 0.0;
+  double up_length =
+      sqrt(framing->up[0] * framing->up[0] + framing->up[1] * framing->up[1] + framing->up[2] * framing->up[2]);
+  for (int i = 0; i < 3; i++) {
+    up[i] = framing->up[i] / up_length;
+    center[i] = 0.5 * minimum[i] + 0.5 * maximum[i];
+    diagonal_squared += (maximum[i] - minimum[i]) * (maximum[i] - minimum[i]);
+  }
+  rotation_from_y(up, rotation);
+
+  double azimuth = conic_radians(framing->azimuth_deg), elevation = conic_radians(framing->elevation_deg);
+  double sin_a = conic_sin(azimuth), cos_a = conic_cos(azimuth);
+  double sin_e = conic_sin(elevation), cos_e = conic_cos(elevation);
+  /* The camera's axes in a frame with y up; y of the camera points down, z into the scene. */
+  double right[3] = {cos_a, 0.0, -sin_a};
+  double down[3] = {sin_a * sin_e, -cos_e, cos_a * sin_e};
+  double forward[3] = {-sin_a * cos_e, -sin_e, -cos_a * cos_e};
+  const double *rows[3] = {right, down, forward};
+
+  double radius = 0.5 * sqrt(diagonal_squared);
+  if (!(radius > 0.0))
+    radius = 1.0;
+  double tan_half = conic_tan(conic_radians(0.5 * framing->fov_deg));
+  double tan_sphere = 0.9 * tan_half; /* of the angle under which the sphere's radius is seen */
+  double distance = radius * sqrt(1.0 + tan_sphere * tan_sphere) / tan_sphere;
+
+  int shorter = framing->width < framing->height ? framing->width : framing->height;
+  camera->width = framing->width;
+  camera->height = framing->height;
+  camera->fx = camera->fy = framing->zoom * 0.5 * (double)shorter / tan_half;
+  camera->cx = 0.5 * (double)framing->width;
+  camera->cy = 0.5 * (double)framing->height;
+  for (int i = 0; i < 3; i++) {
+    double row[3];
+    rotate((const double(*)[3])rotation, rows[i], row);
+    memcpy(camera->cam_from_world[i], row, sizeof row);
+    camera->cam_from_world[i][3] =
+        (i == 2 ? distance : 0.0) - (row[0] * center[0] + row[1] * center[1] + row[2] * center[2]);
+  }
+  return CONIC_OK;
+}

@@ -1,0 +1,116 @@
+#include "core/image/compare.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/power.h"
+#include "core/image/image_common.h"
+
+/* The sums of one plane, or of several. */
+typedef struct plane_sums {
+  double max_abs, sum_of_squares;
+  double n_samples;
+} plane_sums;
+
+/* Row by row, so that the rounding of the sums is the same whatever the rows' number; marks the pixels that differ. */
+static plane_sums compare_plane(const conic_image *a, const conic_image *b, conic_plane plane, unsigned char *differs) {
+  const conic_plane_description *description = conic_plane_describe(plane);
+  size_t n_channels = (size_t)description->n_channels, width = (size_t)a->width;
+  plane_sums sums = {.n_samples = (double)(conic_image_pixels(a) * n_channels)};
+  for (size_t y = 0; y < (size_t)a->height; y++) {
+    size_t first = y * width * n_channels;
+    const unsigned char *a_row = (const unsigned char *)a->planes[plane] + first * 4;
+    const unsigned char *b_row = (const unsigned char *)b->planes[plane] + first * 4;
+    double row_sum = 0.0;
+    if (memcmp(a_row, b_row, width * n_channels * 4) == 0)
+      continue;
+    for (size_t i = 0; i < width * n_channels; i++) {
+      uint32_t a_bits = conic_bits_at(a_row, i), b_bits = conic_bits_at(b_row, i);
+      if (a_bits == b_bits)
+        continue;
+      double difference = conic_sample_difference(a_bits, b_bits, description->is_uint);
+      differs[y * width + i / n_channels] = 1;
+      if (difference > sums.max_abs)
+        sums.max_abs = difference;
+      row_sum += difference * difference;
+    }
+    sums.sum_of_squares += row_sum;
+  }
+  return sums;
+}
+
+static double root_mean(const plane_sums *sums) {
+  return sums->n_samples > 0.0 ? sqrt(sums->sum_of_squares / sums->n_samples) : 0.0;
+}
+
+static void compare_planes(const conic_image *a, const conic_image *b, conic_difference *difference,
+                           unsigned char *differs) {
+  plane_sums total = {0};
+  unsigned measured = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (!a->planes[i] || !b->planes[i])
+      continue;
+    plane_sums sums = compare_plane(a, b, (conic_plane)i, differs);
+    difference->planes[i].compared = 1;
+    difference->planes[i].max_abs = sums.max_abs;
+    difference->planes[i].rmse = root_mean(&sums);
+    difference->planes[i].p999 = conic_compare_p999(a, b, 1u << i);
+    if (conic_plane_describe((conic_plane)i)->is_uint)
+      continue;
+    measured |= 1u << i;
+    if (sums.max_abs > total.max_abs)
+      total.max_abs = sums.max_abs;
+    total.sum_of_squares += sums.sum_of_squares;
+    total.n_samples += sums.n_samples;
+  }
+  difference->p999 = conic_compare_p999(a, b, measured);
+  difference->max_abs = total.max_abs;
+  difference->rmse = root_mean(&total);
+  for (size_t i = 0; i < conic_image_pixels(a); i++)
+    difference->differing_pixels += differs[i];
+}
+
+static double psnr_of(double mean_square) {
+  if (mean_square == 0.0)
+    return (double)INFINITY;
+  return -10.0 * conic_logarithm(mean_square) / 2.30258509299404568402;
+}
+
+static conic_status compare_colors(conic_context *context, const conic_image *a, const conic_image *b,
+                                   conic_difference *difference) {
+  double sum_of_squares;
+  if (!a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
+    return CONIC_OK;
+  conic_status status = conic_compare_color(context, a, b, &sum_of_squares, &difference->ssim);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_compare_flip(context, a, b, NULL, &difference->flip);
+  if (status != CONIC_OK)
+    return status;
+  difference->over_code = conic_compare_codes(a, b);
+  difference->has_color = 1;
+  difference->psnr = psnr_of(sum_of_squares / (3.0 * (double)conic_image_pixels(a)));
+  return CONIC_OK;
+}
+
+conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_difference *difference) {
+  if (!a || !b || !difference || a->width < 1 || a->height < 1 || b->width < 1 || b->height < 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "compare: an image is missing or empty");
+  memset(difference, 0, sizeof *difference);
+  difference->same_size = a->width == b->width && a->height == b->height;
+  if (!difference->same_size)
+    return CONIC_OK;
+  unsigned char *differs = conic_memory_allocate_zeroed(context, conic_image_pixels(a), 1);
+  if (!differs)
+    return CONIC_ERROR_MEMORY;
+  compare_planes(a, b, difference, differs);
+  conic_memory_release(context, differs);
+  difference->identical = conic_image_planes(a) == conic_image_planes(b) && difference->differing_pixels == 0;
+  conic_status status = compare_colors(context, a, b, difference);
+  if (status == CONIC_OK)
+    status = conic_largest_hole(context, a, b, &difference->largest_hole);
+  return status;
+}

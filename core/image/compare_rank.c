@@ -1,0 +1,82 @@
+/* Percentiles and counts of the pixels' differences, without memory for them: what is not negative is ordered as the
+ * bits of its float are, so that three counts, of 2¹¹ classes each, find a rank exactly. */
+#include "core/base/color.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
+
+enum { CLASS_BITS = 11, N_CLASSES = 1 << CLASS_BITS };
+
+/* Where pixel i lies in a plane. */
+static const unsigned char *pixel_of(const conic_image *image, int plane, size_t i) {
+  size_t n_channels = (size_t)conic_plane_describe((conic_plane)plane)->n_channels;
+  return (const unsigned char *)image->planes[plane] + 4 * n_channels * i;
+}
+
+/* The largest difference of a pixel's samples in the planes. */
+static float pixel_difference(const conic_image *a, const conic_image *b, unsigned planes, size_t i) {
+  double largest = 0.0;
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
+    if (!(planes >> plane & 1))
+      continue;
+    const conic_plane_description *description = conic_plane_describe((conic_plane)plane);
+    const unsigned char *a_pixel = pixel_of(a, plane, i), *b_pixel = pixel_of(b, plane, i);
+    for (size_t c = 0; c < (size_t)description->n_channels; c++) {
+      uint32_t a_bits = conic_bits_at(a_pixel, c), b_bits = conic_bits_at(b_pixel, c);
+      double difference = a_bits == b_bits ? 0.0 : conic_sample_difference(a_bits, b_bits, description->is_uint);
+      largest = difference > largest ? difference : largest;
+    }
+  }
+  return (float)largest;
+}
+
+static uint32_t bits_of(float value) {
+  uint32_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/* The class in which the rank falls; *rank becomes its rank in there. */
+static uint32_t find_class(const size_t *counts, size_t *rank) {
+  uint32_t i = 0;
+  for (; i < N_CLASSES - 1 && counts[i] <= *rank; i++)
+    *rank -= counts[i];
+  return i;
+}
+
+double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned planes) {
+  size_t n = conic_image_pixels(a), rank = n - n / 1000 - 1;          /* ⌈0.999 n⌉, from 0 on */
+  uint64_t known = 0;                                                 /* the first bits of the value, found so far */
+  for (int shift = 2 * CLASS_BITS; shift >= 0; shift -= CLASS_BITS) { /* 33 bits, the first of them 0 */
+    size_t counts[N_CLASSES] = {0};
+    for (size_t i = 0; i < n; i++) {
+      uint64_t bits = bits_of(pixel_difference(a, b, planes, i));
+      if (bits >> shift >> CLASS_BITS == known)
+        counts[bits >> shift & (N_CLASSES - 1)]++;
+    }
+    known = known << CLASS_BITS | find_class(counts, &rank);
+  }
+  uint32_t bits = (uint32_t)known;
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return (double)value;
+}
+
+/* As a screen shows it; NaN is -1, which no colour is. */
+static double encode(float linear) {
+  if (!(linear > 0.0f))
+    return linear <= 0.0f ? 0.0 : -1.0;
+  return linear >= 1.0f ? 1.0 : conic_srgb_encode((double)linear);
+}
+
+size_t conic_compare_codes(const conic_image *a, const conic_image *b) {
+  const float *a_pixel = a->planes[CONIC_PLANE_RGBA], *b_pixel = b->planes[CONIC_PLANE_RGBA];
+  size_t n_over = 0;
+  for (size_t i = 0; i < conic_image_pixels(a); i++, a_pixel += 4, b_pixel += 4) {
+    int is_over = 0;
+    for (int c = 0; c < 3 && !is_over; c++)
+      is_over =
+          !conic_same_bits(a_pixel[c], b_pixel[c]) && fabs(encode(a_pixel[c]) - encode(b_pixel[c])) > 1.001 / 255.0;
+    n_over += (size_t)is_over;
+  }
+  return n_over;
+}

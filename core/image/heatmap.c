@@ -1,0 +1,115 @@
+#include "conic/image.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/compare.h"
+#include "core/image/image_common.h"
+
+/* The smallest difference that is told from the next: 2^-20, a millionth. */
+enum { DARKEST_EXPONENT = -20 };
+
+/* How far `difference` is from that power of two (0) to 1 and beyond (1) by its logarithm, taken as straight between
+ * powers of two: that needs no logarithm and no one sees the difference. Infinity and NaN are 1. */
+static float scale_position(double difference, int darkest_exponent) {
+  int exponent;
+  if (!(difference < 1.0))
+    return 1.0f;
+  double mantissa = frexp(difference, &exponent); /* in [½, 1) */
+  double logarithm = (double)(exponent - 1) + (2.0 * mantissa - 1.0);
+  double position = 1.0 - logarithm / darkest_exponent;
+  return position > 0.0 ? (float)position : 0.0f;
+}
+
+/* From blue over red and yellow to white. */
+static void paint(float position, float pixel[4]) {
+  static const float stops[4][3] = {{0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+  float scaled = position * 3.0f;
+  int i = scaled < 1.0f ? 0 : scaled < 2.0f ? 1 : 2;
+  float part = scaled - (float)i;
+  for (int c = 0; c < 3; c++)
+    pixel[c] = stops[i][c] + part * (stops[i + 1][c] - stops[i][c]);
+}
+
+/* The largest channel's difference; NaN where a channel's is none. Equal bits differ by nothing. */
+static double pixel_difference(const float *a, const float *b) {
+  double largest = 0.0;
+  for (int c = 0; c < 4; c++) {
+    if (conic_same_bits(a[c], b[c]))
+      continue;
+    double difference = fabs((double)a[c] - (double)b[c]);
+    if (!(difference <= largest))
+      largest = difference >= 0.0 ? difference : (double)INFINITY;
+  }
+  return largest;
+}
+
+/* A picture for the heat map of two images, all zero. */
+static conic_status begin(conic_context *context, const conic_image *a, const conic_image *b, conic_image *heatmap) {
+  if (heatmap)
+    memset(heatmap, 0, sizeof *heatmap);
+  if (!a || !b || !heatmap || !a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: an image has no colour");
+  if (a->width != b->width || a->height != b->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "heatmap: the images differ in size, %d × %d and %d × %d",
+                      a->width, a->height, b->width, b->height);
+  return conic_image_allocate(context, a->width, a->height, 1u << CONIC_PLANE_RGBA, heatmap);
+}
+
+conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                 conic_image *heatmap) {
+  conic_status status = begin(context, a, b, heatmap);
+  if (status != CONIC_OK)
+    return status;
+  const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
+  float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(a); i++, pixel += 4) {
+    double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i);
+    if (difference > 0.0)
+      paint(scale_position(difference, DARKEST_EXPONENT), pixel);
+    pixel[3] = 1.0f;
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                      conic_image *heatmap) {
+  double mean;
+  conic_status status = begin(context, a, b, heatmap);
+  if (status != CONIC_OK)
+    return status;
+  float *map = conic_memory_allocate(context, conic_image_pixels(a), sizeof *map);
+  status = map ? conic_compare_flip(context, a, b, map, &mean) : CONIC_ERROR_MEMORY;
+  float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; status == CONIC_OK && i < conic_image_pixels(a); i++, pixel += 4) {
+    if (map[i] < 0.25f) /* black to blue */
+      pixel[2] = 4.0f * map[i];
+    else
+      paint((map[i] - 0.25f) / 0.75f, pixel);
+    pixel[3] = 1.0f;
+  }
+  conic_memory_release(context, map);
+  if (status != CONIC_OK)
+    conic_image_release(context, heatmap);
+  return status;
+}
+
+conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map) {
+  const uint32_t *count = image ? image->planes[CONIC_PLANE_COUNT] : NULL;
+  if (map)
+    memset(map, 0, sizeof *map);
+  if (!count || !map)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "overdraw: the image has no count");
+  conic_status status = conic_image_allocate(context, image->width, image->height, 1u << CONIC_PLANE_RGBA, map);
+  if (status != CONIC_OK)
+    return status;
+  float *pixel = map->planes[CONIC_PLANE_RGBA];
+  for (size_t i = 0; i < conic_image_pixels(image); i++, pixel += 4) {
+    if (count[i] > 0)
+      paint(scale_position((double)count[i] * 0x1p-6, -6), pixel);
+    pixel[3] = 1.0f;
+  }
+  return CONIC_OK;
+}

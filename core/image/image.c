@@ -1,0 +1,92 @@
+#include "conic/image.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/image/image_common.h"
+
+static const conic_plane_description descriptions[CONIC_N_PLANES] = {
+    [CONIC_PLANE_RGBA] = {"rgba", 4, 0, {"R", "G", "B", "A"}},
+    [CONIC_PLANE_Z] = {"Z", 1, 0, {"Z"}},
+    [CONIC_PLANE_NORMAL] = {"N", 3, 0, {"N.X", "N.Y", "N.Z"}},
+    [CONIC_PLANE_ALBEDO] = {"albedo", 3, 0, {"albedo.R", "albedo.G", "albedo.B"}},
+    [CONIC_PLANE_WEIGHT] = {"weight", 1, 0, {"weight"}},
+    [CONIC_PLANE_COUNT] = {"count", 1, 1, {"count"}},
+    [CONIC_PLANE_ID] = {"id", 1, 1, {"id"}},
+    [CONIC_PLANE_CLUSTER] = {"cluster", 1, 1, {"cluster"}},
+};
+
+const conic_plane_description *conic_plane_describe(conic_plane plane) {
+  return (int)plane >= 0 && plane < CONIC_N_PLANES ? &descriptions[plane] : NULL;
+}
+
+conic_status conic_image_check_size(conic_context *context, const char *path, int width, int height,
+                                    size_t pixel_bytes) {
+  struct stat found;
+  uint64_t image_bytes = (uint64_t)width * (uint64_t)height * pixel_bytes;
+  if (stat(path, &found) != 0 || !S_ISREG(found.st_mode) || image_bytes >> 16 <= (uint64_t)found.st_size)
+    return CONIC_OK;
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: %d × %d pixels cannot be in a file of %lld bytes (at byte %lld)",
+                    path, width, height, (long long)found.st_size, (long long)found.st_size);
+}
+
+conic_status conic_image_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *image) {
+  if (!image)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no place to put it");
+  memset(image, 0, sizeof *image);
+  if (width < 1 || height < 1 || width > CONIC_IMAGE_MAX_SIZE || height > CONIC_IMAGE_MAX_SIZE)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: a size of %d × %d is outside 1 to %d", width, height,
+                      CONIC_IMAGE_MAX_SIZE);
+  if (planes >> CONIC_N_PLANES)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: there is no plane of bit %u", planes);
+  image->width = width;
+  image->height = height;
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (!(planes >> i & 1))
+      continue;
+    size_t pixel_bytes = (size_t)descriptions[i].n_channels * 4;
+    image->planes[i] = conic_memory_allocate(context, conic_image_pixels(image), pixel_bytes);
+    if (!image->planes[i]) {
+      conic_image_release(context, image);
+      return CONIC_ERROR_MEMORY;
+    }
+    conic_memory_prefer_large_pages(context, image->planes[i], conic_image_pixels(image) * pixel_bytes);
+    memset(image->planes[i], 0, conic_image_pixels(image) * pixel_bytes);
+  }
+  return CONIC_OK;
+}
+
+unsigned conic_image_planes(const conic_image *image) {
+  unsigned planes = 0;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (image->planes[i])
+      planes |= 1u << i;
+  return planes;
+}
+
+void conic_image_release(conic_context *context, conic_image *image) {
+  if (!image)
+    return;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    conic_memory_release(context, image->planes[i]);
+  memset(image, 0, sizeof *image);
+}
+
+uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes) {
+  const uint8_t *byte = bytes;
+  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+  for (size_t i = 0; i < n_bytes; i++)
+    hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
+  return hash;
+}
+
+/* The bytes in memory are little-endian on every machine that conic is built for; the build refuses others. */
+uint64_t conic_image_hash(const conic_image *image, conic_plane plane) {
+  _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "hashes and files are taken from little-endian memory");
+  const conic_plane_description *description = conic_plane_describe(plane);
+  if (!description || !image->planes[plane])
+    return 0;
+  return conic_hash_bytes(image->planes[plane], conic_image_pixels(image) * (size_t)description->n_channels * 4);
+}

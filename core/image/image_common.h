@@ -1,0 +1,34 @@
+/* What the image code shares inside the library. */
+#ifndef CONIC_IMAGE_COMMON_H
+#define CONIC_IMAGE_COMMON_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "conic/image.h"
+
+#define CONIC_IMAGE_MAX_SIZE 65535
+
+static inline size_t conic_image_pixels(const conic_image *image) {
+  return (size_t)image->width * (size_t)image->height;
+}
+
+/* Tells -0 from 0, and a NaN from itself only where it is another one. */
+static inline int conic_same_bits(float a, float b) {
+  uint32_t bits_a, bits_b;
+  memcpy(&bits_a, &a, sizeof a);
+  memcpy(&bits_b, &b, sizeof b);
+  return bits_a == bits_b;
+}
+
+/* Refuses a picture that takes more than 2¹⁶ bytes of memory for each byte of its file, so that memory is bounded by
+ * what there really is: compression that is lossless stays under 2¹¹ for all but flat pictures, and far under 2¹⁶ for
+ * those, too. A pipe's size is not known, and nothing is refused. Errors: INPUT. */
+conic_status conic_image_check_size(conic_context *context, const char *path, int width, int height,
+                                    size_t pixel_bytes);
+
+/* 64-bit FNV-1a. */
+uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes);
+
+#endif

@@ -1,0 +1,20 @@
+/* OpenEXR files through OpenEXRCore. Where that is not built in, conic_exr_write is UNSUPPORTED and conic_exr_read
+ * leaves the file to OpenImageIO, which knows rgba only.
+ *
+ * Written: one part of scanlines, ZIP, the channels of conic_plane_describe in alphabetical order, FLOAT and UINT, and
+ * the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */
+#ifndef CONIC_IMAGE_EXR_H
+#define CONIC_IMAGE_EXR_H
+
+#include "conic/image.h"
+
+/* Whether this build writes EXR; it holds every plane. Errors: UNSUPPORTED. */
+conic_status conic_exr_check(conic_context *context, const char *path);
+
+/* Errors: ARGUMENT (an attribute that the format refuses), UNSUPPORTED, MEMORY, IO. */
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image);
+
+/* Errors: INPUT, UNSUPPORTED (deep or subsampled), MEMORY. */
+conic_status conic_exr_read(conic_context *context, const char *path, conic_image *image);
+
+#endif

@@ -1,0 +1,34 @@
+/* What the EXR writer and reader share: file access by our own functions, and the library's message kept for the end.
+ */
+#ifndef CONIC_IMAGE_EXR_STREAM_H
+#define CONIC_IMAGE_EXR_STREAM_H
+
+#if CONIC_HAVE_OPENEXR
+
+#include <openexr.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "conic/context.h"
+
+typedef struct conic_exr_stream {
+  conic_context *context;
+  const char *path;
+  FILE *file;       /* of the caller */
+  int64_t position; /* of `file`, for writing */
+  int error;        /* errno of the first failed access */
+  atomic_flag has_message;
+  char message[200]; /* the library's first, as its later ones only repeat that something failed */
+} conic_exr_stream;
+
+/* Fills `stream`, and `settings` with the functions that work on it. */
+void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, const char *path, FILE *file,
+                           exr_context_initializer_t *settings);
+
+/* Logs what `result` means and returns the status: MEMORY, UNSUPPORTED, or IO where access to the file failed while
+ * `doing` ("write"), else `otherwise`. */
+conic_status conic_exr_fail(conic_exr_stream *stream, exr_result_t result, const char *doing, conic_status otherwise);
+
+#endif
+#endif

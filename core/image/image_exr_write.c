@@ -1,0 +1,185 @@
+#include "core/image/image_exr.h"
+
+#include "core/base/message.h"
+
+#if CONIC_HAVE_OPENEXR
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+#include "core/files/file.h"
+#include "core/image/image_exr_attributes.h"
+#include "core/image/image_exr_stream.h"
+
+/* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
+enum { ZIP_LEVEL = 2 };
+
+/* One chunk of scanlines on its way: compressed on any thread, written in order by the calling one. */
+typedef struct exr_chunk {
+  exr_encode_pipeline_t pipeline; /* its buffers serve chunk after chunk */
+  exr_chunk_info_t info;
+  exr_result_t result;
+} exr_chunk;
+
+typedef struct exr_writer {
+  const conic_image *image;
+  exr_context_t file;
+  exr_chunk *chunks;
+} exr_writer;
+
+static exr_result_t add_channels(exr_context_t file, const conic_image *image) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
+    for (int c = 0; image->planes[i] && c < plane->n_channels; c++) {
+      exr_result_t result =
+          exr_add_channel(file, 0, plane->channels[c], plane->is_uint ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                          EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+      if (result != EXR_ERR_SUCCESS)
+        return result;
+    }
+  }
+  return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t write_header(exr_context_t file, const conic_image *image) {
+  int part;
+  exr_result_t result = conic_exr_prepare_attributes(file, image);
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_initialize_required_attr_simple(file, 0, image->width, image->height, EXR_COMPRESSION_ZIP);
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_set_zip_compression_level(file, 0, ZIP_LEVEL);
+  if (result == EXR_ERR_SUCCESS)
+    result = add_channels(file, image);
+  if (result == EXR_ERR_SUCCESS)
+    result = conic_exr_add_attributes(file, image);
+  if (result == EXR_ERR_SUCCESS)
+    result = exr_write_header(file);
+  return result;
+}
+
+/* Where channel `name` of the image's first pixel lies, and how many bytes a pixel of its plane has. */
+static const uint8_t *find_channel(const conic_image *image, const char *name, int *pixel_bytes) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
+    for (int c = 0; image->planes[i] && c < plane->n_channels; c++)
+      if (strcmp(plane->channels[c], name) == 0) {
+        *pixel_bytes = plane->n_channels * 4;
+        return (const uint8_t *)image->planes[i] + (size_t)c * 4;
+      }
+  }
+  return NULL;
+}
+
+static void point_channels(exr_encode_pipeline_t *pipeline, const conic_image *image) {
+  for (int i = 0; i < pipeline->channel_count; i++) {
+    exr_coding_channel_info_t *channel = &pipeline->channels[i];
+    int pixel_bytes = 0;
+    const uint8_t *first = find_channel(image, channel->channel_name, &pixel_bytes);
+    channel->user_pixel_stride = pixel_bytes;
+    channel->user_line_stride = pixel_bytes * image->width;
+    channel->user_bytes_per_element = 4;
+    channel->user_data_type = channel->data_type;
+    channel->encode_from_ptr = first + (size_t)pipeline->chunk.start_y * (size_t)channel->user_line_stride;
+  }
+}
+
+static void encode_chunk(void *data, size_t i_item, int i_thread) {
+  exr_writer *writer = data;
+  exr_chunk *chunk = &writer->chunks[i_item];
+  int is_new = !chunk->pipeline.context;
+  (void)i_thread;
+  if (is_new)
+    chunk->result = exr_encoding_initialize(writer->file, 0, &chunk->info, &chunk->pipeline);
+  else
+    chunk->result = exr_encoding_update(writer->file, 0, &chunk->info, &chunk->pipeline);
+  if (chunk->result != EXR_ERR_SUCCESS)
+    return;
+  point_channels(&chunk->pipeline, writer->image);
+  if (is_new)
+    chunk->result = exr_encoding_choose_default_routines(writer->file, 0, &chunk->pipeline);
+  chunk->pipeline.yield_until_ready_fn = NULL;
+  chunk->pipeline.write_fn = NULL;
+  if (chunk->result == EXR_ERR_SUCCESS)
+    chunk->result = exr_encoding_run(writer->file, 0, &chunk->pipeline);
+}
+
+/* Compresses up to n_chunks chunks side by side, writes them, and goes on. */
+static exr_result_t write_chunks(conic_context *context, exr_writer *writer, size_t n_chunks) {
+  exr_result_t result = EXR_ERR_SUCCESS;
+  for (int y = 0; y < writer->image->height && result == EXR_ERR_SUCCESS;) {
+    size_t n = 0;
+    for (; n < n_chunks && y < writer->image->height && result == EXR_ERR_SUCCESS; n++) {
+      result = exr_write_scanline_chunk_info(writer->file, 0, y, &writer->chunks[n].info);
+      y = writer->chunks[n].info.start_y + writer->chunks[n].info.height;
+    }
+    if (result == EXR_ERR_SUCCESS)
+      conic_parallel_for(context, n, encode_chunk, writer);
+    for (size_t i = 0; i < n && result == EXR_ERR_SUCCESS; i++) {
+      const exr_chunk *chunk = &writer->chunks[i];
+      result = chunk->result;
+      if (result == EXR_ERR_SUCCESS)
+        result = exr_write_scanline_chunk(writer->file, 0, chunk->info.start_y, chunk->pipeline.compressed_buffer,
+                                          chunk->pipeline.compressed_bytes);
+    }
+  }
+  for (size_t i = 0; i < n_chunks; i++)
+    if (writer->chunks[i].pipeline.context)
+      exr_encoding_destroy(writer->file, &writer->chunks[i].pipeline);
+  return result;
+}
+
+static conic_status write_stream(conic_context *context, const char *path, FILE *file, const conic_image *image) {
+  conic_exr_stream stream;
+  exr_context_initializer_t settings;
+  exr_writer writer = {.image = image};
+  size_t n_chunks = 2 * (size_t)conic_context_threads(context);
+  conic_exr_stream_init(&stream, context, path, file, &settings);
+  writer.chunks = conic_memory_allocate_zeroed(context, n_chunks, sizeof *writer.chunks);
+  if (!writer.chunks)
+    return CONIC_ERROR_MEMORY;
+  exr_result_t result = exr_start_write(&writer.file, path, EXR_WRITE_FILE_DIRECTLY, &settings);
+  if (result == EXR_ERR_SUCCESS)
+    result = write_header(writer.file, image);
+  if (result == EXR_ERR_SUCCESS)
+    result = write_chunks(context, &writer, n_chunks);
+  exr_result_t finish = exr_finish(&writer.file);
+  conic_memory_release(context, writer.chunks);
+  if (result == EXR_ERR_SUCCESS)
+    result = finish;
+  return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&stream, result, "write", CONIC_ERROR_ARGUMENT);
+}
+
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image) {
+  conic_output *output;
+  conic_status status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  status = write_stream(context, path, conic_output_stream(output), image);
+  if (status != CONIC_OK) {
+    conic_output_abandon(output);
+    return status;
+  }
+  return conic_output_commit(output);
+}
+
+conic_status conic_exr_check(conic_context *context, const char *path) {
+  (void)context;
+  (void)path;
+  return CONIC_OK;
+}
+
+#else
+
+conic_status conic_exr_check(conic_context *context, const char *path) {
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: this build is without OpenEXR", path);
+}
+
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image) {
+  (void)image;
+  return conic_exr_check(context, path);
+}
+
+#endif

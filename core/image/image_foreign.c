@@ -1,0 +1,172 @@
+#include "core/image/image_foreign.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
+#include "core/image/image_samples.h"
+#include "core/image/openimageio_bridge.h"
+
+/* OpenImageIO writes EXR too, but would leave out all but rgba. */
+static int is_float_format(const char *format) {
+  return strcmp(format, "hdr") == 0 || strcmp(format, "zfile") == 0 || strcmp(format, "openexr") == 0;
+}
+
+static conic_samples_layout choose_layout(const conic_bridge_writer *writer) {
+  conic_samples_layout layout = {.n_channels = writer->has_alpha ? 4 : 3, .sample_bytes = 1};
+  layout.is_straight = writer->has_alpha;
+  if (strcmp(writer->format, "tiff") == 0)
+    layout.sample_bytes = 2;
+  if (is_float_format(writer->format)) {
+    layout.sample_bytes = 4;
+    layout.is_straight = 0;
+  }
+  return layout;
+}
+
+static int take_bytes(void *cookie, const void *bytes, size_t n_bytes) {
+  return fwrite(bytes, 1, n_bytes, cookie) == n_bytes;
+}
+
+static conic_status write_samples(conic_context *context, const conic_bridge *bridge, const char *path,
+                                  const conic_bridge_picture *picture, const void *samples) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  conic_output *output;
+  conic_status status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  conic_bridge_result result = bridge->write(path, picture, samples, take_bytes, stream, message);
+  if (result == CONIC_BRIDGE_OK || ferror(stream))
+    return conic_output_commit(output); /* which also says what is wrong with the stream */
+  conic_output_abandon(output);
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
+}
+
+/* The format that PATH's ending means, if it holds one of these planes. */
+static conic_status find_writer(conic_context *context, const char *path, unsigned planes, const conic_bridge **bridge,
+                                conic_bridge_writer *writer) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  *bridge = conic_bridge_load(message);
+  if (!*bridge)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
+  conic_bridge_result result = (*bridge)->find_writer(path, writer, message);
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
+  if (result != CONIC_BRIDGE_OK)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: %s", path, message);
+  if (!(planes & 1u << CONIC_PLANE_RGBA))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
+                      path);
+  return CONIC_OK;
+}
+
+conic_status conic_foreign_check(conic_context *context, const char *path, unsigned planes) {
+  const conic_bridge *bridge;
+  conic_bridge_writer writer;
+  return find_writer(context, path, planes, &bridge, &writer);
+}
+
+conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+  const conic_bridge *bridge;
+  conic_bridge_writer writer = {.has_alpha = 0};
+  conic_status status = find_writer(context, path, conic_image_planes(image), &bridge, &writer);
+  if (status != CONIC_OK)
+    return status;
+  const float *rgba = image->planes[CONIC_PLANE_RGBA];
+  conic_samples_layout layout = choose_layout(&writer);
+  conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
+                                  layout.is_straight};
+  void *samples = conic_memory_allocate(context, conic_image_pixels(image),
+                                        (size_t)layout.n_channels * (size_t)layout.sample_bytes);
+  if (!samples)
+    return CONIC_ERROR_MEMORY;
+  conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
+  status = write_samples(context, bridge, path, &picture, samples);
+  conic_memory_release(context, samples);
+  return status;
+}
+
+typedef struct reading {
+  conic_context *context;
+  const char *path;
+  conic_status status;
+  void *samples;
+} reading;
+
+static void *make_room(void *cookie, const conic_bridge_picture *picture) {
+  reading *work = cookie;
+  if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
+      picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
+    work->status =
+        conic_fail(work->context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used",
+                   work->path, picture->width, picture->height, picture->n_channels);
+    return NULL;
+  }
+  size_t pixel_bytes = (size_t)picture->n_channels * (size_t)picture->sample_bytes;
+  work->status = conic_image_check_size(work->context, work->path, picture->width, picture->height, pixel_bytes);
+  if (work->status != CONIC_OK)
+    return NULL;
+  work->samples = conic_memory_allocate(work->context, (size_t)picture->width * (size_t)picture->height, pixel_bytes);
+  if (!work->samples)
+    work->status = CONIC_ERROR_MEMORY;
+  return work->samples;
+}
+
+/* Whether the file begins as an image of a well-known format does: then it is the build that lacks something. */
+static int is_known_image(const char *path) {
+  static const struct {
+    const char *bytes;
+    size_t n_bytes;
+  } starts[] = {{"\x89PNG", 4},     {"\xff\xd8\xff", 3},     {"II*\0", 4}, {"MM\0*", 4},
+                {"#?RADIANCE", 10}, {"\x76\x2f\x31\x01", 4}, {"GIF8", 4},  {"BM", 2}};
+  char start[16] = {0};
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return 0;
+  size_t n = fread(start, 1, sizeof start, file);
+  fclose(file);
+  for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++)
+    if (n >= starts[i].n_bytes && memcmp(start, starts[i].bytes, starts[i].n_bytes) == 0)
+      return 1;
+  return 0;
+}
+
+/* The samples and the picture's layout, or why not. */
+static conic_status read_samples(conic_context *context, const char *path, conic_bridge_picture *picture,
+                                 reading *work) {
+  char message[CONIC_BRIDGE_MESSAGE] = "";
+  const conic_bridge *bridge = conic_bridge_load(message);
+  if (!bridge && is_known_image(path))
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: %s", path, message);
+  if (!bridge)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
+  conic_bridge_result result = bridge->read(path, picture, make_room, work, message);
+  if (result == CONIC_BRIDGE_OK)
+    return CONIC_OK;
+  if (work->status != CONIC_OK)
+    return work->status; /* which is logged */
+  if (result == CONIC_BRIDGE_MEMORY)
+    return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
+}
+
+conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
+  conic_bridge_picture picture = {0};
+  reading work = {.context = context, .path = path, .status = CONIC_OK};
+  conic_status status = read_samples(context, path, &picture, &work);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
+  if (status == CONIC_OK) {
+    conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
+    conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
+                          image->planes[CONIC_PLANE_RGBA]);
+  }
+  conic_memory_release(context, work.samples);
+  return status;
+}

@@ -1,0 +1,23 @@
+/* The formats of other libraries (PNG, TIFF, JPEG, HDR …) through OpenImageIO, which moves finished samples only: how
+ * linear colour becomes codes is decided here, so that the codes are the same whatever the library's version.
+ *
+ * Written: rgba. 8 bits, sRGB-encoded, for all but: tif 16 bits, sRGB-encoded; hdr (and other floating-point formats)
+ * linear floats. Where the format has an alpha channel the colour is divided by alpha before it is encoded; where it
+ * has none, the picture stands over black. Read: rgba, by the same rules backwards; grey goes to R, G and B; without
+ * alpha A is 1. */
+#ifndef CONIC_IMAGE_FOREIGN_H
+#define CONIC_IMAGE_FOREIGN_H
+
+#include "conic/image.h"
+
+/* Whether some of these planes (bits) can be written in the format that PATH's ending means. Errors: ARGUMENT,
+ * UNSUPPORTED, MEMORY. */
+conic_status conic_foreign_check(conic_context *context, const char *path, unsigned planes);
+
+/* Errors: ARGUMENT (no rgba, an ending that nobody knows), UNSUPPORTED, MEMORY, IO. */
+conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image);
+
+/* Errors: INPUT, UNSUPPORTED, MEMORY. */
+conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image);
+
+#endif

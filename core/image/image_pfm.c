@@ -1,0 +1,185 @@
+#include "core/image/image_pfm.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
+
+/* Writes the first n_written of n_channels floats a pixel, bottom row first. */
+static conic_status write_rows(conic_context *context, FILE *stream, const conic_image *image, const float *plane,
+                               int n_channels, int n_written) {
+  size_t width = (size_t)image->width, n_row = width * (size_t)n_written;
+  float *row = conic_memory_allocate(context, n_row, sizeof *row);
+  if (!row)
+    return CONIC_ERROR_MEMORY;
+  for (int y = image->height - 1; y >= 0; y--) {
+    const float *source = plane + (size_t)y * width * (size_t)n_channels;
+    for (size_t x = 0; x < width; x++)
+      memcpy(row + x * (size_t)n_written, source + x * (size_t)n_channels, (size_t)n_written * sizeof *row);
+    if (fwrite(row, sizeof *row, n_row, stream) != n_row)
+      break; /* the stream remembers, and commit says so */
+  }
+  conic_memory_release(context, row);
+  return CONIC_OK;
+}
+
+/* The plane of these that goes into the file. */
+static conic_plane choose_plane(unsigned planes) {
+  if (planes & 1u << CONIC_PLANE_RGBA)
+    return CONIC_PLANE_RGBA;
+  return planes & 1u << CONIC_PLANE_Z ? CONIC_PLANE_Z : CONIC_PLANE_WEIGHT;
+}
+
+conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes) {
+  conic_plane plane = choose_plane(planes);
+  if (plane != CONIC_PLANE_RGBA && planes != 1u << plane)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a PFM holds rgba, or a lone Z or weight", path);
+  return CONIC_OK;
+}
+
+conic_status conic_pfm_write(conic_context *context, const char *path, const conic_image *image) {
+  conic_plane plane = choose_plane(conic_image_planes(image));
+  conic_output *output;
+  conic_status status = conic_pfm_check(context, path, conic_image_planes(image));
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  fprintf(stream, "%s\n%d %d\n-1.0\n", plane == CONIC_PLANE_RGBA ? "PF" : "Pf", image->width, image->height);
+  int n_channels = conic_plane_describe(plane)->n_channels;
+  status = write_rows(context, stream, image, image->planes[plane], n_channels, n_channels == 4 ? 3 : 1);
+  if (status != CONIC_OK) {
+    conic_output_abandon(output);
+    return status;
+  }
+  return conic_output_commit(output);
+}
+
+static int is_space(int c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+/* The next word of the header, with the one white space after it; 0 where it is longer than the room or the file ends.
+ */
+static int read_word(FILE *file, char word[32]) {
+  int c = getc(file), n = 0;
+  while (is_space(c))
+    c = getc(file);
+  for (; c != EOF && !is_space(c) && n < 31; c = getc(file))
+    word[n++] = (char)c;
+  word[n] = 0;
+  return n > 0 && is_space(c);
+}
+
+/* A whole positive number up to the largest size; 0 for anything else. */
+static int parse_size(const char *word) {
+  int value = 0;
+  for (; *word; word++) {
+    if (*word < '0' || *word > '9')
+      return 0;
+    value = value * 10 + (*word - '0');
+    if (value > CONIC_IMAGE_MAX_SIZE)
+      return 0;
+  }
+  return value;
+}
+
+/* -1 (little-endian) or 1 by the sign of a decimal number; 0 where it is none, or zero. */
+static int parse_scale_sign(const char *word) {
+  int sign = 1, n_digits = 0, is_zero = 1;
+  if (*word == '-' || *word == '+')
+    sign = *word++ == '-' ? -1 : 1;
+  for (; (*word >= '0' && *word <= '9') || *word == '.'; word++)
+    if (*word != '.') {
+      n_digits++;
+      if (*word != '0')
+        is_zero = 0;
+    }
+  if (*word == 'e' || *word == 'E')
+    for (word++; *word == '-' || *word == '+' || (*word >= '0' && *word <= '9'); word++)
+      ;
+  return *word || !n_digits || is_zero ? 0 : sign;
+}
+
+static float swap_bytes(float value) {
+  uint32_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  bits = bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+static conic_status read_rows(conic_context *context, const char *path, FILE *file, int is_grey, int is_big,
+                              conic_image *image) {
+  size_t width = (size_t)image->width, n_channels = is_grey ? 1 : 3;
+  float *row = conic_memory_allocate(context, width * n_channels, sizeof *row);
+  if (!row)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = CONIC_OK;
+  for (int y = image->height - 1; y >= 0; y--) {
+    size_t n = fread(row, sizeof *row, width * n_channels, file);
+    if (n != width * n_channels) {
+      status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends in row %d of %d (at byte %lld)", path,
+                          image->height - y, image->height, (long long)ftello(file));
+      break;
+    }
+    float *rgba = (float *)image->planes[CONIC_PLANE_RGBA] + (size_t)y * width * 4;
+    for (size_t x = 0; x < width; x++) {
+      for (size_t c = 0; c < 3; c++) {
+        float value = row[x * n_channels + (is_grey ? 0 : c)];
+        rgba[x * 4 + c] = is_big ? swap_bytes(value) : value;
+      }
+      rgba[x * 4 + 3] = 1.0f;
+    }
+  }
+  conic_memory_release(context, row);
+  return status;
+}
+
+/* A hostile header must not make us allocate what the file cannot fill. */
+static int is_long_enough(FILE *file, int width, int height, int n_channels) {
+  long long here = ftello(file);
+  if (here < 0 || fseeko(file, 0, SEEK_END) != 0)
+    return 1; /* a pipe: its end shows while reading */
+  long long end = ftello(file);
+  fseeko(file, here, SEEK_SET);
+  return end - here >= 4LL * n_channels * width * height;
+}
+
+static conic_status read_file(conic_context *context, const char *path, FILE *file, conic_image *image) {
+  char magic[32], word[32];
+  int size[2], sign;
+  if (!read_word(file, magic) || (strcmp(magic, "PF") != 0 && strcmp(magic, "Pf") != 0))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: not a PFM file (line 1)", path);
+  for (int i = 0; i < 2; i++)
+    if (!read_word(file, word) || !(size[i] = parse_size(word)))
+      return conic_fail(context, CONIC_ERROR_INPUT, "%s: the %s is not a number from 1 to %d (line 2)", path,
+                        i == 0 ? "width" : "height", CONIC_IMAGE_MAX_SIZE);
+  if (!read_word(file, word) || !(sign = parse_scale_sign(word)))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the scale is not a number other than 0 (line 3)", path);
+  int is_grey = magic[1] == 'f';
+  if (!is_long_enough(file, size[0], size[1], is_grey ? 1 : 3))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is too short for %d × %d pixels (at byte %lld)", path,
+                      size[0], size[1], (long long)ftello(file));
+  conic_status status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
+  if (status != CONIC_OK)
+    return status;
+  status = read_rows(context, path, file, is_grey, sign > 0, image);
+  if (status != CONIC_OK)
+    conic_image_release(context, image);
+  return status;
+}
+
+conic_status conic_pfm_read(conic_context *context, const char *path, conic_image *image) {
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+  conic_status status = read_file(context, path, file, image);
+  fclose(file);
+  return status;
+}

@@ -1,0 +1,20 @@
+/* Portable float maps: linear floats without compression, no library needed.
+ *
+ * Written: rgba as colour (R, G, B as they are, over black); without rgba, a lone Z or weight as grey. Little-endian,
+ * rows from the bottom. Read: either byte order; the size of the scale is not looked at; grey goes to R, G and B; A
+ * is 1. */
+#ifndef CONIC_IMAGE_PFM_H
+#define CONIC_IMAGE_PFM_H
+
+#include "conic/image.h"
+
+/* Whether one of these planes (bits) can be written. Errors: ARGUMENT. */
+conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes);
+
+/* Errors: ARGUMENT (no plane that it can hold), MEMORY, IO. */
+conic_status conic_pfm_write(conic_context *context, const char *path, const conic_image *image);
+
+/* Errors: INPUT, MEMORY. */
+conic_status conic_pfm_read(conic_context *context, const char *path, conic_image *image);
+
+#endif

@@ -1,0 +1,125 @@
+#include "core/image/image_samples.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/threads.h"
+
+/* conic_srgb_code in one look and about one step: `first` holds the code at the foot of each of N_STEPS equal steps of
+ * linear light. The steps are a power of two, so that finding the step is exact. */
+enum { N_STEPS = 4096 };
+
+typedef struct sample_tables {
+  float thresholds[255];
+  uint8_t first[N_STEPS];
+  float decoded[256];
+} sample_tables;
+
+typedef struct conversion {
+  conic_samples_layout layout;
+  size_t width;
+  float *rgba;
+  void *samples;
+  sample_tables tables;
+} conversion;
+
+static void fill_tables(sample_tables *tables) {
+  conic_srgb_thresholds(tables->thresholds);
+  conic_srgb_decode_table(tables->decoded);
+  for (int i = 0; i < N_STEPS; i++)
+    tables->first[i] = conic_srgb_code(tables->thresholds, (float)i * (1.0f / N_STEPS));
+}
+
+static uint8_t code_8(const sample_tables *tables, float linear) {
+  if (!(linear > 0.0f))
+    return 0;
+  if (linear >= 1.0f)
+    return 255;
+  uint8_t code = tables->first[(int)(linear * N_STEPS)];
+  while (code < 255 && linear >= tables->thresholds[code])
+    code++;
+  return code;
+}
+
+/* round(scale · value), clamped to the scale; NaN gives 0. */
+static unsigned quantize(double value, double scale) {
+  if (!(value > 0.0))
+    return 0;
+  return value >= 1.0 ? (unsigned)scale : (unsigned)(value * scale + 0.5);
+}
+
+/* The colour as the layout wants it, still linear. */
+static void arrange_pixel(const float rgba[4], int is_straight, float color[4]) {
+  float alpha = rgba[3];
+  memcpy(color, rgba, 4 * sizeof *color);
+  if (!is_straight || alpha == 1.0f)
+    return;
+  for (int c = 0; c < 3; c++)
+    color[c] = alpha > 0.0f ? rgba[c] / alpha : 0.0f;
+}
+
+static void encode_row(void *data, size_t y, int i_thread) {
+  const conversion *work = data;
+  size_t n = (size_t)work->layout.n_channels, n_row = work->width * n;
+  const float *rgba = work->rgba + y * work->width * 4;
+  (void)i_thread;
+  for (size_t x = 0; x < work->width; x++) {
+    float color[4];
+    arrange_pixel(rgba + 4 * x, work->layout.is_straight, color);
+    for (size_t c = 0; c < n; c++) {
+      size_t i = y * n_row + x * n + c;
+      if (work->layout.sample_bytes == 4)
+        ((float *)work->samples)[i] = color[c];
+      else if (work->layout.sample_bytes == 2)
+        ((uint16_t *)work->samples)[i] =
+            (uint16_t)quantize(c < 3 ? conic_srgb_encode((double)color[c]) : (double)color[c], 65535.0);
+      else
+        ((uint8_t *)work->samples)[i] =
+            c < 3 ? code_8(&work->tables, color[c]) : (uint8_t)quantize((double)color[c], 255.0);
+    }
+  }
+}
+
+static float decode_sample(const conversion *work, size_t i, int is_color) {
+  if (work->layout.sample_bytes == 4)
+    return ((const float *)work->samples)[i];
+  if (work->layout.sample_bytes == 2) {
+    double value = ((const uint16_t *)work->samples)[i] / 65535.0;
+    return (float)(is_color ? conic_srgb_decode(value) : value);
+  }
+  uint8_t code = ((const uint8_t *)work->samples)[i];
+  return is_color ? work->tables.decoded[code] : (float)(code / 255.0);
+}
+
+static void decode_row(void *data, size_t y, int i_thread) {
+  const conversion *work = data;
+  size_t n = (size_t)work->layout.n_channels;
+  int is_grey = n < 3, has_alpha = n == 2 || n >= 4;
+  (void)i_thread;
+  for (size_t x = 0; x < work->width; x++) {
+    float *pixel = work->rgba + (y * work->width + x) * 4;
+    size_t first = (y * work->width + x) * n;
+    for (size_t c = 0; c < 3; c++)
+      pixel[c] = decode_sample(work, first + (is_grey ? 0 : c), 1);
+    pixel[3] = has_alpha ? decode_sample(work, first + (is_grey ? 1 : 3), 0) : 1.0f;
+    if (has_alpha && work->layout.is_straight)
+      for (int c = 0; c < 3; c++)
+        pixel[c] *= pixel[3];
+  }
+}
+
+void conic_samples_from_rgba(conic_context *context, const float *rgba, int width, int height,
+                             conic_samples_layout layout, void *samples) {
+  conversion work = {.layout = layout, .width = (size_t)width, .rgba = (float *)rgba, .samples = samples};
+  fill_tables(&work.tables);
+  conic_parallel_for(context, (size_t)height, encode_row, &work);
+}
+
+void conic_samples_to_rgba(conic_context *context, const void *samples, int width, int height,
+                           conic_samples_layout layout, float *rgba) {
+  conversion work = {.layout = layout, .width = (size_t)width, .samples = (void *)samples};
+  work.rgba = rgba;
+  fill_tables(&work.tables);
+  conic_parallel_for(context, (size_t)height, decode_row, &work);
+}

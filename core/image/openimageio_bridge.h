@@ -1,0 +1,65 @@
+/* The bridge to OpenImageIO: plain C, no C++ type and no exception comes through.
+ *
+ * It is a module of its own, conic-openimageio.so, that is loaded when the first file needs it: OpenImageIO brings some
+ * 250 libraries along, and whoever draws into an EXR should not wait for them. */
+#ifndef CONIC_OPENIMAGEIO_BRIDGE_H
+#define CONIC_OPENIMAGEIO_BRIDGE_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_bridge_picture {
+  int width, height, n_channels;
+  int sample_bytes; /* 1, 2: unsigned integers; 4: floats */
+  int is_straight;  /* the colour is not multiplied by alpha */
+} conic_bridge_picture;
+
+typedef struct conic_bridge_writer {
+  char format[32]; /* OpenImageIO's name: "png", "tiff", "jpeg" … */
+  int has_alpha;
+} conic_bridge_writer;
+
+enum { CONIC_BRIDGE_MESSAGE = 256 };
+
+/* What happened. */
+typedef enum conic_bridge_result {
+  CONIC_BRIDGE_OK = 0,
+  CONIC_BRIDGE_FAILED, /* the message says why */
+  CONIC_BRIDGE_MEMORY
+} conic_bridge_result;
+
+/* What the module gives, as its one symbol, conic_openimageio_bridge. */
+typedef struct conic_bridge {
+  /* conic_version() of the build that the module belongs to; no other may use it. */
+  const char *version;
+
+  /* Who writes files whose name ends as PATH's. */
+  conic_bridge_result (*find_writer)(const char *path, conic_bridge_writer *writer, char message[CONIC_BRIDGE_MESSAGE]);
+
+  /* Encodes `samples` (row by row, channels side by side, colour sRGB-encoded unless they are floats) as a file of
+   * PATH's ending, and hands its bytes to `take`, which returns 0 to stop. Formats that only write to a file of their
+   * own fail. */
+  conic_bridge_result (*write)(const char *path, const conic_bridge_picture *picture, const void *samples,
+                               int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie,
+                               char message[CONIC_BRIDGE_MESSAGE]);
+
+  /* Reads the first picture of a file. When its size is known `make_room` is asked once for room for all its samples;
+   * where it returns null the call ends with CONIC_BRIDGE_MEMORY. */
+  conic_bridge_result (*read)(const char *path, conic_bridge_picture *picture,
+                              void *(*make_room)(void *cookie, const conic_bridge_picture *picture), void *cookie,
+                              char message[CONIC_BRIDGE_MESSAGE]);
+} conic_bridge;
+
+/* The bridge, loaded by the first call that asks; null where it cannot be, and the message says why. */
+const conic_bridge *conic_bridge_load(char message[CONIC_BRIDGE_MESSAGE]);
+
+/* Whether there is a module to load; the library itself is left alone. */
+int conic_bridge_is_there(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,30 @@
+/* A texture's inside. */
+#ifndef CONIC_TEXTURE_LEVELS_H
+#define CONIC_TEXTURE_LEVELS_H
+
+#include "conic/texture.h"
+
+/* Enough for pictures of 65535 pixels. */
+enum { CONIC_TEXTURE_LEVELS = 17 };
+
+/* A part of a texel. A device's text has a memory of its own for them (opencl/triangle_set.cl). */
+typedef float conic_texel;
+
+/* One picture of the pyramid: linear RGB and a float of no matter, row by row from the top. */
+typedef struct conic_texture_level {
+  int width, height;
+  conic_texel *texels;
+} conic_texture_level;
+
+static inline const conic_texel *conic_texels_of(const conic_texture_level *level) {
+  return level->texels;
+}
+
+struct conic_texture {
+  conic_context *context;
+  conic_texture_wrap wrap;
+  int n_levels; /* each has half the width and height of the one before, rounded up; the last is one texel */
+  conic_texture_level levels[CONIC_TEXTURE_LEVELS];
+};
+
+#endif

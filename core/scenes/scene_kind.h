@@ -1,0 +1,78 @@
+/* What a scene's surface has to give, and what is done with it.
+ *
+ * A surface is sampled in one of two ways. `place` puts sample i of n where a formula says (an even lattice carried
+ * onto the surface by a map that keeps areas). Where no such map is known, the scene has a lattice
+ * (core/scenes/scene_lattice.h) instead, and `walk` and `project` find its points near the surface and carry them
+ * there. */
+#ifndef CONIC_SCENE_KIND_H
+#define CONIC_SCENE_KIND_H
+
+#include <stdint.h>
+
+#include "conic/scene.h"
+#include "core/scenes/scene_lattice.h"
+
+/* A place on a surface. */
+struct conic_surface_point {
+  double position[3];
+  double normal[3]; /* unit, outward */
+  uint8_t color[3]; /* sRGB codes, so that files keep colours exactly */
+};
+
+enum { CONIC_SCENE_MAX_EDGES = 2 };
+
+/* The sharp edges of a flat face that a splat has to be clipped at. */
+typedef struct conic_scene_edges {
+  int n;
+  conic_clip_operator operation;
+  double inward[CONIC_SCENE_MAX_EDGES][3]; /* unit, in the face's plane, away from the edge */
+  double distance[CONIC_SCENE_MAX_EDGES];  /* from the edge; negative outside of the face */
+} conic_scene_edges;
+
+typedef struct conic_scene_kind {
+  const char *name, *summary;
+
+  /* Makes scene->surface where the kind needs one, sets scene->area, and scene->lattice where `place` is null. What it
+   * has made on failure is released by conic_scene_destroy. */
+  conic_status (*prepare)(conic_scene *scene);
+
+  /* Sample i of scene->options.count; null: by the lattice. */
+  void (*place)(const conic_scene *scene, uint64_t i, conic_surface_point *point);
+
+  /* The edges near a place on the face of sample i, whose outline has that radius; null: a surface without edges. */
+  void (*edges)(const conic_scene *scene, uint64_t i, const double position[3], double radius,
+                conic_scene_edges *edges);
+
+  conic_lattice_walk *walk;
+  conic_lattice_project *project;
+} conic_scene_kind;
+
+struct conic_scene {
+  conic_context *context;
+  conic_scene_options options;
+  const conic_scene_kind *kind;
+  double area;
+  double spacing;    /* sqrt(area / count) */
+  float decode[256]; /* linear values of colour codes */
+  void *surface;     /* the kind's own, one allocation; may be null */
+  conic_lattice lattice;
+};
+
+extern const conic_scene_kind conic_scene_plane, conic_scene_sphere, conic_scene_torus, conic_scene_knot,
+    conic_scene_terrain, conic_scene_gyroid, conic_scene_cube, conic_scene_corner;
+
+/* Makes scene->surface, `bytes` large; null on failure. */
+void *conic_scene_surface(conic_scene *scene, size_t bytes);
+
+/* Point i of n of the golden lattice in the unit square: u = (i + ½)/n, v = i/φ + ½ modulo 1, exact to 2⁻⁵³ for any i.
+ * It stays even when the square is stretched to a rectangle of any shape and the same area. */
+void conic_scene_golden(uint64_t i, uint64_t n, double *u, double *v);
+
+/* The angle ψ with ψ − e·sin ψ = 2π·turns (Kepler's equation), |e| ≤ 0.7, to 1e-7: where the circumference of a bent
+ * tube has to be cut so that the pieces have equal areas. */
+double conic_scene_equal_area_angle(double turns, double e);
+
+/* A colour `t` (clamped to 0 … 1) of the way through n ≥ 2 equally spaced colours. */
+void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color[3]);
+
+#endif

@@ -1,0 +1,119 @@
+#include "core/splats/builder.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+
+conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
+                                 const conic_delivery *delivery, conic_builder *builder) {
+  memset(builder, 0, sizeof *builder);
+  memset(model, 0, sizeof *model);
+  builder->context = context;
+  builder->delivery = delivery;
+  builder->model = model;
+  return conic_splats_allocate(context, 0, fields, &model->points);
+}
+
+conic_status conic_builder_deliver(conic_builder *builder, int is_last) {
+  conic_splats *points = &builder->model->points;
+  if (!builder->delivery || points->count < (is_last ? 1 : builder->delivery->batch))
+    return CONIC_OK;
+  conic_status status = builder->delivery->receive(builder->delivery->cookie, points);
+  builder->n_delivered += points->count;
+  points->count = points->n_clips = 0;
+  return status;
+}
+
+/* Moves the points into arrays for `capacity` of them with the optional arrays of `fields`. conic_splats_append says
+ * what stands in the new ones. */
+static conic_status move_points(conic_builder *builder, size_t capacity, unsigned fields) {
+  conic_splats larger, *points = &builder->model->points;
+  size_t count = points->count;
+  conic_status status =
+      conic_splats_allocate(builder->context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
+  if (status != CONIC_OK)
+    return status;
+  float **to[] = {larger.position, larger.tangent_u, larger.tangent_v, larger.normal, larger.color};
+  float **from[] = {points->position, points->tangent_u, points->tangent_v, points->normal, points->color};
+  for (int i = 0; i < 15; i++) {
+    float *target = to[i / 3][i % 3], *source = from[i / 3][i % 3];
+    for (size_t k = 0; target && !source && k < count; k++)
+      target[k] = i / 3 == 4 ? 1.0f : 0.0f;
+    if (target && source && count)
+      memcpy(target, source, count * sizeof *target);
+  }
+  for (size_t k = 0; larger.opacity && k < count; k++)
+    larger.opacity[k] = points->opacity ? points->opacity[k] : 1.0f;
+  memcpy(larger.origin, points->origin, sizeof larger.origin);
+  larger.n_clips = points->n_clips;
+  larger.clips = points->clips; /* not an array a point */
+  points->clips = NULL;
+  conic_splats_release(builder->context, points);
+  *points = larger;
+  points->count = count;
+  builder->point_capacity = capacity;
+  return CONIC_OK;
+}
+
+conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count) {
+  if (count <= builder->point_capacity)
+    return CONIC_OK;
+  return move_points(builder, count, conic_splats_fields(&builder->model->points));
+}
+
+conic_status conic_builder_reserve_points(conic_builder *builder, size_t count) {
+  size_t capacity = builder->point_capacity + builder->point_capacity / 2 + 1024;
+  if (count <= builder->point_capacity)
+    return CONIC_OK;
+  return conic_builder_reserve_points_exactly(builder, count > capacity ? count : capacity);
+}
+
+conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field field) {
+  unsigned fields = conic_splats_fields(&builder->model->points);
+  if (fields & (unsigned)field)
+    return CONIC_OK;
+  return move_points(builder, builder->point_capacity, fields | (unsigned)field);
+}
+
+conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip) {
+  conic_splats *points = &builder->model->points;
+  if (points->n_clips == builder->clip_capacity) {
+    void *clips = points->clips;
+    size_t capacity = points->n_clips + points->n_clips / 2 + 256;
+    conic_status status = conic_memory_grow(builder->context, &clips, points->n_clips, capacity, sizeof *points->clips);
+    if (status != CONIC_OK)
+      return status;
+    points->clips = clips;
+    builder->clip_capacity = capacity;
+  }
+  points->clips[points->n_clips++] = *clip;
+  return CONIC_OK;
+}
+
+conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count) {
+  conic_model *model = builder->model;
+  void *triangles = model->triangles;
+  if (count <= builder->triangle_capacity)
+    return CONIC_OK;
+  conic_status status =
+      conic_memory_grow(builder->context, &triangles, model->n_triangles, count, sizeof *model->triangles);
+  if (status != CONIC_OK)
+    return status;
+  model->triangles = triangles;
+  builder->triangle_capacity = count;
+  return CONIC_OK;
+}
+
+conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
+  conic_model *model = builder->model;
+  if (model->n_triangles == builder->triangle_capacity) {
+    conic_status status = conic_builder_reserve_triangles(builder, model->n_triangles + model->n_triangles / 2 + 1024);
+    if (status != CONIC_OK)
+      return status;
+  }
+  uint32_t *triangle = model->triangles[model->n_triangles++];
+  triangle[0] = a;
+  triangle[1] = b;
+  triangle[2] = c;
+  return CONIC_OK;
+}

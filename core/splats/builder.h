@@ -1,0 +1,59 @@
+/* A model that grows while it is read. */
+#ifndef CONIC_BUILDER_H
+#define CONIC_BUILDER_H
+
+#include "conic/model.h"
+
+/* Where a file's points go that are not kept: see conic_model_stream. XYZ and LAS deliver colours as they stand in the
+ * file. */
+typedef struct conic_delivery {
+  conic_batch_receiver *receive;
+  void *cookie;
+  size_t batch; /* points that are handed over at a time */
+} conic_delivery;
+
+typedef struct conic_builder {
+  conic_context *context;
+  const conic_delivery *delivery; /* null: the points are kept */
+  uint64_t n_delivered;           /* no longer in the model */
+  conic_model *model;             /* points.count says how many points have been filled in */
+  size_t point_capacity, triangle_capacity, clip_capacity;
+} conic_builder;
+
+/* The most points a model can have: indices are 32 bits and the largest stands for none. */
+#define CONIC_MAX_POINTS UINT64_C(0xFFFFFFFE)
+
+/* Starts with an empty model whose points have the optional arrays of `fields`. What has been built is released by
+ * conic_model_release. Errors: MEMORY. */
+conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
+                                 const conic_delivery *delivery, conic_builder *builder);
+
+/* Hands the points over, where they are not kept and are enough for a batch, or all the same if `is_last`; then there
+ * are none. Errors: the receiver's. */
+conic_status conic_builder_deliver(conic_builder *builder, int is_last);
+
+/* Points that have been built, delivered or not. */
+static inline uint64_t conic_builder_points(const conic_builder *builder) {
+  return builder->n_delivered + builder->model->points.count;
+}
+
+/* Room for `count` points in all; grows at least by half, so that many small steps cost little. Errors: MEMORY. */
+conic_status conic_builder_reserve_points(conic_builder *builder, size_t count);
+
+/* Room for exactly `count` points, or more where there is more. Errors: MEMORY. */
+conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count);
+
+/* Gives the points another optional array (clip lines are none), filled with white, 1 or zero for those that there are.
+ * Errors: MEMORY. */
+conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field field);
+
+/* Appends a record of clip lines; they come in the order of their splats. Errors: MEMORY. */
+conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip);
+
+/* Room for `count` triangles in all. Errors: MEMORY. */
+conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count);
+
+/* Errors: MEMORY. */
+conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c);
+
+#endif

@@ -1,0 +1,316 @@
+/* From a model to splats: what came with good axes keeps them, vertices take theirs from their faces, and the rest from
+ * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
+#include "core/splats/estimate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/trigonometry.h"
+#include "core/splats/clip.h"
+#include "core/splats/features.h"
+#include "core/splats/normals.h"
+
+void conic_estimate_options_init(conic_estimate_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->n_neighbours = 20;
+  options->cutoff = 1.5f;
+}
+
+int conic_unit_vector(float x, float y, float z, double unit[3]) {
+  const double v[3] = {(double)x, (double)y, (double)z};
+  double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  int is_good = length > 0.0 && length * 0.0 == 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    unit[axis] = is_good ? v[axis] / length : 0.0;
+  return is_good;
+}
+
+static int is_finite(float value) {
+  return value * 0.0f == 0.0f;
+}
+
+/* The unit normal of tangent axes; 0 where they span no ellipse. */
+static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], size_t point, double normal[3]) {
+  double u[3], v[3], cross[3];
+  if (!conic_unit_vector(tangent_u[0][point], tangent_u[1][point], tangent_u[2][point], u) ||
+      !conic_unit_vector(tangent_v[0][point], tangent_v[1][point], tangent_v[2][point], v))
+    return 0;
+  for (int axis = 0; axis < 3; axis++)
+    cross[axis] = u[(axis + 1) % 3] * v[(axis + 2) % 3] - u[(axis + 2) % 3] * v[(axis + 1) % 3];
+  double length = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = length > 0.0 ? cross[axis] / length : 0.0;
+  return length > 0.0;
+}
+
+/* Axes that span no ellipse but are not zero, such as two parallel ones, are the file's own and kept: the renderer
+ * draws what it can of them. */
+static int has_good_axes(const conic_splats *points, size_t point) {
+  double unit[3];
+  return points->tangent_u[0] &&
+         conic_unit_vector(points->tangent_u[0][point], points->tangent_u[1][point], points->tangent_u[2][point],
+                           unit) &&
+         conic_unit_vector(points->tangent_v[0][point], points->tangent_v[1][point], points->tangent_v[2][point], unit);
+}
+
+static int has_bad_color(const conic_splats *points, size_t point) {
+  return points->color[0] && !(is_finite(points->color[0][point]) && is_finite(points->color[1][point]) &&
+                               is_finite(points->color[2][point]));
+}
+
+static void classify_points(void *data, size_t begin, size_t end) {
+  conic_estimate *estimate = data;
+  const conic_splats *points = &estimate->model->points;
+  for (size_t i = begin; i < end; i++) {
+    int is_somewhere =
+        is_finite(points->position[0][i]) && is_finite(points->position[1][i]) && is_finite(points->position[2][i]);
+    estimate->states[i] = (uint8_t)(!is_somewhere              ? CONIC_POINT_NOWHERE
+                                    : has_good_axes(points, i) ? CONIC_POINT_KEPT
+                                                               : CONIC_POINT_RAW);
+  }
+}
+
+/* The normal that a point has before any is guessed: of its axes, else of the file. */
+static int known_normal(const conic_estimate *estimate, size_t point, double normal[3]) {
+  const conic_splats *points = &estimate->model->points;
+  int state = estimate->states[point];
+  if (state == CONIC_POINT_KEPT)
+    return axes_normal(points->tangent_u, points->tangent_v, point, normal);
+  if (state == CONIC_POINT_FACED)
+    return axes_normal(estimate->tangent_u, estimate->tangent_v, point, normal);
+  return points->normal[0] &&
+         conic_unit_vector(points->normal[0][point], points->normal[1][point], points->normal[2][point], normal);
+}
+
+/* Marks the slots that the raw points need, and takes their normals from the first of their points that has one.
+ * Returns whether normals must be guessed. */
+static int mark_slots(const conic_estimate *estimate, conic_neighbourhood *neighbourhood) {
+  const conic_neighbours *tree = &neighbourhood->tree;
+  int is_any_guessed = 0;
+  for (size_t i = 0; i < tree->n_points; i++) {
+    double normal[3];
+    size_t slot = tree->slot_of_point[i];
+    if (slot == CONIC_NO_SLOT)
+      continue;
+    if (estimate->states[i] == CONIC_POINT_RAW)
+      neighbourhood->flags[slot] |= CONIC_SLOT_WANTED;
+    const float *known = neighbourhood->normals[slot];
+    if (known[0] == 0.0f && known[1] == 0.0f && known[2] == 0.0f && known_normal(estimate, i, normal))
+      for (int axis = 0; axis < 3; axis++)
+        neighbourhood->normals[slot][axis] = (float)normal[axis];
+  }
+  for (size_t slot = 0; slot < tree->n_slots; slot++) {
+    const float *known = neighbourhood->normals[slot];
+    if (neighbourhood->flags[slot] & CONIC_SLOT_WANTED && known[0] == 0.0f && known[1] == 0.0f && known[2] == 0.0f) {
+      neighbourhood->flags[slot] |= CONIC_SLOT_GUESSED;
+      is_any_guessed = 1;
+    }
+  }
+  return is_any_guessed;
+}
+
+/* Neighbours of the wanted slots, and of their neighbours, whose spacings are asked for too. */
+static conic_status find_neighbours(conic_context *context, conic_neighbourhood *neighbourhood) {
+  conic_status status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.1, 0.4);
+  enum { NEAR_WANTED = 8 };
+  if (status != CONIC_OK)
+    return status;
+  conic_neighbourhood_spread(neighbourhood, CONIC_SLOT_WANTED, NEAR_WANTED);
+  return conic_neighbourhood_list(context, neighbourhood, NEAR_WANTED, 0.4, 0.45);
+}
+
+static conic_status estimate_in(conic_context *context, conic_estimate *estimate, conic_neighbourhood *neighbourhood,
+                                double *spacings) {
+  int is_any_guessed = mark_slots(estimate, neighbourhood);
+  conic_status status = find_neighbours(context, neighbourhood);
+  if (status == CONIC_OK && is_any_guessed)
+    status = conic_normals_guess(context, neighbourhood, 0.45, 0.5);
+  if (status == CONIC_OK && is_any_guessed)
+    status = conic_normals_orient(context, neighbourhood);
+  if (status == CONIC_OK)
+    status = conic_estimate_spacings(context, neighbourhood, spacings);
+  return status == CONIC_OK ? conic_estimate_from_neighbours(context, estimate, neighbourhood, spacings) : status;
+}
+
+static conic_status estimate_raw(conic_context *context, const conic_estimate_options *options,
+                                 conic_estimate *estimate, conic_repairs *repairs) {
+  const conic_splats *points = &estimate->model->points;
+  const float *const positions[3] = {points->position[0], points->position[1], points->position[2]};
+  conic_neighbourhood neighbourhood;
+  conic_status status = conic_progress(context, "estimate", 0.0);
+  if (status == CONIC_OK)
+    status =
+        conic_neighbourhood_create(context, positions, points->count, (size_t)options->n_neighbours, &neighbourhood);
+  if (status != CONIC_OK)
+    return status;
+  repairs->duplicate = neighbourhood.tree.n_duplicates;
+  double *spacings = conic_memory_allocate_zeroed(context, neighbourhood.tree.n_slots, sizeof *spacings);
+  status = spacings ? estimate_in(context, estimate, &neighbourhood, spacings) : CONIC_ERROR_MEMORY;
+  conic_memory_release(context, spacings);
+  conic_neighbourhood_release(context, &neighbourhood);
+  return status;
+}
+
+static size_t count_states(const conic_estimate *estimate, conic_point_state state) {
+  size_t n = 0;
+  for (size_t i = 0; i < estimate->model->points.count; i++)
+    n += estimate->states[i] == state;
+  return n;
+}
+
+/* Points whose file had axes, or else normals, but none that could be used. */
+static size_t count_zero(const conic_estimate *estimate) {
+  const conic_splats *points = &estimate->model->points;
+  size_t n = 0;
+  for (size_t i = 0; i < points->count; i++) {
+    double unit[3];
+    if (estimate->states[i] == CONIC_POINT_NOWHERE || estimate->states[i] == CONIC_POINT_KEPT)
+      continue;
+    n += points->tangent_u[0] || (points->normal[0] && !conic_unit_vector(points->normal[0][i], points->normal[1][i],
+                                                                          points->normal[2][i], unit));
+  }
+  return n;
+}
+
+static void count_repairs(const conic_estimate *estimate, conic_repairs *repairs) {
+  repairs->nan = count_states(estimate, CONIC_POINT_NOWHERE);
+  repairs->isolated = count_states(estimate, CONIC_POINT_ISOLATED);
+  repairs->failed = count_states(estimate, CONIC_POINT_FAILED);
+  repairs->zero = count_zero(estimate);
+}
+
+static int has_new_axes(const void *cookie, uint32_t splat) {
+  return ((const conic_estimate *)cookie)->states[splat] != CONIC_POINT_KEPT;
+}
+
+/* Lines are given in units of the axes: with others they mean nothing. Returns how many records were wrong. */
+static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
+  size_t n_wrong = conic_splats_repair_clips(points), n = points->n_clips;
+  conic_clip_filter(points, has_new_axes, estimate);
+  return n_wrong + n - points->n_clips;
+}
+
+/* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
+ */
+static void hand_over(conic_estimate *estimate, conic_model *model) {
+  for (int axis = 0; axis < 3; axis++)
+    for (int i_tangent = 0; i_tangent < 2; i_tangent++) {
+      float **own = i_tangent ? &model->points.tangent_v[axis] : &model->points.tangent_u[axis];
+      float **made = i_tangent ? &estimate->tangent_v[axis] : &estimate->tangent_u[axis];
+      for (size_t i = 0; i < model->points.count; i++) {
+        int state = estimate->states[i];
+        if (state == CONIC_POINT_NOWHERE || state == CONIC_POINT_FAILED)
+          (*made)[i] = NAN;
+        if (*own && state != CONIC_POINT_KEPT)
+          (*own)[i] = (*made)[i];
+      }
+      if (!*own) {
+        *own = *made;
+        *made = NULL;
+      }
+    }
+  /* A colour that is none becomes what absence means: white. */
+  for (size_t i = 0; i < model->points.count; i++)
+    if (has_bad_color(&model->points, i))
+      for (int channel = 0; channel < 3; channel++)
+        model->points.color[channel][i] = 1.0f;
+}
+
+static conic_status allocate_estimate(conic_context *context, conic_estimate *estimate) {
+  size_t count = estimate->model->points.count;
+  int is_good = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    estimate->tangent_u[axis] = conic_memory_allocate(context, count, sizeof(float));
+    estimate->tangent_v[axis] = conic_memory_allocate(context, count, sizeof(float));
+    is_good = is_good && estimate->tangent_u[axis] && estimate->tangent_v[axis];
+  }
+  return is_good ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static conic_status estimate_model(conic_context *context, const conic_estimate_options *options,
+                                   conic_estimate *estimate, conic_repairs *repairs) {
+  conic_status status = conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
+  if (status == CONIC_OK)
+    status = allocate_estimate(context, estimate);
+  if (status == CONIC_OK && estimate->model->n_triangles)
+    status = conic_estimate_from_faces(context, estimate);
+  if (status == CONIC_OK && count_states(estimate, CONIC_POINT_RAW))
+    status = estimate_raw(context, options, estimate, repairs);
+  return status;
+}
+
+static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
+                                   conic_repairs *repairs) {
+  conic_repairs counted = {0, 0, 0, 0, 0, 0};
+  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}};
+  estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
+  conic_status status = CONIC_ERROR_MEMORY;
+  if (estimate.states)
+    status = estimate_model(context, options, &estimate, &counted);
+  if (status == CONIC_OK) {
+    count_repairs(&estimate, &counted);
+    counted.clip = drop_clips(&estimate, &model->points);
+    hand_over(&estimate, model);
+    if (repairs)
+      *repairs = counted;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    conic_memory_release(context, estimate.tangent_u[axis]);
+    conic_memory_release(context, estimate.tangent_v[axis]);
+  }
+  conic_memory_release(context, estimate.states);
+  return status;
+}
+
+/* A mesh with creases: its copy, split there, takes its place when all is done. */
+static conic_status estimate_split(conic_context *context, const conic_estimate_options *options, double cosine,
+                                   conic_model *model, conic_repairs *repairs) {
+  conic_model split;
+  conic_creases creases;
+  conic_status status = conic_creases_split(context, cosine, model, &split, &creases);
+  if (status != CONIC_OK)
+    return status;
+  status = estimate_plain(context, options, &split, repairs);
+  if (status == CONIC_OK)
+    status = conic_creases_clip(context, &creases, (double)options->cutoff, &split);
+  conic_creases_release(context, &creases);
+  conic_model_release(context, status == CONIC_OK ? model : &split);
+  if (status == CONIC_OK)
+    *model = split;
+  return status;
+}
+
+/* Points: their splats are made as ever, in a copy, and then sharpened. */
+static conic_status estimate_sharp_points(conic_context *context, const conic_estimate_options *options, double cosine,
+                                          conic_model *model, conic_repairs *repairs) {
+  conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
+  memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  conic_status status = conic_splats_append(context, &copy.points, &model->points);
+  if (status == CONIC_OK)
+    status = estimate_plain(context, options, &copy, repairs);
+  if (status == CONIC_OK && copy.points.n_clips == 0)
+    status = conic_features_in_points(context, cosine, options, &copy.points);
+  conic_splats_release(context, status == CONIC_OK ? &model->points : &copy.points);
+  if (status == CONIC_OK)
+    model->points = copy.points;
+  return status;
+}
+
+conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+                                   conic_repairs *repairs) {
+  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
+      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
+      !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
+                      CONIC_MAX_NEIGHBOURS);
+  double cosine = conic_cos(conic_radians(options->feature_angle_deg));
+  if (options->feature_angle_deg == 0.0 || model->points.count == 0)
+    return estimate_plain(context, options, model, repairs);
+  if (model->n_triangles && !model->points.tangent_u[0])
+    return estimate_split(context, options, cosine, model, repairs);
+  return estimate_sharp_points(context, options, cosine, model, repairs);
+}

@@ -1,0 +1,51 @@
+/* What the steps of an estimate share (core/splats/estimate.c drives them). */
+#ifndef CONIC_ESTIMATE_H
+#define CONIC_ESTIMATE_H
+
+#include <stdint.h>
+
+#include "conic/model.h"
+#include "core/splats/neighbourhood.h"
+
+/* What has become of a point. */
+typedef enum conic_point_state {
+  CONIC_POINT_RAW = 0,  /* has no axes yet */
+  CONIC_POINT_KEPT,     /* came with good axes */
+  CONIC_POINT_FACED,    /* got its axes from its faces */
+  CONIC_POINT_SPREAD,   /* got its axes from its neighbours */
+  CONIC_POINT_ISOLATED, /* the same, but kept small */
+  CONIC_POINT_FAILED,
+  CONIC_POINT_NOWHERE /* its position is not finite */
+} conic_point_state;
+
+typedef struct conic_estimate {
+  const conic_model *model;
+  double cutoff;
+  uint8_t *states;     /* conic_point_state of each point */
+  float *tangent_u[3]; /* of each point, beside the model's own: valid where FACED, SPREAD or ISOLATED */
+  float *tangent_v[3];
+} conic_estimate;
+
+/* How far an outline reaches beyond the cell that it must cover: curved surfaces take the cells of neighbours
+ * apart, and blending wants several outlines on each other. See docs/notes/estimation.md for what was tried. */
+#define CONIC_OUTLINE_COVER 1.2
+#define CONIC_OUTLINE_BLEND 1.4
+#define CONIC_OUTLINE_RATIO 0.2 /* the least ratio of minor to major axis */
+
+/* The unit vector along (x, y, z); 0 where there is none. */
+int conic_unit_vector(float x, float y, float z, double unit[3]);
+
+/* Gives the RAW vertices that have a face with an area their axes: FACED. Errors: ARGUMENT (more triangles than can be
+ * numbered, an index out of range), MEMORY, CANCELLED. */
+conic_status conic_estimate_from_faces(conic_context *context, conic_estimate *estimate);
+
+/* The local spacing of the LISTED slots, by their own neighbours alone. */
+conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
+                                     double *spacings);
+
+/* Gives the RAW points their axes, from their neighbours and the spacings: SPREAD, ISOLATED or FAILED.
+ * Errors: CANCELLED. */
+conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
+                                            const conic_neighbourhood *neighbourhood, const double *spacings);
+
+#endif

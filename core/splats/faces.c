@@ -1,0 +1,152 @@
+#include "core/splats/faces.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+conic_status conic_faces_create(conic_context *context, conic_faces **faces) {
+  *faces = conic_memory_allocate_zeroed(context, 1, sizeof **faces);
+  if (!*faces)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_texts_add(context, &(*faces)->material_names, "", 0);
+  if (status != CONIC_OK) {
+    conic_faces_destroy(context, *faces);
+    *faces = NULL;
+  }
+  return status;
+}
+
+void conic_faces_destroy(conic_context *context, conic_faces *faces) {
+  if (!faces)
+    return;
+  conic_memory_release(context, faces->normal_corners);
+  conic_memory_release(context, faces->texture_corners);
+  conic_memory_release(context, faces->material);
+  conic_memory_release(context, faces->normals);
+  conic_memory_release(context, faces->coordinates);
+  conic_memory_release(context, faces->material_names.bytes);
+  conic_memory_release(context, faces->libraries.bytes);
+  conic_memory_release(context, faces->pictures.bytes);
+  conic_memory_release(context, faces);
+}
+
+/* Room for one more in an array of `used`, which grows by half to *room; several arrays may share a room, which is then
+ * set by the last. */
+static conic_status make_room(conic_context *context, void *array_of_pointers, size_t used, size_t larger,
+                              size_t size) {
+  void *array;
+  memcpy(&array, array_of_pointers, sizeof array);
+  conic_status status = conic_memory_grow(context, &array, used, larger, size);
+  memcpy(array_of_pointers, &array, sizeof array);
+  return status;
+}
+
+static size_t more_than(size_t room) {
+  return room + room / 2 + 1024;
+}
+
+conic_status conic_faces_add(conic_context *context, conic_faces *faces, const uint32_t normals[3],
+                             const uint32_t coordinates[3]) {
+  size_t n = faces->count;
+  if (n == faces->room) {
+    size_t larger = more_than(faces->room);
+    conic_status status = make_room(context, &faces->normal_corners, n, larger, sizeof *faces->normal_corners);
+    if (status == CONIC_OK)
+      status = make_room(context, &faces->texture_corners, n, larger, sizeof *faces->texture_corners);
+    if (status == CONIC_OK)
+      status = make_room(context, &faces->material, n, larger, sizeof *faces->material);
+    if (status != CONIC_OK)
+      return status;
+    faces->room = larger;
+  }
+  for (int i = 0; i < 3; i++) {
+    faces->normal_corners[n][i] = normals ? normals[i] : CONIC_NO_CORNER;
+    faces->texture_corners[n][i] = coordinates ? coordinates[i] : CONIC_NO_CORNER;
+    faces->has_normal_corners |= faces->normal_corners[n][i] != CONIC_NO_CORNER;
+    faces->has_texture_corners |= faces->texture_corners[n][i] != CONIC_NO_CORNER;
+  }
+  faces->material[n] = faces->current_material;
+  faces->count++;
+  return CONIC_OK;
+}
+
+conic_status conic_faces_add_normal(conic_context *context, conic_faces *faces, const double normal[3]) {
+  if (faces->n_normals == faces->normal_room) {
+    size_t larger = more_than(faces->normal_room);
+    conic_status status = make_room(context, &faces->normals, faces->n_normals, larger, sizeof *faces->normals);
+    if (status != CONIC_OK)
+      return status;
+    faces->normal_room = larger;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    faces->normals[faces->n_normals][axis] = (float)normal[axis];
+  faces->n_normals++;
+  return CONIC_OK;
+}
+
+conic_status conic_faces_add_coordinate(conic_context *context, conic_faces *faces, const double coordinate[2]) {
+  if (faces->n_coordinates == faces->coordinate_room) {
+    size_t larger = more_than(faces->coordinate_room);
+    conic_status status =
+        make_room(context, &faces->coordinates, faces->n_coordinates, larger, sizeof *faces->coordinates);
+    if (status != CONIC_OK)
+      return status;
+    faces->coordinate_room = larger;
+  }
+  faces->coordinates[faces->n_coordinates][0] = (float)coordinate[0];
+  faces->coordinates[faces->n_coordinates][1] = (float)coordinate[1];
+  faces->n_coordinates++;
+  return CONIC_OK;
+}
+
+void conic_faces_begin_vertices(conic_faces *faces) {
+  faces->has_vertex_coordinates = 1;
+  faces->first_vertex_coordinate = faces->n_coordinates;
+}
+
+conic_status conic_faces_use_material(conic_context *context, conic_faces *faces, const char *name, size_t length) {
+  size_t i = conic_texts_find(&faces->material_names, name, length);
+  if (i == faces->material_names.count) {
+    if (i == CONIC_MAX_MATERIALS)
+      return conic_fail(context, CONIC_ERROR_INPUT, "there are more than %d materials", (int)CONIC_MAX_MATERIALS);
+    conic_status status = conic_texts_add(context, &faces->material_names, name, length);
+    if (status != CONIC_OK)
+      return status;
+  }
+  faces->current_material = (uint32_t)i;
+  return CONIC_OK;
+}
+
+conic_status conic_texts_add(conic_context *context, conic_texts *texts, const char *text, size_t length) {
+  if (texts->room_bytes - texts->used_bytes < length + 1) {
+    size_t larger = more_than(texts->room_bytes) + length;
+    conic_status status = make_room(context, &texts->bytes, texts->used_bytes, larger, 1);
+    if (status != CONIC_OK)
+      return status;
+    texts->room_bytes = larger;
+  }
+  memcpy(texts->bytes + texts->used_bytes, text, length);
+  texts->bytes[texts->used_bytes + length] = '\0';
+  texts->used_bytes += length + 1;
+  texts->count++;
+  return CONIC_OK;
+}
+
+const char *conic_texts_at(const conic_texts *texts, size_t i) {
+  const char *text = texts->bytes;
+  for (; i > 0; i--)
+    text += strlen(text) + 1;
+  return text;
+}
+
+size_t conic_texts_find(const conic_texts *texts, const char *text, size_t length) {
+  const char *known = texts->bytes;
+  for (size_t i = 0; i < texts->count; i++) {
+    size_t known_length = strlen(known);
+    if (known_length == length && memcmp(known, text, length) == 0)
+      return i;
+    known += known_length + 1;
+  }
+  return texts->count;
+}

@@ -1,0 +1,81 @@
+/* Which clip lines a splat gets, if several creases are near it. */
+#include <math.h>
+#include <string.h>
+
+#include "core/splats/features.h"
+
+enum { MAX_CANDIDATES = 16 };
+
+/* Lines whose directions are less than 15° apart are taken for one crease. */
+#define SAME_DIRECTION 0.966
+
+static double length_of(const float line[3]) {
+  return sqrt((double)line[0] * (double)line[0] + (double)line[1] * (double)line[1]);
+}
+
+void conic_clip_choice_add(conic_clip_choice *choice, const double line[3], double reach) {
+  double length = sqrt(line[0] * line[0] + line[1] * line[1]), distance = line[2] / length;
+  if (!(length > 0.0) || !(distance <= reach) || !(distance >= -0.25 * reach))
+    return;
+  int at = choice->n < MAX_CANDIDATES ? choice->n++ : MAX_CANDIDATES;
+  for (; at > 0 && choice->distances[at - 1] > distance; at--)
+    if (at < MAX_CANDIDATES) {
+      choice->distances[at] = choice->distances[at - 1];
+      memcpy(choice->lines[at], choice->lines[at - 1], sizeof choice->lines[at]);
+    }
+  if (at == MAX_CANDIDATES)
+    return;
+  choice->distances[at] = distance;
+  for (int i = 0; i < 3; i++)
+    choice->lines[at][i] = (float)(line[i] / length);
+}
+
+static int keeps(const conic_clip *clip, const double place[2], double slack) {
+  double allowed = slack * sqrt(place[0] * place[0] + place[1] * place[1]);
+  int n_keeping = 0;
+  for (int i = 0; i < clip->n_lines; i++) {
+    const float *line = clip->lines[i];
+    n_keeping += (double)line[0] * place[0] + (double)line[1] * place[1] + (double)line[2] >= -allowed;
+  }
+  return clip->operation == CONIC_CLIP_OR ? n_keeping > 0 : n_keeping == clip->n_lines;
+}
+
+static int keeps_all(const conic_clip *clip, const double (*places)[2], size_t n_places, double slack) {
+  for (size_t i = 0; i < n_places; i++)
+    if (!keeps(clip, places[i], slack))
+      return 0;
+  return 1;
+}
+
+int conic_clip_choose(const conic_clip_choice *choice, const double (*places)[2], size_t n_places, double slack,
+                      conic_clip *clip) {
+  int second = 1;
+  if (choice->n == 0)
+    return 0;
+  const float *first = choice->lines[0];
+  while (second < choice->n &&
+         (double)first[0] * (double)choice->lines[second][0] + (double)first[1] * (double)choice->lines[second][1] >
+             SAME_DIRECTION * length_of(first) * length_of(choice->lines[second]))
+    second++;
+  clip->n_lines = second < choice->n ? 2 : 1;
+  clip->operation = CONIC_CLIP_AND;
+  memset(clip->lines, 0, sizeof clip->lines);
+  memcpy(clip->lines[0], first, sizeof clip->lines[0]);
+  if (clip->n_lines == 2)
+    memcpy(clip->lines[1], choice->lines[second], sizeof clip->lines[1]);
+  if (keeps_all(clip, places, n_places, slack))
+    return 1;
+  clip->operation = CONIC_CLIP_OR;
+  if (clip->n_lines == 2 && keeps_all(clip, places, n_places, slack))
+    return 1;
+  clip->operation = CONIC_CLIP_AND;
+  clip->n_lines = 1;
+  for (int i = 0; i < choice->n; i++) {
+    memcpy(clip->lines[0], choice->lines[i], sizeof clip->lines[0]);
+    if (keeps_all(clip, places, n_places, slack)) {
+      memset(clip->lines[1], 0, sizeof clip->lines[1]);
+      return 1;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,117 @@
+#include "core/splats/neighbourhood.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+/* Slots that one call of a task does, and calls between two reports of progress. */
+enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
+
+typedef struct slots_work {
+  conic_slots_task *task;
+  void *data;
+  size_t first, end;
+} slots_work;
+
+static void do_chunk(void *data, size_t i_item, int i_thread) {
+  slots_work *work = data;
+  size_t begin = work->first + i_item * CHUNK;
+  (void)i_thread;
+  work->task(work->data, begin, begin + CHUNK < work->end ? begin + CHUNK : work->end);
+}
+
+conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
+                             double to) {
+  slots_work work = {task, data, 0, n_slots};
+  size_t n_chunks = (n_slots + CHUNK - 1) / CHUNK;
+  for (size_t i_chunk = 0; i_chunk < n_chunks; i_chunk += CHUNKS_A_REPORT) {
+    conic_status status =
+        conic_progress(context, "estimate", from + (to - from) * ((double)i_chunk / (double)n_chunks));
+    if (status != CONIC_OK)
+      return status;
+    work.first = i_chunk * CHUNK;
+    conic_parallel_for(context, n_chunks - i_chunk < CHUNKS_A_REPORT ? n_chunks - i_chunk : CHUNKS_A_REPORT, do_chunk,
+                       &work);
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_neighbourhood_create(conic_context *context, const float *const positions[3], size_t count,
+                                        size_t n_neighbours, conic_neighbourhood *neighbourhood) {
+  memset(neighbourhood, 0, sizeof *neighbourhood);
+  conic_status status = conic_neighbours_build(context, positions, count, &neighbourhood->tree);
+  if (status != CONIC_OK)
+    return status;
+  size_t n_slots = neighbourhood->tree.n_slots, n_others = n_slots ? n_slots - 1 : 0;
+  neighbourhood->n_neighbours = n_neighbours < n_others ? n_neighbours : n_others;
+  neighbourhood->neighbours =
+      conic_memory_allocate(context, n_slots, neighbourhood->n_neighbours * sizeof *neighbourhood->neighbours);
+  neighbourhood->flags = conic_memory_allocate_zeroed(context, n_slots, sizeof *neighbourhood->flags);
+  neighbourhood->normals = conic_memory_allocate_zeroed(context, n_slots, sizeof *neighbourhood->normals);
+  if (neighbourhood->neighbours && neighbourhood->flags && neighbourhood->normals)
+    return CONIC_OK;
+  conic_neighbourhood_release(context, neighbourhood);
+  return CONIC_ERROR_MEMORY;
+}
+
+void conic_neighbourhood_release(conic_context *context, conic_neighbourhood *neighbourhood) {
+  conic_neighbours_release(context, &neighbourhood->tree);
+  conic_memory_release(context, neighbourhood->neighbours);
+  conic_memory_release(context, neighbourhood->flags);
+  conic_memory_release(context, neighbourhood->normals);
+  memset(neighbourhood, 0, sizeof *neighbourhood);
+}
+
+typedef struct listing {
+  conic_neighbourhood *neighbourhood;
+  unsigned flags;
+} listing;
+
+/* How far the k-th neighbour of the slot is at most, from the list of a slot near by: as far as the farthest of that
+ * list, the slot itself replaced by the other one. */
+static double bound_by(const conic_neighbourhood *neighbourhood, size_t other, size_t slot, const double query[3]) {
+  const uint32_t *list = conic_neighbourhood_of(neighbourhood, other);
+  double bound2 = 0.0;
+  for (size_t i = 0; i < neighbourhood->n_neighbours; i++) {
+    size_t neighbour = list[i] == slot ? other : list[i];
+    double distance2 = conic_neighbours_distance2(&neighbourhood->tree, neighbour, query);
+    bound2 = distance2 > bound2 ? distance2 : bound2;
+  }
+  return bound2;
+}
+
+static void list_slots(void *data, size_t begin, size_t end) {
+  const listing *l = data;
+  conic_neighbourhood *neighbourhood = l->neighbourhood;
+  double distances2[CONIC_MAX_NEIGHBOURS];
+  size_t previous = end;
+  for (size_t slot = begin; slot < end; slot++) {
+    double query[3];
+    if (!(neighbourhood->flags[slot] & l->flags) || neighbourhood->flags[slot] & CONIC_SLOT_LISTED)
+      continue;
+    conic_neighbourhood_position(neighbourhood, slot, query);
+    double bound2 = previous == end ? HUGE_VAL : bound_by(neighbourhood, previous, slot, query);
+    conic_neighbours_nearest(&neighbourhood->tree, query, (uint32_t)slot, neighbourhood->n_neighbours, bound2,
+                             neighbourhood->neighbours + slot * neighbourhood->n_neighbours, distances2);
+    neighbourhood->flags[slot] |= CONIC_SLOT_LISTED;
+    previous = slot;
+  }
+}
+
+conic_status conic_neighbourhood_list(conic_context *context, conic_neighbourhood *neighbourhood, unsigned flags,
+                                      double from, double to) {
+  listing l = {neighbourhood, flags};
+  return conic_slots_for(context, neighbourhood->tree.n_slots, list_slots, &l, from, to);
+}
+
+void conic_neighbourhood_spread(conic_neighbourhood *neighbourhood, unsigned flags, unsigned more) {
+  for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot++) {
+    if (!(neighbourhood->flags[slot] & flags))
+      continue;
+    const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
+    for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
+      neighbourhood->flags[list[i]] |= (uint8_t)more;
+  }
+}

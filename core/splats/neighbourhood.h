@@ -1,0 +1,58 @@
+/* A set's points with their neighbours and normals, slot by slot: what ellipses are estimated from. */
+#ifndef CONIC_NEIGHBOURHOOD_H
+#define CONIC_NEIGHBOURHOOD_H
+
+#include <stdint.h>
+
+#include "core/base/threads.h"
+#include "core/splats/neighbours.h"
+
+enum { CONIC_MAX_NEIGHBOURS = 64 };
+
+/* What is asked of a slot, as bits. */
+enum {
+  CONIC_SLOT_WANTED = 1,  /* its ellipse is to be estimated */
+  CONIC_SLOT_LISTED = 2,  /* its neighbours are known */
+  CONIC_SLOT_GUESSED = 4, /* its normal comes from the neighbours' positions */
+};
+
+typedef struct conic_neighbourhood {
+  conic_neighbours tree;
+  size_t n_neighbours;  /* of each slot: those asked for, or all others where there are fewer */
+  uint32_t *neighbours; /* of slot i from [i · n_neighbours] on, nearest first; valid where LISTED */
+  uint8_t *flags;       /* by slot */
+  float (*normals)[3];  /* by slot: unit; zero where not known */
+} conic_neighbourhood;
+
+/* Builds the tree, with room for the rest; flags and normals are zero. On success the caller owns it; on failure it is
+ * empty. Errors: ARGUMENT, MEMORY. */
+conic_status conic_neighbourhood_create(conic_context *context, const float *const positions[3], size_t count,
+                                        size_t n_neighbours, conic_neighbourhood *neighbourhood);
+void conic_neighbourhood_release(conic_context *context, conic_neighbourhood *neighbourhood);
+
+/* Finds the neighbours of the slots that have a bit of `flags` and are not LISTED, and makes them LISTED. The progress
+ * of "estimate" goes from `from` to `to`. Errors: CANCELLED. */
+conic_status conic_neighbourhood_list(conic_context *context, conic_neighbourhood *neighbourhood, unsigned flags,
+                                      double from, double to);
+
+/* Gives the neighbours of all slots that have a bit of `flags` the bits `more`. */
+void conic_neighbourhood_spread(conic_neighbourhood *neighbourhood, unsigned flags, unsigned more);
+
+/* A piece of work on the slots [begin, end). */
+typedef void conic_slots_task(void *data, size_t begin, size_t end);
+
+/* Does all slots on all threads, and reports the progress of "estimate". Errors: CANCELLED. */
+conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
+                             double to);
+
+static inline const uint32_t *conic_neighbourhood_of(const conic_neighbourhood *neighbourhood, size_t slot) {
+  return neighbourhood->neighbours + slot * neighbourhood->n_neighbours;
+}
+
+static inline void conic_neighbourhood_position(const conic_neighbourhood *neighbourhood, size_t slot,
+                                                double position[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    position[axis] = (double)neighbourhood->tree.position[axis][slot];
+}
+
+#endif

@@ -1,0 +1,54 @@
+/* Who is near whom: a kd-tree over a set's positions, and exact nearest neighbours.
+ *
+ * The tree keeps the points in its own order, by *slots*: what is near in space is near in memory, so that
+ * whoever works slot by slot works in the cache. Coincident points are one slot, which stands for the first of them;
+ * points that are not finite have none. The order and every answer depend on the positions and indices only. */
+#ifndef CONIC_NEIGHBOURS_H
+#define CONIC_NEIGHBOURS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+#define CONIC_NO_SLOT UINT32_MAX
+
+/* No leaf has more slots. */
+#define CONIC_LEAF_SLOTS 12
+
+typedef struct conic_neighbours {
+  size_t n_points, n_slots;
+  size_t n_not_finite, n_duplicates; /* n_points = n_slots + both */
+  float *position[3];                /* by slot */
+  uint32_t *point_of_slot;
+  uint32_t *slot_of_point; /* CONIC_NO_SLOT for a point that is not finite */
+  size_t n_leaves;         /* a power of two; node i has the children 2i + 1 and 2i + 2, the leaves come last */
+  float (*boxes)[6];       /* of each node: least x, y, z, greatest x, y, z */
+} conic_neighbours;
+
+/* Builds the tree over positions[axis][0 … count). On success the caller owns what is in *tree; on failure it is
+ * empty. Errors: ARGUMENT (over 2³² - 2 points), MEMORY, CANCELLED. */
+conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,
+                                    conic_neighbours *tree);
+void conic_neighbours_release(conic_context *context, conic_neighbours *tree);
+
+/* The k slots nearest to `query` among those whose squared distance is at most `limit2` (HUGE_VAL: no limit), without
+ * the slot `except` (CONIC_NO_SLOT: none), nearest first; equal distances by x, then y, then z. `slots` and
+ * `distances2` have room for k. Returns how many there are. Thread-safe. */
+size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
+                                double limit2, uint32_t *slots, double *distances2);
+
+/* The squared distance from a query to a slot, with the bits that conic_neighbours_nearest gives. */
+static inline double conic_neighbours_distance2(const conic_neighbours *tree, size_t slot, const double query[3]) {
+  double x = (double)tree->position[0][slot] - query[0];
+  double y = (double)tree->position[1][slot] - query[1];
+  double z = (double)tree->position[2][slot] - query[2];
+  return x * x + y * y + z * z;
+}
+
+/* The slots of the leaf `i_leaf`: from the returned one to that of the next leaf. */
+static inline size_t conic_neighbours_leaf_begin(const conic_neighbours *tree, size_t i_leaf) {
+  return (size_t)((uint64_t)i_leaf * (uint64_t)tree->n_slots / (uint64_t)tree->n_leaves);
+}
+
+#endif

@@ -1,0 +1,267 @@
+/* How the kd-tree comes to be: coincident points are joined, then ranges are halved across their longest side. */
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/splats/neighbours.h"
+
+enum { SHARED_LEVELS = 6 };
+
+/* Building the tree of so many takes long enough to be reported. */
+enum { MANY_SLOTS = 1 << 18, SUBTREES_A_REPORT = 4 };
+
+typedef struct record {
+  float position[3];
+  uint32_t point;
+} record;
+
+static int is_finite(const record *r) {
+  return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
+}
+
+static uint64_t mix(uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+/* Positions that are equal as numbers have equal hashes: adding zero makes -0 to 0. */
+static uint64_t hash_position(const float position[3]) {
+  uint32_t bits[3];
+  for (int axis = 0; axis < 3; axis++) {
+    float value = position[axis] + 0.0f;
+    memcpy(&bits[axis], &value, sizeof value);
+  }
+  return mix(mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
+}
+
+static int same_position(const float a[3], const float b[3]) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* Gathers the finite positions into `records`, coincident ones once; slot_of_point becomes the number of the point's
+ * record, for the time being. */
+static conic_status gather(conic_context *context, const float *const positions[3], conic_neighbours *tree,
+                           record *records) {
+  size_t n_buckets = 16;
+  while (n_buckets < tree->n_points + tree->n_points / 2)
+    n_buckets *= 2;
+  uint32_t *buckets = conic_memory_allocate(context, n_buckets, sizeof *buckets);
+  if (!buckets)
+    return CONIC_ERROR_MEMORY;
+  memset(buckets, 0xFF, n_buckets * sizeof *buckets);
+  size_t n_records = 0;
+  for (size_t i = 0; i < tree->n_points; i++) {
+    record r = {{positions[0][i], positions[1][i], positions[2][i]}, (uint32_t)i};
+    tree->slot_of_point[i] = CONIC_NO_SLOT;
+    if (!is_finite(&r)) {
+      tree->n_not_finite++;
+      continue;
+    }
+    size_t i_bucket = (size_t)hash_position(r.position) & (n_buckets - 1);
+    while (buckets[i_bucket] != CONIC_NO_SLOT && !same_position(records[buckets[i_bucket]].position, r.position))
+      i_bucket = (i_bucket + 1) & (n_buckets - 1);
+    if (buckets[i_bucket] == CONIC_NO_SLOT) {
+      buckets[i_bucket] = (uint32_t)n_records;
+      records[n_records++] = r;
+    } else
+      tree->n_duplicates++;
+    tree->slot_of_point[i] = buckets[i_bucket];
+  }
+  tree->n_slots = n_records;
+  conic_memory_release(context, buckets);
+  return CONIC_OK;
+}
+
+/* A strict order of the records: by the axis, then the next ones, so that what goes left of a split is settled. */
+static int comes_before(const record *a, const record *b, int axis) {
+  if (a->position[axis] != b->position[axis])
+    return a->position[axis] < b->position[axis];
+  for (int step = 1; step < 3; step++) {
+    int other = (axis + step) % 3;
+    if (a->position[other] != b->position[other])
+      return a->position[other] < b->position[other];
+  }
+  return 0;
+}
+
+static record median_of_three(const record *a, const record *b, const record *c, int axis) {
+  if (comes_before(b, a, axis)) {
+    const record *swap = a;
+    a = b;
+    b = swap;
+  }
+  return comes_before(b, c, axis) ? *b : comes_before(a, c, axis) ? *c : *a;
+}
+
+/* Reorders so that the first n_left records come before all others along the axis (Hoare's FIND). Pivots are drawn
+ * from places that no common arrangement of points conspires against. */
+static void partition(record *records, size_t n, size_t n_left, int axis) {
+  ptrdiff_t begin = 0, last = (ptrdiff_t)n - 1, wanted = (ptrdiff_t)n_left;
+  while (begin < last) {
+    uint64_t draw = mix((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last), span = (uint64_t)(last - begin) + 1;
+    const record *from = records + begin;
+    record pivot = median_of_three(&from[(draw & 0xFFFFF) * span >> 20], &from[(draw >> 20 & 0xFFFFF) * span >> 20],
+                                   &from[(draw >> 40 & 0xFFFFF) * span >> 20], axis);
+    ptrdiff_t low = begin, high = last;
+    while (low <= high) {
+      while (comes_before(&records[low], &pivot, axis))
+        low++;
+      while (comes_before(&pivot, &records[high], axis))
+        high--;
+      if (low <= high) {
+        record swap = records[low];
+        records[low++] = records[high];
+        records[high--] = swap;
+      }
+    }
+    if (high < wanted)
+      begin = low;
+    if (wanted < low)
+      last = high;
+  }
+}
+
+typedef struct build {
+  conic_neighbours *tree;
+  record *records;
+  size_t n_level_nodes; /* nodes of the level at work */
+} build;
+
+static void bound_box(const record *records, size_t n, float box[6]) {
+  for (int axis = 0; axis < 3; axis++)
+    box[axis] = box[3 + axis] = records[0].position[axis];
+  for (size_t i = 1; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      float value = records[i].position[axis];
+      box[axis] = value < box[axis] ? value : box[axis];
+      box[3 + axis] = value > box[3 + axis] ? value : box[3 + axis];
+    }
+}
+
+static int longest_side(const float box[6]) {
+  double side[3];
+  for (int axis = 0; axis < 3; axis++)
+    side[axis] = (double)box[3 + axis] - (double)box[axis];
+  return side[0] >= side[1] ? (side[0] >= side[2] ? 0 : 2) : side[1] >= side[2] ? 1 : 2;
+}
+
+/* Bounds the node that covers the leaves [first, first + n_leaves), and halves its records where it has children. */
+static void make_node(build *b, size_t i_node, size_t first, size_t n_leaves) {
+  conic_neighbours *tree = b->tree;
+  size_t begin = conic_neighbours_leaf_begin(tree, first), end = conic_neighbours_leaf_begin(tree, first + n_leaves);
+  bound_box(b->records + begin, end - begin, tree->boxes[i_node]);
+  if (n_leaves > 1) {
+    size_t middle = conic_neighbours_leaf_begin(tree, first + n_leaves / 2);
+    partition(b->records + begin, end - begin, middle - begin, longest_side(tree->boxes[i_node]));
+  }
+}
+
+static void make_subtree(build *b, size_t i_node, size_t first, size_t n_leaves) {
+  make_node(b, i_node, first, n_leaves);
+  if (n_leaves > 1) {
+    make_subtree(b, 2 * i_node + 1, first, n_leaves / 2);
+    make_subtree(b, 2 * i_node + 2, first + n_leaves / 2, n_leaves / 2);
+  }
+}
+
+static void make_level_node(void *data, size_t i_item, int i_thread) {
+  build *b = data;
+  size_t n_leaves = b->tree->n_leaves / b->n_level_nodes;
+  (void)i_thread;
+  make_node(b, b->n_level_nodes - 1 + i_item, i_item * n_leaves, n_leaves);
+}
+
+static void make_level_subtree(void *data, size_t i_item, int i_thread) {
+  build *b = data;
+  size_t n_leaves = b->tree->n_leaves / b->n_level_nodes;
+  (void)i_thread;
+  make_subtree(b, b->n_level_nodes - 1 + i_item, i_item * n_leaves, n_leaves);
+}
+
+/* The nodes of the top levels one level after the other, then the subtrees below them. */
+static conic_status make_tree(conic_context *context, build *b) {
+  int is_reported = b->tree->n_slots >= MANY_SLOTS;
+  b->n_level_nodes = 1;
+  for (int level = 0; level < SHARED_LEVELS && b->n_level_nodes < b->tree->n_leaves; level++) {
+    conic_status status = is_reported ? conic_progress(context, "neighbours", 0.0) : CONIC_OK;
+    if (status != CONIC_OK)
+      return status;
+    conic_parallel_for(context, b->n_level_nodes, make_level_node, b);
+    b->n_level_nodes *= 2;
+  }
+  if (is_reported)
+    return conic_parallel_runs(context, "neighbours", b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree, b);
+  conic_parallel_for(context, b->n_level_nodes, make_level_subtree, b);
+  return CONIC_OK;
+}
+
+/* Takes the positions in their final order, and turns record numbers into slots by way of `slot_of_record`. */
+static void settle(conic_neighbours *tree, const record *records, uint32_t *slot_of_record) {
+  for (size_t slot = 0; slot < tree->n_slots; slot++) {
+    for (int axis = 0; axis < 3; axis++)
+      tree->position[axis][slot] = records[slot].position[axis];
+    tree->point_of_slot[slot] = records[slot].point;
+    slot_of_record[tree->slot_of_point[records[slot].point]] = (uint32_t)slot;
+  }
+  for (size_t i = 0; i < tree->n_points; i++)
+    if (tree->slot_of_point[i] != CONIC_NO_SLOT)
+      tree->slot_of_point[i] = slot_of_record[tree->slot_of_point[i]];
+}
+
+static conic_status allocate_tree(conic_context *context, conic_neighbours *tree) {
+  for (tree->n_leaves = 1; tree->n_leaves * CONIC_LEAF_SLOTS < tree->n_slots;)
+    tree->n_leaves *= 2;
+  for (int axis = 0; axis < 3; axis++)
+    tree->position[axis] = conic_memory_allocate(context, tree->n_slots, sizeof(float));
+  tree->point_of_slot = conic_memory_allocate(context, tree->n_slots, sizeof *tree->point_of_slot);
+  tree->boxes = conic_memory_allocate(context, 2 * tree->n_leaves - 1, sizeof *tree->boxes);
+  return tree->position[0] && tree->position[1] && tree->position[2] && tree->point_of_slot && tree->boxes
+             ? CONIC_OK
+             : CONIC_ERROR_MEMORY;
+}
+
+static conic_status build_with(conic_context *context, const float *const positions[3], conic_neighbours *tree,
+                               record *records) {
+  conic_status status = gather(context, positions, tree, records);
+  if (status == CONIC_OK)
+    status = allocate_tree(context, tree);
+  if (status != CONIC_OK || tree->n_slots == 0)
+    return status;
+  uint32_t *slot_of_record = conic_memory_allocate(context, tree->n_slots, sizeof *slot_of_record);
+  if (!slot_of_record)
+    return CONIC_ERROR_MEMORY;
+  build b = {tree, records, 1};
+  status = make_tree(context, &b);
+  if (status == CONIC_OK)
+    settle(tree, records, slot_of_record);
+  conic_memory_release(context, slot_of_record);
+  return status;
+}
+
+conic_status conic_neighbours_build(conic_context *context, const float *const positions[3], size_t count,
+                                    conic_neighbours *tree) {
+  memset(tree, 0, sizeof *tree);
+  if (count > UINT32_MAX - 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu points are too many to find neighbours for", count);
+  tree->n_points = count;
+  tree->slot_of_point = conic_memory_allocate(context, count, sizeof *tree->slot_of_point);
+  record *records = conic_memory_allocate(context, count, sizeof *records);
+  conic_status status = CONIC_ERROR_MEMORY;
+  if (records && tree->slot_of_point)
+    status = build_with(context, positions, tree, records);
+  conic_memory_release(context, records);
+  if (status != CONIC_OK)
+    conic_neighbours_release(context, tree);
+  return status;
+}
+
+void conic_neighbours_release(conic_context *context, conic_neighbours *tree) {
+  for (int axis = 0; axis < 3; axis++)
+    conic_memory_release(context, tree->position[axis]);
+  conic_memory_release(context, tree->point_of_slot);
+  conic_memory_release(context, tree->slot_of_point);
+  conic_memory_release(context, tree->boxes);
+  memset(tree, 0, sizeof *tree);
+}

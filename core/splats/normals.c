@@ -1,0 +1,229 @@
+#include "core/splats/normals.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/eigen.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
+  const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
+  double origin[3], mean[3] = {0.0, 0.0, 0.0}, covariance[6] = {0.0}, values[3], vectors[3][3];
+  size_t n = neighbourhood->n_neighbours;
+  conic_neighbourhood_position(neighbourhood, slot, origin);
+  /* About the slot itself first, where the numbers are small; it adds nothing to the sums but to their number. */
+  for (size_t i = 0; i < n; i++) {
+    double d[3];
+    conic_neighbourhood_position(neighbourhood, list[i], d);
+    for (int axis = 0; axis < 3; axis++) {
+      d[axis] -= origin[axis];
+      mean[axis] += d[axis];
+    }
+    covariance[0] += d[0] * d[0];
+    covariance[1] += d[0] * d[1];
+    covariance[2] += d[0] * d[2];
+    covariance[3] += d[1] * d[1];
+    covariance[4] += d[1] * d[2];
+    covariance[5] += d[2] * d[2];
+  }
+  double share = 1.0 / (double)(n + 1);
+  covariance[0] -= mean[0] * mean[0] * share;
+  covariance[1] -= mean[0] * mean[1] * share;
+  covariance[2] -= mean[0] * mean[2] * share;
+  covariance[3] -= mean[1] * mean[1] * share;
+  covariance[4] -= mean[1] * mean[2] * share;
+  covariance[5] -= mean[2] * mean[2] * share;
+  conic_eigen3(covariance, values, vectors);
+  for (int axis = 0; axis < 3; axis++)
+    neighbourhood->normals[slot][axis] = (float)vectors[2][axis];
+}
+
+static void guess_slots(void *data, size_t begin, size_t end) {
+  conic_neighbourhood *neighbourhood = data;
+  for (size_t slot = begin; slot < end; slot++)
+    if (neighbourhood->flags[slot] & CONIC_SLOT_GUESSED)
+      guess_normal(neighbourhood, slot);
+}
+
+conic_status conic_normals_guess(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to) {
+  return conic_slots_for(context, neighbourhood->tree.n_slots, guess_slots, neighbourhood, from, to);
+}
+
+/* How two neighbours' normals belong together: the other one is mirrored in the plane half way between the points, as
+ * if both lay on one arc; that keeps to the surface across sharp edges and thin walls alike. 1 or -1: surely with the
+ * same or with opposite signs; 0: can't tell. */
+static double agreement(const conic_neighbourhood *neighbourhood, size_t a, size_t b) {
+  const float *na = neighbourhood->normals[a], *nb = neighbourhood->normals[b];
+  double cosine = 0.0, a_along = 0.0, b_along = 0.0, length2 = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double d = (double)neighbourhood->tree.position[axis][b] - (double)neighbourhood->tree.position[axis][a];
+    cosine += (double)na[axis] * (double)nb[axis];
+    a_along += d * (double)na[axis];
+    b_along += d * (double)nb[axis];
+    length2 += d * d;
+  }
+  return length2 > 0.0 ? cosine - 2.0 * (a_along / length2) * b_along : cosine;
+}
+
+/* A link from a slot to its i-th neighbour, as slot · LINKS + i, sorted by doubt in steps of 1/STEPS. */
+enum { LINKS = 8, STEPS = 65535, LINKS_A_REPORT = 1 << 18 };
+
+typedef struct linking {
+  conic_neighbourhood *neighbourhood;
+  size_t n_links;   /* of each slot */
+  uint16_t *doubt;  /* of each link */
+  uint32_t *parent; /* of each slot in the forest of what hangs together; the last stands for all given normals */
+  uint8_t *flip;    /* whether a slot's sign is opposite to its parent's */
+} linking;
+
+static void doubt_slots(void *data, size_t begin, size_t end) {
+  const linking *l = data;
+  for (size_t slot = begin; slot < end; slot++) {
+    if (!(l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED))
+      continue;
+    const uint32_t *list = conic_neighbourhood_of(l->neighbourhood, slot);
+    for (size_t i = 0; i < l->n_links; i++) {
+      double trust = fabs(agreement(l->neighbourhood, slot, list[i]));
+      l->doubt[slot * LINKS + i] = (uint16_t)(trust < 1.0 ? (1.0 - trust) * (double)STEPS : 0.0);
+    }
+  }
+}
+
+/* Sorts the links of the guessed slots by doubt, stably: `order` gets them, in n · LINKS at most. */
+static size_t sort_links(const linking *l, size_t *starts, uint64_t *order) {
+  size_t n_slots = l->neighbourhood->tree.n_slots;
+  for (size_t slot = 0; slot < n_slots; slot++)
+    for (size_t i = 0; i < l->n_links && l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED; i++)
+      starts[l->doubt[slot * LINKS + i] + 1]++;
+  for (size_t step = 0; step <= STEPS; step++)
+    starts[step + 1] += starts[step];
+  size_t n = starts[STEPS + 1];
+  for (size_t slot = 0; slot < n_slots; slot++)
+    for (size_t i = 0; i < l->n_links && l->neighbourhood->flags[slot] & CONIC_SLOT_GUESSED; i++)
+      order[starts[l->doubt[slot * LINKS + i]]++] = (uint64_t)(slot * LINKS + i);
+  return n;
+}
+
+/* The root of what the slot hangs together with; *flip becomes whether the signs are opposite. Shortens the way. */
+static uint32_t find_root(linking *l, uint32_t slot, unsigned *flip) {
+  uint32_t root = slot;
+  unsigned whole = 0;
+  for (; l->parent[root] != root; root = l->parent[root])
+    whole ^= l->flip[root];
+  *flip = whole;
+  while (l->parent[slot] != root && slot != root) {
+    uint32_t next = l->parent[slot];
+    unsigned rest = whole ^ l->flip[slot];
+    l->parent[slot] = root;
+    l->flip[slot] = (uint8_t)whole;
+    whole = rest;
+    slot = next;
+  }
+  return root;
+}
+
+/* Joins what two slots hang together with, so that their signs are as wanted; the given normals stay the root, else the
+ * lower slot. */
+static void join(linking *l, uint32_t a, uint32_t b, unsigned is_opposite) {
+  unsigned flip_a, flip_b;
+  uint32_t root_a = find_root(l, a, &flip_a), root_b = find_root(l, b, &flip_b);
+  uint32_t given = (uint32_t)l->neighbourhood->tree.n_slots;
+  if (root_a == root_b)
+    return;
+  uint32_t root = root_a == given || (root_b != given && root_a < root_b) ? root_a : root_b;
+  uint32_t other = root == root_a ? root_b : root_a;
+  l->parent[other] = root;
+  l->flip[other] = (uint8_t)(flip_a ^ flip_b ^ is_opposite);
+}
+
+static conic_status join_links(conic_context *context, linking *l, const uint64_t *order, size_t n) {
+  const conic_neighbourhood *neighbourhood = l->neighbourhood;
+  for (size_t slot = 0; slot <= neighbourhood->tree.n_slots; slot++) {
+    int is_given = slot == neighbourhood->tree.n_slots || !(neighbourhood->flags[slot] & CONIC_SLOT_GUESSED);
+    l->parent[slot] = (uint32_t)(is_given ? neighbourhood->tree.n_slots : slot);
+    l->flip[slot] = 0;
+  }
+  for (size_t i = 0; i < n; i++) {
+    conic_status status = i % LINKS_A_REPORT == 0 ? conic_progress(context, "estimate", 0.55) : CONIC_OK;
+    if (status != CONIC_OK)
+      return status;
+    size_t slot = (size_t)(order[i] / LINKS);
+    uint32_t other = conic_neighbourhood_of(neighbourhood, slot)[order[i] % LINKS];
+    const float *normal = neighbourhood->normals[other];
+    if (normal[0] != 0.0f || normal[1] != 0.0f || normal[2] != 0.0f)
+      join(l, (uint32_t)slot, other, agreement(neighbourhood, slot, other) < 0.0);
+  }
+  return CONIC_OK;
+}
+
+static void turn(conic_neighbourhood *neighbourhood, size_t slot) {
+  for (int axis = 0; axis < 3; axis++)
+    neighbourhood->normals[slot][axis] = -neighbourhood->normals[slot][axis];
+}
+
+/* What hangs together, at its root: the middle, and how much its normals point away from there. */
+typedef struct part {
+  double middle[3];
+  double count, outwards;
+} part;
+
+/* Turns every guessed normal to its root's sign, and then whole parts that point inwards: the sum of n · (p - middle)
+ * is three times the volume of a closed surface, so its sign is safe from single points and their noise. */
+static void settle_signs(linking *l, part *parts) {
+  conic_neighbourhood *neighbourhood = l->neighbourhood;
+  size_t n_slots = neighbourhood->tree.n_slots;
+  for (size_t slot = 0; slot < n_slots; slot++) {
+    unsigned flip;
+    part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
+    if (flip)
+      turn(neighbourhood, slot);
+    for (int axis = 0; axis < 3; axis++)
+      p->middle[axis] += (double)neighbourhood->tree.position[axis][slot];
+    p->count += 1.0;
+  }
+  for (size_t slot = 0; slot < n_slots; slot++) {
+    unsigned flip;
+    part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
+    for (int axis = 0; axis < 3; axis++)
+      p->outwards += (double)neighbourhood->normals[slot][axis] *
+                     ((double)neighbourhood->tree.position[axis][slot] - p->middle[axis] / p->count);
+  }
+  for (size_t slot = 0; slot < n_slots; slot++) {
+    unsigned flip;
+    uint32_t root = find_root(l, (uint32_t)slot, &flip);
+    if (root != n_slots && parts[root].outwards < 0.0)
+      turn(neighbourhood, slot);
+  }
+}
+
+static conic_status orient_with(conic_context *context, linking *l, part *parts, size_t *starts, uint64_t *order) {
+  conic_status status = conic_slots_for(context, l->neighbourhood->tree.n_slots, doubt_slots, l, 0.5, 0.55);
+  if (status == CONIC_OK)
+    status = join_links(context, l, order, sort_links(l, starts, order));
+  if (status == CONIC_OK)
+    settle_signs(l, parts);
+  return status;
+}
+
+conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *neighbourhood) {
+  size_t n_slots = neighbourhood->tree.n_slots;
+  linking l = {neighbourhood, neighbourhood->n_neighbours < LINKS ? neighbourhood->n_neighbours : LINKS, NULL, NULL,
+               NULL};
+  l.doubt = conic_memory_allocate(context, n_slots, LINKS * sizeof *l.doubt);
+  l.parent = conic_memory_allocate(context, n_slots + 1, sizeof *l.parent);
+  l.flip = conic_memory_allocate(context, n_slots + 1, sizeof *l.flip);
+  part *parts = conic_memory_allocate_zeroed(context, n_slots + 1, sizeof *parts);
+  size_t *starts = conic_memory_allocate_zeroed(context, STEPS + 2, sizeof *starts);
+  uint64_t *order = conic_memory_allocate(context, n_slots, LINKS * sizeof *order);
+  conic_status status = CONIC_ERROR_MEMORY;
+  if (l.doubt && l.parent && l.flip && parts && starts && order)
+    status = orient_with(context, &l, parts, starts, order);
+  conic_memory_release(context, order);
+  conic_memory_release(context, starts);
+  conic_memory_release(context, parts);
+  conic_memory_release(context, l.flip);
+  conic_memory_release(context, l.parent);
+  conic_memory_release(context, l.doubt);
+  return status;
+}

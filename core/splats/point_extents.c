@@ -1,0 +1,234 @@
+/* Ellipses of points without faces: around the part of the tangent plane that is nearer to the point than to its
+ * neighbours. Such cells leave no gap, however unevenly a scanner has sampled; cut off at a radius, they close nothing
+ * that was not seen. */
+#include <math.h>
+
+#include "core/base/memory.h"
+#include "core/splats/ellipse.h"
+#include "core/splats/estimate.h"
+#include "core/splats/voronoi_cell.h"
+
+/* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
+#define CELL_RADIUS 1.5
+/* The ellipse around a cell reaches no farther than this many of its radii: one that kept the ratio of a long cell
+ * would point far out of it. */
+#define GREATEST_REACH 1.1
+/* A neighbour belongs to the same surface where its direction is less than 60° off the tangent plane, and the normals
+ * are not turned away from each other by more than 107°. */
+#define GREATEST_SLOPE 0.866
+#define LEAST_COSINE (-0.3)
+/* A spacing is at most this many times the median of the neighbours'. */
+#define GREATEST_GROWTH 1.35
+/* A point is isolated where its nearest neighbour is farther than this many times the median of the neighbours'
+ * spacings; its outline then is half such a spacing. */
+#define ISOLATION 4.0
+#define ISOLATED_OUTLINE 0.5
+/* Without any neighbour there is no scale to go by but the unit: pictures frame such a point as a sphere of radius 1.
+ */
+#define LONE_OUTLINE 0.01
+/* The density is told by the nearest few neighbours of the surface, and by all. */
+#define NEAREST_FEW 8
+
+#define PI 3.14159265358979323846
+
+/* A slot as the origin of its tangent plane. */
+typedef struct place {
+  const conic_neighbourhood *neighbourhood;
+  const uint32_t *list;
+  double position[3], normal[3];
+} place;
+
+/* The vector to a neighbour, and whether it is on the same surface. */
+static int view_neighbour(const place *p, uint32_t slot, double d[3], double *distance2) {
+  const float *normal = p->neighbourhood->normals[slot];
+  double cosine = 0.0, height = 0.0;
+  conic_neighbourhood_position(p->neighbourhood, slot, d);
+  *distance2 = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    d[axis] -= p->position[axis];
+    *distance2 += d[axis] * d[axis];
+    cosine += p->normal[axis] * (double)normal[axis];
+    height += p->normal[axis] * d[axis];
+  }
+  return cosine >= LEAST_COSINE && height * height <= GREATEST_SLOPE * GREATEST_SLOPE * *distance2;
+}
+
+static place place_at(const conic_neighbourhood *neighbourhood, size_t slot) {
+  place p = {neighbourhood, conic_neighbourhood_of(neighbourhood, slot), {0.0}, {0.0}};
+  conic_neighbourhood_position(neighbourhood, slot, p.position);
+  for (int axis = 0; axis < 3; axis++)
+    p.normal[axis] = (double)neighbourhood->normals[slot][axis];
+  return p;
+}
+
+/* The side of a square whose area is one sample's: n samples lie in a disc that reaches to the n-th neighbour. Of the
+ * nearest few and of all, the denser estimate: a cluster's edge must not make it sparse. */
+static double spacing_of(const conic_neighbourhood *neighbourhood, size_t slot) {
+  place p = place_at(neighbourhood, slot);
+  double d[3], distance2 = 0.0, few = HUGE_VAL, all = HUGE_VAL;
+  size_t n = 0;
+  for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
+    if (view_neighbour(&p, p.list[i], d, &distance2)) {
+      n++;
+      all = distance2 / (double)n;
+      few = n <= NEAREST_FEW ? all : few;
+    }
+  if (n == 0) {
+    view_neighbour(&p, p.list[0], d, &distance2);
+    all = distance2;
+  }
+  return sqrt(PI * (few < all ? few : all));
+}
+
+typedef struct spacing_work {
+  const conic_neighbourhood *neighbourhood;
+  double *spacings;
+} spacing_work;
+
+static void space_slots(void *data, size_t begin, size_t end) {
+  const spacing_work *work = data;
+  for (size_t slot = begin; slot < end; slot++)
+    if (work->neighbourhood->flags[slot] & CONIC_SLOT_LISTED && work->neighbourhood->n_neighbours)
+      work->spacings[slot] = spacing_of(work->neighbourhood, slot);
+}
+
+conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
+                                     double *spacings) {
+  spacing_work work;
+  work.neighbourhood = neighbourhood;
+  work.spacings = spacings;
+  return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
+}
+
+/* The upper median of the neighbours' spacings. */
+static double median_spacing(const place *p, const double *spacings) {
+  double sorted[CONIC_MAX_NEIGHBOURS];
+  size_t n = p->neighbourhood->n_neighbours;
+  for (size_t i = 0; i < n; i++) {
+    double value = spacings[p->list[i]];
+    size_t at = i;
+    for (; at > 0 && sorted[at - 1] > value; at--)
+      sorted[at] = sorted[at - 1];
+    sorted[at] = value;
+  }
+  return sorted[n / 2];
+}
+
+/* The cell among the neighbours on the same surface. They are turned into the tangent plane, at their true distance:
+ * where the surface bends away, a projection would shorten them and the cell with them. */
+static void cut_cell(const place *p, const double u[3], const double v[3], double radius, conic_cell *cell) {
+  conic_cell_begin(cell, radius);
+  for (size_t i = 0; i < p->neighbourhood->n_neighbours; i++) {
+    double d[3], distance2, x = 0.0, y = 0.0;
+    int is_same_surface = view_neighbour(p, p->list[i], d, &distance2);
+    if (0.25 * distance2 >= cell->greatest2)
+      return; /* and so are all after it */
+    if (!is_same_surface)
+      continue;
+    for (int axis = 0; axis < 3; axis++) {
+      x += d[axis] * u[axis];
+      y += d[axis] * v[axis];
+    }
+    double stretch = sqrt(distance2 / (x * x + y * y));
+    conic_cell_cut(cell, x * stretch, y * stretch);
+  }
+}
+
+/* Whether the cell is open on two opposite sides: then nothing tells how wide the surface is here, as on a cable. */
+static int is_open_across(const conic_cell *cell, double radius) {
+  for (int i = 0; i < cell->n_corners; i++)
+    for (int j = 0; j < i; j++)
+      if (cell->corners[i][0] * cell->corners[j][0] + cell->corners[i][1] * cell->corners[j][1] <
+          -0.9 * radius * radius)
+        return 1;
+  return 0;
+}
+
+static conic_ellipse circle(double radius) {
+  conic_ellipse ellipse = {{1.0, 0.0}, 1.0, radius};
+  return ellipse;
+}
+
+/* The outline at a place, and what it means for the point. */
+static conic_point_state outline(const place *p, size_t slot, const double *spacings, const double u[3],
+                                 const double v[3], conic_ellipse *ellipse) {
+  conic_cell cell;
+  double d[3], nearest2;
+  *ellipse = circle(LONE_OUTLINE);
+  if (p->neighbourhood->n_neighbours == 0)
+    return CONIC_POINT_ISOLATED;
+  double median = median_spacing(p, spacings);
+  view_neighbour(p, p->list[0], d, &nearest2);
+  *ellipse = circle(ISOLATED_OUTLINE * median);
+  if (nearest2 > ISOLATION * ISOLATION * median * median)
+    return CONIC_POINT_ISOLATED;
+  double own = spacings[slot], greatest = GREATEST_GROWTH * median;
+  double radius = CELL_RADIUS * (own < greatest ? own : greatest);
+  cut_cell(p, u, v, radius, &cell);
+  if (is_open_across(&cell, radius)) {
+    double next2 = nearest2, next = 0.0;
+    if (p->neighbourhood->n_neighbours > 1)
+      view_neighbour(p, p->list[1], d, &next2);
+    next = CELL_RADIUS * sqrt(next2);
+    radius = next < radius ? next : radius;
+    cut_cell(p, u, v, radius, &cell);
+  }
+  *ellipse = conic_ellipse_bound((const double(*)[2])cell.corners, cell.n_corners, CONIC_OUTLINE_RATIO);
+  conic_ellipse_retract(ellipse, (const double(*)[2])cell.corners, cell.n_corners, GREATEST_REACH * radius);
+  conic_ellipse_overlap(ellipse, conic_cell_area(&cell), CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND,
+                        CONIC_OUTLINE_COVER * radius);
+  return CONIC_POINT_SPREAD;
+}
+
+typedef struct spread_work {
+  conic_estimate *estimate;
+  const conic_neighbourhood *neighbourhood;
+  const double *spacings;
+} spread_work;
+
+static void spread_point(const spread_work *work, size_t point, size_t slot) {
+  conic_estimate *estimate = work->estimate;
+  float *const *given = estimate->model->points.normal;
+  place p = place_at(work->neighbourhood, slot);
+  double own[3], u[3], v[3];
+  float tangent_u[3], tangent_v[3];
+  conic_ellipse ellipse;
+  if (given[0] && conic_unit_vector(given[0][point], given[1][point], given[2][point], own))
+    for (int axis = 0; axis < 3; axis++)
+      p.normal[axis] = own[axis];
+  conic_tangent_basis(p.normal, u, v);
+  conic_point_state state = outline(&p, slot, work->spacings, u, v, &ellipse);
+  if (!conic_ellipse_axes(&ellipse, u, v, estimate->cutoff, tangent_u, tangent_v))
+    state = CONIC_POINT_FAILED;
+  for (int axis = 0; axis < 3; axis++) {
+    estimate->tangent_u[axis][point] = tangent_u[axis];
+    estimate->tangent_v[axis][point] = tangent_v[axis];
+  }
+  estimate->states[point] = (uint8_t)state;
+}
+
+static void spread_slots(void *data, size_t begin, size_t end) {
+  const spread_work *work = data;
+  for (size_t slot = begin; slot < end; slot++) {
+    size_t point = work->neighbourhood->tree.point_of_slot[slot];
+    if (work->estimate->states[point] == CONIC_POINT_RAW)
+      spread_point(work, point, slot);
+  }
+}
+
+/* Points that coincide with an earlier one: each by its own normal. */
+static void spread_duplicates(void *data, size_t begin, size_t end) {
+  const spread_work *work = data;
+  for (size_t point = begin; point < end; point++)
+    if (work->estimate->states[point] == CONIC_POINT_RAW)
+      spread_point(work, point, work->neighbourhood->tree.slot_of_point[point]);
+}
+
+conic_status conic_estimate_from_neighbours(conic_context *context, conic_estimate *estimate,
+                                            const conic_neighbourhood *neighbourhood, const double *spacings) {
+  spread_work work = {estimate, neighbourhood, spacings};
+  conic_status status = conic_slots_for(context, neighbourhood->tree.n_slots, spread_slots, &work, 0.7, 0.98);
+  if (status == CONIC_OK && neighbourhood->tree.n_duplicates)
+    status = conic_slots_for(context, neighbourhood->tree.n_points, spread_duplicates, &work, 0.98, 1.0);
+  return status;
+}

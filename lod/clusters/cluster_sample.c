@@ -1,0 +1,228 @@
+/* From a patch to surfels: sites, closer ones where their ellipses stray from the surface, and colours. */
+#include "lod/clusters/cluster_sample.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_error.h"
+#include "lod/clusters/cluster_reuse.h"
+#include "lod/clusters/cluster_shape.h"
+
+conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler) {
+  *sampler = conic_memory_allocate_zeroed(context, 1, sizeof **sampler);
+  if (!*sampler)
+    return CONIC_ERROR_MEMORY;
+  (*sampler)->context = context;
+  return CONIC_OK;
+}
+
+void conic_sampler_destroy(conic_sampler *sampler) {
+  if (!sampler)
+    return;
+  conic_memory_release(sampler->context, sampler->last.lattices);
+  conic_memory_release(sampler->context, sampler->last.owner);
+  conic_memory_release(sampler->context, sampler->last.sites);
+  conic_memory_release(sampler->context, sampler->lattices);
+  conic_memory_release(sampler->context, sampler->facing);
+  conic_memory_release(sampler->context, sampler->depth);
+  conic_memory_release(sampler->context, sampler->places);
+  conic_memory_release(sampler->context, sampler->lattice_of);
+  conic_memory_release(sampler->context, sampler->owner);
+  conic_memory_release(sampler->context, sampler->candidates);
+  conic_memory_release(sampler->context, sampler->seeds);
+  conic_memory_release(sampler->context, sampler->sites);
+  conic_place_table_release(sampler->context, &sampler->table);
+  conic_memory_release(sampler->context, sampler->supports);
+  conic_memory_release(sampler->context, sampler->of_sites);
+  for (int i = 0; i < 2; i++)
+    conic_memory_release(sampler->context, sampler->points[i]);
+  conic_memory_release(sampler->context, sampler);
+}
+
+conic_status conic_surfels_reserve(conic_context *context, conic_surfels *surfels) {
+  if (surfels->n < surfels->room)
+    return CONIC_OK;
+  size_t larger = surfels->n + surfels->n / 2 + 64;
+  void *items = surfels->items;
+  conic_status status = conic_memory_grow(context, &items, surfels->n, larger, sizeof *surfels->items);
+  surfels->items = items;
+  if (status == CONIC_OK)
+    surfels->room = larger;
+  return status;
+}
+
+void conic_surfels_release(conic_context *context, conic_surfels *surfels) {
+  conic_memory_release(context, surfels->items);
+  memset(surfels, 0, sizeof *surfels);
+}
+
+/* --- surfels --- */
+
+static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surfels) {
+  conic_status status = conic_surfels_reserve(s->context, surfels);
+  if (status != CONIC_OK)
+    return status;
+  conic_surfel *surfel = &surfels->items[surfels->n];
+  double texel[3];
+  if (!conic_ellipse_axes(&site->ellipse, site->u, site->v, s->job->cutoff, surfel->tangent_u, surfel->tangent_v))
+    return CONIC_OK; /* it stands for nothing that has an area */
+  conic_patch_texel(s->job->mesh, site->face, site->bary, site->spacing, texel);
+  for (int axis = 0; axis < 3; axis++) {
+    double own = site->area > 0.0 ? site->color[axis] / site->area : 1.0;
+    surfel->position[axis] = (float)site->at[axis];
+    surfel->color[axis] = (float)(own * texel[axis]);
+  }
+  surfel->face = site->face;
+  surfels->n++;
+  site->is_drawn = 1;
+  surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
+  return CONIC_OK;
+}
+
+/* The sites that are drawn and may err by more than is known, the one that may by the most first: in the place of the
+ * candidates, which have had their turn. */
+static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
+  void *candidates = s->candidates;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
+  s->candidates = candidates;
+  *n = 0;
+  for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
+    float bound = (float)s->sites[i].error_bound;
+    uint32_t bits;
+    memcpy(&bits, &bound, sizeof bits); /* of positive numbers these are in the numbers' order */
+    if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
+      s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
+  }
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, *n, 32) : status;
+}
+
+/* Raises *known to the largest error of what is drawn. Most are known well enough from the sites' making; beginning
+ * with the site that may have the largest, few are measured again. */
+static conic_status find_largest_error(conic_sampler *s, double *known) {
+  size_t n;
+  for (size_t i = 0; i < s->n_sites; i++) {
+    const conic_site *site = &s->sites[i];
+    double least = site->error > s->job->tolerance ? site->error : site->least_error;
+    *known = site->is_drawn && least > *known ? least : *known;
+  }
+  conic_status status = order_by_bound(s, *known, &n);
+  for (size_t k = 0; k < n && status == CONIC_OK; k++) {
+    const conic_site *site = &s->sites[s->candidates[k].value];
+    double bound;
+    if (site->error_bound > *known)
+      *known = conic_site_error(s, site, *known, &bound);
+  }
+  return status;
+}
+
+static conic_status find_errors(conic_sampler *s, conic_surfels *surfels) {
+  conic_status status = find_largest_error(s, &surfels->error);
+  surfels->refined_error = surfels->error;
+  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
+    if (s->sites[i].is_drawn)
+      surfels->error = conic_site_off_mesh(s, &s->sites[i], surfels->error);
+  return status;
+}
+
+/* --- closer where it must be --- */
+
+/* How often sites are looked for anew, and by which factors the error grows above which they are parted. */
+enum { MOST_PASSES = CONIC_MOST_DEPTH + 2, LIMITS = 12 };
+static const double limit_step = 1.25;
+
+/* The error above which sites are parted: that which is wanted, or the next above it by which no more come of it than
+ * are allowed; infinite where none is to be parted. One that is parted becomes four, about. */
+static double error_to_part(const conic_sampler *s) {
+  double limit = s->job->tolerance;
+  for (int k = 0; k < LIMITS; k++, limit *= limit_step) {
+    size_t n_bad = 0;
+    for (size_t i = 0; i < s->n_sites; i++)
+      n_bad += s->sites[i].error > limit;
+    if (n_bad == 0)
+      break;
+    if (s->n_sites + 3 * n_bad <= s->job->most)
+      return limit;
+  }
+  return HUGE_VAL;
+}
+
+/* Halves the spacing on the faces of which a site with a larger error stands for something. Returns whether there are
+ * any. */
+static int refine_faces(conic_sampler *s, double limit) {
+  int is_any = 0;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    int is_bad = 0;
+    for (uint32_t i = 0; i < conic_lattice_places(l->sides) && !is_bad; i++)
+      is_bad = s->sites[s->owner[l->first + i]].error > limit;
+    if (is_bad && s->depth[k] < CONIC_MOST_DEPTH) {
+      s->depth[k]++;
+      is_any = 1;
+    }
+  }
+  return is_any;
+}
+
+/* Where spacings begin: as wide as wanted; after a finer level of the same patch a step wider than that needed. */
+static conic_status begin_depths(conic_sampler *s) {
+  size_t n = s->job->mesh->starts[s->job->patch + 1] - s->job->mesh->starts[s->job->patch];
+  void *depth = s->depth;
+  conic_status status = conic_sampler_grow(s, &depth, 0, n, &s->depth_room, sizeof *s->depth);
+  s->depth = depth;
+  if (status != CONIC_OK)
+    return status;
+  for (size_t i = 0; i < n; i++)
+    s->depth[i] = s->job->is_coarser && s->depth[i] ? (uint8_t)(s->depth[i] - 1) : 0;
+  return CONIC_OK;
+}
+
+static int has_texture(const conic_triangles *t) {
+  int is_any = 0;
+  for (size_t i = 0; i < t->n_materials; i++)
+    is_any |= t->materials[i].texture != NULL;
+  return is_any;
+}
+
+/* Whether a wider spacing would give the same sites: faces have no places but their corners, each of which is near
+ * every other, and nothing is to be parted. (Of textures a wider one sees less.) */
+static int is_coarsest(const conic_sampler *s) {
+  double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, square = 0.0;
+  int is_plain = s->finest == 0 && !has_texture(s->job->mesh->triangles);
+  for (size_t k = 0; k < s->n_lattices && is_plain; k++)
+    is_plain = s->lattices[k].sides == 1;
+  for (size_t i = 0; i < s->n_sites && is_plain; i++)
+    is_plain = s->sites[i].error <= s->job->tolerance;
+  for (size_t i = 0; i < s->n_places && is_plain; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      double at = s->places[i][axis];
+      low[axis] = at < low[axis] ? at : low[axis];
+      high[axis] = at > high[axis] ? at : high[axis];
+    }
+  for (int axis = 0; axis < 3; axis++)
+    square += (high[axis] - low[axis]) * (high[axis] - low[axis]);
+  return is_plain && square < 0.999 * s->job->spacing * s->job->spacing;
+}
+
+conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
+  s->job = job;
+  s->n_supports = s->n_sorted = 0;
+  conic_status status = begin_depths(s);
+  for (int pass = 1; status == CONIC_OK; pass++) {
+    if (pass > 1)
+      conic_patch_end_pass(s);
+    status = conic_patch_find_sites(s);
+    if (status == CONIC_OK && pass > 1)
+      conic_patch_settle_sites(s);
+    if (status == CONIC_OK)
+      status = conic_patch_shape_sites(s);
+    if (status != CONIC_OK || pass == MOST_PASSES || !refine_faces(s, error_to_part(s)))
+      break;
+  }
+  for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
+    status = emit(s, &s->sites[i], surfels);
+  surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
+  if (status == CONIC_OK && surfels->n <= job->useful)
+    status = find_errors(s, surfels);
+  return status;
+}

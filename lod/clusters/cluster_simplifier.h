@@ -1,0 +1,125 @@
+/* What simplifying works on: the triangles of a region, vertices with their quadrics, and the places of the mesh by
+ * which errors are measured. Private to lod/patch_simplify*.c. */
+#ifndef CONIC_CLUSTER_SIMPLIFIER_H
+#define CONIC_CLUSTER_SIMPLIFIER_H
+
+#include "core/base/heap.h"
+#include "lod/clusters/cluster_simplify.h"
+#include "lod/mesh/quadric.h"
+
+#define CONIC_NONE UINT32_MAX
+
+typedef enum conic_simplifier_kind {
+  CONIC_VERTEX_FREE = 0,   /* faces of one patch all around */
+  CONIC_VERTEX_BORDER = 1, /* on an open border, along which it may go */
+  CONIC_VERTEX_CHAIN = 2,  /* between two patches, along whose chain it may go */
+  CONIC_VERTEX_LOCKED = 3  /* of another region too; or its surroundings are no surface, or its attributes differ */
+} conic_simplifier_kind;
+
+typedef struct conic_simplifier_vertex {
+  uint32_t original;             /* in the mesh */
+  uint32_t material;             /* of its faces */
+  uint32_t ring;                 /* its first slot, 3 · triangle + corner, or none */
+  uint32_t target;               /* what it would best be drawn onto; of one that is gone: what it was drawn onto */
+  uint8_t kind, is_old, is_seam; /* is_seam: its attributes differ from face to face */
+  uint8_t is_gone;
+  double at[3];
+  conic_quadric quadric;
+} conic_simplifier_vertex;
+
+/* As long as a line of the cache; what walks do not ask for lies elsewhere. */
+typedef struct conic_simplifier_triangle {
+  double normal[3];    /* of the mesh's face */
+  uint32_t corners[3]; /* vertices */
+  uint32_t next[3];    /* slots in the rings */
+  uint32_t face;
+  uint32_t patch; /* from the region's first */
+  int is_alive;
+} conic_simplifier_triangle;
+
+/* A place of the mesh that the simpler triangles are compared with. */
+typedef struct conic_simplifier_point {
+  double at[3];
+  uint32_t vertex; /* that it was near at first */
+} conic_simplifier_point;
+
+/* From a vertex that is to go to a neighbour. */
+typedef struct conic_simplifier_spoke {
+  uint32_t vertex;
+  uint32_t before, slot; /* of its triangle, if it has one: the corner before the vertex that goes, and the slot */
+  int is_common;         /* whether it neighbours the vertex that is looked at, too */
+  double cost;
+} conic_simplifier_spoke;
+
+/* Along it, vertices were left out. */
+typedef struct conic_simplifier_border {
+  conic_hybrid_border of; /* the triangle's number is that in the region */
+  uint32_t patch;         /* from the region's first */
+} conic_simplifier_border;
+
+struct conic_simplifier {
+  conic_context *context;
+  const conic_patch_mesh *mesh;
+  const conic_face_tree *tree; /* of all the mesh's faces */
+  conic_patch_chains *chains;
+  uint32_t *number; /* of each place of the mesh, while its region is worked on; else none */
+  uint32_t begin, end;
+  size_t n_vertices, n_triangles, n_points, n_borders, n_alive;
+  conic_simplifier_vertex *vertices;
+  conic_simplifier_triangle *triangles;
+  uint32_t (*originals)[3]; /* the triangles' vertices in the mesh: with their attributes */
+  uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
+  conic_simplifier_point *points;
+  conic_simplifier_border *borders; /* of the stage that is to be taken */
+  size_t *point_starts[2];          /* of each patch, and an end: its own, and those of its borders, after all own */
+  size_t *border_starts;            /* likewise */
+  uint32_t *alive;                  /* triangles of each patch */
+  uint32_t *taken;                  /* of each patch: triangles of its last level */
+  double *errors2;                  /* of each patch, squared, so far */
+  uint32_t stage;                   /* the last one that is taken, or is to be */
+  size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
+  int is_to_take, is_over;
+  conic_patch_levels *levels;     /* of the region's patches */
+  conic_simplifier_spoke *spokes; /* room for those of any vertex */
+  void *memory[14];               /* all of these, but for the borders */
+  conic_heap queue;
+};
+
+/* Walks a vertex's living triangles: slots, none at the end. */
+static inline uint32_t conic_simplifier_living(const conic_simplifier *s, uint32_t slot) {
+  while (slot != CONIC_NONE && !s->triangles[slot / 3].is_alive)
+    slot = s->triangles[slot / 3].next[slot % 3];
+  return slot;
+}
+
+static inline uint32_t conic_simplifier_after(const conic_simplifier *s, uint32_t slot) {
+  return conic_simplifier_living(s, s->triangles[slot / 3].next[slot % 3]);
+}
+
+static inline int conic_simplifier_has(const conic_simplifier_triangle *t, uint32_t v) {
+  return t->corners[0] == v || t->corners[1] == v || t->corners[2] == v;
+}
+
+/* Fills in vertices, triangles and points of the region [begin, end), with room for what is done with them. Errors:
+ * MEMORY. */
+conic_status conic_simplifier_load(conic_simplifier *s);
+
+/* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
+void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
+
+/* Whether a patch has become so much simpler that this stage is a level of it. */
+static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t patch) {
+  return 4 * (size_t)s->alive[patch] <= 3 * (size_t)s->taken[patch];
+}
+
+/* Makes what is alive one more stage, to be measured and then taken, if patches would fit; else it is over. Errors:
+ * MEMORY. */
+conic_status conic_simplifier_begin_stage(conic_simplifier *s);
+
+/* The target of each vertex that is gone becomes what it is now. */
+void conic_simplifier_shorten_ways(conic_simplifier *s);
+
+/* Takes what is alive as the levels of the stage. Errors: MEMORY. */
+conic_status conic_simplifier_take(conic_simplifier *s);
+
+#endif

@@ -1,0 +1,142 @@
+#include "lod/clusters/cluster_simplify.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "lod/clusters/cluster_simplifier.h"
+
+typedef conic_simplifier_triangle triangle;
+
+conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh, const conic_face_tree *tree,
+                                     conic_simplifier **simplifier) {
+  conic_simplifier *s = conic_memory_allocate_zeroed(context, 1, sizeof *s);
+  *simplifier = s;
+  if (!s)
+    return CONIC_ERROR_MEMORY;
+  s->context = context;
+  s->mesh = mesh;
+  s->tree = tree;
+  s->number = conic_memory_allocate(context, mesh->mesh.n_vertices, sizeof *s->number);
+  if (!s->number) {
+    conic_simplifier_destroy(s);
+    *simplifier = NULL;
+    return CONIC_ERROR_MEMORY;
+  }
+  memset(s->number, 0xFF, mesh->mesh.n_vertices * sizeof *s->number);
+  return CONIC_OK;
+}
+
+void conic_simplifier_destroy(conic_simplifier *s) {
+  if (!s)
+    return;
+  for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++)
+    conic_memory_release(s->context, s->memory[i]);
+  conic_memory_release(s->context, s->borders);
+  conic_memory_release(s->context, s->number);
+  conic_memory_release(s->context, s);
+}
+
+/* --- drawing together --- */
+
+/* Of a ring only what is alive is kept, so that walks stay short. */
+static void prune_ring(conic_simplifier *s, uint32_t v) {
+  uint32_t *link = &s->vertices[v].ring;
+  for (uint32_t slot = conic_simplifier_living(s, *link); slot != CONIC_NONE; slot = conic_simplifier_after(s, slot)) {
+    *link = slot;
+    link = &s->triangles[slot / 3].next[slot % 3];
+  }
+  *link = CONIC_NONE;
+}
+
+/* Of a vertex between two patches: it is there up to the last stage that was taken. */
+static void leave_slot(conic_simplifier *s, uint32_t u) {
+  uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
+  if (slot != CONIC_NO_SLOT)
+    s->chains->slots[slot].stage = s->stage;
+}
+
+static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;) {
+    triangle *t = &s->triangles[slot / 3];
+    uint32_t following = conic_simplifier_after(s, slot);
+    if (conic_simplifier_has(t, v)) {
+      t->is_alive = 0;
+      s->alive[t->patch]--;
+      s->n_alive--;
+    } else {
+      t->corners[slot % 3] = v;
+      s->originals[slot / 3][slot % 3] = s->vertices[v].original;
+      t->next[slot % 3] = s->vertices[v].ring;
+      s->vertices[v].ring = slot;
+    }
+    slot = following;
+  }
+  prune_ring(s, v);
+  leave_slot(s, u);
+  s->vertices[u].is_gone = 1;
+  conic_quadric_add(&s->vertices[v].quadric, &s->vertices[u].quadric);
+  for (uint32_t slot = s->vertices[v].ring; slot != CONIC_NONE; slot = conic_simplifier_after(s, slot))
+    for (int corner = 0; corner < 3; corner++)
+      s->vertices[s->triangles[slot / 3].corners[corner]].is_old = 1;
+}
+
+/* --- stages --- */
+
+static void fill_queue(conic_simplifier *s) {
+  for (uint32_t u = 0; u < s->n_vertices; u++)
+    if (s->vertices[u].kind != CONIC_VERTEX_LOCKED) {
+      conic_simplifier_find_target(s, u);
+      if (s->queue.keys[u] < HUGE_VAL)
+        conic_heap_push(&s->queue, u);
+    }
+}
+
+conic_status conic_region_begin(conic_simplifier *s, conic_patch_chains *chains, uint32_t begin, uint32_t end,
+                                conic_patch_levels *levels) {
+  s->chains = chains;
+  s->begin = begin;
+  s->end = end;
+  s->levels = levels;
+  s->is_to_take = s->is_over = 0;
+  memset(levels, 0, (end - begin) * sizeof *levels);
+  conic_status status = conic_simplifier_load(s);
+  if (status != CONIC_OK)
+    return status;
+  s->n_wanted = s->n_triangles / 2;
+  s->n_last = s->n_triangles;
+  fill_queue(s);
+  return CONIC_OK;
+}
+
+/* Draws edges together until the next stage is there. */
+static conic_status simplify(conic_simplifier *s) {
+  while (s->queue.n > 0 && s->stage < CONIC_MOST_TRIANGLE_LEVELS) {
+    uint32_t u = conic_heap_pop(&s->queue);
+    if (s->vertices[u].is_old) {
+      conic_simplifier_find_target(s, u);
+      if (s->queue.keys[u] < HUGE_VAL)
+        conic_heap_push(&s->queue, u);
+      continue;
+    }
+    draw_together(s, u, s->vertices[u].target);
+    if (s->n_alive <= s->n_wanted)
+      return conic_simplifier_begin_stage(s);
+  }
+  int is_worth_it = 4 * s->n_alive <= 3 * s->n_last && s->stage < CONIC_MOST_TRIANGLE_LEVELS;
+  s->is_over = !is_worth_it;
+  return is_worth_it ? conic_simplifier_begin_stage(s) : CONIC_OK;
+}
+
+conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_patches) {
+  conic_status status = CONIC_OK;
+  if (s->is_to_take) {
+    status = conic_simplifier_take(s);
+    s->n_last = s->n_alive;
+    s->n_wanted = s->n_alive / 2;
+  }
+  if (status == CONIC_OK && !s->is_over)
+    status = simplify(s);
+  *n_patches = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
+  return status;
+}

@@ -1,0 +1,180 @@
+/* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
+#include <math.h>
+
+#include "lod/clusters/cluster_simplifier.h"
+
+typedef conic_simplifier_vertex vertex;
+typedef conic_simplifier_triangle triangle;
+typedef conic_simplifier_spoke spoke;
+
+/* The least cosine by which a face may turn. */
+static const double least_turn = 0.2;
+
+/* A vertex with its living triangles: each has a spoke, the corner after the vertex, and then come the corners before
+ * it that are after it in no triangle. So each neighbour has one where the surface is simple. */
+typedef struct fan {
+  uint32_t vertex;
+  size_t n_triangles, n_spokes;
+  spoke *spokes; /* the simplifier's */
+} fan;
+
+static int is_ahead(const fan *f, uint32_t v) {
+  for (size_t i = 0; i < f->n_triangles; i++)
+    if (f->spokes[i].vertex == v)
+      return 1;
+  return 0;
+}
+
+static fan fan_of(const conic_simplifier *s, uint32_t u) {
+  fan f = {.vertex = u, .spokes = s->spokes};
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;
+       slot = conic_simplifier_after(s, slot)) {
+    const triangle *t = &s->triangles[slot / 3];
+    f.spokes[f.n_triangles++] =
+        (spoke){.vertex = t->corners[(slot % 3 + 1) % 3], .before = t->corners[(slot % 3 + 2) % 3], .slot = slot};
+  }
+  f.n_spokes = f.n_triangles;
+  for (size_t i = 0; i < f.n_triangles; i++)
+    if (!is_ahead(&f, f.spokes[i].before))
+      f.spokes[f.n_spokes++] = (spoke){.vertex = f.spokes[i].before, .before = CONIC_NONE};
+  return f;
+}
+
+static int has(const spoke *of_triangle, uint32_t v) {
+  return of_triangle->vertex == v || of_triangle->before == v;
+}
+
+static const triangle *triangle_of(const conic_simplifier *s, const spoke *of_triangle) {
+  return &s->triangles[of_triangle->slot / 3];
+}
+
+/* How many triangles are beside the edge to v. Between patches they are of two. */
+static int count_beside(const conic_simplifier *s, const fan *f, uint32_t v, int *is_between_patches) {
+  uint32_t patch = CONIC_NONE;
+  int n = 0;
+  *is_between_patches = 0;
+  for (size_t i = 0; i < f->n_triangles; i++) {
+    if (!has(&f->spokes[i], v))
+      continue;
+    const triangle *t = triangle_of(s, &f->spokes[i]);
+    n++;
+    *is_between_patches |= patch != CONIC_NONE && t->patch != patch;
+    patch = t->patch;
+  }
+  return n;
+}
+
+/* How many of the spokes neighbour v. */
+static int count_common(const conic_simplifier *s, const fan *f, uint32_t v) {
+  int n = 0;
+  for (size_t i = 0; i < f->n_spokes; i++)
+    f->spokes[i].is_common = 0;
+  for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring); slot != CONIC_NONE;
+       slot = conic_simplifier_after(s, slot)) {
+    const uint32_t *corners = s->triangles[slot / 3].corners;
+    uint32_t after = corners[(slot % 3 + 1) % 3], before = corners[(slot % 3 + 2) % 3];
+    for (size_t i = 0; i < f->n_spokes; i++)
+      f->spokes[i].is_common |= f->spokes[i].vertex == after || f->spokes[i].vertex == before;
+  }
+  for (size_t i = 0; i < f->n_spokes; i++)
+    n += f->spokes[i].is_common && f->spokes[i].vertex != v;
+  return n;
+}
+
+/* Along a border or a chain, and back from none. Where the surface is to stay one, each triangle beside the edge has a
+ * corner that neighbours both its ends, opposite, and there are no others; and some of the triangles stay. */
+static int keeps_surface(const conic_simplifier *s, const fan *f, uint32_t v) {
+  uint8_t kind = s->vertices[f->vertex].kind;
+  int is_between_patches, n = count_beside(s, f, v, &is_between_patches);
+  if (n != (kind == CONIC_VERTEX_BORDER ? 1 : 2) || (kind == CONIC_VERTEX_CHAIN && !is_between_patches))
+    return 0;
+  return f->n_triangles > (size_t)n && count_common(s, f, v) == n;
+}
+
+static double area2_of(const conic_simplifier *s, const uint32_t corners[3], double cross[3]) {
+  double sides[2][3];
+  for (int k = 0; k < 2; k++)
+    for (int axis = 0; axis < 3; axis++)
+      sides[k][axis] = s->vertices[corners[k + 1]].at[axis] - s->vertices[corners[0]].at[axis];
+  conic_cross(sides[0], sides[1], cross);
+  return sqrt(conic_dot(cross, cross));
+}
+
+/* Whether no triangle that stays turns over or loses its area when the vertex goes to v. */
+static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
+  for (size_t i = 0; i < f->n_triangles; i++) {
+    if (has(&f->spokes[i], v))
+      continue;
+    const triangle *t = triangle_of(s, &f->spokes[i]);
+    uint32_t corners[3] = {t->corners[0], t->corners[1], t->corners[2]};
+    double cross[3];
+    corners[f->spokes[i].slot % 3] = v;
+    double area2 = area2_of(s, corners, cross), along = conic_dot(cross, t->normal);
+    along *= (double)s->mesh->adjacency->side[t->face];
+    if (!(area2 > 0.0) || !(along > least_turn * area2))
+      return 0;
+  }
+  return 1;
+}
+
+/* Whether a triangle is left of each patch, and to each corner of what goes. */
+static int leaves_some(const conic_simplifier *s, const fan *f, uint32_t v) {
+  uint32_t last_patch = CONIC_NONE;
+  for (size_t i = 0; i < f->n_triangles; i++) {
+    if (!has(&f->spokes[i], v))
+      continue;
+    const triangle *t = triangle_of(s, &f->spokes[i]);
+    if (s->alive[t->patch] <= 1u + (t->patch == last_patch))
+      return 0;
+    last_patch = t->patch;
+    for (int corner = 0; corner < 3; corner++) {
+      uint32_t ring = conic_simplifier_living(s, s->vertices[t->corners[corner]].ring);
+      if (conic_simplifier_after(s, ring) == CONIC_NONE)
+        return 0;
+    }
+  }
+  return 1;
+}
+
+static int may_go(const conic_simplifier *s, const fan *f, uint32_t v) {
+  return !s->vertices[v].is_seam && keeps_surface(s, f, v) && leaves_some(s, f, v) && keeps_facing(s, f, v);
+}
+
+static void find_costs(const conic_simplifier *s, const fan *f) {
+  for (size_t i = 0; i < f->n_spokes; i++) {
+    const vertex *v = &s->vertices[f->spokes[i].vertex];
+    conic_quadric both = s->vertices[f->vertex].quadric;
+    conic_quadric_add(&both, &v->quadric);
+    f->spokes[i].cost = conic_quadric_at(&both, v->at);
+  }
+}
+
+/* The cheapest, of equals the lowest vertex; null where no cost is finite. */
+static spoke *cheapest_of(const fan *f) {
+  spoke *cheapest = NULL;
+  for (spoke *next = f->spokes; next < f->spokes + f->n_spokes; next++) {
+    double least = cheapest ? cheapest->cost : HUGE_VAL;
+    if (next->cost < least || (cheapest && next->cost == least && next->vertex < cheapest->vertex))
+      cheapest = next;
+  }
+  return cheapest;
+}
+
+void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
+  vertex *own = &s->vertices[u];
+  fan f = fan_of(s, u);
+  s->queue.keys[u] = HUGE_VAL;
+  own->target = CONIC_NONE;
+  own->is_old = 0;
+  if (f.n_spokes - f.n_triangles != (own->kind == CONIC_VERTEX_BORDER)) /* the triangles are no simple fan */
+    return;
+  find_costs(s, &f);
+  for (spoke *next = cheapest_of(&f); next; next = cheapest_of(&f)) {
+    if (may_go(s, &f, next->vertex)) {
+      s->queue.keys[u] = next->cost;
+      own->target = next->vertex;
+      return;
+    }
+    next->cost = HUGE_VAL;
+  }
+}

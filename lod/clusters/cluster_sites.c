@@ -1,0 +1,247 @@
+#include "lod/clusters/cluster_sites.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/random.h"
+
+/* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
+static const double lattice_step = 0.9;
+enum { MOST_SIDES = 32 };
+
+conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
+                                size_t size) {
+  if (count <= *room)
+    return CONIC_OK;
+  size_t larger = count + count / 2 + 64;
+  conic_status status = conic_memory_grow(sampler->context, array, used, larger, size);
+  if (status == CONIC_OK)
+    *room = larger;
+  return status;
+}
+
+/* --- lattices --- */
+
+static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
+  double longest = 0.0;
+  for (int corner = 0; corner < 3; corner++) {
+    double a[3], b[3];
+    conic_mesh_corner(&s->job->mesh->mesh, face, corner, a);
+    conic_mesh_corner(&s->job->mesh->mesh, face, (corner + 1) % 3, b);
+    for (int axis = 0; axis < 3; axis++)
+      b[axis] -= a[axis];
+    double length = sqrt(conic_dot(b, b));
+    longest = length > longest ? length : longest;
+  }
+  double sides = longest / (lattice_step * conic_spacing_at(s, depth));
+  return sides >= (double)MOST_SIDES ? MOST_SIDES : sides > 1.0 ? (int)sides + 1 : 1;
+}
+
+static conic_status lay_lattices(conic_sampler *s) {
+  const conic_patch_mesh *mesh = s->job->mesh;
+  size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
+  void *lattices = s->lattices, *facing = s->facing;
+  conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
+  s->lattices = lattices;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &facing, 0, n, &s->facing_room, sizeof *s->facing);
+  s->facing = facing;
+  if (status != CONIC_OK)
+    return status;
+  s->n_lattices = n;
+  s->n_places = 0;
+  s->finest = 0;
+  s->coarsest = CONIC_MOST_DEPTH;
+  for (size_t i = 0; i < n; i++) {
+    uint32_t face = mesh->faces[begin + i];
+    int depth = s->depth[i];
+    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
+    s->finest = depth > s->finest ? depth : s->finest;
+    s->coarsest = depth < s->coarsest ? depth : s->coarsest;
+    s->n_places += conic_lattice_places(s->lattices[i].sides);
+    conic_patch_face_normal(mesh, face, s->facing[i]);
+  }
+  size_t lattice_room = s->places_room;
+  void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
+  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
+  s->owner = owner;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
+  s->lattice_of = lattice_of;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &places, 0, s->n_places, &s->places_room, sizeof *s->places);
+  s->places = places;
+  return status;
+}
+
+/* As conic_patch_place of each. */
+static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  double corners[3][3], shares[MOST_SIDES + 1];
+  uint32_t place = l->first;
+  for (int corner = 0; corner < 3; corner++)
+    conic_mesh_corner(&s->job->mesh->mesh, l->face, corner, corners[corner]);
+  for (int i = 0; i <= l->sides; i++)
+    shares[i] = (double)i / (double)l->sides;
+  for (int i = 0; i <= l->sides; i++)
+    for (int j = 0; j <= l->sides - i; j++, place++) {
+      double a = shares[l->sides - i - j], b = shares[i], c = shares[j];
+      s->lattice_of[place] = i_lattice;
+      for (int axis = 0; axis < 3; axis++)
+        s->places[place][axis] = (a * corners[0][axis] + b * corners[1][axis]) + c * corners[2][axis];
+    }
+}
+
+/* --- candidates --- */
+
+/* Sides of a face, as bits by the corner where each begins: those that a place lies on. */
+static int sides_at(const conic_lattice *l, int i, int j) {
+  return (j == 0) | (i + j == l->sides) << 1 | (i == 0) << 2;
+}
+
+/* Those that the surfels must reach to by themselves: what lies across is no surfels, or nothing. */
+static int rims_of(const conic_patch_mesh *mesh, uint32_t face) {
+  int rims = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    int is_rim = conic_patch_ends_at(mesh, face, corner) &&
+                 (!conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]]);
+    rims |= is_rim << corner;
+  }
+  return rims;
+}
+
+/* Those whose places are another face's of the patch, too, which answers for them. */
+static int sides_of_others(const conic_patch_mesh *mesh, uint32_t face) {
+  int sides = 0;
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
+    sides |= (!conic_patch_ends_at(mesh, face, corner) && across / 3 < face) << corner;
+  }
+  return sides;
+}
+
+int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+  return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
+}
+
+/* There is room for it. */
+static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
+  int rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth;
+  s->candidates[s->n_candidates].key = (uint64_t)rank << 21 | turn;
+  s->candidates[s->n_candidates].value = (uint32_t)s->n_candidates;
+  s->seeds[s->n_candidates][0] = i_lattice;
+  s->seeds[s->n_candidates++][1] = (uint32_t)i << 16 | (uint32_t)j;
+}
+
+static conic_status make_room_for_candidates(conic_sampler *s) {
+  void *candidates = s->candidates, *seeds = s->seeds;
+  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &s->candidates_room, sizeof *s->candidates);
+  s->candidates = candidates;
+  if (status == CONIC_OK)
+    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->seeds_room, sizeof *s->seeds);
+  s->seeds = seeds;
+  return status;
+}
+
+static conic_status list_candidates(conic_sampler *s) {
+  conic_status status = make_room_for_candidates(s);
+  s->n_candidates = 0;
+  for (size_t k = 0; k < s->n_lattices && status == CONIC_OK; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    int rims = rims_of(s->job->mesh, l->face), others = sides_of_others(s->job->mesh, l->face);
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i; j++) {
+        int sides = sides_at(l, i, j);
+        if ((sides & rims) || !(sides & others))
+          add_candidate(s, (uint32_t)k, i, j, (sides & rims) != 0);
+      }
+  }
+  return status == CONIC_OK ? conic_radix_sort(s->context, s->candidates, s->n_candidates, 24) : status;
+}
+
+/* --- sites --- */
+
+/* Becomes the owner of what it is nearest to, of the places from number `first` on. */
+static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
+  const conic_lattice *l = &s->lattices[i_lattice];
+  uint32_t place = conic_lattice_place(l, i, j);
+  const double *at = s->places[place];
+  void *sites = s->sites;
+  conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
+  s->sites = sites;
+  if (status != CONIC_OK)
+    return status;
+  conic_site *site = &s->sites[s->n_sites];
+  memset(site, 0, sizeof *site);
+  memcpy(site->at, at, sizeof site->at);
+  memcpy(site->foot, at, sizeof site->foot);
+  conic_lattice_bary(l, i, j, site->bary);
+  memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
+  site->face = l->face;
+  site->place = place;
+  site->last = CONIC_NO_SITE;
+  site->spacing = conic_spacing_at(s, s->depth[i_lattice]);
+  conic_place_table_put(&s->table, (uint32_t)s->n_sites++, at, s->facing[i_lattice], first);
+  return CONIC_OK;
+}
+
+static conic_status fill_table(conic_sampler *s) {
+  const conic_places places = {.n = s->n_places,
+                               .at = (const double(*)[3])s->places,
+                               .group = s->lattice_of,
+                               .facing = (const double(*)[3])s->facing,
+                               .depth = s->depth,
+                               .spacing = s->job->spacing,
+                               .coarsest = s->coarsest,
+                               .finest = s->finest};
+  return conic_place_table_fill(s->context, &s->table, &places, s->owner);
+}
+
+/* A candidate that lies near no site becomes one. */
+static conic_status choose_sites(conic_sampler *s) {
+  conic_status status = CONIC_OK;
+  s->n_sites = 0;
+  for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
+    const uint32_t *seed = s->seeds[s->candidates[k].value];
+    int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
+    if (s->owner[conic_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
+      status = add_site(s, seed[0], i, j, 0);
+  }
+  return status;
+}
+
+/* Every place of the lattices belongs to the nearest site by now; where there is none near (a place that was no
+ * candidate and lies in a fold), it becomes one, for itself and those after it. */
+static conic_status choose_in_folds(conic_sampler *s) {
+  conic_status status = CONIC_OK;
+  size_t place = 0;
+  for (size_t k = 0; k < s->n_lattices; k++) {
+    const conic_lattice *l = &s->lattices[k];
+    for (int i = 0; i <= l->sides; i++)
+      for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++, place++)
+        if (s->owner[place] == CONIC_NO_SITE) {
+          uint32_t own = (uint32_t)s->n_sites;
+          status = add_site(s, (uint32_t)k, i, j, place);
+          s->owner[place] = own; /* also where its face has no area and faces nothing */
+        }
+  }
+  return status;
+}
+
+conic_status conic_patch_find_sites(conic_sampler *s) {
+  conic_status status = lay_lattices(s);
+  if (status != CONIC_OK)
+    return status;
+  for (size_t k = 0; k < s->n_lattices; k++)
+    find_places_of(s, (uint32_t)k);
+  status = list_candidates(s);
+  if (status == CONIC_OK)
+    status = fill_table(s);
+  if (status == CONIC_OK)
+    status = choose_sites(s);
+  return status == CONIC_OK ? choose_in_folds(s) : status;
+}

@@ -1,0 +1,133 @@
+/* Whether a hybrid model keeps what its numbers promise. */
+#include <math.h>
+#include <string.h>
+
+#include "lod/hybrid/hybrid_model.h"
+
+/* What floats lose between the finding of a bound and its use. */
+static const double hair = 1e-5;
+
+static int is_number(float value) {
+  return value - value == 0.0f;
+}
+
+static double distance_of(const conic_hybrid_bound *bound, const double at[3]) {
+  double way[3];
+  for (int axis = 0; axis < 3; axis++)
+    way[axis] = at[axis] - (double)bound->center[axis];
+  return sqrt(conic_hybrid_dot(way, way));
+}
+
+static void corners_of(const conic_hybrid *h, const conic_hybrid_level *level, size_t i, double at[3][3]) {
+  for (int corner = 0; corner < 3; corner++) {
+    uint32_t vertex = h->listed[level->first_vertex + h->corners[level->first + i][corner]];
+    for (int axis = 0; axis < 3; axis++)
+      at[corner][axis] = (double)h->position[axis][vertex];
+  }
+}
+
+static int faces_within(const conic_hybrid_bound *bound, double at[3][3]) {
+  double sides[2][3], normal[3], axis[3];
+  for (int k = 0; k < 3; k++) {
+    sides[0][k] = at[1][k] - at[0][k];
+    sides[1][k] = at[2][k] - at[0][k];
+    axis[k] = (double)bound->axis[k];
+  }
+  for (int k = 0; k < 3; k++)
+    normal[k] = sides[0][(k + 1) % 3] * sides[1][(k + 2) % 3] - sides[0][(k + 2) % 3] * sides[1][(k + 1) % 3];
+  double length = sqrt(conic_hybrid_dot(normal, normal));
+  return bound->cone <= -1.0f || conic_hybrid_dot(normal, axis) >= ((double)bound->cone - hair) * length;
+}
+
+/* The faces themselves: the first level. */
+static void check_patch(const conic_hybrid *h, const conic_hybrid_patch *patch, conic_hybrid_defects *found) {
+  const conic_hybrid_level *levels = h->levels + patch->first_level;
+  double most = (double)patch->bound.radius * (1.0 + hair);
+  int is_out = 0, is_turned = 0, is_wrong = levels[0].error != 0.0f;
+  for (size_t i = 0; i < levels[0].count; i++) {
+    double at[3][3];
+    corners_of(h, &levels[0], i, at);
+    for (int corner = 0; corner < 3; corner++)
+      is_out |= !(distance_of(&patch->bound, at[corner]) <= most);
+    is_turned |= !faces_within(&patch->bound, at);
+  }
+  for (uint32_t k = 1; k < patch->n_levels; k++)
+    is_wrong |= levels[k].kind == levels[k - 1].kind ? !(levels[k].error >= levels[k - 1].error)
+                                                     : levels[k].kind != CONIC_HYBRID_SURFELS;
+  found->spheres += (size_t)is_out;
+  found->cones += (size_t)is_turned;
+  found->levels += (size_t)is_wrong;
+}
+
+/* A node's levels are of growing error, and the disc of its point holds the faces of all of its patches. */
+static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
+  const conic_hybrid_bound point = {.center = {node->bound.center[0], node->bound.center[1], node->bound.center[2]}};
+  int is_out = 0, is_wrong = 0;
+  for (uint32_t k = 1; k < node->n_levels; k++)
+    is_wrong |= !(h->levels[node->first_level + k].error >= h->levels[node->first_level + k - 1].error);
+  for (uint32_t i = node->begin; i < node->end && node->point.radius > 0.0f; i++) {
+    const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
+    for (uint32_t k = 0; k < faces->n_vertices; k++) {
+      double at[3];
+      for (int axis = 0; axis < 3; axis++)
+        at[axis] = (double)h->position[axis][h->listed[faces->first_vertex + k]];
+      is_out |= !(distance_of(&point, at) <= (double)node->point.radius * (1.0 + hair));
+    }
+  }
+  is_wrong |= node->point.radius > 0.0f && !(node->point.error >= node->point.radius);
+  found->spheres += (size_t)is_out;
+  found->levels += (size_t)is_wrong;
+  for (int channel = 0; channel < 3; channel++)
+    found->values += !is_number(node->point.color[channel]);
+}
+
+/* All that is drawn of a node's patches lies in its sphere, and their cones in its cone. */
+static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
+  int is_out = 0, is_turned = 0;
+  for (uint32_t i = node->begin; i < node->end; i++) {
+    const conic_hybrid_patch *patch = &h->patches[i];
+    double center[3], reach = 0.0, along = 0.0, cone = (double)patch->bound.cone;
+    for (uint32_t k = 0; k < patch->n_levels; k++) {
+      double own = (double)h->levels[patch->first_level + k].reach;
+      reach = own > reach ? own : reach;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+      center[axis] = (double)patch->bound.center[axis];
+      along += (double)patch->bound.axis[axis] * (double)node->bound.axis[axis];
+    }
+    double farthest = distance_of(&node->bound, center) + (double)patch->bound.radius + reach;
+    is_out |= !(farthest <= (double)node->bound.radius * (1.0 + hair));
+    if (node->bound.cone <= -1.0f)
+      continue;
+    along = along < 1.0 ? along : 1.0;
+    double sines = sqrt(1.0 - along * along) * sqrt(cone < 1.0 ? 1.0 - cone * cone : 0.0);
+    is_turned |= !(cone > 0.0 && along > 0.0 && along * cone - sines >= (double)node->bound.cone - 1e-4);
+  }
+  found->spheres += (size_t)is_out;
+  found->cones += (size_t)is_turned;
+}
+
+static size_t count_wrong(const float *values, size_t n) {
+  size_t n_wrong = 0;
+  for (size_t i = 0; i < n && values; i++)
+    n_wrong += !is_number(values[i]);
+  return n_wrong;
+}
+
+conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *defects) {
+  memset(defects, 0, sizeof *defects);
+  for (int axis = 0; axis < 3; axis++) {
+    for (size_t i = 0; i < h->n_listed; i++)
+      defects->values += !is_number(h->position[axis][h->listed[i]]);
+    defects->values += count_wrong(h->color[axis], h->n_vertices);
+  }
+  for (int k = 0; k < 12; k++)
+    defects->values += count_wrong(h->surfels[k], h->n_surfels);
+  for (size_t i = 0; i < h->n_patches; i++)
+    check_patch(h, &h->patches[i], defects);
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    check_node(h, &h->nodes[i], defects);
+    check_joined(h, &h->nodes[i], defects);
+  }
+  return CONIC_OK;
+}

@@ -1,0 +1,126 @@
+#include "lod/hybrid/hybrid_layout.h"
+
+#include <string.h>
+
+#include "core/base/color.h"
+#include "core/base/memory.h"
+
+enum { ALIGNMENT = 64 };
+
+/* The records are in the file as they are in memory. */
+_Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
+_Static_assert(sizeof(conic_hybrid_slot) == 8, "slots of 8 bytes");
+_Static_assert(sizeof(conic_hybrid_border) == 16, "borders of 16 bytes");
+_Static_assert(sizeof(conic_hybrid_patch) == 48, "patches of 48 bytes");
+_Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
+_Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
+
+conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
+  conic_chy_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
+  size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
+  size_t vertices = (size_t)h->n_vertices * sizeof(float);
+  sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);
+  sizes[CONIC_CHY_PATCHES] = (size_t)h->n_patches * sizeof(conic_hybrid_patch);
+  sizes[CONIC_CHY_LEVELS] = (size_t)h->n_levels * sizeof(conic_hybrid_level);
+  sizes[CONIC_CHY_CORNERS] = (size_t)h->n_triangles * 3 * sizeof(uint32_t);
+  sizes[CONIC_CHY_LISTED] = (size_t)h->n_listed * sizeof(uint32_t);
+  sizes[CONIC_CHY_MATERIAL_OF] = h->flags & CONIC_CHY_MATERIALS ? (size_t)h->n_triangles * sizeof(uint32_t) : 0;
+  sizes[CONIC_CHY_MATERIAL_LIST] = (size_t)h->n_materials * sizeof(conic_chy_material);
+  sizes[CONIC_CHY_TEXELS] = (size_t)h->n_texels * 3;
+  for (int axis = 0; axis < 3; axis++) {
+    sizes[CONIC_CHY_POSITION + axis] = vertices;
+    sizes[CONIC_CHY_NORMAL + axis] = h->flags & CONIC_CHY_NORMALS ? vertices : 0;
+    sizes[CONIC_CHY_COLOR + axis] = h->flags & CONIC_CHY_COLORS ? vertices : 0;
+  }
+  for (int k = 0; k < 2; k++)
+    sizes[CONIC_CHY_TEXTURE + k] = h->flags & CONIC_CHY_TEXTURE_COORDINATES ? vertices : 0;
+  for (int k = 0; k < 12; k++)
+    sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
+  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_hybrid_slot);
+  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_hybrid_border);
+  for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
+    l.arrays[i] = (conic_chy_array){l.n_bytes, sizes[i]};
+    l.n_bytes = (l.n_bytes + sizes[i] + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  }
+  return l;
+}
+
+/* Null for an array that is not there. */
+static const void *array_at(const conic_chy_layout *l, const unsigned char *bytes, int i) {
+  return l->arrays[i].n_bytes ? bytes + l->arrays[i].offset : NULL;
+}
+
+void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hybrid *hybrid) {
+  conic_chy_layout l = conic_chy_lay_out(h);
+  hybrid->cutoff = h->cutoff;
+  memcpy(hybrid->origin, h->origin, sizeof hybrid->origin);
+  memcpy(hybrid->low, h->low, sizeof hybrid->low);
+  memcpy(hybrid->high, h->high, sizeof hybrid->high);
+  hybrid->splat_length = h->splat_length;
+  hybrid->n_vertices = (size_t)h->n_vertices;
+  hybrid->n_triangles = (size_t)h->n_triangles;
+  hybrid->n_listed = (size_t)h->n_listed;
+  hybrid->n_surfels = (size_t)h->n_surfels;
+  hybrid->n_levels = (size_t)h->n_levels;
+  hybrid->n_patches = (size_t)h->n_patches;
+  hybrid->n_nodes = (size_t)h->n_nodes;
+  hybrid->n_slots = (size_t)h->n_slots;
+  hybrid->n_borders = (size_t)h->n_borders;
+  hybrid->n_materials = (size_t)h->n_materials;
+  hybrid->n_texels = (size_t)h->n_texels;
+  hybrid->nodes = array_at(&l, bytes, CONIC_CHY_NODES);
+  hybrid->patches = array_at(&l, bytes, CONIC_CHY_PATCHES);
+  hybrid->levels = array_at(&l, bytes, CONIC_CHY_LEVELS);
+  hybrid->slots = array_at(&l, bytes, CONIC_CHY_SLOTS);
+  hybrid->borders = array_at(&l, bytes, CONIC_CHY_BORDERS);
+  hybrid->corners = array_at(&l, bytes, CONIC_CHY_CORNERS);
+  hybrid->listed = array_at(&l, bytes, CONIC_CHY_LISTED);
+  hybrid->material = array_at(&l, bytes, CONIC_CHY_MATERIAL_OF);
+  hybrid->material_list = array_at(&l, bytes, CONIC_CHY_MATERIAL_LIST);
+  hybrid->texels = array_at(&l, bytes, CONIC_CHY_TEXELS);
+  for (int axis = 0; axis < 3; axis++) {
+    hybrid->position[axis] = array_at(&l, bytes, CONIC_CHY_POSITION + axis);
+    hybrid->normal[axis] = array_at(&l, bytes, CONIC_CHY_NORMAL + axis);
+    hybrid->color[axis] = array_at(&l, bytes, CONIC_CHY_COLOR + axis);
+  }
+  for (int k = 0; k < 2; k++)
+    hybrid->texture_coordinate[k] = array_at(&l, bytes, CONIC_CHY_TEXTURE + k);
+  for (int k = 0; k < 12; k++)
+    hybrid->surfels[k] = array_at(&l, bytes, CONIC_CHY_SURFELS + k);
+}
+
+static conic_status make_texture(conic_hybrid *hybrid, const conic_chy_material *from, conic_texture **texture) {
+  conic_image image;
+  float linear[256];
+  conic_status status =
+      conic_image_allocate(hybrid->context, (int)from->width, (int)from->height, 1u << CONIC_PLANE_RGBA, &image);
+  if (status != CONIC_OK)
+    return status;
+  conic_srgb_decode_table(linear);
+  float *rgba = image.planes[CONIC_PLANE_RGBA];
+  const unsigned char *codes = hybrid->texels + 3 * (size_t)from->first_texel;
+  for (size_t i = 0; i < (size_t)from->width * from->height; i++) {
+    for (size_t channel = 0; channel < 3; channel++)
+      rgba[4 * i + channel] = linear[codes[3 * i + channel]];
+    rgba[4 * i + 3] = 1.0f;
+  }
+  status = conic_texture_create(hybrid->context, &image, (conic_texture_wrap)from->wrap, texture);
+  conic_image_release(hybrid->context, &image);
+  return status;
+}
+
+conic_status conic_chy_make_materials(conic_hybrid *hybrid) {
+  conic_status status = CONIC_OK;
+  if (hybrid->n_materials == 0)
+    return CONIC_OK;
+  hybrid->materials = conic_memory_allocate_zeroed(hybrid->context, hybrid->n_materials, sizeof *hybrid->materials);
+  if (!hybrid->materials)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < hybrid->n_materials && status == CONIC_OK; i++) {
+    const conic_chy_material *from = &hybrid->material_list[i];
+    memcpy(hybrid->materials[i].color, from->color, sizeof from->color);
+    if (from->width)
+      status = make_texture(hybrid, from, &hybrid->materials[i].texture);
+  }
+  return status;
+}

@@ -1,0 +1,236 @@
+#include "lod/hybrid/hybrid_model.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "lod/hybrid/hybrid_layout.h"
+
+void conic_hybrid_destroy(conic_hybrid *hybrid) {
+  if (!hybrid)
+    return;
+  for (size_t i = 0; hybrid->materials && i < hybrid->n_materials; i++)
+    conic_texture_destroy(hybrid->materials[i].texture);
+  conic_memory_release(hybrid->context, hybrid->materials);
+  conic_memory_release(hybrid->context, hybrid->owned);
+  conic_mapping_close(hybrid->context, &hybrid->mapping);
+  conic_memory_release(hybrid->context, hybrid);
+}
+
+conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info) {
+  double square = 0.0;
+  memset(info, 0, sizeof *info);
+  info->n_patches = hybrid->n_patches;
+  info->n_all_triangles = hybrid->n_triangles;
+  info->n_all_surfels = hybrid->n_surfels;
+  info->n_vertices = hybrid->n_vertices;
+  info->n_nodes = hybrid->n_nodes;
+  info->cutoff = hybrid->cutoff;
+  info->splat_length = hybrid->splat_length;
+  info->n_bytes = conic_hybrid_file_bytes(hybrid);
+  for (size_t i = 0; i < hybrid->n_patches; i++) {
+    const conic_hybrid_patch *patch = &hybrid->patches[i];
+    const conic_hybrid_level *built = &hybrid->levels[patch->first_level + patch->built];
+    int is_surfels = built->kind == CONIC_HYBRID_SURFELS;
+    info->n_levels += patch->n_levels;
+    info->n_surfel_patches += (size_t)is_surfels;
+    *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
+  }
+  info->n_node_levels = hybrid->n_levels - info->n_levels;
+  for (size_t i = 0; i < hybrid->n_materials; i++)
+    info->n_textures += hybrid->material_list[i].width > 0;
+  for (int axis = 0; axis < 3; axis++) {
+    info->minimum[axis] = hybrid->origin[axis] + (double)hybrid->low[axis];
+    info->maximum[axis] = hybrid->origin[axis] + (double)hybrid->high[axis];
+    double side = info->maximum[axis] - info->minimum[axis];
+    square += side * side;
+  }
+  info->near_z = square > 0.0 ? 1e-4 * sqrt(square) : 1e-4;
+  return CONIC_OK;
+}
+
+/* --- structure --- */
+
+static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
+  if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
+    return "a level of no known kind";
+  size_t n = level->kind == CONIC_HYBRID_TRIANGLES ? h->n_triangles : h->n_surfels;
+  if (level->count < 1 || level->count > n || level->first > n - level->count)
+    return "a level without its triangles or surfels";
+  if (level->n_vertices > h->n_listed || level->first_vertex > h->n_listed - level->n_vertices)
+    return "a level without its vertices";
+  if (level->n_borders > h->n_borders || level->first_border > h->n_borders - level->n_borders ||
+      (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
+    return "a level without its borders";
+  if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF) ||
+      !(level->cover >= 0.0f && level->cover < HUGE_VALF) || !(level->spread >= 0.0f && level->spread < HUGE_VALF))
+    return "a level's error, reach or extent out of range";
+  if (level->kind == CONIC_HYBRID_TRIANGLES)
+    for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
+      for (int corner = 0; corner < 3; corner++)
+        if (h->corners[i][corner] >= level->n_vertices)
+          return "a corner out of range";
+  return NULL;
+}
+
+/* Whether a slot lies where a corner of one of the level's triangles does. */
+static int is_corner(const conic_hybrid *h, const conic_hybrid_level *level, uint32_t triangle, uint32_t corner,
+                     uint32_t slot) {
+  uint32_t a = h->listed[level->first_vertex + h->corners[level->first + triangle][corner % 3]];
+  uint32_t b = h->slots[slot].vertex;
+  int is_there = 1;
+  for (int axis = 0; axis < 3; axis++)
+    is_there &= h->position[axis][a] == h->position[axis][b];
+  return is_there;
+}
+
+/* `n_left_out` is how many slots the borders run over. */
+static const char *wrong_borders(const conic_hybrid *h, uint32_t patch, const conic_hybrid_level *level,
+                                 size_t *n_left_out) {
+  *n_left_out = 0;
+  for (uint32_t i = 0; i < level->n_borders; i++) {
+    const conic_hybrid_border *border = &h->borders[level->first_border + i];
+    if ((i > 0 && border->edge <= border[-1].edge) || border->edge / 4 >= level->count || border->edge % 4 > 2 ||
+        border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_patches ||
+        border->across == patch)
+      return "a border out of range";
+    if (!is_corner(h, level, border->edge / 4, border->edge % 4, border->from) ||
+        !is_corner(h, level, border->edge / 4, border->edge % 4 + 1, border->to))
+      return "a border that is not its triangle's";
+    *n_left_out += border->from < border->to ? border->to - border->from : border->from - border->to;
+  }
+  return NULL;
+}
+
+/* A slot is of two patches, so that there is never more to put in than twice as many as there are slots. */
+static const char *wrong_chains(const conic_hybrid *h) {
+  size_t n_left = 2 * h->n_slots;
+  for (uint32_t i = 0; i < h->n_patches; i++) {
+    size_t most = 0;
+    for (uint32_t k = 0; k < h->patches[i].n_levels; k++) {
+      size_t n;
+      const char *wrong = wrong_borders(h, i, &h->levels[h->patches[i].first_level + k], &n);
+      if (wrong)
+        return wrong;
+      most = n > most ? n : most;
+    }
+    if (most > n_left)
+      return "borders that run over each other";
+    n_left -= most;
+  }
+  return NULL;
+}
+
+static int is_bound(const conic_hybrid_bound *b) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(b->center[axis] - b->center[axis] == 0.0f) || !(b->axis[axis] >= -1.001f && b->axis[axis] <= 1.001f))
+      return 0;
+  return b->radius >= 0.0f && b->radius < HUGE_VALF && b->cone >= -1.0f && b->cone <= 1.0f;
+}
+
+/* Every level belongs to just one patch, in their order. */
+static const char *wrong_patches(const conic_hybrid *h) {
+  size_t next = 0;
+  for (size_t i = 0; i < h->n_patches; i++) {
+    const conic_hybrid_patch *patch = &h->patches[i];
+    if (patch->first_level != next || patch->n_levels < 1 || patch->n_levels > h->n_levels - next ||
+        patch->built >= patch->n_levels)
+      return "a patch without its levels";
+    if (!is_bound(&patch->bound) || !(patch->area >= 0.0f && patch->area < HUGE_VALF))
+      return "a patch's bounds out of range";
+    for (size_t k = 0; k < patch->n_levels; k++) {
+      const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
+      if (wrong)
+        return wrong;
+    }
+    next += patch->n_levels;
+  }
+  return NULL;
+}
+
+/* The nodes' levels come after those of the patches, in their order. */
+static const char *wrong_node_levels(const conic_hybrid *h) {
+  const conic_hybrid_patch *last = &h->patches[h->n_patches - 1];
+  size_t next = (size_t)last->first_level + last->n_levels;
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    const conic_hybrid_point *point = &node->point;
+    if (node->first_level != next || node->n_levels > h->n_levels - next)
+      return "a node without its levels";
+    for (size_t k = 0; k < node->n_levels; k++) {
+      if (h->levels[next + k].kind != CONIC_HYBRID_SURFELS)
+        return "a node's level that is not surfels";
+      const char *wrong = wrong_level(h, &h->levels[next + k], 0);
+      if (wrong)
+        return wrong;
+    }
+    if (!(point->radius >= 0.0f && point->radius < HUGE_VALF) || !(point->error >= 0.0f && point->error < HUGE_VALF))
+      return "a node's point out of range";
+    next += node->n_levels;
+  }
+  return next == h->n_levels ? NULL : "levels of no patch or node";
+}
+
+/* A walk goes from a node to the one after it, or past its subtree; and what is left of the patches is always what the
+ * walk has not come by. */
+static const char *wrong_nodes(const conic_hybrid *h) {
+  size_t next_patch = 0;
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    if (node->next <= i || node->next > h->n_nodes || node->begin >= node->end || node->end > h->n_patches ||
+        !is_bound(&node->bound))
+      return "a node that is none";
+    if (node->begin != next_patch)
+      return "nodes out of order";
+    if (node->next == i + 1)
+      next_patch = node->end;
+    else if (h->nodes[i + 1].begin != node->begin || h->nodes[node->next - 1].end != node->end)
+      return "nodes that are not within each other";
+  }
+  return h->n_nodes > 0 && next_patch == h->n_patches && h->nodes[0].next == h->n_nodes &&
+                 h->nodes[0].end == h->n_patches
+             ? NULL
+             : "patches of no node";
+}
+
+/* Every subtree is made of those of its node's children. The first that is not ends the search: so none is passed
+ * twice. */
+static const char *wrong_children(const conic_hybrid *h) {
+  for (size_t i = 0; i < h->n_nodes; i++) {
+    size_t child = i + 1;
+    while (child < h->nodes[i].next)
+      child = h->nodes[child].next;
+    if (child != h->nodes[i].next)
+      return "nodes that are not within each other";
+  }
+  return NULL;
+}
+
+const char *conic_hybrid_structure(const conic_hybrid *h) {
+  const char *wrong = wrong_patches(h);
+  if (!wrong)
+    wrong = wrong_nodes(h);
+  if (!wrong)
+    wrong = wrong_children(h);
+  if (!wrong)
+    wrong = wrong_node_levels(h);
+  for (size_t i = 0; i < h->n_listed && !wrong; i++)
+    if (h->listed[i] >= h->n_vertices)
+      wrong = "a vertex out of range";
+  for (size_t i = 0; i < h->n_slots && !wrong; i++)
+    if (h->slots[i].vertex >= h->n_vertices)
+      wrong = "a vertex out of range";
+  if (!wrong)
+    wrong = wrong_chains(h);
+  for (size_t i = 0; i < h->n_triangles && h->material && !wrong; i++)
+    if (h->material[i] >= h->n_materials)
+      wrong = "a material out of range";
+  for (size_t i = 0; i < h->n_materials && !wrong; i++) {
+    const conic_chy_material *m = &h->material_list[i];
+    uint64_t n = (uint64_t)m->width * m->height;
+    if (m->width > 65535 || m->height > 65535 || (m->width == 0) != (m->height == 0) || m->wrap > 1 ||
+        n > h->n_texels || m->first_texel > h->n_texels - n)
+      wrong = "a texture without its texels";
+  }
+  return wrong;
+}

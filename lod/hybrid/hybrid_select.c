@@ -1,0 +1,470 @@
+/* What of a hybrid model is drawn in one picture. */
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/hybrid/hybrid_budget.h"
+#include "lod/hybrid/hybrid_plan.h"
+#include "lod/hybrid/hybrid_point.h"
+#include "lod/hybrid/hybrid_stitch.h"
+
+void conic_hybrid_view_init(conic_hybrid_view *view) {
+  memset(view, 0, sizeof *view);
+  view->size = sizeof *view;
+  view->only_kind = -1;
+}
+
+/* A patch that is drawn, or, after all patches by its number, a node; and where its parts go. The level is among all of
+ * the model's; a node's point is none of them. */
+typedef struct choice {
+  uint32_t patch, level;
+  size_t splat, triangle, vertex;
+  size_t n_put; /* into the triangles, so that they fit their neighbours */
+} choice;
+
+/* What is kept from call to call. */
+typedef struct scratch {
+  choice *choices;
+  size_t n_choices, choices_room;
+  uint32_t *stages;   /* of each patch of the hybrid: that of its level */
+  uint32_t *standing; /* the node that stands for it */
+  size_t stages_room;
+  float *splats; /* arrays of splats_room each */
+  uint32_t *splat_cluster;
+  size_t splats_room;
+  float *vertices; /* arrays of vertices_room each */
+  size_t vertices_room;
+  uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
+  size_t triangles_room;
+} scratch;
+
+/* The level of a choice that is a node's point. */
+#define CONIC_HYBRID_POINT UINT32_MAX
+
+enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
+
+typedef struct selecting {
+  const conic_hybrid *hybrid;
+  conic_hybrid_camera camera;
+  const conic_hybrid_view *view;
+  conic_hybrid_selection *selection;
+  scratch *scratch;
+} selecting;
+
+void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
+  scratch *kept = selection->scratch;
+  if (kept) {
+    conic_memory_release(context, kept->choices);
+    conic_memory_release(context, kept->stages);
+    conic_memory_release(context, kept->standing);
+    conic_memory_release(context, kept->splats);
+    conic_memory_release(context, kept->splat_cluster);
+    conic_memory_release(context, kept->vertices);
+    conic_memory_release(context, kept->triangles);
+  }
+  conic_memory_release(context, kept);
+  memset(selection, 0, sizeof *selection);
+}
+
+static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
+  float reach = 0.0f;
+  for (uint32_t k = 0; k < patch->n_levels; k++) {
+    float own = h->levels[patch->first_level + k].reach;
+    reach = own > reach ? own : reach;
+  }
+  return (double)reach;
+}
+
+/* Whether the level of a patch depends on those of others. */
+static int is_together(const conic_hybrid_view *view) {
+  return view->budget || view->error_px > 0.0;
+}
+
+static conic_status add_choice(selecting *s, uint32_t i_patch) {
+  scratch *kept = s->scratch;
+  const conic_hybrid_patch *patch = &s->hybrid->patches[i_patch];
+  if (kept->n_choices == kept->choices_room) {
+    size_t room = 2 * kept->choices_room + 256;
+    void *choices = kept->choices;
+    conic_status status = conic_memory_grow(s->hybrid->context, &choices, kept->n_choices, room, sizeof *kept->choices);
+    kept->choices = choices;
+    if (status != CONIC_OK)
+      return status;
+    kept->choices_room = room;
+  }
+  uint32_t level = patch->built;
+  if (s->view->only_kind >= 0)
+    level = conic_hybrid_finest(s->hybrid, patch, s->view->only_kind);
+  kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
+  return CONIC_OK;
+}
+
+static conic_status choose_all(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  conic_status status = CONIC_OK;
+  s->scratch->n_choices = 0;
+  for (size_t i = 0; i < h->n_nodes && status == CONIC_OK;) {
+    const conic_hybrid_node *node = &h->nodes[i];
+    if (conic_hybrid_is_hidden(&s->camera, &node->bound, 0.0)) {
+      s->selection->n_culled += node->end - node->begin;
+      i = node->next;
+      continue;
+    }
+    for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
+      if (conic_hybrid_is_hidden(&s->camera, &h->patches[k].bound, reach_of(h, &h->patches[k])))
+        s->selection->n_culled++;
+      else
+        status = add_choice(s, k);
+    }
+    i++;
+  }
+  return status;
+}
+
+/* A node's choice takes the place of the first of its patches; those that are left close up. */
+static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
+  const conic_hybrid *h = s->hybrid;
+  scratch *kept = s->scratch;
+  uint32_t last = CONIC_HYBRID_NO_NODE;
+  size_t n = 0;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    uint32_t node = kept->standing[kept->choices[i].patch];
+    if (node == CONIC_HYBRID_NO_NODE)
+      kept->choices[n++] = kept->choices[i];
+    else if (node != last)
+      kept->choices[n++] =
+          (choice){.patch = (uint32_t)h->n_patches + node,
+                   .level = nodes[node] < h->nodes[node].n_levels ? h->nodes[node].first_level + nodes[node]
+                                                                  : CONIC_HYBRID_POINT};
+    s->selection->n_joined += node != CONIC_HYBRID_NO_NODE;
+    last = node;
+  }
+  kept->n_choices = n;
+}
+
+/* The stages of what was chosen; all else is hidden. Nodes have all of their patches' borders. */
+static void note_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  for (size_t i = 0; i < s->hybrid->n_patches; i++) {
+    kept->stages[i] = CONIC_HYBRID_HIDDEN;
+    kept->standing[i] = CONIC_HYBRID_NO_NODE;
+  }
+  for (size_t i = 0; i < kept->n_choices; i++)
+    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+}
+
+/* Chooses for all patches in sight, for a budget or for the least time. */
+static conic_status choose_together(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  const conic_hybrid_view *view = s->view;
+  scratch *kept = s->scratch;
+  size_t n = kept->n_choices;
+  uint32_t *patches = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *patches);
+  if (!patches)
+    return CONIC_ERROR_MEMORY;
+  uint32_t *levels = patches + n, *nodes = levels + n;
+  for (size_t i = 0; i < n; i++)
+    patches[i] = kept->choices[i].patch;
+  conic_status status =
+      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, patches, n, levels, nodes)
+                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, patches, n, levels, nodes);
+  if (status == CONIC_OK) {
+    for (size_t i = 0; i < n; i++)
+      kept->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+    note_stages(s);
+    conic_hybrid_find_standing(h, nodes, kept->standing);
+    for (size_t i = 0; i < n; i++)
+      if (kept->standing[patches[i]] != CONIC_HYBRID_NO_NODE)
+        kept->stages[patches[i]] = 0;
+    let_nodes_stand(s, nodes);
+  }
+  conic_memory_release(h->context, patches);
+  return status;
+}
+
+static const conic_hybrid_node *node_of(const selecting *s, const choice *c) {
+  return c->patch < s->hybrid->n_patches ? NULL : &s->hybrid->nodes[c->patch - s->hybrid->n_patches];
+}
+
+static void judge_patch(const selecting *s, const choice *c) {
+  const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
+  s->selection->n_patches[s->hybrid->levels[c->level].kind]++;
+  s->selection->n_simpler += c->level != patch->first_level + patch->built;
+}
+
+/* What the choices come to. */
+static void judge(const selecting *s) {
+  conic_hybrid_selection *selection = s->selection;
+  selection->n_simpler = selection->n_joined;
+  for (size_t i = 0; i < s->scratch->n_choices; i++) {
+    const choice *c = &s->scratch->choices[i];
+    const conic_hybrid_node *node = node_of(s, c);
+    const conic_hybrid_bound *bound = node ? &node->bound : &s->hybrid->patches[c->patch].bound;
+    double error_px = c->level == CONIC_HYBRID_POINT
+                          ? conic_hybrid_point_error_px(&s->camera, node)
+                          : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
+    selection->error_px = error_px > selection->error_px ? error_px : selection->error_px;
+    selection->n_nodes += node && c->level != CONIC_HYBRID_POINT;
+    selection->n_points += c->level == CONIC_HYBRID_POINT;
+    if (!node)
+      judge_patch(s, c);
+  }
+}
+
+static conic_status make_stages(selecting *s) {
+  scratch *kept = s->scratch;
+  conic_context *context = s->hybrid->context;
+  size_t n = s->hybrid->n_patches;
+  if (kept->stages && kept->standing && n <= kept->stages_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->stages);
+  conic_memory_release(context, kept->standing);
+  kept->stages_room = 0;
+  kept->stages = conic_memory_allocate(context, n, sizeof *kept->stages);
+  kept->standing = conic_memory_allocate(context, n, sizeof *kept->standing);
+  if (!kept->stages || !kept->standing)
+    return CONIC_ERROR_MEMORY;
+  kept->stages_room = n;
+  return CONIC_OK;
+}
+
+/* Where each choice's parts go, and how many there are of all. */
+static void place_parts(selecting *s) {
+  scratch *kept = s->scratch;
+  size_t n_splats = 0, n_triangles = 0, n_vertices = 0;
+  for (size_t i = 0; i < kept->n_choices; i++) {
+    choice *c = &kept->choices[i];
+    c->splat = n_splats;
+    c->triangle = n_triangles;
+    c->vertex = n_vertices;
+    if (c->level == CONIC_HYBRID_POINT) {
+      n_splats++;
+      continue;
+    }
+    const conic_hybrid_level *level = &s->hybrid->levels[c->level];
+    c->n_put = conic_hybrid_count_stitches(s->hybrid, level, kept->stages);
+    n_vertices += level->n_vertices + c->n_put;
+    *(level->kind == CONIC_HYBRID_SURFELS ? &n_splats : &n_triangles) += level->count + c->n_put;
+  }
+  s->selection->splats.count = n_splats;
+  s->selection->triangles.count = n_triangles;
+  s->selection->triangles.n_vertices = n_vertices;
+}
+
+static conic_status make_splats(conic_context *context, scratch *kept, size_t n) {
+  if (kept->splats && kept->splat_cluster && n <= kept->splats_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->splats);
+  conic_memory_release(context, kept->splat_cluster);
+  kept->splats_room = 0;
+  kept->splats = conic_memory_allocate(context, n, SPLAT_ARRAYS * sizeof *kept->splats);
+  kept->splat_cluster = conic_memory_allocate(context, n, sizeof *kept->splat_cluster);
+  if (!kept->splats || !kept->splat_cluster)
+    return CONIC_ERROR_MEMORY;
+  kept->splats_room = n;
+  return CONIC_OK;
+}
+
+static conic_status make_vertices(conic_context *context, scratch *kept, size_t n) {
+  if (kept->vertices && n <= kept->vertices_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->vertices);
+  kept->vertices_room = 0;
+  kept->vertices = conic_memory_allocate(context, n, VERTEX_ARRAYS * sizeof *kept->vertices);
+  kept->vertices_room = kept->vertices ? n : 0;
+  return kept->vertices ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static conic_status make_triangles(conic_context *context, scratch *kept, size_t n) {
+  if (kept->triangles && n <= kept->triangles_room)
+    return CONIC_OK;
+  conic_memory_release(context, kept->triangles);
+  kept->triangles_room = 0;
+  kept->triangles = conic_memory_allocate(context, n, 5 * sizeof *kept->triangles);
+  kept->triangles_room = kept->triangles ? n : 0;
+  return kept->triangles ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* Room for all parts of the choices. */
+static conic_status make_room(selecting *s) {
+  conic_context *context = s->hybrid->context;
+  const conic_hybrid_selection *selection = s->selection;
+  place_parts(s);
+  if (selection->triangles.n_vertices > UINT32_MAX)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
+  conic_status status = make_splats(context, s->scratch, selection->splats.count);
+  if (status == CONIC_OK)
+    status = make_vertices(context, s->scratch, selection->triangles.n_vertices);
+  return status == CONIC_OK ? make_triangles(context, s->scratch, selection->triangles.count) : status;
+}
+
+/* Points the selection's arrays into what is kept. */
+static void attach(selecting *s) {
+  const conic_hybrid *h = s->hybrid;
+  const scratch *kept = s->scratch;
+  conic_splats *splats = &s->selection->splats;
+  conic_triangles *triangles = &s->selection->triangles;
+  memcpy(splats->origin, h->origin, sizeof splats->origin);
+  memcpy(triangles->origin, h->origin, sizeof triangles->origin);
+  for (size_t axis = 0; axis < 3; axis++) {
+    splats->position[axis] = kept->splats + axis * kept->splats_room;
+    splats->tangent_u[axis] = kept->splats + (3 + axis) * kept->splats_room;
+    splats->tangent_v[axis] = kept->splats + (6 + axis) * kept->splats_room;
+    splats->color[axis] = kept->splats + (9 + axis) * kept->splats_room;
+    triangles->position[axis] = kept->vertices + axis * kept->vertices_room;
+    triangles->normal[axis] = h->normal[0] ? kept->vertices + (3 + axis) * kept->vertices_room : NULL;
+    triangles->color[axis] = h->color[0] ? kept->vertices + (6 + axis) * kept->vertices_room : NULL;
+  }
+  for (size_t k = 0; k < 2; k++)
+    triangles->texture_coordinate[k] = h->texture_coordinate[0] ? kept->vertices + (9 + k) * kept->vertices_room : NULL;
+  s->selection->splat_cluster = kept->splat_cluster;
+  triangles->corners = (uint32_t(*)[3])kept->triangles;
+  triangles->cluster = kept->triangles + 3 * kept->triangles_room;
+  triangles->material = h->material ? kept->triangles + 4 * kept->triangles_room : NULL;
+  triangles->n_materials = h->n_materials;
+  triangles->materials = h->materials;
+}
+
+static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const scratch *kept = s->scratch;
+  for (size_t k = 0; k < SPLAT_ARRAYS; k++)
+    memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
+           level->count * sizeof(float));
+  for (size_t i = 0; i < level->count; i++)
+    kept->splat_cluster[c->splat + i] = c->patch;
+}
+
+static void put_point(const selecting *s, const choice *c) {
+  const scratch *kept = s->scratch;
+  float values[SPLAT_ARRAYS];
+  conic_hybrid_point_splat(&s->camera, node_of(s, c), (double)s->hybrid->cutoff, values);
+  for (size_t k = 0; k < SPLAT_ARRAYS; k++)
+    kept->splats[k * kept->splats_room + c->splat] = values[k];
+  kept->splat_cluster[c->splat] = c->patch;
+}
+
+static void gather(float *to, const float *from, const uint32_t *listed, size_t n) {
+  for (size_t i = 0; i < n && to; i++)
+    to[i] = from[listed[i]];
+}
+
+static void copy_triangles(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const conic_hybrid *h = s->hybrid;
+  const conic_triangles *to = &s->selection->triangles;
+  const uint32_t *listed = h->listed + level->first_vertex;
+  for (int axis = 0; axis < 3; axis++) {
+    gather(to->position[axis] + c->vertex, h->position[axis], listed, level->n_vertices);
+    if (to->normal[0])
+      gather(to->normal[axis] + c->vertex, h->normal[axis], listed, level->n_vertices);
+    if (to->color[0])
+      gather(to->color[axis] + c->vertex, h->color[axis], listed, level->n_vertices);
+  }
+  for (int k = 0; k < 2 && to->texture_coordinate[0]; k++)
+    gather(to->texture_coordinate[k] + c->vertex, h->texture_coordinate[k], listed, level->n_vertices);
+  for (size_t i = 0; i < level->count; i++) {
+    for (int corner = 0; corner < 3; corner++)
+      to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + h->corners[level->first + i][corner];
+    to->cluster[c->triangle + i] = c->patch;
+  }
+  if (to->material)
+    memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
+  if (c->n_put == 0)
+    return;
+  conic_hybrid_stitching stitching = {.hybrid = h,
+                                      .level = level,
+                                      .stages = s->scratch->stages,
+                                      .to = &s->selection->triangles,
+                                      .first_triangle = c->triangle,
+                                      .triangle = c->triangle + level->count,
+                                      .vertex = c->vertex + level->n_vertices};
+  conic_hybrid_stitch(&stitching);
+}
+
+static void copy_task(void *data, size_t i_task, int i_thread) {
+  const selecting *s = data;
+  size_t begin = i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
+    const choice *c = &s->scratch->choices[i];
+    if (c->level == CONIC_HYBRID_POINT)
+      put_point(s, c);
+    else if (s->hybrid->levels[c->level].kind == CONIC_HYBRID_SURFELS)
+      copy_surfels(s, c, &s->hybrid->levels[c->level]);
+    else
+      copy_triangles(s, c, &s->hybrid->levels[c->level]);
+  }
+}
+
+static conic_status check_view(conic_context *context, const conic_hybrid_view *view) {
+  if (view->size != sizeof *view)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "a view of a hybrid that was not set by its init function");
+  if (!(view->error_px >= 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "an error on the screen is 0 or more, and a kind one that there is");
+  if (view->error_px > 0.0 && view->budget)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "an error and a budget are two ways to choose");
+  return CONIC_OK;
+}
+
+/* On success there is scratch. */
+static conic_status begin(selecting *s, const conic_camera *camera, const conic_render_options *render) {
+  scratch *kept = s->selection->scratch;
+  conic_render_options known = *render;
+  conic_hybrid_info info;
+  if (!kept) {
+    kept = conic_memory_allocate_zeroed(s->hybrid->context, 1, sizeof *kept);
+    if (!kept)
+      return CONIC_ERROR_MEMORY;
+  }
+  memset(s->selection, 0, sizeof *s->selection);
+  s->selection->scratch = s->scratch = kept;
+  if (!(known.near_z > 0.0)) {
+    conic_hybrid_describe(s->hybrid, &info);
+    known.near_z = info.near_z;
+  }
+  conic_hybrid_camera_init(s->hybrid, camera, &known, &s->camera);
+  return CONIC_OK;
+}
+
+conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
+                                 const conic_render_options *render, const conic_hybrid_view *view,
+                                 conic_hybrid_selection *selection) {
+  selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
+  conic_status status = check_view(hybrid->context, view);
+  if (status == CONIC_OK)
+    status = begin(&s, camera, render);
+  if (status == CONIC_OK)
+    status = make_stages(&s);
+  if (status == CONIC_OK)
+    status = choose_all(&s);
+  if (status == CONIC_OK) {
+    if (is_together(view))
+      status = choose_together(&s);
+    else
+      note_stages(&s);
+  }
+  if (status == CONIC_OK)
+    status = make_room(&s);
+  if (status != CONIC_OK)
+    return status;
+  judge(&s);
+  attach(&s);
+  conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
+  return CONIC_OK;
+}
+
+void conic_hybrid_name(const conic_hybrid_selection *selection, conic_image *image) {
+  const uint32_t *id = image->planes[CONIC_PLANE_ID];
+  uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
+  size_t n_splats = selection->splats.count, n_triangles = selection->triangles.count;
+  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+    if (id[i] < n_splats)
+      cluster[i] = selection->splat_cluster[id[i]];
+    else if (id[i] - n_splats < n_triangles)
+      cluster[i] = selection->triangles.cluster[id[i] - n_splats];
+    else
+      cluster[i] = CONIC_NO_ID;
+  }
+}

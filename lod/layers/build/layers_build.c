@@ -1,0 +1,231 @@
+/* Building a layered point cloud in bounded memory: samples are put aside as they come, sorted roughly by where they
+ * are, grown into a tree piece by piece, and written (docs/layers.md). */
+#include <math.h>
+#include <string.h>
+
+#include "conic/layers.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "lod/layers/build/layers_file.h"
+#include "lod/layers/build/layers_intake.h"
+#include "lod/layers/build/layers_normals.h"
+
+struct conic_layers_builder {
+  conic_context *context;
+  char *path;
+  conic_layers_options options;
+  conic_layers_intake intake;
+  conic_layers_buckets buckets;
+  conic_layers_forest forest;
+  conic_layers_plan plan;
+  conic_layers_header header;
+  conic_layers_statistics statistics;
+  double started;
+};
+
+enum { LEAST_CLOUD = 64, MOST_CLOUD = 32768 };
+
+void conic_layers_options_init(conic_layers_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->cloud_size = 2048;
+  options->memory_bytes = UINT64_C(1) << 30;
+  options->quantum = 0.5;
+  options->quantum_in_spacings = 1;
+  options->cutoff = 1.5f;
+}
+
+static int is_sound(const conic_layers_options *options) {
+  return options->size == sizeof *options && options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD &&
+         options->quantum > 0.0 && options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f;
+}
+
+/* Of the memory that building may take: what comes in, its rough order, one chunk a thread with room to sort it, and
+ * the packed clouds. Not all of it is taken at the same time; the rest is for what grows with the number of chunks. */
+static size_t share(const conic_layers_builder *builder, double part) {
+  double bytes = part * (double)builder->options.memory_bytes;
+  return bytes < 1e15 ? (size_t)bytes : (size_t)1e15;
+}
+
+static uint64_t most_in_chunk(const conic_layers_builder *builder) {
+  uint64_t n_threads = (uint64_t)conic_context_threads(builder->context);
+  uint64_t fitting = share(builder, 0.25) / (2 * sizeof(conic_layers_sample) * n_threads);
+  uint64_t even = builder->intake.n_samples / (8 * n_threads); /* so that no thread is left with a large one */
+  uint64_t least = conic_layers_most_in_leaf(&builder->plan), most = fitting < even ? fitting : even;
+  least *= builder->plan.is_unoriented ? CONIC_LAYERS_PATCH_LEAVES : 1;
+  return most > least ? most : least;
+}
+
+conic_status conic_layers_builder_open(conic_context *context, const char *path, const conic_layers_options *options,
+                                       conic_layers_builder **builder) {
+  conic_zstd *zstd;
+  *builder = NULL;
+  if (options && !is_sound(options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the options of a layered point cloud have no meaning", path);
+  conic_status status = conic_zstd_create(context, &zstd); /* told before hours of work, not after */
+  if (status != CONIC_OK)
+    return status;
+  conic_zstd_destroy(context, zstd);
+  conic_layers_builder *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  if (!made)
+    return CONIC_ERROR_MEMORY;
+  made->context = context;
+  made->started = conic_seconds_now();
+  if (options)
+    made->options = *options;
+  else
+    conic_layers_options_init(&made->options);
+  size_t n_path = strlen(path) + 1;
+  made->path = conic_memory_allocate(context, n_path, 1);
+  status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    memcpy(made->path, path, n_path);
+    conic_output_sweep(context, path);
+    status = conic_layers_intake_begin(context, made->path, share(made, 0.35), made->options.cutoff, &made->intake);
+  }
+  if (status == CONIC_OK)
+    *builder = made;
+  else
+    conic_layers_builder_abandon(made);
+  return status;
+}
+
+void conic_layers_builder_abandon(conic_layers_builder *builder) {
+  if (!builder)
+    return;
+  conic_layers_intake_end(&builder->intake);
+  conic_layers_buckets_end(&builder->buckets);
+  conic_layers_forest_end(&builder->forest);
+  conic_memory_release(builder->context, builder->path);
+  conic_memory_release(builder->context, builder);
+}
+
+conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
+  return conic_layers_intake_append(&builder->intake, batch);
+}
+
+/* The grid: steps of the quantum, as many as the box takes; it lies evenly about the box. Where there would be too
+ * many, they are larger. */
+static void lay_grid(conic_layers_builder *builder, double quantum) {
+  const conic_layers_intake *intake = &builder->intake;
+  conic_layers_header *header = &builder->header;
+  double extent = 0.0, magnitude = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double length = intake->high[axis] - intake->low[axis];
+    extent = length > extent ? length : extent;
+    magnitude = fabs(intake->high[axis]) > magnitude ? fabs(intake->high[axis]) : magnitude;
+    magnitude = fabs(intake->low[axis]) > magnitude ? fabs(intake->low[axis]) : magnitude;
+  }
+  double least = extent * (1.0 + 0x1p-20) * 0x1p-21, finest = magnitude * 0x1p-45;
+  header->quantum = quantum > least ? quantum : least;
+  header->quantum = header->quantum > finest ? header->quantum : finest;
+  if (!(header->quantum > 0.0)) /* all in one place, the origin */
+    header->quantum = 1.0;
+  if (header->quantum > quantum && extent > 0.0)
+    conic_log(builder->context, CONIC_LOG_WARNING, "%s: positions are rounded to steps of %g: finer ones are too many",
+              builder->path, header->quantum);
+  header->bits = 1;
+  while (header->bits < CONIC_LAYERS_MOST_BITS &&
+         header->quantum * (double)(UINT64_C(1) << header->bits) < extent * (1.0 + 0x1p-20))
+    header->bits++;
+  double edge = header->quantum * (double)(UINT64_C(1) << header->bits);
+  for (int axis = 0; axis < 3; axis++) {
+    header->low[axis] = intake->low[axis];
+    header->high[axis] = intake->high[axis];
+    header->origin[axis] = intake->low[axis] - 0.5 * (edge - (intake->high[axis] - intake->low[axis]));
+  }
+}
+
+/* As conic_default_near, of the box. */
+static double near_of(const conic_layers_header *header) {
+  double diagonal2 = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    diagonal2 += (header->high[axis] - header->low[axis]) * (header->high[axis] - header->low[axis]);
+  return diagonal2 > 0.0 ? 1e-4 * sqrt(diagonal2) : 1e-4;
+}
+
+static conic_status make_plan(conic_layers_builder *builder) {
+  conic_layers_header *header = &builder->header;
+  const conic_layers_intake *intake = &builder->intake;
+  conic_status status = conic_layers_intake_spacing(&builder->intake, &header->spacing);
+  if (status != CONIC_OK)
+    return status;
+  double unit = builder->options.quantum_in_spacings ? header->spacing : 1.0;
+  lay_grid(builder, builder->options.quantum * unit);
+  if (!(header->spacing > 0.0)) /* all coincide: something that can be seen */
+    header->spacing = header->quantum;
+  header->version = CONIC_LAYERS_VERSION;
+  header->flags = (intake->has_colors ? CONIC_LAYERS_COLORS : 0u) | (intake->n_bare ? CONIC_LAYERS_UNORIENTED : 0u);
+  header->cloud_size = builder->options.cloud_size;
+  header->near_z = near_of(header);
+  builder->plan = (conic_layers_plan){.context = builder->context,
+                                      .bits = header->bits,
+                                      .cloud_size = header->cloud_size,
+                                      .n_samples = intake->n_samples,
+                                      .quantum = header->quantum,
+                                      .spacing = header->spacing,
+                                      .has_colors = intake->has_colors,
+                                      .is_unoriented = intake->n_bare > 0};
+  return CONIC_OK;
+}
+
+static conic_status check_samples(const conic_layers_builder *builder) {
+  const conic_layers_intake *intake = &builder->intake;
+  if (intake->n_samples == 0)
+    return conic_fail(builder->context, CONIC_ERROR_INPUT, "%s: not written: there is no sample that can be drawn",
+                      builder->path);
+  if (intake->n_bright > 0)
+    conic_log(builder->context, CONIC_LOG_WARNING, "%s: %llu colours are brighter than white, and are kept as white",
+              builder->path, (unsigned long long)intake->n_bright);
+  return CONIC_OK;
+}
+
+static conic_status build(conic_layers_builder *builder) {
+  uint64_t most = 0;
+  conic_status status = check_samples(builder);
+  if (status == CONIC_OK)
+    status = make_plan(builder);
+  if (status == CONIC_OK) {
+    most = most_in_chunk(builder);
+    status = conic_layers_buckets_fill(&builder->intake, &builder->plan, builder->header.origin, share(builder, 0.35),
+                                       most, &builder->buckets);
+  }
+  conic_layers_intake_end(&builder->intake);
+  if (status == CONIC_OK)
+    status = conic_layers_forest_grow(&builder->plan, &builder->buckets, most, share(builder, 0.1), &builder->forest);
+  conic_layers_buckets_end(&builder->buckets);
+  return status;
+}
+
+static void fill_statistics(conic_layers_builder *builder, double begun, double built) {
+  conic_layers_statistics *s = &builder->statistics;
+  const conic_layers_header *header = &builder->header;
+  s->n_in = builder->intake.n_in;
+  s->n_nan = builder->intake.n_nan;
+  s->n_zero = builder->intake.n_bare;
+  s->n_samples = header->n_samples;
+  s->n_clouds = header->n_clouds;
+  s->n_bytes = header->file_bytes;
+  s->n_levels = (int)header->n_levels;
+  s->spacing = header->spacing;
+  s->quantum = header->quantum;
+  s->read_seconds = begun - builder->started;
+  s->work_seconds = built - begun;
+  s->write_seconds = conic_seconds_now() - built;
+}
+
+conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_layers_statistics *statistics) {
+  double begun = conic_seconds_now();
+  conic_status status = build(builder);
+  double built = conic_seconds_now();
+  if (status == CONIC_OK)
+    status = conic_layers_write(builder->context, builder->path, &builder->forest, &builder->header);
+  if (status == CONIC_OK && statistics) {
+    fill_statistics(builder, begun, built);
+    *statistics = builder->statistics;
+  }
+  conic_layers_builder_abandon(builder);
+  return status;
+}

@@ -1,0 +1,178 @@
+#include "lod/layers/build/layers_intake.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
+                                       conic_layers_intake *intake) {
+  memset(intake, 0, sizeof *intake);
+  intake->context = context;
+  intake->cutoff = cutoff;
+  intake->stride = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    intake->low[axis] = HUGE_VAL;
+    intake->high[axis] = -HUGE_VAL;
+  }
+  conic_code_scale_init(1.0, 1.0, 1.0f, &intake->scale);
+  conic_spool_begin(context, path, memory_bytes, &intake->spool);
+  intake->pending = conic_memory_allocate(context, CONIC_LAYERS_BLOCK, sizeof *intake->pending);
+  return intake->pending ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+void conic_layers_intake_end(conic_layers_intake *intake) {
+  if (!intake->context)
+    return;
+  conic_spool_end(&intake->spool);
+  conic_memory_release(intake->context, intake->pending);
+  intake->pending = NULL;
+}
+
+static int is_finite(const float v[3]) {
+  return v[0] - v[0] == 0.0f && v[1] - v[1] == 0.0f && v[2] - v[2] == 0.0f;
+}
+
+static void vector_at(float *const arrays[3], size_t i, float v[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] = arrays[axis][i];
+}
+
+/* Of a length that the square of neither overflows nor vanishes. */
+static int is_direction(const float v[3]) {
+  double length2 = (double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2];
+  return length2 > 1e-60 && length2 < 1e60;
+}
+
+/* The upper half of a float's bits, not rounded down. */
+static uint16_t size_code(float size) {
+  uint32_t bits;
+  if (!(size > 0.0f && size < 1e30f))
+    return 0;
+  memcpy(&bits, &size, sizeof bits);
+  bits += 0xffff;
+  return (uint16_t)(bits >> 16 ? bits >> 16 : 1);
+}
+
+/* The normal and the outline of a splat with axes; whether it has them. */
+static int take_axes(const conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+  float u[3], v[3];
+  vector_at(batch->tangent_u, i, u);
+  vector_at(batch->tangent_v, i, v);
+  if (!is_finite(u) || !is_finite(v) || !is_direction(u) || !is_direction(v))
+    return 0;
+  double length2[2] = {0.0, 0.0}, a[3], b[3];
+  for (int axis = 0; axis < 3; axis++) {
+    length2[0] += (double)u[axis] * (double)u[axis];
+    length2[1] += (double)v[axis] * (double)v[axis];
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    a[axis] = (double)u[axis] / sqrt(length2[0]);
+    b[axis] = (double)v[axis] / sqrt(length2[1]);
+  }
+  const float normal[3] = {(float)(a[1] * b[2] - a[2] * b[1]), (float)(a[2] * b[0] - a[0] * b[2]),
+                           (float)(a[0] * b[1] - a[1] * b[0])};
+  if (!is_direction(normal))
+    return 0;
+  conic_layers_code_normal(normal, raw->normal);
+  double longer2 = length2[0] > length2[1] ? length2[0] : length2[1];
+  raw->size = size_code((float)(sqrt(longer2) * (double)intake->cutoff));
+  return 1;
+}
+
+static int take_normal(const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+  float normal[3];
+  vector_at(batch->normal, i, normal);
+  if (!is_finite(normal) || !is_direction(normal))
+    return 0;
+  conic_layers_code_normal(normal, raw->normal);
+  return 1;
+}
+
+static void take_color(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+  int is_bright = 0;
+  for (int channel = 0; channel < 3; channel++) {
+    float value = batch->color[channel][i];
+    is_bright |= value > 1.0f;
+    raw->color[channel] = conic_code_srgb(&intake->scale, value);
+  }
+  intake->n_bright += is_bright != 0;
+}
+
+static void remember_some(conic_layers_intake *intake, const double position[3]) {
+  if (intake->n_samples % intake->stride)
+    return;
+  if (intake->n_some == CONIC_LAYERS_SOME) { /* every other, from now on */
+    for (size_t i = 0; i < CONIC_LAYERS_SOME / 2; i++)
+      memcpy(intake->some[i], intake->some[2 * i], sizeof intake->some[i]);
+    intake->n_some /= 2;
+    intake->stride *= 2;
+    if (intake->n_samples % intake->stride)
+      return;
+  }
+  memcpy(intake->some[intake->n_some++], position, 3 * sizeof *position);
+}
+
+/* One sample into `raw`; whether it can be used. */
+static int take(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+  double position[3];
+  memset(raw, 0, sizeof *raw);
+  vector_at(batch->position, i, raw->position);
+  for (int axis = 0; axis < 3; axis++)
+    position[axis] = batch->origin[axis] + (double)raw->position[axis];
+  if (!is_finite(raw->position) || !(fabs(position[0]) + fabs(position[1]) + fabs(position[2]) < 1e15)) {
+    intake->n_nan++;
+    return 0;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    intake->low[axis] = position[axis] < intake->low[axis] ? position[axis] : intake->low[axis];
+    intake->high[axis] = position[axis] > intake->high[axis] ? position[axis] : intake->high[axis];
+  }
+  int has_normal = batch->tangent_u[0] && take_axes(intake, batch, i, raw);
+  if (!has_normal && batch->normal[0])
+    has_normal = take_normal(batch, i, raw);
+  raw->is_bare = !has_normal;
+  intake->n_bare += !has_normal;
+  if (batch->color[0])
+    take_color(intake, batch, i, raw);
+  remember_some(intake, position);
+  intake->n_samples++;
+  return 1;
+}
+
+conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic_splats *batch) {
+  int has_colors = batch->color[0] != NULL;
+  if (intake->has_started && has_colors != intake->has_colors)
+    return conic_fail(intake->context, CONIC_ERROR_ARGUMENT, "%s: some samples have colours, others have none",
+                      intake->spool.path);
+  intake->has_started |= batch->count > 0;
+  intake->has_colors = has_colors;
+  for (size_t first = 0; first < batch->count; first += CONIC_LAYERS_BLOCK) {
+    size_t left = batch->count - first, end = first + (left < CONIC_LAYERS_BLOCK ? left : CONIC_LAYERS_BLOCK);
+    conic_layers_block block = {.count = 0};
+    memcpy(block.origin, batch->origin, sizeof block.origin);
+    for (size_t i = first; i < end; i++)
+      block.count += (uint64_t)take(intake, batch, i, &intake->pending[block.count]);
+    intake->n_in += end - first;
+    conic_status status = conic_spool_append(&intake->spool, &block, sizeof block);
+    if (status == CONIC_OK)
+      status = conic_spool_append(&intake->spool, intake->pending, (size_t)block.count * sizeof *intake->pending);
+    if (status != CONIC_OK)
+      return status;
+  }
+  return CONIC_OK;
+}
+
+conic_status conic_layers_intake_read(const conic_layers_intake *intake, uint64_t *offset, conic_layers_block *block,
+                                      conic_layers_raw *samples, int *is_there) {
+  *is_there = *offset < conic_spool_bytes(&intake->spool);
+  if (!*is_there)
+    return CONIC_OK;
+  conic_status status = conic_spool_read(&intake->spool, *offset, block, sizeof *block);
+  *offset += sizeof *block;
+  if (status == CONIC_OK)
+    status = conic_spool_read(&intake->spool, *offset, samples, (size_t)block->count * sizeof *samples);
+  *offset += block->count * sizeof *samples;
+  return status;
+}

@@ -1,0 +1,58 @@
+/* The samples that a layered cloud is built from, as they come: put aside until their box and spacing are known. */
+#ifndef CONIC_LAYERS_INTAKE_H
+#define CONIC_LAYERS_INTAKE_H
+
+#include "conic/splats.h"
+#include "core/files/spool.h"
+#include "lod/layers/format/layers_code.h"
+#include "lod/octree/octree_code.h"
+
+/* A sample before its place on the grid is known. */
+typedef struct conic_layers_raw {
+  float position[3]; /* from the origin of its block */
+  uint8_t normal[2];
+  uint16_t size;
+  uint8_t color[3];
+  uint8_t is_bare;
+} conic_layers_raw;
+
+enum { CONIC_LAYERS_BLOCK = 32768, CONIC_LAYERS_SOME = 8192 };
+
+/* Samples that share an origin, as they are put aside. */
+typedef struct conic_layers_block {
+  double origin[3];
+  uint64_t count;
+} conic_layers_block;
+
+typedef struct conic_layers_intake {
+  conic_context *context;
+  conic_spool spool;
+  conic_code_scale scale; /* for the colours' codes */
+  float cutoff;
+  conic_layers_raw *pending; /* a block's */
+  int has_started, has_colors, has_bare;
+  uint64_t n_in, n_samples, n_nan, n_bare, n_bright;
+  double low[3], high[3];            /* of the finite positions, in world units */
+  double some[CONIC_LAYERS_SOME][3]; /* of every stride-th sample, the position */
+  uint64_t stride;
+  size_t n_some;
+} conic_layers_intake;
+
+/* `path`: where the result goes; it must outlive the intake. Errors: MEMORY. */
+conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
+                                       conic_layers_intake *intake);
+void conic_layers_intake_end(conic_layers_intake *intake);
+
+/* Errors: ARGUMENT, MEMORY, IO, CANCELLED. */
+conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic_splats *batch);
+
+/* Reads the block at *offset, moves that on, and says whether there was one; `samples` has room for a block. Errors:
+ * IO. */
+conic_status conic_layers_intake_read(const conic_layers_intake *intake, uint64_t *offset, conic_layers_block *block,
+                                      conic_layers_raw *samples, int *is_there);
+
+/* The median sampling distance: √(area a sample), from the eight nearest to some. 0 where there are no two apart.
+ * Errors: MEMORY, IO, CANCELLED. */
+conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *spacing);
+
+#endif

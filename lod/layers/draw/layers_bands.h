@@ -1,0 +1,24 @@
+/* A picture in bands, or parts of them, each with no more splats than memory holds. */
+#ifndef CONIC_LAYERS_BANDS_H
+#define CONIC_LAYERS_BANDS_H
+
+#include "lod/layers/draw/layers_gather.h"
+
+typedef struct conic_layers_band_drawing {
+  conic_layers *layers;
+  conic_renderer *renderer;
+  const conic_camera *camera;
+  const conic_render_options *render; /* near_z and splat_length given */
+  const conic_layers_cut *cut;
+  const conic_layers_view *view;
+  int samples;
+  conic_image *image;
+  conic_layers_set *set;
+} conic_layers_band_drawing;
+
+/* Draws the cut's places that are not hidden, in as many bands as memory asks for. *statistics become those of the
+ * whole picture, whatever the bands. Errors: as conic_layers_draw. */
+conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, conic_render_statistics *statistics,
+                                     int *n_bands);
+
+#endif

@@ -1,0 +1,150 @@
+#include "lod/layers/draw/layers_cut.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+
+/* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
+typedef struct walk {
+  const conic_layers *layers;
+  const conic_layers_view *view;
+  const conic_layers_wish *wish;
+  uint32_t open[CONIC_LAYERS_MOST_LEVELS + 2];
+  int n_open;
+} walk;
+
+/* Why a node is not refined. */
+typedef enum verdict { VERDICT_REFINE, VERDICT_FINE, VERDICT_STUCK } verdict;
+
+static verdict judge(const walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
+  const unsigned char *is_in = w->wish->is_in;
+  if (entry->child == 0 || sight->error_px <= w->wish->error_px)
+    return VERDICT_FINE;
+  if (w->wish->most_levels && entry->level + 1 >= w->wish->most_levels)
+    return VERDICT_STUCK;
+  return !is_in || (is_in[entry->child] && is_in[entry->child + 1]) ? VERDICT_REFINE : VERDICT_STUCK;
+}
+
+static void begin_walk(walk *w) {
+  w->open[0] = 0;
+  w->n_open = 1;
+}
+
+/* The next node of the cut: 1, or 0 at the end. */
+static int next_place(walk *w, uint32_t *node, conic_layers_sight *sight, verdict *why) {
+  while (w->n_open > 0) {
+    *node = w->open[--w->n_open];
+    const conic_layers_entry *entry = &w->layers->entries[*node];
+    if (!conic_layers_look(w->view, entry, sight))
+      continue;
+    *why = judge(w, entry, sight);
+    if (*why != VERDICT_REFINE)
+      return 1;
+    w->open[w->n_open++] = entry->child + 1;
+    w->open[w->n_open++] = entry->child;
+  }
+  return 0;
+}
+
+static conic_status add_place(const conic_layers *layers, conic_layers_cut *cut, const conic_layers_place *place) {
+  if (cut->n == cut->room) {
+    size_t room = 2 * cut->room + 256;
+    conic_status status = conic_memory_grow(layers->context, (void **)&cut->places, cut->n, room, sizeof *cut->places);
+    if (status != CONIC_OK)
+      return status;
+    cut->room = room;
+  }
+  cut->places[cut->n++] = *place;
+  return CONIC_OK;
+}
+
+conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
+                                   const conic_layers_wish *wish, conic_layers_cut *cut) {
+  walk w = {.layers = layers, .view = view, .wish = wish};
+  conic_layers_place place;
+  verdict why;
+  cut->n = 0;
+  cut->n_splats = cut->n_coarser = 0;
+  cut->coarser_px = 0.0;
+  memset(&place, 0, sizeof place);
+  begin_walk(&w);
+  while (next_place(&w, &place.node, &place.sight, &why)) {
+    conic_status status = add_place(layers, cut, &place);
+    if (status != CONIC_OK)
+      return status;
+    cut->n_splats += layers->entries[place.node].n_drawn;
+    if (why != VERDICT_STUCK)
+      continue;
+    cut->n_coarser++;
+    cut->coarser_px = place.sight.error_px > cut->coarser_px ? place.sight.error_px : cut->coarser_px;
+  }
+  return CONIC_OK;
+}
+
+void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
+  conic_memory_release(context, cut->places);
+  memset(cut, 0, sizeof *cut);
+}
+
+/* Splats of the cut for an error, counted up to a little over `most`. */
+static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *view, const conic_layers_wish *wish,
+                          uint64_t most) {
+  walk w = {.layers = layers, .view = view, .wish = wish};
+  conic_layers_sight sight;
+  uint64_t n = 0;
+  uint32_t node;
+  verdict why;
+  begin_walk(&w);
+  while (n <= most && next_place(&w, &node, &sight, &why))
+    n += layers->entries[node].n_drawn;
+  return n;
+}
+
+static double error_of(uint64_t bits) {
+  double error;
+  memcpy(&error, &bits, sizeof error);
+  return error;
+}
+
+/* Doubles that are not negative order like their bits. */
+conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                     uint64_t budget, double *error_px) {
+  conic_layers_wish wish = {.error_px = 0.0, .most_levels = most_levels};
+  const double greatest = HUGE_VAL;
+  uint64_t low = 0, high;
+  memcpy(&high, &greatest, sizeof high);
+  *error_px = 0.0;
+  if (count_cut(layers, view, &wish, budget) <= budget)
+    return CONIC_OK;
+  wish.error_px = greatest;
+  if (count_cut(layers, view, &wish, budget) > budget)
+    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "%s: the coarsest level alone has %u splats", layers->name,
+                      layers->entries[0].n_drawn);
+  while (high - low > 1) {
+    uint64_t middle = low + (high - low) / 2;
+    wish.error_px = error_of(middle);
+    if (count_cut(layers, view, &wish, budget) <= budget)
+      high = middle;
+    else
+      low = middle;
+  }
+  *error_px = error_of(high);
+  return CONIC_OK;
+}
+
+size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,
+                           unsigned char *needed) {
+  size_t n = 0;
+  memset(needed, 0, layers->header.n_clouds);
+  for (size_t i = 0; i < cut->n; i++) {
+    if (cut->places[i].state > last)
+      continue;
+    for (uint32_t node = cut->places[i].node; !needed[node]; node = layers->entries[node].parent) {
+      needed[node] = 1;
+      n++;
+    }
+  }
+  return n;
+}

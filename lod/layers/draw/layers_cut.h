@@ -1,0 +1,53 @@
+/* Which places of a layered point cloud a picture shows, and how fine: the cut through its tree. */
+#ifndef CONIC_LAYERS_CUT_H
+#define CONIC_LAYERS_CUT_H
+
+#include "lod/layers/draw/layers_scene.h"
+#include "lod/layers/draw/layers_view.h"
+
+/* How much of a place is drawn. */
+typedef enum conic_place_state {
+  CONIC_PLACE_SHOWN,
+  CONIC_PLACE_GRAZING, /* hidden, but for splats whose planes are within `offset` of the eye */
+  CONIC_PLACE_HIDDEN
+} conic_place_state;
+
+typedef struct conic_layers_place {
+  uint32_t node;
+  conic_place_state state;
+  double offset;
+  conic_layers_sight sight;
+} conic_layers_place;
+
+/* Places in the order of their keys. Zero before the first use; the memory is kept. */
+typedef struct conic_layers_cut {
+  conic_layers_place *places;
+  size_t n, room;
+  uint64_t n_splats;  /* of all places together */
+  uint64_t n_coarser; /* places that were to be finer */
+  double coarser_px;  /* the greatest error among them */
+} conic_layers_cut;
+
+typedef struct conic_layers_wish {
+  double error_px;
+  int most_levels;            /* 0: all */
+  const unsigned char *is_in; /* a cloud: it can be drawn of; null: all can */
+} conic_layers_wish;
+
+/* From the root down: of what is in sight, the first node whose error is at most the one asked for, or below which
+ * something is missing. Errors: MEMORY. */
+conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
+                                   const conic_layers_wish *wish, conic_layers_cut *cut);
+
+/* The least error for which the cut has no more than `budget` splats. Errors: ARGUMENT (fewer than the root has). */
+conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
+                                     uint64_t budget, double *error_px);
+
+void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut);
+
+/* The clouds that the cut's places in these states draw of: needed[c] becomes 1 for them, and 0 for all others. Returns
+ * how many there are. */
+size_t conic_layers_needed(const conic_layers *layers, const conic_layers_cut *cut, conic_place_state last,
+                           unsigned char *needed);
+
+#endif

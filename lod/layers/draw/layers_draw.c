@@ -1,0 +1,195 @@
+#include "conic/layers_draw.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/draw/layers_bands.h"
+#include "lod/layers/draw/layers_hidden.h"
+
+/* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
+static const double deep = 4.0;
+
+typedef struct drawing {
+  conic_layers *layers;
+  const conic_camera *camera;
+  conic_render_options render; /* near_z and splat_length given */
+  const conic_layers_draw_options *options;
+  conic_layers_view view;
+  conic_layers_cut cut;
+  conic_layers_set *set; /* the layers', so that its memory is kept from picture to picture */
+  unsigned char *needed; /* a cloud */
+  size_t n_needed;
+  uint32_t *held; /* clouds that are kept until the picture is drawn */
+  conic_layers_loading holding;
+  conic_layers_drawn drawn;
+} drawing;
+
+void conic_layers_draw_options_init(conic_layers_draw_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->samples = 1;
+}
+
+static const char *what_is_wrong(const conic_camera *camera, const conic_render_options *render,
+                                 const conic_layers_draw_options *options, const conic_image *image) {
+  if (!camera || !render || !options || !image || options->size != sizeof *options || render->size != sizeof *render)
+    return "an argument is null, or the options were not initialised";
+  if (image->width != camera->width || image->height != camera->height)
+    return "the image and the camera differ in size";
+  if (!(options->error_px >= 0.0) || (options->error_px > 0.0 && options->budget))
+    return "the error must not be below 0, nor stand beside a budget";
+  if (render->tile < 8 || render->tile > 64)
+    return "the tile is 8, 16, 32 or 64";
+  return NULL;
+}
+
+static conic_status choose(drawing *d, const unsigned char *is_in) {
+  conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options->most_levels, .is_in = is_in};
+  return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
+}
+
+static conic_status choose_first(drawing *d) {
+  conic_status status = CONIC_OK;
+  d->drawn.error_px = d->options->error_px;
+  if (d->options->budget)
+    status =
+        conic_layers_fit_budget(d->layers, &d->view, d->options->most_levels, d->options->budget, &d->drawn.error_px);
+  return status == CONIC_OK ? choose(d, NULL) : status;
+}
+
+/* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
+static conic_status make_do(drawing *d, double until_s) {
+  conic_layers *layers = d->layers;
+  size_t n = 0;
+  conic_layers_needed(layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
+  for (uint32_t i = 0; i < layers->header.n_clouds; i++)
+    if (d->needed[i])
+      d->held[n++] = i;
+  if (n == 0)
+    return CONIC_OK;
+  d->holding = (conic_layers_loading){.clouds = d->held, .until_s = until_s, .may_miss = 1};
+  d->holding.n = conic_layers_store_fit(layers, d->held, n, conic_layers_cache_bytes(layers));
+  conic_status status = conic_layers_store_load(layers, &d->holding);
+  if (status != CONIC_OK) {
+    d->holding.n = 0;
+    return status;
+  }
+  if (!conic_layers_store_find(&layers->store, 0))
+    return conic_fail(layers->context, CONIC_ERROR_IO, "%s: not even the coarsest cloud could be read%s", layers->name,
+                      d->options->seconds > 0.0 ? " in time" : "");
+  for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
+    int is_in = conic_layers_store_find(&layers->store, i) != NULL;
+    d->drawn.n_clouds_missing += d->needed[i] && !is_in;
+    d->needed[i] = (unsigned char)(!d->needed[i] || is_in);
+  }
+  return choose(d, d->needed);
+}
+
+static int wants_hiding(const drawing *d) {
+  if (d->options->samples > 1 || d->options->occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
+    return 0;
+  return d->options->occlusion == CONIC_OCCLUSION_ON ||
+         conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
+}
+
+static void count_up(drawing *d, const conic_render_statistics *statistics) {
+  conic_layers_drawn *drawn = &d->drawn;
+  uint64_t n_splats = 0;
+  drawn->n_places = d->cut.n;
+  drawn->n_places_coarser = d->options->may_be_coarser ? d->cut.n_coarser : 0;
+  drawn->missing_error_px = d->options->may_be_coarser ? d->cut.coarser_px : 0.0;
+  for (size_t i = 0; i < d->cut.n; i++) {
+    const conic_layers_place *place = &d->cut.places[i];
+    drawn->n_places_hidden += place->state == CONIC_PLACE_HIDDEN;
+    drawn->n_places_grazing += place->state == CONIC_PLACE_GRAZING;
+    n_splats += d->layers->entries[place->node].n_drawn;
+  }
+  drawn->n_clouds_grazing = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
+  drawn->n_clouds = conic_layers_needed(d->layers, &d->cut, CONIC_PLACE_GRAZING, d->needed);
+  drawn->n_clouds_grazing = drawn->n_clouds - drawn->n_clouds_grazing;
+  drawn->n_splats_left = n_splats > statistics->splats_in ? n_splats - statistics->splats_in : 0;
+  for (uint32_t i = 0; i < d->layers->header.n_clouds; i++)
+    if (d->needed[i] && d->layers->entries[i].level >= drawn->n_levels)
+      drawn->n_levels = d->layers->entries[i].level + 1;
+}
+
+static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *image,
+                             conic_render_statistics *statistics) {
+  double start = conic_seconds_now();
+  conic_status status = choose_first(d);
+  if (status == CONIC_OK && d->options->may_be_coarser)
+    status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
+  if (status == CONIC_OK && wants_hiding(d))
+    status = conic_layers_hide(d->layers, renderer, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
+  if (status != CONIC_OK)
+    return status;
+  conic_layers_band_drawing bands = {.layers = d->layers,
+                                     .renderer = renderer,
+                                     .camera = d->camera,
+                                     .render = &d->render,
+                                     .cut = &d->cut,
+                                     .view = &d->view,
+                                     .samples = d->options->samples,
+                                     .image = image,
+                                     .set = d->set};
+  status = conic_layers_draw_bands(&bands, statistics, &d->drawn.n_bands);
+  if (status != CONIC_OK)
+    return status;
+  count_up(d, statistics);
+  statistics->ms.lod = 1e3 * (conic_seconds_now() - start) - statistics->ms.frame;
+  statistics->ms.frame += statistics->ms.lod;
+  return CONIC_OK;
+}
+
+static void begin(drawing *d, const conic_render_options *render) {
+  conic_layers_scale scale;
+  conic_layers_measure(d->layers, render->kernel.cutoff, &scale);
+  d->render = *render;
+  if (!(d->render.near_z > 0.0))
+    d->render.near_z = scale.near_z;
+  if (!(d->render.splat_length > 0.0))
+    d->render.splat_length = scale.splat_length;
+  conic_layers_view_init(&d->layers->header, d->camera, &d->render, d->render.near_z, &d->view);
+}
+
+static void end(drawing *d) {
+  conic_context *context = d->layers->context;
+  conic_layers_store_unpin(d->layers, &d->holding);
+  conic_layers_cut_release(context, &d->cut);
+  conic_memory_release(context, d->needed);
+  conic_memory_release(context, d->held);
+}
+
+conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
+                               const conic_render_options *render, const conic_layers_draw_options *options,
+                               conic_image *image, conic_render_statistics *statistics, conic_layers_drawn *drawn) {
+  const char *wrong = what_is_wrong(camera, render, options, image);
+  conic_render_statistics counted;
+  if (wrong)
+    return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
+  if (!layers->set)
+    layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
+  if (!layers->set)
+    return CONIC_ERROR_MEMORY;
+  drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
+  uint64_t n_read = layers->store.n_read;
+  begin(&d, render);
+  d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);
+  d.held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.held);
+  conic_status status = d.needed && d.held ? draw_all(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
+  end(&d);
+  if (status != CONIC_OK)
+    return status;
+  d.drawn.n_clouds_culled = layers->header.n_clouds - d.drawn.n_clouds;
+  d.drawn.n_clouds_read = layers->store.n_read - n_read;
+  d.drawn.n_bytes_received = conic_ranges_received(layers->ranges) - layers->n_told;
+  layers->n_told += d.drawn.n_bytes_received;
+  if (statistics)
+    *statistics = counted;
+  if (drawn)
+    *drawn = d.drawn;
+  return CONIC_OK;
+}

@@ -1,0 +1,361 @@
+#include "lod/layers/draw/layers_gather.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+
+/* Pieces are small: so many make a task. */
+enum { PIECES_A_TASK = 16 };
+
+typedef struct gather {
+  conic_layers *layers;
+  const conic_layers_gathering *asked;
+  conic_layers_set *set;
+  size_t first, end; /* pieces of the clouds that are in memory now */
+} gather;
+
+void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
+  conic_memory_release(context, set->arrays);
+  conic_memory_release(context, set->ids);
+  conic_memory_release(context, set->pieces);
+  memset(set, 0, sizeof *set);
+}
+
+static size_t n_arrays(const conic_layers *layers) {
+  return layers->header.flags & CONIC_LAYERS_COLORS ? 12 : 9;
+}
+
+/* Points the splats' arrays into the block. */
+static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
+  float *next = set->arrays;
+  float **all[] = {set->splats.position, set->splats.tangent_u, set->splats.tangent_v, set->splats.color};
+  for (size_t i = 0; i < n_arrays(layers); i++, next += set->room)
+    all[i / 3][i % 3] = next;
+}
+
+/* Room for `count` splats, of which `used` are kept. */
+static conic_status make_room(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
+  conic_context *context = layers->context;
+  if (count <= set->room)
+    return CONIC_OK;
+  size_t room = (count + 15) / 16 * 16;
+  float *arrays = conic_memory_allocate(context, room * n_arrays(layers), sizeof *arrays);
+  if (!arrays)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n_arrays(layers) && used; i++)
+    memcpy(arrays + i * room, (float *)set->arrays + i * set->room, used * sizeof *arrays);
+  conic_memory_release(context, set->arrays);
+  set->arrays = arrays;
+  conic_status status = conic_memory_grow(context, (void **)&set->ids, used, room, sizeof *set->ids);
+  if (status != CONIC_OK)
+    set->room = 0; /* nothing is kept of it */
+  else
+    set->room = room;
+  place_arrays(layers, set);
+  return status;
+}
+
+/* Two nodes of one place that stand side by side split samples that coincide: what lies above both is drawn once. */
+static int is_same_place(const conic_layers_entry *a, const conic_layers_entry *b) {
+  return a->key == b->key && a->depth == b->depth;
+}
+
+/* Walks from every chosen place up to the root, and calls every cloud on the way; counts[cloud] counts them or, where
+ * `pieces` is there, is where the cloud's next piece goes. */
+static void walk_up(const gather *g, uint32_t *counts, conic_layers_piece *pieces) {
+  const conic_layers_entry *entries = g->layers->entries;
+  for (size_t k = 0; k < g->asked->n_chosen; k++) {
+    uint32_t i_place = g->asked->chosen[k];
+    const conic_layers_place *place = &g->asked->cut->places[i_place];
+    if (place->state == CONIC_PLACE_HIDDEN)
+      continue;
+    for (uint32_t node = place->node;; node = entries[node].parent) {
+      if (pieces)
+        pieces[counts[node]] = (conic_layers_piece){.cloud = node, .i_place = i_place};
+      counts[node]++;
+      if (node == 0)
+        break;
+    }
+  }
+}
+
+/* Lists the pieces by cloud, each cloud's in the order of its keys. */
+static conic_status list_pieces(gather *g) {
+  conic_layers *layers = g->layers;
+  conic_layers_set *set = g->set;
+  size_t n_clouds = layers->header.n_clouds, n = 0;
+  uint32_t *counts = conic_memory_allocate_zeroed(layers->context, n_clouds, sizeof *counts);
+  if (!counts)
+    return CONIC_ERROR_MEMORY;
+  walk_up(g, counts, NULL);
+  for (size_t i = 0; i < n_clouds; i++) {
+    uint32_t count = counts[i];
+    counts[i] = (uint32_t)n;
+    n += count;
+  }
+  conic_status status = CONIC_OK;
+  if (n > set->pieces_room) {
+    status = conic_memory_grow(layers->context, (void **)&set->pieces, 0, n, sizeof *set->pieces);
+    set->pieces_room = status == CONIC_OK ? n : set->pieces_room;
+  }
+  if (status == CONIC_OK) {
+    walk_up(g, counts, set->pieces);
+    set->n_pieces = n;
+  }
+  conic_memory_release(layers->context, counts);
+  return status;
+}
+
+/* What of a piece's samples is taken. */
+typedef struct sieve {
+  const conic_layers_cloud *cloud;
+  const conic_layers_place *place;
+  const conic_layers_view *view;
+  const conic_window *window; /* null: all of the place is in it */
+  double radius;
+} sieve;
+
+static int is_within(const conic_window *inner, const conic_window *outer) {
+  return inner->x_begin >= outer->x_begin && inner->x_end <= outer->x_end && inner->y_begin >= outer->y_begin &&
+         inner->y_end <= outer->y_end;
+}
+
+/* Of a piece's cloud: it is in memory. */
+static const conic_layers_cloud *cloud_of(const conic_layers *layers, const conic_layers_piece *piece) {
+  return &layers->store.slots[piece->cloud].cloud;
+}
+
+static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const conic_layers_cloud *cloud) {
+  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_window *window = g->asked->window;
+  return (sieve){.cloud = cloud,
+                 .place = place,
+                 .view = g->asked->view,
+                 .window = window && is_within(&place->sight.pixels, window) ? NULL : window,
+                 .radius = (double)g->layers->entries[place->node].radius};
+}
+
+/* Whether a splat of a place that is hidden otherwise may be seen: its plane is near the eye. */
+static inline int is_chosen(const sieve *s, size_t i) {
+  double along = 0.0;
+  if (s->place->state != CONIC_PLACE_GRAZING)
+    return 1;
+  for (int axis = 0; axis < 3; axis++)
+    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->eye[axis]);
+  return !(fabs(along) >= s->place->offset);
+}
+
+static inline int is_in_window(const sieve *s, size_t i) {
+  if (!s->window)
+    return 1;
+  const float position[3] = {s->cloud->position[0][i], s->cloud->position[1][i], s->cloud->position[2][i]};
+  conic_window pixels = s->place->sight.pixels;
+  return conic_layers_narrow(s->view, position, s->radius, &pixels) && pixels.x_begin < s->window->x_end &&
+         pixels.x_end > s->window->x_begin && pixels.y_begin < s->window->y_end && pixels.y_end > s->window->y_begin;
+}
+
+static void count_piece(const gather *g, conic_layers_piece *piece) {
+  conic_layers *layers = g->layers;
+  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_layers_cloud *cloud = cloud_of(layers, piece);
+  size_t first = 0, end = cloud->count;
+  if (piece->cloud != place->node)
+    conic_layers_range(&layers->header, cloud, &layers->entries[place->node], &first, &end);
+  piece->first = (uint32_t)first;
+  piece->end = (uint32_t)end;
+  sieve s = begin_sieve(g, piece, cloud);
+  piece->n_chosen = piece->n_kept = piece->end - piece->first;
+  if (place->state != CONIC_PLACE_GRAZING && !s.window)
+    return;
+  piece->n_chosen = piece->n_kept = 0;
+  for (size_t i = first; i < end; i++)
+    if (is_chosen(&s, i)) {
+      piece->n_chosen++;
+      piece->n_kept += (uint32_t)is_in_window(&s, i);
+    }
+}
+
+static void count_task(void *data, size_t i_task, int i_thread) {
+  gather *g = data;
+  size_t begin = g->first + i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < g->end; i++)
+    count_piece(g, &g->set->pieces[i]);
+}
+
+/* A piece's samples and their places in the set. */
+typedef struct copying {
+  const float *restrict position[3], *restrict normal[3], *restrict color[3];
+  float *restrict to_position[3], *restrict to_u[3], *restrict to_v[3], *restrict to_color[3];
+  uint32_t *restrict to_id;
+} copying;
+
+static copying begin_copy(const gather *g, const conic_layers_cloud *cloud, size_t from, size_t at) {
+  const conic_splats *to = &g->set->splats;
+  copying c = {.to_id = g->set->ids + at};
+  for (int axis = 0; axis < 3; axis++) {
+    c.position[axis] = cloud->position[axis] + from;
+    c.normal[axis] = cloud->normal[axis] + from;
+    c.to_position[axis] = to->position[axis] + at;
+    c.to_u[axis] = to->tangent_u[axis] + at;
+    c.to_v[axis] = to->tangent_v[axis] + at;
+    c.color[axis] = cloud->color[axis] ? cloud->color[axis] + from : NULL;
+    c.to_color[axis] = to->color[axis] ? to->color[axis] + at : NULL;
+  }
+  return c;
+}
+
+/* A circle's axes, for a unit normal anywhere: one rule for each half of the sphere, and nothing cancels in its own. */
+static inline void set_axes(const copying *c, size_t i, size_t k, float sigma) {
+  float nx = c->normal[0][i], ny = c->normal[1][i], nz = c->normal[2][i];
+  float sign = nz >= 0.0f ? 1.0f : -1.0f, a = -1.0f / (sign + nz), b = nx * ny * a;
+  c->to_u[0][k] = (1.0f + sign * (nx * nx) * a) * sigma;
+  c->to_u[1][k] = sign * b * sigma;
+  c->to_u[2][k] = -sign * nx * sigma;
+  c->to_v[0][k] = b * sigma;
+  c->to_v[1][k] = (sign + ny * ny * a) * sigma;
+  c->to_v[2][k] = -ny * sigma;
+}
+
+static void copy_all(const copying *c, size_t n, float sigma, uint32_t first_id) {
+  for (int axis = 0; axis < 3; axis++) {
+    memcpy(c->to_position[axis], c->position[axis], n * sizeof(float));
+    if (c->to_color[axis])
+      memcpy(c->to_color[axis], c->color[axis], n * sizeof(float));
+  }
+  const copying local = *c;
+  for (size_t i = 0; i < n; i++)
+    set_axes(&local, i, i, sigma);
+  for (size_t i = 0; i < n; i++)
+    local.to_id[i] = first_id + (uint32_t)i;
+}
+
+static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t id) {
+  for (int axis = 0; axis < 3; axis++) {
+    c->to_position[axis][k] = c->position[axis][i];
+    if (c->to_color[axis] && c->color[axis])
+      c->to_color[axis][k] = c->color[axis][i];
+  }
+  set_axes(c, i, k, sigma);
+  c->to_id[k] = id;
+}
+
+static void fill_piece(const gather *g, const conic_layers_piece *piece) {
+  conic_layers *layers = g->layers;
+  const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
+  const conic_layers_cloud *cloud = cloud_of(layers, piece);
+  uint32_t first_id = (uint32_t)(layers->first_sample[piece->cloud] + piece->first);
+  float sigma = layers->entries[place->node].radius / g->asked->cutoff;
+  size_t n = piece->end - piece->first, k = 0;
+  copying c = begin_copy(g, cloud, piece->first, piece->at);
+  if (piece->n_kept == n) {
+    copy_all(&c, n, sigma, first_id);
+    return;
+  }
+  sieve s = begin_sieve(g, piece, cloud);
+  for (size_t i = 0; i < n && k < piece->n_kept; i++)
+    if (is_chosen(&s, piece->first + i) && is_in_window(&s, piece->first + i))
+      copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);
+}
+
+static void fill_task(void *data, size_t i_task, int i_thread) {
+  gather *g = data;
+  size_t begin = g->first + i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < g->end; i++)
+    fill_piece(g, &g->set->pieces[i]);
+}
+
+/* Gives the pieces their places in the set. Returns where they end. */
+static size_t place_pieces(gather *g) {
+  const conic_layers_entry *entries = g->layers->entries;
+  const conic_layers_place *places = g->asked->cut->places;
+  size_t at = g->set->splats.count;
+  for (size_t i = g->first; i < g->end; i++) {
+    conic_layers_piece *piece = &g->set->pieces[i];
+    const conic_layers_piece *before = i > g->first ? &g->set->pieces[i - 1] : NULL;
+    if (before && before->cloud == piece->cloud &&
+        is_same_place(&entries[places[before->i_place].node], &entries[places[piece->i_place].node])) {
+      piece->n_chosen = piece->n_kept = 0;
+    }
+    piece->at = at;
+    at += piece->n_kept;
+  }
+  return at;
+}
+
+/* Takes over what the pieces' clouds, now in memory, have. */
+static conic_status take_pieces(gather *g) {
+  conic_context *context = g->layers->context;
+  size_t n_tasks = (g->end - g->first + PIECES_A_TASK - 1) / PIECES_A_TASK;
+  conic_parallel_for(context, n_tasks, count_task, g);
+  size_t count = place_pieces(g), used = g->set->splats.count;
+  size_t wanted = count > g->set->room && used ? count + count / 4 : count;
+  conic_status status = make_room(g->layers, g->set, used, wanted);
+  if (status != CONIC_OK)
+    return status;
+  conic_parallel_for(context, n_tasks, fill_task, g);
+  g->set->splats.count = count;
+  return CONIC_OK;
+}
+
+/* The clouds of the pieces from g->first on, once each. */
+static size_t list_clouds(const gather *g, uint32_t *clouds) {
+  size_t n = 0;
+  for (size_t i = g->first; i < g->set->n_pieces; i++)
+    if (n == 0 || clouds[n - 1] != g->set->pieces[i].cloud)
+      clouds[n++] = g->set->pieces[i].cloud;
+  return n;
+}
+
+static conic_status take_clouds(gather *g, uint32_t *clouds, size_t n) {
+  conic_layers *layers = g->layers;
+  conic_status status = CONIC_OK;
+  for (size_t done = 0; done < n && status == CONIC_OK;) {
+    conic_layers_loading loading = {.clouds = clouds + done, .until_s = g->asked->until_s};
+    loading.n = conic_layers_store_fit(layers, clouds + done, n - done, conic_layers_cache_bytes(layers) / 2);
+    status = conic_layers_store_load(layers, &loading);
+    if (status != CONIC_OK)
+      break;
+    uint32_t last = clouds[done + loading.n - 1];
+    for (g->end = g->first; g->end < g->set->n_pieces && g->set->pieces[g->end].cloud <= last;)
+      g->end++;
+    status = take_pieces(g);
+    conic_layers_store_unpin(layers, &loading);
+    g->first = g->end;
+    done += loading.n;
+  }
+  return status;
+}
+
+/* What the set will come to: all of the places that are shown, and some of the others'; in a window, there is no
+ * telling.
+ */
+static size_t expect(const gather *g) {
+  size_t n = 0;
+  for (size_t k = 0; k < g->asked->n_chosen && !g->asked->window; k++) {
+    const conic_layers_place *place = &g->asked->cut->places[g->asked->chosen[k]];
+    size_t n_drawn = g->layers->entries[place->node].n_drawn;
+    n += place->state == CONIC_PLACE_SHOWN ? n_drawn : place->state == CONIC_PLACE_GRAZING ? n_drawn / 16 : 0;
+  }
+  return n;
+}
+
+conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set) {
+  gather g = {.layers = layers, .asked = gathering, .set = set};
+  set->splats.count = 0;
+  memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
+  conic_status status = list_pieces(&g);
+  if (status == CONIC_OK)
+    status = make_room(layers, set, 0, expect(&g) + 1);
+  if (status != CONIC_OK || set->n_pieces == 0)
+    return status;
+  uint32_t *clouds = conic_memory_allocate(layers->context, set->n_pieces, sizeof *clouds);
+  if (!clouds)
+    return CONIC_ERROR_MEMORY;
+  status = take_clouds(&g, clouds, list_clouds(&g, clouds));
+  conic_memory_release(layers->context, clouds);
+  return status;
+}

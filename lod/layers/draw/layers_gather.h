@@ -1,0 +1,46 @@
+/* From places to splats: what the clouds have there, in the order of the file. */
+#ifndef CONIC_LAYERS_GATHER_H
+#define CONIC_LAYERS_GATHER_H
+
+#include "lod/layers/draw/layers_cut.h"
+
+/* What a cloud has in a place of the cut. */
+typedef struct conic_layers_piece {
+  uint32_t cloud, i_place;
+  uint32_t first, end; /* its samples, */
+  uint32_t n_chosen;   /* of which so many are to be drawn, */
+  uint32_t n_kept;     /* and so many may meet the window, */
+  size_t at;           /* from here on in the set */
+} conic_layers_piece;
+
+/* Splats to draw. Zero before the first use; the memory is kept from set to set. */
+struct conic_layers_set {
+  conic_splats splats;
+  uint32_t *ids; /* number of each in the file */
+  size_t room;   /* of both */
+  void *arrays;
+  conic_layers_piece *pieces; /* in the order of the file */
+  size_t n_pieces, pieces_room;
+};
+typedef struct conic_layers_set conic_layers_set;
+
+/* Bytes that drawing takes for a splat of a set, the set's own and room to grow included. */
+enum { CONIC_LAYERS_SPLAT_BYTES = 208 };
+
+typedef struct conic_layers_gathering {
+  const conic_layers_cut *cut;
+  const uint32_t *chosen; /* places of the cut, ascending */
+  size_t n_chosen;
+  const conic_layers_view *view;
+  const conic_window *window; /* only what may meet it is gathered; null: all */
+  float cutoff;
+  double until_s; /* by conic_seconds_now; infinite: clouds are waited for */
+} conic_layers_gathering;
+
+/* Fills the set with what is to be drawn of the places that are shown or grazing; those hidden give nothing. Clouds are
+ * read as they are needed, no more of them at a time than the cache holds. Errors: as conic_layers_store_load. */
+conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gathering *gathering, conic_layers_set *set);
+
+void conic_layers_set_release(conic_context *context, conic_layers_set *set);
+
+#endif

@@ -1,0 +1,51 @@
+/* The clouds of a file that are in memory, decoded: those last used, up to a bound. */
+#ifndef CONIC_LAYERS_STORE_H
+#define CONIC_LAYERS_STORE_H
+
+#include "conic/layers_draw.h"
+#include "lod/layers/format/layers_decode.h"
+
+typedef struct conic_layers_slot {
+  void *block; /* null: the cloud is not in memory */
+  conic_layers_cloud cloud;
+  uint32_t newer, older; /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
+  uint16_t n_pins;       /* it must stay */
+  uint8_t n_damaged;     /* times that its bytes were wrong */
+} conic_layers_slot;
+
+#define CONIC_NO_CLOUD UINT32_MAX
+
+typedef struct conic_layers_store {
+  conic_layers_slot *slots; /* a cloud */
+  uint32_t newest, oldest;
+  uint64_t n_bytes;                /* of all blocks */
+  uint64_t n_read;                 /* clouds decoded so far */
+  conic_layers_decoder **decoders; /* a thread; null until it is first needed */
+} conic_layers_store;
+
+/* Errors: MEMORY, UNSUPPORTED. */
+conic_status conic_layers_store_open(conic_layers *layers);
+void conic_layers_store_close(conic_layers *layers);
+
+/* The cloud if it is in memory, or null. */
+static inline const conic_layers_cloud *conic_layers_store_find(const conic_layers_store *store, uint32_t cloud) {
+  return store->slots[cloud].block ? &store->slots[cloud].cloud : NULL;
+}
+
+typedef struct conic_layers_loading {
+  const uint32_t *clouds; /* ascending */
+  size_t n;
+  double until_s;     /* by conic_seconds_now; infinite: as long as it takes */
+  int may_miss;       /* what cannot be had is left out */
+  uint64_t n_missing; /* set: so many were */
+} conic_layers_loading;
+
+/* Brings clouds into memory, where they stay until conic_layers_store_unpin. On failure none is held. Errors: INPUT
+ * (damaged), IO, MEMORY, CANCELLED. */
+conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading);
+void conic_layers_store_unpin(conic_layers *layers, const conic_layers_loading *loading);
+
+/* How many of the first clouds of a list may be in memory together, within so many bytes; at least 1. */
+size_t conic_layers_store_fit(const conic_layers *layers, const uint32_t *clouds, size_t n, uint64_t n_bytes);
+
+#endif

@@ -1,0 +1,53 @@
+/* How the places of a layered point cloud look in one picture: bounds that hold for all that is drawn of them. */
+#ifndef CONIC_LAYERS_VIEW_H
+#define CONIC_LAYERS_VIEW_H
+
+#include "conic/camera.h"
+#include "conic/render.h"
+#include "lod/layers/format/layers_format.h"
+#include "raster/view/part.h"
+
+typedef struct conic_layers_view {
+  int width, height;
+  double rotation[3][3], translation[3]; /* camera space from positions relative to the origin */
+  double eye[3];                         /* relative to the origin */
+  double fx, fy, cx, cy;
+  double least_focal, greatest_focal;
+  double side[4][3]; /* the planes of the picture's sides, widened by the prefilter: unit normals, inwards */
+  double near_z;
+  double growth_px; /* how far the prefilter moves an outline, and a pixel for all that rounds */
+  double beyond_px; /* how far from its disc a pixel may lie at which a splat's plane counts; with grows_with_size the
+                       splat's own size is added */
+  int grows_with_size;
+  int is_exact_outline; /* discs are drawn within their projection, widened; else also where their Jacobian puts them */
+  int is_flat;          /* splats have no plane but the one across the line of sight */
+  int cull_back;
+} conic_layers_view;
+
+void conic_layers_view_init(const conic_layers_header *header, const conic_camera *camera,
+                            const conic_render_options *render, double near_z, conic_layers_view *view);
+
+/* What a picture shows of a place at most. */
+typedef struct conic_layers_sight {
+  double error_px;     /* infinite where the place reaches the near plane */
+  double near_iz;      /* no inverse depth of its splats is greater; infinite likewise */
+  double distance;     /* of its nearest point, at least, to the eye */
+  conic_window pixels; /* those that it may cover */
+} conic_layers_sight;
+
+/* 0 where nothing of the place can be in the picture. */
+int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight);
+
+/* Narrows a place's pixels to those that one of its splats, at a position relative to the origin, may cover. 0 where
+ * there are none. */
+int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels);
+
+/* The least |n·p| of the place's splats: how far from the eye their planes are. 0 where that is not known. */
+double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry);
+
+/* A splat of the place, whose plane is farther from the eye than this, is not seen where everything hides up to the
+ * inverse depth `hiding`. Infinite where that cannot be said of any. */
+double conic_layers_hidden_offset(const conic_layers_view *view, const conic_layers_entry *entry,
+                                  const conic_layers_sight *sight, double hiding);
+
+#endif

@@ -1,0 +1,240 @@
+/* Whether a file's clouds are whole, and within the bounds that its index states: every sample of every node. From the
+ * root down, each node on the way keeps what is drawn in its place; a leaf's is all that is there, and is held against
+ * every node above it. So memory does not grow with the file. */
+#include <math.h>
+#include <string.h>
+
+#include "conic/layers.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "lod/layers/format/layers_decode.h"
+#include "lod/layers/format/layers_read.h"
+
+/* A sample as it would be drawn. */
+typedef struct sample {
+  uint64_t key;
+  float position[3], normal[3];
+} sample;
+
+/* What is drawn in a node's place, and which of the node's bounds have been found broken. */
+typedef struct stage {
+  const conic_layers_entry *entry;
+  size_t n;
+  sample *samples;
+  uint32_t *first, *next; /* chains of samples by the hash of their cell, which is as wide as the covering radius */
+  size_t n_cells;
+  int is_bare, is_outside, is_turned;
+} stage;
+
+typedef struct checking {
+  conic_context *context;
+  const conic_layers_view *view;
+  conic_layers_decoder *decoder;
+  conic_layers_defects *defects;
+  uint64_t n_seen;
+  int n_stages;
+  stage stages[CONIC_LAYERS_MOST_LEVELS];
+} checking;
+
+#define NO_SAMPLE UINT32_MAX
+
+static void cell_of(const stage *s, const float position[3], int64_t cell[3]) {
+  double edge = (double)s->entry->covering > 0.0 ? (double)s->entry->covering : 1.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double scaled = floor((double)position[axis] / edge);
+    cell[axis] = scaled < 1e18 ? (int64_t)scaled : INT64_C(1000000000000000000);
+  }
+}
+
+static uint32_t *chain_at(const stage *s, int64_t x, int64_t y, int64_t z) {
+  uint64_t mixed = (uint64_t)x * UINT64_C(0x9e3779b97f4a7c15) ^ (uint64_t)y * UINT64_C(0xc2b2ae3d27d4eb4f) ^
+                   (uint64_t)z * UINT64_C(0x165667b19e3779f9);
+  return &s->first[(mixed ^ mixed >> 32) & (s->n_cells - 1)];
+}
+
+static void fill_cells(stage *s) {
+  memset(s->first, 0xff, s->n_cells * sizeof *s->first);
+  for (uint32_t i = 0; i < s->n; i++) {
+    int64_t cell[3];
+    cell_of(s, s->samples[i].position, cell);
+    uint32_t *chain = chain_at(s, cell[0], cell[1], cell[2]);
+    s->next[i] = *chain;
+    *chain = i;
+  }
+}
+
+static int is_near(const stage *s, uint32_t chain, const float position[3]) {
+  double limit2 = (double)s->entry->covering * (double)s->entry->covering;
+  for (; chain != NO_SAMPLE; chain = s->next[chain]) {
+    const float *other = s->samples[chain].position;
+    double x = (double)position[0] - (double)other[0], y = (double)position[1] - (double)other[1],
+           z = (double)position[2] - (double)other[2];
+    if (x * x + y * y + z * z <= limit2)
+      return 1;
+  }
+  return 0;
+}
+
+/* Whether something that is drawn is within the covering radius: in its own cell, or in those about it. */
+static int is_covered(const stage *s, const float position[3]) {
+  int64_t cell[3];
+  cell_of(s, position, cell);
+  if (is_near(s, *chain_at(s, cell[0], cell[1], cell[2]), position))
+    return 1;
+  for (int i = 0; i < 27; i++)
+    if (i != 13 &&
+        is_near(s, *chain_at(s, cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1), position))
+      return 1;
+  return 0;
+}
+
+static int is_inside(const conic_layers_entry *entry, const float position[3]) {
+  double x = (double)position[0] - (double)entry->center[0], y = (double)position[1] - (double)entry->center[1],
+         z = (double)position[2] - (double)entry->center[2];
+  return sqrt(x * x + y * y + z * z) + (double)entry->radius <= (double)entry->sphere;
+}
+
+static int is_facing(const conic_layers_entry *entry, const float normal[3]) {
+  double cosine = 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    cosine += (double)normal[axis] * (double)entry->axis[axis];
+  return entry->cone <= -1.0f || cosine >= (double)entry->cone;
+}
+
+/* All that is in a leaf's place, against one of the nodes whose place it is too. */
+static void hold_against(const stage *leaf, stage *above) {
+  for (size_t i = 0; i < leaf->n; i++) {
+    const sample *one = &leaf->samples[i];
+    above->is_bare = above->is_bare || !is_covered(above, one->position);
+    above->is_outside = above->is_outside || !is_inside(above->entry, one->position);
+    above->is_turned = above->is_turned || !is_facing(above->entry, one->normal);
+  }
+}
+
+static void release_stage(conic_context *context, stage *s) {
+  conic_memory_release(context, s->samples);
+  conic_memory_release(context, s->first);
+  conic_memory_release(context, s->next);
+  memset(s, 0, sizeof *s);
+}
+
+static void append_cloud(const conic_layers_cloud *cloud, stage *s) {
+  for (size_t i = 0; i < cloud->count; i++) {
+    sample *to = &s->samples[s->n++];
+    to->key = cloud->keys[i];
+    for (int axis = 0; axis < 3; axis++) {
+      to->position[axis] = cloud->position[axis][i];
+      to->normal[axis] = cloud->normal[axis][i];
+    }
+  }
+}
+
+/* What the nodes above draw in this place. */
+static void append_inherited(const checking *c, const stage *above, stage *s) {
+  uint64_t last = conic_layers_last_key(&c->view->header, s->entry);
+  for (size_t i = 0; i < above->n; i++)
+    if (above->samples[i].key >= s->entry->key && above->samples[i].key <= last)
+      s->samples[s->n++] = above->samples[i];
+}
+
+/* Decodes the node's cloud behind what the stage has; says what is wrong with it, or null. */
+static conic_status append_own(checking *c, stage *s, const char **wrong) {
+  conic_layers_cloud cloud;
+  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->view->header, s->entry), 1);
+  if (!block)
+    return CONIC_ERROR_MEMORY;
+  conic_layers_cloud_place(&c->view->header, s->entry, block, &cloud);
+  *wrong = conic_layers_decode(c->decoder, s->entry, c->view->mapping.bytes + s->entry->offset, &cloud);
+  if (!*wrong)
+    append_cloud(&cloud, s);
+  conic_memory_release(c->context, block);
+  return CONIC_OK;
+}
+
+static conic_status make_stage(const checking *c, const stage *above, const conic_layers_entry *entry, stage *s) {
+  size_t room = (above ? above->n : 0) + entry->n_samples;
+  memset(s, 0, sizeof *s);
+  s->entry = entry;
+  for (s->n_cells = 64; s->n_cells < room; s->n_cells *= 2)
+    continue;
+  s->samples = conic_memory_allocate(c->context, room, sizeof *s->samples);
+  s->next = conic_memory_allocate(c->context, room, sizeof *s->next);
+  s->first = conic_memory_allocate(c->context, s->n_cells, sizeof *s->first);
+  return s->samples && s->next && s->first ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static void count_defects(const checking *c, const stage *s) {
+  c->defects->coverage += s->is_bare != 0;
+  c->defects->spheres += s->is_outside != 0;
+  c->defects->cones += s->is_turned != 0;
+}
+
+/* Coincident samples that have been parted have one place. */
+static int is_parted(const checking *c, const conic_layers_entry *entry) {
+  return entry->depth == 3 * c->view->header.bits;
+}
+
+static conic_status check_node(checking *c, uint32_t i_node);
+
+static conic_status check_below(checking *c, stage *s, const char *wrong, uint32_t i_node) {
+  const conic_layers_entry *entry = s->entry;
+  conic_status status = CONIC_OK;
+  if (!wrong && s->n != entry->n_drawn && !is_parted(c, entry))
+    wrong = "what is drawn in its place is not as much as it says";
+  if (wrong) {
+    conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->view->name, i_node, wrong,
+              (unsigned long long)entry->offset);
+    c->defects->clouds++;
+  }
+  fill_cells(s);
+  if (entry->child == 0)
+    for (int i = 0; i < c->n_stages; i++)
+      hold_against(s, &c->stages[i]);
+  for (uint32_t k = 0; k < 2 && entry->child != 0 && status == CONIC_OK; k++)
+    status = check_node(c, entry->child + k);
+  count_defects(c, s);
+  return status;
+}
+
+static conic_status check_node(checking *c, uint32_t i_node) {
+  const conic_layers_entry *entry = &c->view->entries[i_node];
+  const stage *above = c->n_stages ? &c->stages[c->n_stages - 1] : NULL;
+  stage *s = &c->stages[c->n_stages];
+  const char *wrong = NULL;
+  conic_status status = make_stage(c, above, entry, s);
+  if (status == CONIC_OK) {
+    c->n_stages++;
+    if (above)
+      append_inherited(c, above, s);
+    status = append_own(c, s, &wrong);
+    if (status == CONIC_OK)
+      status = check_below(c, s, wrong, i_node);
+    c->n_stages--;
+  }
+  release_stage(c->context, s);
+  c->n_seen += entry->n_samples;
+  if (status == CONIC_OK)
+    status = conic_progress(c->context, "check", (double)c->n_seen / (double)c->view->header.n_samples);
+  return status;
+}
+
+conic_status conic_layers_check(conic_context *context, const char *path, conic_layers_defects *defects) {
+  conic_layers_view view;
+  memset(defects, 0, sizeof *defects);
+  conic_status status = conic_layers_view_open(context, path, &view);
+  if (status != CONIC_OK)
+    return status;
+  checking *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
+  status = c ? conic_layers_decoder_create(context, &view.header, &c->decoder) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    c->context = context;
+    c->view = &view;
+    c->defects = defects;
+    status = check_node(c, 0);
+  }
+  if (c)
+    conic_layers_decoder_destroy(c->decoder);
+  conic_memory_release(context, c);
+  conic_layers_view_close(&view);
+  return status;
+}

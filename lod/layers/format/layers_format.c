@@ -1,0 +1,262 @@
+#include "lod/layers/format/layers_format.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "conic/layers.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/file_fields.h"
+#include "core/files/mapping.h"
+
+static const unsigned char magic[8] = {'C', 'O', 'N', 'I', 'C', 'L', 'P', '\n'};
+
+enum { AT_HEADER_SUM = CONIC_LAYERS_HEADER_BYTES - 8 };
+
+/* No coordinate and no length is larger, so that nothing derived of them overflows. */
+static const double farthest = 1e15;
+
+#define IN_HEADER(member, n_values) CONIC_FILE_FIELD(conic_layers_header, member, n_values)
+#define IN_ENTRY(member, n_values) CONIC_FILE_FIELD(conic_layers_entry, member, n_values)
+
+static const conic_file_field header_fields[] = {
+    IN_HEADER(version, 1),      IN_HEADER(flags, 1),      IN_HEADER(n_samples, 1),      IN_HEADER(n_clouds, 1),
+    IN_HEADER(n_levels, 1),     IN_HEADER(bits, 1),       IN_HEADER(cloud_size, 1),     IN_HEADER(origin, 3),
+    IN_HEADER(quantum, 1),      IN_HEADER(low, 3),        IN_HEADER(high, 3),           IN_HEADER(spacing, 1),
+    IN_HEADER(splat_radius, 1), IN_HEADER(near_z, 1),     IN_HEADER(position_bytes, 1), IN_HEADER(normal_bytes, 1),
+    IN_HEADER(color_bytes, 1),  IN_HEADER(file_bytes, 1), IN_HEADER(index_sum, 1),      IN_HEADER(most_samples, 1),
+    IN_HEADER(most_bytes, 1)};
+
+static const conic_file_field entry_fields[] = {
+    IN_ENTRY(key, 1),       IN_ENTRY(offset, 1),  IN_ENTRY(sum, 1),      IN_ENTRY(n_place, 1), IN_ENTRY(n_bytes, 1),
+    IN_ENTRY(n_samples, 1), IN_ENTRY(parent, 1),  IN_ENTRY(child, 1),    IN_ENTRY(n_drawn, 1), IN_ENTRY(level, 1),
+    IN_ENTRY(depth, 1),     IN_ENTRY(spacing, 1), IN_ENTRY(covering, 1), IN_ENTRY(radius, 1),  IN_ENTRY(error, 1),
+    IN_ENTRY(center, 3),    IN_ENTRY(sphere, 1),  IN_ENTRY(axis, 3),     IN_ENTRY(cone, 1)};
+
+enum {
+  N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,
+  N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields
+};
+
+static int is_within(double value, double limit) {
+  return value >= -limit && value <= limit; /* false where it is not a number */
+}
+
+/* What is wrong with the counts, or null. Each is bounded so that no sum or product of them overflows. */
+static const char *check_counts(const conic_layers_header *header) {
+  uint64_t index_bytes = (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
+  if (header->flags & ~(uint32_t)CONIC_LAYERS_ALL_FLAGS)
+    return "unknown flags";
+  if (header->n_clouds == 0 || header->n_samples == 0)
+    return "it holds no sample";
+  if (header->n_levels == 0 || header->n_levels > CONIC_LAYERS_MOST_LEVELS)
+    return "the number of levels is out of range";
+  if (header->bits == 0 || header->bits > CONIC_LAYERS_MOST_BITS)
+    return "the grid's bits are out of range";
+  if (header->most_samples == 0 || header->most_samples > CONIC_LAYERS_MOST_SAMPLES)
+    return "the largest cloud is too large";
+  if (header->n_samples > (uint64_t)header->n_clouds * header->most_samples)
+    return "so many samples are not in so many clouds";
+  if (header->file_bytes < CONIC_LAYERS_HEADER_BYTES + index_bytes || header->file_bytes > (uint64_t)1 << 60)
+    return "the size of the file is out of range";
+  if (header->position_bytes > header->file_bytes || header->normal_bytes > header->file_bytes ||
+      header->color_bytes > header->file_bytes)
+    return "more compressed bytes than the file has";
+  return NULL;
+}
+
+static const char *check_lengths(const conic_layers_header *header) {
+  double edge = header->quantum * (double)(UINT64_C(1) << header->bits);
+  for (int axis = 0; axis < 3; axis++)
+    if (!is_within(header->origin[axis], farthest) || !is_within(header->low[axis], farthest) ||
+        !is_within(header->high[axis], farthest) || header->low[axis] > header->high[axis])
+      return "the box is out of range";
+  if (!(header->quantum > 0.0 && edge <= 4.0 * farthest))
+    return "the quantum is out of range";
+  if (!(header->spacing >= 0.0 && header->spacing <= farthest) ||
+      !(header->splat_radius > 0.0 && header->splat_radius <= farthest) ||
+      !(header->near_z > 0.0 && header->near_z <= farthest))
+    return "a length is out of range";
+  return NULL;
+}
+
+static int is_zero(const unsigned char *bytes, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (bytes[i])
+      return 0;
+  return 1;
+}
+
+conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
+                                      size_t n_bytes, conic_layers_header *header) {
+  size_t used = sizeof magic + conic_file_fields_bytes(header_fields, N_HEADER_FIELDS);
+  if (n_bytes < sizeof magic || memcmp(bytes, magic, sizeof magic) != 0)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: no layered point cloud (at byte 0)", name);
+  if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file ends within the header (at byte %zu)", name, n_bytes);
+  conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, header);
+  if (header->version != CONIC_LAYERS_VERSION)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads version %d (at byte 8)",
+                      name, header->version, CONIC_LAYERS_VERSION);
+  if (conic_file_get(bytes + AT_HEADER_SUM, 8) != conic_checksum(bytes, AT_HEADER_SUM))
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged: its sum is another (at byte %d)", name,
+                      AT_HEADER_SUM);
+  const char *wrong = check_counts(header);
+  if (!wrong)
+    wrong = check_lengths(header);
+  if (!wrong && !is_zero(bytes + used, AT_HEADER_SUM - used))
+    wrong = "bytes that should be zero are not";
+  return wrong ? conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is wrong: %s (at byte 0)", name, wrong)
+               : CONIC_OK;
+}
+
+void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]) {
+  memset(bytes, 0, CONIC_LAYERS_HEADER_BYTES);
+  memcpy(bytes, magic, sizeof magic);
+  conic_file_fields_write(header_fields, N_HEADER_FIELDS, header, bytes + sizeof magic);
+  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+}
+
+uint64_t conic_layers_index_bytes(const conic_layers_header *header) {
+  return (uint64_t)header->n_clouds * CONIC_LAYERS_ENTRY_BYTES;
+}
+
+int conic_layers_is_file(const char *path) {
+  return conic_file_begins_with(path, magic, sizeof magic);
+}
+
+/* The numbers that one entry states, each by itself. */
+static const char *check_entry(const conic_layers_header *header, const conic_layers_entry *entry) {
+  const float lengths[] = {entry->spacing, entry->covering, entry->radius, entry->error, entry->sphere};
+  uint64_t n_keys_bits = 3 * (uint64_t)header->bits;
+  if (entry->depth > n_keys_bits || entry->level >= header->n_levels)
+    return "its depth or level is out of range";
+  uint64_t below = (UINT64_C(1) << (n_keys_bits - entry->depth)) - 1;
+  if (entry->key >> n_keys_bits || (entry->key & below))
+    return "its key has bits below its depth";
+  if (entry->n_samples > header->most_samples || entry->n_bytes > header->most_bytes)
+    return "it is larger than the largest";
+  if (entry->n_place == 0 || entry->n_samples > entry->n_place || entry->n_drawn > entry->n_place ||
+      entry->n_samples > entry->n_drawn)
+    return "its counts contradict each other";
+  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++)
+    if (!(lengths[i] >= 0.0f && (double)lengths[i] <= 8.0 * farthest))
+      return "a length is out of range";
+  for (int axis = 0; axis < 3; axis++)
+    if (!is_within((double)entry->center[axis], 8.0 * farthest) || !is_within((double)entry->axis[axis], 1.001))
+      return "its sphere or cone is out of range";
+  if (!is_within((double)entry->cone, 1.0))
+    return "its cone is out of range";
+  return NULL;
+}
+
+/* A node and its two children. */
+static const char *check_children(const conic_layers_header *header, const conic_layers_entry *entries, uint32_t i) {
+  const conic_layers_entry *entry = &entries[i];
+  uint64_t n_place = 0, n_key_bits = 3 * (uint64_t)header->bits;
+  if (entry->child == 0)
+    return entry->n_drawn == entry->n_place ? NULL : "a leaf does not draw all of its place";
+  if (entry->child <= i || entry->child >= header->n_clouds - 1)
+    return "its children are not behind it";
+  for (uint32_t k = entry->child; k <= entry->child + 1; k++) {
+    const conic_layers_entry *child = &entries[k];
+    int is_same_place = entry->depth == n_key_bits && child->depth == n_key_bits;
+    if (child->parent != i || child->level != entry->level + 1)
+      return "a child is not its own";
+    if ((child->depth <= entry->depth && !is_same_place) ||
+        (n_key_bits > entry->depth && (child->key ^ entry->key) >> (n_key_bits - entry->depth)))
+      return "a child's place is not in its own";
+    n_place += child->n_place;
+  }
+  return n_place == entry->n_place ? NULL : "its children hold other samples";
+}
+
+/* How entry i follows the one before it. */
+static const char *check_order(const conic_layers_entry *entries, uint32_t i, uint64_t offset) {
+  const conic_layers_entry *entry = &entries[i];
+  if (entry->offset != offset)
+    return "its bytes do not follow those of the cloud before";
+  if (i == 0)
+    return entry->level || entry->parent ? "the first is not the root" : NULL;
+  const conic_layers_entry *before = entry - 1;
+  if (entry->level < before->level || (entry->level == before->level && entry->key < before->key))
+    return "it is out of order";
+  const conic_layers_entry *parent = &entries[entry->parent < i ? entry->parent : 0];
+  if (entry->parent >= i || parent->child == 0 || i - parent->child > 1)
+    return "it is no child of its parent";
+  return NULL;
+}
+
+static const char *check_tree(const conic_layers_header *header, const conic_layers_entry *entries, uint32_t *i) {
+  uint64_t offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header), n_samples = 0;
+  for (*i = 0; *i < header->n_clouds; ++*i) {
+    const conic_layers_entry *entry = &entries[*i];
+    const char *wrong = check_entry(header, entry);
+    if (!wrong)
+      wrong = check_order(entries, *i, offset);
+    if (!wrong)
+      wrong = check_children(header, entries, *i);
+    if (wrong)
+      return wrong;
+    offset += entry->n_bytes;
+    n_samples += entry->n_samples;
+  }
+  *i = header->n_clouds - 1;
+  if (entries[*i].level + 1u != header->n_levels)
+    return "the levels are not those of the header";
+  if (n_samples != header->n_samples || entries[0].n_place != n_samples)
+    return "the samples are not as many as the header says";
+  return offset == header->file_bytes ? NULL : "the file should end elsewhere";
+}
+
+conic_status conic_layers_read_index(conic_context *context, const char *name, const conic_layers_header *header,
+                                     const unsigned char *bytes, conic_layers_entry *entries) {
+  size_t n_bytes = (size_t)conic_layers_index_bytes(header);
+  size_t used = conic_file_fields_bytes(entry_fields, N_ENTRY_FIELDS);
+  uint32_t at = 0;
+  if (conic_checksum(bytes, n_bytes) != header->index_sum)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the index is damaged: its sum is another (at byte %d)", name,
+                      CONIC_LAYERS_HEADER_BYTES);
+  for (uint32_t i = 0; i < header->n_clouds; i++) {
+    const unsigned char *from = bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    conic_file_fields_read(entry_fields, N_ENTRY_FIELDS, from, &entries[i]);
+    if (!is_zero(from + used, CONIC_LAYERS_ENTRY_BYTES - used))
+      return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: bytes that should be zero are not (at byte %llu)",
+                        name, i, (unsigned long long)(from - bytes) + CONIC_LAYERS_HEADER_BYTES);
+  }
+  const char *wrong = check_tree(header, entries, &at);
+  if (wrong)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cloud %u: %s (at byte %llu)", name, at, wrong,
+                      (unsigned long long)at * CONIC_LAYERS_ENTRY_BYTES + CONIC_LAYERS_HEADER_BYTES);
+  return CONIC_OK;
+}
+
+void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes) {
+  memset(bytes, 0, (size_t)conic_layers_index_bytes(header));
+  for (uint32_t i = 0; i < header->n_clouds; i++)
+    conic_file_fields_write(entry_fields, N_ENTRY_FIELDS, &entries[i], bytes + (size_t)i * CONIC_LAYERS_ENTRY_BYTES);
+  header->index_sum = conic_checksum(bytes, (size_t)conic_layers_index_bytes(header));
+}
+
+double conic_layers_position_error(const conic_layers_header *header) {
+  return header->quantum * 0.8660254037844387 + header->quantum * (double)(UINT64_C(1) << header->bits) * 0x1p-22;
+}
+
+void conic_layers_mend(unsigned char *bytes, size_t n_bytes) {
+  conic_layers_header header;
+  if (n_bytes < CONIC_LAYERS_HEADER_BYTES)
+    return;
+  conic_file_fields_read(header_fields, N_HEADER_FIELDS, bytes + sizeof magic, &header);
+  size_t index_bytes = (size_t)conic_layers_index_bytes(&header), offset_at = 8, sum_at = 16, size_at = 32;
+  if (index_bytes > n_bytes - CONIC_LAYERS_HEADER_BYTES)
+    return;
+  for (uint32_t i = 0; i < header.n_clouds; i++) {
+    unsigned char *entry = bytes + CONIC_LAYERS_HEADER_BYTES + (size_t)i * CONIC_LAYERS_ENTRY_BYTES;
+    uint64_t offset = conic_file_get(entry + offset_at, 8), n = conic_file_get(entry + size_at, 4);
+    if (offset <= n_bytes && n <= n_bytes - offset)
+      conic_file_put(entry + sum_at, 8, conic_checksum(bytes + offset, (size_t)n));
+  }
+  header.index_sum = conic_checksum(bytes + CONIC_LAYERS_HEADER_BYTES, index_bytes);
+  conic_file_fields_write(header_fields, N_HEADER_FIELDS, &header, bytes + sizeof magic);
+  conic_file_put(bytes + AT_HEADER_SUM, 8, conic_checksum(bytes, AT_HEADER_SUM));
+}

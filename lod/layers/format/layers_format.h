@@ -1,0 +1,91 @@
+/* .lpc files: header and index as they are in memory, and how they come from and go to bytes (docs/format-lpc.md). */
+#ifndef CONIC_LAYERS_FORMAT_H
+#define CONIC_LAYERS_FORMAT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+enum { CONIC_LAYERS_VERSION = 1, CONIC_LAYERS_HEADER_BYTES = 256, CONIC_LAYERS_ENTRY_BYTES = 112 };
+
+/* What a reader believes of a file: more is refused. */
+enum { CONIC_LAYERS_MOST_SAMPLES = 1 << 17, CONIC_LAYERS_MOST_LEVELS = 128, CONIC_LAYERS_MOST_BITS = 21 };
+
+enum { CONIC_LAYERS_COLORS = 1, CONIC_LAYERS_UNORIENTED = 2, CONIC_LAYERS_ALL_FLAGS = 3 };
+
+typedef struct conic_layers_header {
+  uint32_t version, flags;
+  uint64_t n_samples; /* of all clouds together */
+  uint32_t n_clouds, n_levels;
+  uint32_t bits;          /* B: steps of the positions' grid, 2^B an axis */
+  uint32_t cloud_size;    /* M, as asked for */
+  double origin[3];       /* low corner of the grid, in world units; positions of samples are relative to it */
+  double quantum;         /* step of the grid, in world units */
+  double low[3], high[3]; /* box of the finite centres that it was built from, in world units */
+  double spacing;         /* median sampling distance */
+  double splat_radius;    /* lower median over all samples of the outline at full resolution: F_g standard deviations */
+  double near_z;
+  uint64_t position_bytes, normal_bytes, color_bytes; /* of all clouds, compressed */
+  uint64_t file_bytes;
+  uint64_t index_sum;    /* conic_checksum of the index */
+  uint32_t most_samples; /* of the largest cloud */
+  uint32_t most_bytes;   /* of the largest cloud, compressed */
+} conic_layers_header;
+
+/* A cloud, and the node of the tree whose it is. Clouds are numbered in the order of the file: by level, then by key.
+ *
+ * A node's *place* is a cell of the grid: the samples, of its own and any other cloud, whose keys have its first
+ * `depth` bits. What is drawn there, when it is the finest drawn, are the node's own samples and those of all nodes
+ * above it that lie in its place: together T. Every sample is in exactly one cloud. Two nodes of one place are one
+ * above the other, or split samples that coincide. */
+typedef struct conic_layers_entry {
+  uint64_t key;     /* first of its place: the 3B-bit Morton code's first `depth` bits, then zeros */
+  uint64_t offset;  /* of its bytes in the file */
+  uint64_t sum;     /* conic_checksum of its bytes */
+  uint64_t n_place; /* samples in its place, in all clouds */
+  uint32_t n_bytes, n_samples;
+  uint32_t parent;  /* number; the root's (0) is 0 */
+  uint32_t child;   /* number of the first of its two, the other follows it; 0: a leaf */
+  uint32_t n_drawn; /* |T| */
+  uint16_t level;   /* 0: the root */
+  uint16_t depth;   /* bits of the key that all of its place share, 0 to 3B */
+  float spacing;    /* mean distance between neighbours in T: LPC Eq. 2, with the place's own sampling distance */
+  float covering;   /* every sample of its place is at most so far from one of T */
+  float radius;     /* outline with which T is drawn, when it is the finest: no hole that is none of all samples */
+  float error;      /* nothing then drawn, and nothing that full resolution draws, is farther from the other */
+  float center[3], sphere; /* holds every sample of its place with its outline, at this and every finer level; from the
+                              origin */
+  float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
+} conic_layers_entry;
+
+/* Bytes to header: checks sum and ranges. `name` is for messages; `n_bytes` at least CONIC_LAYERS_HEADER_BYTES, or what
+ * there is. Errors: INPUT. */
+conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
+                                      size_t n_bytes, conic_layers_header *header);
+
+/* The index lies behind the header: n_clouds × CONIC_LAYERS_ENTRY_BYTES. */
+uint64_t conic_layers_index_bytes(const conic_layers_header *header);
+
+/* Bytes to index: checks the sum, every range, and that the entries are a tree in the file's order; `entries` has room
+ * for n_clouds. Errors: INPUT, MEMORY. */
+conic_status conic_layers_read_index(conic_context *context, const char *name, const conic_layers_header *header,
+                                     const unsigned char *bytes, conic_layers_entry *entries);
+
+/* The other way. Fills in the sums of index and header. */
+void conic_layers_write_index(conic_layers_header *header, const conic_layers_entry *entries, unsigned char *bytes);
+void conic_layers_write_header(const conic_layers_header *header, unsigned char bytes[CONIC_LAYERS_HEADER_BYTES]);
+
+/* Makes the sums in a file's bytes right, where its header tells of an index and clouds that are all there: for tests
+ * and fuzzing, which would else see no further than the sums. */
+void conic_layers_mend(unsigned char *bytes, size_t n_bytes);
+
+/* The last key of a node's place. */
+static inline uint64_t conic_layers_last_key(const conic_layers_header *header, const conic_layers_entry *entry) {
+  return entry->key + ((UINT64_C(1) << (3 * header->bits - entry->depth)) - 1);
+}
+
+/* No sample was moved farther by rounding. */
+double conic_layers_position_error(const conic_layers_header *header);
+
+#endif

@@ -1,0 +1,35 @@
+/* Morton codes: the bits of x, y and z in turn, x's first. */
+#ifndef CONIC_LAYERS_KEY_H
+#define CONIC_LAYERS_KEY_H
+
+#include <stdint.h>
+
+/* Bit i of 21 goes to bit 3i. */
+static inline uint64_t conic_layers_spread(uint64_t bits) {
+  bits = (bits | bits << 32) & UINT64_C(0x001f00000000ffff);
+  bits = (bits | bits << 16) & UINT64_C(0x001f0000ff0000ff);
+  bits = (bits | bits << 8) & UINT64_C(0x100f00f00f00f00f);
+  bits = (bits | bits << 4) & UINT64_C(0x10c30c30c30c30c3);
+  return (bits | bits << 2) & UINT64_C(0x1249249249249249);
+}
+
+/* And back; the bits between are passed over. */
+static inline uint32_t conic_layers_gather(uint64_t bits) {
+  bits &= UINT64_C(0x1249249249249249);
+  bits = (bits | bits >> 2) & UINT64_C(0x10c30c30c30c30c3);
+  bits = (bits | bits >> 4) & UINT64_C(0x100f00f00f00f00f);
+  bits = (bits | bits >> 8) & UINT64_C(0x001f0000ff0000ff);
+  bits = (bits | bits >> 16) & UINT64_C(0x001f00000000ffff);
+  return (uint32_t)(bits | bits >> 32) & 0x1fffff;
+}
+
+static inline uint64_t conic_layers_key(uint32_t x, uint32_t y, uint32_t z) {
+  return conic_layers_spread(x) << 2 | conic_layers_spread(y) << 1 | conic_layers_spread(z);
+}
+
+/* The step of the grid on an axis: 0 for x. */
+static inline uint32_t conic_layers_step(uint64_t key, int axis) {
+  return conic_layers_gather(key >> (2 - axis));
+}
+
+#endif

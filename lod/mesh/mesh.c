@@ -1,0 +1,230 @@
+/* Who lies beside whom in a mesh. */
+#include "lod/mesh/mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/radix.h"
+#include "core/base/random.h"
+
+static const uint32_t none = UINT32_MAX;
+
+/* --- vertices that lie in one place --- */
+
+static uint64_t position_hash(const conic_mesh *mesh, size_t i) {
+  uint64_t hash = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    float value = mesh->position[axis][i] + 0.0f; /* no -0 */
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    hash = conic_random_mix(hash ^ bits) + (uint64_t)axis;
+  }
+  return conic_random_mix(hash);
+}
+
+static int is_same_place(const conic_mesh *mesh, size_t a, size_t b) {
+  return mesh->position[0][a] == mesh->position[0][b] && mesh->position[1][a] == mesh->position[1][b] &&
+         mesh->position[2][a] == mesh->position[2][b];
+}
+
+static int is_finite_vertex(const conic_mesh *mesh, size_t i) {
+  float zero = (mesh->position[0][i] * 0.0f + mesh->position[1][i] * 0.0f) + mesh->position[2][i] * 0.0f;
+  return zero == 0.0f;
+}
+
+static conic_status weld(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency) {
+  size_t room = (size_t)1 << (conic_bits_below(mesh->n_vertices) + 1);
+  uint32_t *table = conic_memory_allocate(context, room, sizeof *table);
+  if (!table)
+    return CONIC_ERROR_MEMORY;
+  memset(table, 0xFF, room * sizeof *table);
+  for (size_t i = 0; i < mesh->n_vertices; i++) {
+    adjacency->place[i] = (uint32_t)i;
+    if (!is_finite_vertex(mesh, i))
+      continue;
+    size_t slot = (size_t)position_hash(mesh, i) & (room - 1);
+    while (table[slot] != none && !is_same_place(mesh, table[slot], i))
+      slot = (slot + 1) & (room - 1);
+    if (table[slot] == none)
+      table[slot] = (uint32_t)i;
+    adjacency->place[i] = table[slot];
+    adjacency->oddities.welded += table[slot] != i;
+  }
+  conic_memory_release(context, table);
+  return CONIC_OK;
+}
+
+/* --- faces of use --- */
+
+static void look_at_faces(const conic_mesh *mesh, conic_adjacency *adjacency) {
+  for (size_t i = 0; i < mesh->n_faces; i++) {
+    const uint32_t *face = mesh->faces[i];
+    int is_finite =
+        is_finite_vertex(mesh, face[0]) && is_finite_vertex(mesh, face[1]) && is_finite_vertex(mesh, face[2]);
+    uint32_t a = adjacency->place[face[0]], b = adjacency->place[face[1]], c = adjacency->place[face[2]];
+    int is_three = a != b && b != c && c != a;
+    adjacency->oddities.nan += !is_finite;
+    adjacency->oddities.zero += is_finite && !is_three;
+    adjacency->side[i] = (int8_t)(is_finite && is_three);
+  }
+}
+
+/* --- edges --- */
+
+typedef struct edge_list {
+  size_t n;
+  conic_radix_item *items; /* key: the two places, the lesser first; value: 3 · face + the corner where it begins */
+} edge_list;
+
+static conic_status list_edges(conic_context *context, const conic_mesh *mesh, const conic_adjacency *adjacency,
+                               edge_list *edges) {
+  int bits = conic_bits_below(mesh->n_vertices);
+  edges->n = 0;
+  edges->items = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *edges->items);
+  if (!edges->items)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < mesh->n_faces; i++)
+    for (int corner = 0; corner < 3 && adjacency->side[i]; corner++) {
+      uint64_t a = adjacency->place[mesh->faces[i][corner]], b = adjacency->place[mesh->faces[i][(corner + 1) % 3]];
+      uint64_t key = a < b ? a << bits | b : b << bits | a;
+      edges->items[edges->n++] = (conic_radix_item){key, (uint32_t)(3 * i + (size_t)corner)};
+    }
+  return conic_radix_sort(context, edges->items, edges->n, 2 * bits);
+}
+
+static double edge_length(const conic_mesh *mesh, uint32_t half_edge) {
+  double a[3], b[3];
+  conic_mesh_corner(mesh, half_edge / 3, (int)(half_edge % 3), a);
+  conic_mesh_corner(mesh, half_edge / 3, (int)(half_edge + 1) % 3, b);
+  for (int axis = 0; axis < 3; axis++)
+    b[axis] -= a[axis];
+  return sqrt(conic_dot(b, b));
+}
+
+static uint32_t start_of(const conic_mesh *mesh, const conic_adjacency *adjacency, uint32_t half_edge) {
+  return adjacency->place[mesh->faces[half_edge / 3][half_edge % 3]];
+}
+
+/* The faces of an edge are joined one to the next. Where there are more than two, every other joint has no length, so
+ * that no cluster's outline becomes shorter than nothing. A face has each edge once. */
+static void join_edges(const conic_mesh *mesh, const edge_list *edges, conic_adjacency *adjacency) {
+  for (size_t begin = 0, end; begin < edges->n; begin = end) {
+    for (end = begin + 1; end < edges->n && edges->items[end].key == edges->items[begin].key;)
+      end++;
+    adjacency->oddities.open += end == begin + 1;
+    adjacency->oddities.crowded += end > begin + 2;
+    double length = edge_length(mesh, edges->items[begin].value);
+    for (size_t i = begin; i + 1 < end; i++) {
+      conic_joint *joint = &adjacency->joints[adjacency->n_joints++];
+      joint->faces[0] = edges->items[i].value / 3;
+      joint->faces[1] = edges->items[i + 1].value / 3;
+      joint->length = (i - begin) % 2 ? 0.0 : length;
+    }
+  }
+}
+
+/* --- orientation --- */
+
+typedef struct orienting {
+  const conic_mesh *mesh;
+  conic_adjacency *adjacency;
+  uint32_t *queue;
+  uint8_t *is_seen;
+} orienting;
+
+static void pair_up(const conic_mesh *mesh, const edge_list *edges, conic_adjacency *adjacency) {
+  memset(adjacency->across, 0xFF, mesh->n_faces * 3 * sizeof *adjacency->across);
+  for (size_t begin = 0, end; begin < edges->n; begin = end) {
+    for (end = begin + 1; end < edges->n && edges->items[end].key == edges->items[begin].key;)
+      end++;
+    for (size_t i = begin; i < end && end > begin + 2; i++)
+      adjacency->across[edges->items[i].value] = CONIC_CROWDED_EDGE;
+    if (end != begin + 2)
+      continue;
+    adjacency->across[edges->items[begin].value] = edges->items[begin + 1].value;
+    adjacency->across[edges->items[begin + 1].value] = edges->items[begin].value;
+  }
+}
+
+/* Whether both faces run along the edge in the same direction: then one of them is wound against the other. */
+static int runs_along(const orienting *o, uint32_t half_edge) {
+  return start_of(o->mesh, o->adjacency, half_edge) == start_of(o->mesh, o->adjacency, o->adjacency->across[half_edge]);
+}
+
+/* Gives the faces that hang together with `first` their sides: most of them keep theirs. */
+static void orient_piece(orienting *o, uint32_t first) {
+  int8_t *side = o->adjacency->side;
+  size_t n = 1, n_turned = 0;
+  o->queue[0] = first;
+  o->is_seen[first] = 1;
+  for (size_t next = 0; next < n; next++) {
+    uint32_t face = o->queue[next];
+    n_turned += side[face] < 0;
+    for (uint32_t half = 3 * face; half < 3 * face + 3; half++) {
+      uint32_t across = o->adjacency->across[half], other = across / 3;
+      if (!conic_edge_is_shared(across))
+        continue;
+      int8_t wanted = (int8_t)(runs_along(o, half) ? -side[face] : side[face]);
+      if (o->is_seen[other]) {
+        o->adjacency->oddities.twisted += side[other] != wanted && half < across;
+        continue;
+      }
+      o->is_seen[other] = 1;
+      side[other] = wanted;
+      o->queue[n++] = other;
+    }
+  }
+  int is_other_way = 2 * n_turned > n;
+  for (size_t i = 0; i < n && is_other_way; i++)
+    side[o->queue[i]] = (int8_t)-side[o->queue[i]];
+  o->adjacency->oddities.turned += is_other_way ? n - n_turned : n_turned;
+  o->adjacency->oddities.n_pieces++;
+}
+
+static conic_status orient(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency) {
+  orienting o = {mesh, adjacency, conic_memory_allocate(context, mesh->n_faces, sizeof *o.queue),
+                 conic_memory_allocate_zeroed(context, mesh->n_faces, sizeof *o.is_seen)};
+  conic_status status = o.queue && o.is_seen ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (uint32_t i = 0; i < mesh->n_faces && status == CONIC_OK; i++)
+    if (adjacency->side[i] && !o.is_seen[i])
+      orient_piece(&o, i);
+  conic_memory_release(context, o.is_seen);
+  conic_memory_release(context, o.queue);
+  return status;
+}
+
+conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency) {
+  edge_list edges = {0};
+  memset(adjacency, 0, sizeof *adjacency);
+  if (mesh->n_faces > UINT32_MAX / 3 || mesh->n_vertices > UINT32_MAX / 2)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu triangles are too many", mesh->n_faces);
+  adjacency->place = conic_memory_allocate(context, mesh->n_vertices, sizeof *adjacency->place);
+  adjacency->side = conic_memory_allocate(context, mesh->n_faces, sizeof *adjacency->side);
+  adjacency->across = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->across);
+  adjacency->joints = conic_memory_allocate(context, mesh->n_faces, 3 * sizeof *adjacency->joints);
+  int has_room = adjacency->place && adjacency->side && adjacency->across && adjacency->joints;
+  conic_status status = has_room ? weld(context, mesh, adjacency) : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK) {
+    look_at_faces(mesh, adjacency);
+    status = list_edges(context, mesh, adjacency, &edges);
+  }
+  if (status == CONIC_OK) {
+    join_edges(mesh, &edges, adjacency);
+    pair_up(mesh, &edges, adjacency);
+    status = orient(context, mesh, adjacency);
+  }
+  conic_memory_release(context, edges.items);
+  if (status != CONIC_OK)
+    conic_adjacency_release(context, adjacency);
+  return status;
+}
+
+void conic_adjacency_release(conic_context *context, conic_adjacency *adjacency) {
+  conic_memory_release(context, adjacency->place);
+  conic_memory_release(context, adjacency->side);
+  conic_memory_release(context, adjacency->across);
+  conic_memory_release(context, adjacency->joints);
+  memset(adjacency, 0, sizeof *adjacency);
+}

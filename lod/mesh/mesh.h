@@ -1,0 +1,72 @@
+/* Triangles as the hybrid models' steps look at them: who lies beside whom, and which of them are of use. */
+#ifndef CONIC_MESH_H
+#define CONIC_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+/* Borrowed arrays; every index of a face is below n_vertices. */
+typedef struct conic_mesh {
+  size_t n_vertices, n_faces;
+  const float *position[3];
+  const uint32_t (*faces)[3];
+} conic_mesh;
+
+/* Two faces that share an edge (or more than one: then the length is that of all). */
+typedef struct conic_joint {
+  uint32_t faces[2];
+  double length;
+} conic_joint;
+
+/* What a mesh has that a simple closed surface has not. */
+typedef struct conic_mesh_oddities {
+  size_t nan;      /* faces with a corner that is not finite: of no use */
+  size_t zero;     /* faces whose corners are not three places: of no use */
+  size_t welded;   /* vertices that lie where an earlier one lies */
+  size_t open;     /* edges of one face */
+  size_t crowded;  /* edges of more than two */
+  size_t turned;   /* faces that were seen from the other side, so that neighbours agree */
+  size_t twisted;  /* edges whose faces cannot be made to agree */
+  size_t n_pieces; /* what hangs together */
+} conic_mesh_oddities;
+
+#define CONIC_OPEN_EDGE UINT32_MAX          /* there is no other face */
+#define CONIC_CROWDED_EDGE (UINT32_MAX - 1) /* there are several */
+
+typedef struct conic_adjacency {
+  uint32_t *place;  /* of each vertex: the first vertex at the same position */
+  int8_t *side;     /* of each face: 1; -1 where it is wound against its neighbours; 0 where it is of no use */
+  uint32_t *across; /* of each face's edges, 3 · face + the corner where it begins: that of the other face, or OPEN or
+                       CROWDED */
+  size_t n_joints;
+  conic_joint *joints;
+  conic_mesh_oddities oddities;
+} conic_adjacency;
+
+/* Finds the neighbours by position, so that seams of attributes part nothing. Errors: ARGUMENT (over 2³¹ faces),
+ * MEMORY. On success the caller releases *adjacency; on failure it is empty. */
+conic_status conic_adjacency_find(conic_context *context, const conic_mesh *mesh, conic_adjacency *adjacency);
+void conic_adjacency_release(conic_context *context, conic_adjacency *adjacency);
+
+static inline int conic_edge_is_shared(uint32_t across) {
+  return across < CONIC_CROWDED_EDGE;
+}
+
+static inline void conic_mesh_corner(const conic_mesh *mesh, size_t i_face, int corner, double at[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    at[axis] = (double)mesh->position[axis][mesh->faces[i_face][corner]];
+}
+
+static inline void conic_cross(const double a[3], const double b[3], double c[3]) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double conic_dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+#endif

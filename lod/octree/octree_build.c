@@ -1,0 +1,302 @@
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_fit.h"
+#include "lod/octree/octree_split.h"
+#include "raster/project/projected.h"
+
+/* Squares of what is farther out overflow a float. */
+static const float farthest = 1e15f;
+
+static const size_t chunk_splats = 16384;
+
+static float absolute(float x) {
+  return x < 0.0f ? -x : x;
+}
+
+/* Whether the renderer could draw the splat from some side (docs/picture.md, "Skipped"). */
+static int is_drawable(const conic_splats *splats, size_t i) {
+  float sum = 0.0f, u[3], v[3], uu = 0.0f, vv = 0.0f, nn = 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = splats->tangent_u[axis][i];
+    v[axis] = splats->tangent_v[axis][i];
+    sum += splats->position[axis][i] * 0.0f;
+    uu += u[axis] * u[axis];
+    vv += v[axis] * v[axis];
+    if (splats->color[axis] && !(absolute(splats->color[axis][i]) <= CONIC_GREATEST_COLOR))
+      return 0;
+  }
+  if (splats->opacity && !(absolute(splats->opacity[i]) <= CONIC_GREATEST_OPACITY))
+    return 0;
+  float u_length = sqrtf(uu), v_length = sqrtf(vv);
+  for (int axis = 0; axis < 3; axis++) {
+    int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    float n = u[next] / u_length * (v[last] / v_length) - u[last] / u_length * (v[next] / v_length);
+    nn += n * n;
+  }
+  return sum == 0.0f && nn > 0.0f && nn * 0.0f == 0.0f;
+}
+
+/* Whether a splat that can be drawn is within what the bounds can hold. */
+static int is_in_reach(const conic_splats *splats, size_t i) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(absolute(splats->position[axis][i]) < farthest && absolute(splats->tangent_u[axis][i]) < farthest &&
+          absolute(splats->tangent_v[axis][i]) < farthest))
+      return 0;
+  return 1;
+}
+
+/* Those that can be drawn first, each kind in its order. */
+static conic_status sort_out(conic_octree *octree, const conic_splats *splats) {
+  octree->owned_index = conic_memory_allocate(octree->context, splats->count, sizeof *octree->index);
+  if (!octree->owned_index)
+    return CONIC_ERROR_MEMORY;
+  octree->index = octree->owned_index;
+  size_t n_last = splats->count;
+  for (size_t i = 0; i < splats->count; i++) {
+    if (!is_drawable(splats, i))
+      octree->index[--n_last] = (uint32_t)i;
+    else if (is_in_reach(splats, i))
+      octree->index[octree->n_leaves++] = (uint32_t)i;
+    else
+      return conic_fail(octree->context, CONIC_ERROR_INPUT, "octree: splat %zu is farther out, or larger, than 1e15",
+                        i);
+  }
+  for (size_t a = n_last, b = splats->count; a + 1 < b; a++) {
+    uint32_t first = octree->index[a];
+    octree->index[a] = octree->index[--b];
+    octree->index[b] = first;
+  }
+  return octree->n_leaves
+             ? CONIC_OK
+             : conic_fail(octree->context, CONIC_ERROR_INPUT, "octree: there is no splat that can be drawn");
+}
+
+typedef struct gathering {
+  const uint32_t *index;
+  const float *from;
+  float *to;
+  size_t n;
+} gathering;
+
+static void gather_chunk(void *data, size_t i_chunk, int i_thread) {
+  const gathering *g = data;
+  size_t begin = i_chunk * chunk_splats, end = begin + chunk_splats < g->n ? begin + chunk_splats : g->n;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++)
+    g->to[i] = g->from[g->index[i]];
+}
+
+/* Brings an array into the order of the index; null stays null. */
+static conic_status gather(const conic_octree *octree, float **array) {
+  gathering g = {.index = octree->index, .from = *array, .n = octree->n_points};
+  if (!*array)
+    return CONIC_OK;
+  g.to = conic_memory_allocate(octree->context, g.n, sizeof *g.to);
+  if (!g.to)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(octree->context, (g.n + chunk_splats - 1) / chunk_splats, gather_chunk, &g);
+  conic_memory_release(octree->context, *array);
+  *array = g.to;
+  return CONIC_OK;
+}
+
+static conic_status gather_rest(conic_octree *octree) {
+  conic_status status = CONIC_OK;
+  conic_splats *leaves = &octree->owned;
+  for (int axis = 0; axis < 3; axis++) {
+    float **arrays[] = {&leaves->tangent_u[axis], &leaves->tangent_v[axis], &leaves->color[axis]};
+    for (int i = 0; i < 3 && status == CONIC_OK; i++)
+      status = gather(octree, arrays[i]);
+  }
+  return status == CONIC_OK ? gather(octree, &leaves->opacity) : status;
+}
+
+/* The structure, and the splats in its order. */
+static conic_status split(conic_octree *octree) {
+  conic_context *context = octree->context;
+  conic_splats *leaves = &octree->owned;
+  conic_split work = {.index = octree->index, .n = octree->n_leaves};
+  conic_status status = CONIC_OK;
+  for (int axis = 0; axis < 3 && status == CONIC_OK && octree->n_leaves < octree->n_points; axis++)
+    status = gather(octree, &leaves->position[axis]);
+  memcpy(work.position, leaves->position, sizeof work.position);
+  work.children = conic_memory_allocate(context, octree->n_leaves, 1);
+  if (!work.children)
+    return CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = conic_octree_split(context, &work);
+  if (status == CONIC_OK) {
+    octree->n_nodes = work.n_nodes;
+    octree->owned_codes = conic_memory_allocate(context, work.n_nodes, CONIC_NODE_BYTES);
+    octree->codes = octree->owned_codes;
+    status = octree->codes ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  for (size_t i = 0; i < work.n_nodes && status == CONIC_OK; i++)
+    conic_code_children(work.children[i] & 15, work.children[i] >> 4, octree->codes + i * CONIC_NODE_BYTES);
+  conic_memory_release(context, work.children);
+  return status == CONIC_OK ? gather_rest(octree) : status;
+}
+
+/* The scales of the codes: what nothing in the octree exceeds. */
+static void choose_scale(conic_octree *octree, double cutoff) {
+  const conic_splats *leaves = &octree->leaves;
+  double diagonal2 = 0.0, longest2 = 0.0, length = 1.0;
+  float color = 1.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    float low = leaves->position[axis][0], high = low;
+    for (size_t i = 0; i < octree->n_leaves; i++) {
+      low = leaves->position[axis][i] < low ? leaves->position[axis][i] : low;
+      high = leaves->position[axis][i] > high ? leaves->position[axis][i] : high;
+      color = leaves->color[axis] && leaves->color[axis][i] > color ? leaves->color[axis][i] : color;
+    }
+    diagonal2 += ((double)high - (double)low) * ((double)high - (double)low);
+  }
+  for (size_t i = 0; i < octree->n_leaves; i++) {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      double u = (double)leaves->tangent_u[axis][i], v = (double)leaves->tangent_v[axis][i];
+      sum += u * u + v * v;
+    }
+    longest2 = sum > longest2 ? sum : longest2;
+  }
+  /* The ellipse of a node reaches ten times as far as its leaves at most (least_ratio in octree_fit.c). */
+  double wanted = 16.0 * (sqrt(diagonal2) + 2.0 * cutoff * sqrt(longest2)) / (cutoff < 1.0 ? cutoff : 1.0);
+  while (length < wanted)
+    length *= 2.0;
+  while (length * 0.5 >= wanted)
+    length *= 0.5;
+  conic_code_scale_init(length, cutoff, color, &octree->scale);
+}
+
+/* Rounds the leaves to what the codes of a quantised file give, and leaves out what cannot be drawn. */
+static conic_status quantize(conic_octree *octree) {
+  conic_context *context = octree->context;
+  conic_splats *leaves = &octree->owned, before = {0};
+  conic_status status = CONIC_OK;
+  if (octree->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > octree->n_leaves)
+    return conic_fail(context, CONIC_ERROR_INPUT, "octree: too few of the splats can be drawn for a quantised file");
+  leaves->count = octree->n_leaves;
+  size_t n_bytes = conic_leaf_codes_bytes(leaves->count, leaves->color[0] != NULL, leaves->opacity != NULL);
+  octree->is_quantized = 1;
+  octree->owned_leaf_codes = conic_memory_allocate(context, n_bytes, 1);
+  if (!octree->owned_leaf_codes)
+    return CONIC_ERROR_MEMORY;
+  octree->leaf_codes = octree->owned_leaf_codes;
+  status = conic_splats_allocate(context, leaves->count, octree->n_clips ? CONIC_SPLATS_TANGENTS : 0u, &before);
+  if (status != CONIC_OK)
+    return status;
+  for (int axis = 0; axis < 3; axis++) {
+    memcpy(before.position[axis], leaves->position[axis], leaves->count * sizeof(float));
+    if (octree->n_clips) {
+      memcpy(before.tangent_u[axis], leaves->tangent_u[axis], leaves->count * sizeof(float));
+      memcpy(before.tangent_v[axis], leaves->tangent_v[axis], leaves->count * sizeof(float));
+    }
+  }
+  conic_leaf_encode(context, &octree->scale, leaves, octree->owned_leaf_codes);
+  conic_leaf_decode(context, &octree->scale, octree->leaf_codes, leaves);
+  conic_octree_move_clips(octree, &before, leaves);
+  double greatest2 = 0.0;
+  for (size_t i = 0; i < leaves->count; i++) {
+    double moved2 = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+      double moved = (double)leaves->position[axis][i] - (double)before.position[axis][i];
+      moved2 += moved * moved;
+    }
+    greatest2 = moved2 > greatest2 ? moved2 : greatest2;
+  }
+  octree->position_error = sqrt(greatest2);
+  octree->leaves = *leaves;
+  conic_splats_release(context, &before);
+  return CONIC_OK;
+}
+
+static conic_status lay_out(conic_octree *octree) {
+  octree->end = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *octree->end);
+  octree->first_leaf = conic_memory_allocate(octree->context, octree->n_nodes + 1, sizeof *octree->first_leaf);
+  if (!octree->end || !octree->first_leaf)
+    return CONIC_ERROR_MEMORY;
+  const char *wrong = conic_octree_lay_out(octree);
+  return wrong ? conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_OK;
+}
+
+/* The measures of the whole set, as the renderer would take them. */
+static conic_status measure(conic_octree *octree, const conic_splats *splats) {
+  conic_splats local = *splats;
+  double low[3], high[3];
+  memset(local.origin, 0, sizeof local.origin);
+  conic_splats_bounds(&local, low, high);
+  for (int axis = 0; axis < 3; axis++) {
+    octree->low[axis] = (float)low[axis];
+    octree->high[axis] = (float)high[axis];
+  }
+  return conic_splats_length(octree->context, splats, &octree->splat_length);
+}
+
+static conic_status build(conic_octree *octree, const conic_octree_options *options) {
+  conic_splats *leaves = &octree->owned;
+  conic_status status = measure(octree, leaves);
+  if (status == CONIC_OK)
+    status = sort_out(octree, leaves);
+  if (status == CONIC_OK)
+    status = split(octree);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_octree_index_clips(octree);
+  if (status != CONIC_OK)
+    return status;
+  octree->leaves = *leaves;
+  choose_scale(octree, (double)options->cutoff);
+  if (options->quantize)
+    status = quantize(octree);
+  octree->has_color_codes = conic_octree_colors_are_codes(&octree->scale, &octree->leaves);
+  if (status == CONIC_OK)
+    status = lay_out(octree);
+  return status == CONIC_OK ? conic_octree_fit(octree) : status;
+}
+
+static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *options) {
+  if (options->size != sizeof *options || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
+    return "the options have no meaning";
+  if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
+    return "the splats have no tangent axes";
+  if (splats->count > UINT32_MAX / 2) /* and inner nodes are numbered after them */
+    return "there are more than 2,147,483,647 splats";
+  return NULL;
+}
+
+conic_status conic_octree_build(conic_context *context, conic_splats *splats, const conic_octree_options *options,
+                                conic_octree **octree) {
+  const char *wrong = what_is_wrong(splats, options);
+  conic_status status = CONIC_OK;
+  *octree = NULL;
+  conic_octree *made = wrong ? NULL : conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  if (!made) {
+    status = wrong ? conic_fail(context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_ERROR_MEMORY;
+    conic_splats_release(context, splats);
+    return status;
+  }
+  made->context = context;
+  made->n_points = splats->count;
+  conic_splats_repair_clips(splats);
+  made->owned = *splats;
+  memset(splats, 0, sizeof *splats);
+  made->n_clips = made->owned.n_clips; /* they go by the index in the input, not by leaf */
+  made->clips = made->owned_clips = made->owned.clips;
+  made->owned.clips = NULL;
+  made->owned.n_clips = 0;
+  for (int axis = 0; axis < 3; axis++) { /* axes say it all */
+    conic_memory_release(context, made->owned.normal[axis]);
+    made->owned.normal[axis] = NULL;
+  }
+  status = build(made, options);
+  if (status == CONIC_OK)
+    *octree = made;
+  else
+    conic_octree_destroy(made);
+  return status;
+}

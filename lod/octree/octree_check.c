@@ -1,0 +1,150 @@
+/* Whether an octree keeps what its numbers promise. */
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_nodes.h"
+
+static const size_t chunk_nodes = 256;
+
+/* What floats lose between the finding of a bound and its use. */
+static const double hair = 1e-5;
+
+typedef struct checking {
+  const conic_octree *octree;
+  conic_octree_defects *chunks;
+} checking;
+
+typedef struct vector {
+  double x, y, z;
+} vector;
+
+static vector vector_at(float *const arrays[3], size_t i) {
+  return (vector){(double)arrays[0][i], (double)arrays[1][i], (double)arrays[2][i]};
+}
+
+static vector vector_of(const float values[3]) {
+  return (vector){(double)values[0], (double)values[1], (double)values[2]};
+}
+
+static double dot(vector a, vector b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static vector cross(vector a, vector b) {
+  return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* How far the ellipse c + x·a + y·b, x² + y² = 1, reaches from the origin: the least bound that Lagrange's function
+ * gives, |c|² + m + Σ pᵢ²/(m - qᵢ) over the eigenvalues qᵢ of the axes' products, m above both; it is convex in m. */
+static double farthest(const double c[2], const double a[2], const double b[2]) {
+  double aa = a[0] * a[0] + a[1] * a[1], bb = b[0] * b[0] + b[1] * b[1], ab = a[0] * b[0] + a[1] * b[1];
+  double cc = c[0] * c[0] + c[1] * c[1], ca = c[0] * a[0] + c[1] * a[1], cb = c[0] * b[0] + c[1] * b[1];
+  double half = 0.5 * (aa - bb), root = sqrt(half * half + ab * ab), q = 0.5 * (aa + bb) + root;
+  double low = q, high = q + sqrt(ca * ca + cb * cb) + 1e-30; /* the derivative is not below 0 there */
+  for (int step = 0; step < 60; step++) {
+    double m = 0.5 * (low + high), determinant = (m - aa) * (m - bb) - ab * ab;
+    double x = ((m - bb) * ca + ab * cb) / determinant, y = (ab * ca + (m - aa) * cb) / determinant;
+    if (x * x + y * y > 1.0 || !(determinant > 0.0))
+      low = m;
+    else
+      high = m;
+  }
+  double determinant = (high - aa) * (high - bb) - ab * ab;
+  double x = ((high - bb) * ca + ab * cb) / determinant, y = (ab * ca + (high - aa) * cb) / determinant;
+  double bound2 = determinant > 0.0 ? cc + high + (ca * x + cb * y) : cc + high;
+  return sqrt(bound2 > 0.0 ? bound2 : 0.0);
+}
+
+enum { OUT_OF_ELLIPSE = 1, OUT_OF_SPHERE = 2, OUT_OF_CONE = 4, OUT_OF_ERROR = 8 };
+
+/* Which bounds of node i leaf k breaks. Comparisons are such that what is not a number breaks them. */
+static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
+  const conic_splats *leaves = &octree->leaves;
+  const conic_drawn_node *node = &octree->drawn[i];
+  double cutoff = octree->scale.cutoff, uu, vv, uv;
+  vector center = vector_of(node->position), p = vector_at(leaves->position, k), n = vector_at(octree->normal, i);
+  vector node_u = vector_of(node->tangent_u), node_v = vector_of(node->tangent_v);
+  vector u = vector_at(leaves->tangent_u, k), v = vector_at(leaves->tangent_v, k), facing = cross(u, v);
+  p = (vector){p.x - center.x, p.y - center.y, p.z - center.z};
+  int broken = 0;
+  /* In units of the node's axes, in which its outline is a circle of the cutoff. */
+  double scale_u = 1.0 / dot(node_u, node_u), scale_v = 1.0 / dot(node_v, node_v);
+  const double c[2] = {dot(p, node_u) * scale_u, dot(p, node_v) * scale_v};
+  const double a[2] = {cutoff * dot(u, node_u) * scale_u, cutoff * dot(u, node_v) * scale_v};
+  const double b[2] = {cutoff * dot(v, node_u) * scale_u, cutoff * dot(v, node_v) * scale_v};
+  double out = farthest(c, a, b);
+  if (!(out <= cutoff * (1.0 + hair)))
+    broken |= OUT_OF_ELLIPSE;
+  uu = dot(u, u);
+  vv = dot(v, v);
+  uv = dot(u, v);
+  double longest = sqrt(0.5 * (uu + vv + sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv)));
+  if (!(sqrt(dot(p, p)) + cutoff * longest <= (double)octree->radius[i] * (1.0 + hair)))
+    broken |= OUT_OF_SPHERE;
+  if (!(dot(facing, n) >= ((double)octree->cone[i] - hair) * sqrt(dot(facing, facing))))
+    broken |= OUT_OF_CONE;
+  double uz = dot(u, n), vz = dot(v, n), height = fabs(dot(p, n)) + cutoff * sqrt(uz * uz + vz * vz);
+  if (!(height <= (double)octree->error[i] * (1.0 + hair)))
+    broken |= OUT_OF_ERROR;
+  return broken;
+}
+
+static void check_node(const conic_octree *octree, size_t i, conic_octree_defects *found) {
+  vector u = vector_of(octree->drawn[i].tangent_u);
+  double reach = octree->scale.cutoff * sqrt(dot(u, u)), radius = (double)octree->radius[i];
+  int broken = reach <= radius * (1.0 + hair) ? 0 : OUT_OF_SPHERE;
+  if (!((double)octree->error[i] <= 2.0 * radius * (1.0 + hair)))
+    broken |= OUT_OF_ERROR;
+  for (size_t k = octree->first_leaf[i]; k < octree->first_leaf[octree->end[i]]; k++)
+    broken |= check_leaf(octree, i, k);
+  found->ellipses += (broken & OUT_OF_ELLIPSE) != 0;
+  found->spheres += (broken & OUT_OF_SPHERE) != 0;
+  found->cones += (broken & OUT_OF_CONE) != 0;
+  found->errors += (broken & OUT_OF_ERROR) != 0;
+}
+
+static void check_task(void *data, size_t i_chunk, int i_thread) {
+  const checking *job = data;
+  size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes, n = job->octree->n_nodes;
+  (void)i_thread;
+  memset(&job->chunks[i_chunk], 0, sizeof *job->chunks);
+  for (size_t i = begin; i < end && i < n; i++)
+    check_node(job->octree, i, &job->chunks[i_chunk]);
+}
+
+/* Leaves that must be there to be drawn, and are not. */
+static size_t count_lost(const conic_octree *octree) {
+  size_t n = 0;
+  for (size_t i = 0; i < octree->n_leaves; i++) {
+    vector p = vector_at(octree->leaves.position, i);
+    vector n_leaf = cross(vector_at(octree->leaves.tangent_u, i), vector_at(octree->leaves.tangent_v, i));
+    n += !(dot(p, p) * 0.0 == 0.0 && dot(n_leaf, n_leaf) > 0.0);
+  }
+  return n;
+}
+
+conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defects) {
+  size_t n_chunks = (octree->n_nodes + chunk_nodes - 1) / chunk_nodes;
+  checking job = {octree, conic_memory_allocate(octree->context, n_chunks, sizeof *job.chunks)};
+  memset(defects, 0, sizeof *defects);
+  if (!job.chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_octree_decode(octree);
+  if (status != CONIC_OK) {
+    conic_memory_release(octree->context, job.chunks);
+    return status;
+  }
+  conic_parallel_for(octree->context, n_chunks, check_task, &job);
+  for (size_t i = 0; i < n_chunks; i++) {
+    defects->ellipses += job.chunks[i].ellipses;
+    defects->spheres += job.chunks[i].spheres;
+    defects->cones += job.chunks[i].cones;
+    defects->errors += job.chunks[i].errors;
+  }
+  defects->splats = count_lost(octree);
+  conic_memory_release(octree->context, job.chunks);
+  return CONIC_OK;
+}

@@ -1,0 +1,67 @@
+/* How far a node's disc reaches past a surface of discs. It is looked at in a few places: first, which of them lie well
+ * inside a disc; for those that do not, how near the discs come. */
+#ifndef CONIC_OCTREE_COVER_H
+#define CONIC_OCTREE_COVER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Where a disc is sampled: points of the unit disc, none of which is farther from all of them than the gap. */
+enum { CONIC_DISC_SAMPLES = 32 };
+#define CONIC_DISC_GAP 0.2565
+typedef struct conic_disc_samples {
+  float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES];
+} conic_disc_samples;
+void conic_disc_samples_init(conic_disc_samples *samples);
+
+/* What sticks out shows at the edges of a picture, where a fraction of a pixel is seen; so it counts so many times. */
+#define CONIC_COVER_WEIGHT 3.25f
+
+/* Ellipses in space: centres, the two half axes of their outlines, the halves of the boxes around them, and how far
+ * anything of them is from the surface that they stand for, at most. There is a box around each block of them as well.
+ * The arrays go on to whole blocks of blocks, with what conic_discs_close puts there. */
+enum { CONIC_DISC_BLOCK = 16 };
+typedef struct conic_discs {
+  float *center[3], *u[3], *v[3], *half[3], *error;
+  float *block_center[3], *block_half[3];
+  size_t count;
+} conic_discs;
+
+/* Finds the boxes of the discs from `first` on, of which all else is there. */
+void conic_discs_set_half(conic_discs *discs, size_t first);
+
+/* Once all discs are there: finds the blocks' boxes. */
+void conic_discs_close(conic_discs *discs);
+
+/* Some of the blocks, with their boxes; room for all, in whole blocks of them. */
+typedef struct conic_block_list {
+  float *center[3], *half[3];
+  uint32_t *block;
+  size_t count;
+} conic_block_list;
+
+/* The blocks that a few nodes close together need to look at, nearly always, and room to work with one node. */
+enum { CONIC_FLAT_NUMBERS = 12 };
+typedef struct conic_near_discs {
+  float center[3], half[3]; /* a box: whatever reaches into it is in these blocks */
+  conic_block_list blocks, of_node;
+  float (*flat)[CONIC_FLAT_NUMBERS][CONIC_DISC_BLOCK]; /* the node's blocks as it sees them */
+} conic_near_discs;
+
+/* Finds the blocks that reach into the box about near->center. */
+typedef void conic_find_near_function(const conic_discs *discs, conic_near_discs *near);
+
+/* The disc of a node. */
+typedef struct conic_node_disc {
+  float center[3], u[3], v[3]; /* as those of discs */
+  float n[3];                  /* unit */
+  float enough;                /* no smaller error matters */
+} conic_node_disc;
+
+/* The error of a node's disc, `enough` at least: no point of it is farther from the discs, and at the samples none is
+ * farther than a CONIC_COVER_WEIGHT-th of it. The discs begin … end are those of its own leaves, which are looked at
+ * first; there is one at least. */
+typedef float conic_cover_function(const conic_disc_samples *samples, const conic_discs *discs, size_t begin,
+                                   size_t end, conic_near_discs *near, const conic_node_disc *node);
+
+#endif

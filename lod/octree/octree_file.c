@@ -1,0 +1,444 @@
+/* .cot files: docs/format-cot.md. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/files/file.h"
+#include "core/files/file_header.h"
+#include "lod/octree/leaf_code.h"
+#include "lod/octree/octree_nodes.h"
+
+enum { HEADER_BYTES = CONIC_FILE_HEADER_BYTES, VERSION = 1, ALIGNMENT = 64, MOST_ARRAYS = 16 };
+
+enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES = 8, ALL_FLAGS = 15 };
+
+/* The records of clip lines are in the file as they are in memory. */
+_Static_assert(sizeof(conic_clip) == 32, "clip records of 32 bytes");
+
+/* The header as it is in memory; in the file each member is little-endian, one after the other. */
+typedef struct header {
+  uint32_t version, flags;
+  uint64_t n_points, n_leaves, n_nodes;
+  double origin[3];
+  float low[3], high[3];
+  float cutoff, color;
+  double length, splat_length, position_error;
+  uint64_t n_clips;
+  uint64_t body_sum; /* over the arrays' sums */
+} header;
+
+#define FIELD(member, n_values) CONIC_FILE_FIELD(header, member, n_values)
+
+static const conic_file_field fields[] = {
+    FIELD(version, 1), FIELD(flags, 1),        FIELD(n_points, 1),       FIELD(n_leaves, 1), FIELD(n_nodes, 1),
+    FIELD(origin, 3),  FIELD(low, 3),          FIELD(high, 3),           FIELD(cutoff, 1),   FIELD(color, 1),
+    FIELD(length, 1),  FIELD(splat_length, 1), FIELD(position_error, 1), FIELD(n_clips, 1),  FIELD(body_sum, 1)};
+
+static const conic_file_kind kind = {
+    {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'}, ".cot", VERSION, fields, sizeof fields / sizeof *fields};
+
+/* One array of the file's body. */
+typedef struct array {
+  size_t offset, n_bytes;
+} array;
+
+typedef struct layout {
+  int n;
+  array arrays[MOST_ARRAYS];
+  size_t n_bytes; /* of the whole file */
+} layout;
+
+/* Which array is which. */
+enum { ARRAY_CODES = 0, ARRAY_INDEX = 1, ARRAY_LEAVES = 2 };
+
+static void add_array(layout *l, uint64_t count, size_t size) {
+  l->arrays[l->n++] = (array){l->n_bytes, (size_t)count * size};
+  l->n_bytes += (size_t)count * size;
+  l->n_bytes = (l->n_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
+
+/* Where everything is follows from the header alone; its counts are below 2³¹. */
+static layout lay_out_file(const header *h) {
+  layout l = {.n_bytes = HEADER_BYTES};
+  int is_quantized = (h->flags & FLAG_QUANTIZED) != 0;
+  add_array(&l, h->n_nodes, CONIC_NODE_BYTES);
+  add_array(&l, is_quantized ? h->n_leaves : h->n_points, sizeof(uint32_t));
+  if (is_quantized) {
+    add_array(
+        &l,
+        conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0, (h->flags & FLAG_OPACITIES) != 0),
+        1);
+  } else {
+    for (int i = 0; i < 9; i++)
+      add_array(&l, h->n_points, sizeof(float));
+    for (int i = 0; i < 3 && (h->flags & FLAG_COLORS); i++)
+      add_array(&l, h->n_points, h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float));
+    if (h->flags & FLAG_OPACITIES)
+      add_array(&l, h->n_points, sizeof(float));
+  }
+  if (h->n_clips)
+    add_array(&l, h->n_clips, sizeof(conic_clip));
+  return l;
+}
+
+static header describe_header(const conic_octree *octree) {
+  header h = {
+      .version = VERSION, .n_points = octree->n_points, .n_leaves = octree->n_leaves, .n_nodes = octree->n_nodes};
+  const conic_splats *leaves = &octree->leaves;
+  h.flags = (octree->is_quantized ? FLAG_QUANTIZED : 0u) | (octree->has_color_codes ? FLAG_COLOR_CODES : 0u) |
+            (leaves->color[0] ? FLAG_COLORS : 0u) | (leaves->opacity ? FLAG_OPACITIES : 0u);
+  memcpy(h.origin, leaves->origin, sizeof h.origin);
+  memcpy(h.low, octree->low, sizeof h.low);
+  memcpy(h.high, octree->high, sizeof h.high);
+  h.cutoff = (float)octree->scale.cutoff;
+  h.color = octree->scale.color;
+  h.length = octree->scale.length;
+  h.splat_length = octree->splat_length;
+  h.position_error = octree->position_error;
+  h.n_clips = octree->n_clips;
+  return h;
+}
+
+uint64_t conic_octree_file_bytes(const conic_octree *octree) {
+  header h = describe_header(octree);
+  return lay_out_file(&h).n_bytes;
+}
+
+int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats) {
+  if (!splats->color[0])
+    return 0;
+  for (int channel = 0; channel < 3; channel++)
+    for (size_t i = 0; i < splats->count; i++) {
+      float value = splats->color[channel][i];
+      if (!(scale->colors[conic_code_srgb(scale, value)] == value))
+        return 0;
+    }
+  return 1;
+}
+
+/* What the arrays are filled from; colours as codes have been made into bytes. */
+static void list_sources(const conic_octree *octree, unsigned char *const color_codes[3],
+                         const void *sources[MOST_ARRAYS]) {
+  const conic_splats *leaves = &octree->leaves;
+  int n = 0;
+  sources[n++] = octree->codes;
+  sources[n++] = octree->index;
+  if (octree->is_quantized) {
+    sources[n++] = octree->leaf_codes;
+    sources[n] = octree->clips;
+    return;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    sources[n + axis] = leaves->position[axis];
+    sources[n + 3 + axis] = leaves->tangent_u[axis];
+    sources[n + 6 + axis] = leaves->tangent_v[axis];
+  }
+  n += 9;
+  for (int channel = 0; channel < 3 && leaves->color[0]; channel++)
+    sources[n++] = octree->has_color_codes ? (const void *)color_codes[channel] : leaves->color[channel];
+  if (leaves->opacity)
+    sources[n++] = leaves->opacity;
+  sources[n] = octree->clips;
+}
+
+static conic_status encode_colors(const conic_octree *octree, unsigned char *codes[3]) {
+  for (int channel = 0; channel < 3 && octree->has_color_codes && !octree->is_quantized; channel++) {
+    codes[channel] = conic_memory_allocate(octree->context, octree->n_points, 1);
+    if (!codes[channel])
+      return CONIC_ERROR_MEMORY;
+    for (size_t i = 0; i < octree->n_points; i++)
+      codes[channel][i] = conic_code_srgb(&octree->scale, octree->leaves.color[channel][i]);
+  }
+  return CONIC_OK;
+}
+
+typedef struct sum_job {
+  const layout *layout;
+  const void *const *sources;
+  uint64_t sums[MOST_ARRAYS];
+} sum_job;
+
+static void sum_task(void *data, size_t i_array, int i_thread) {
+  sum_job *job = data;
+  (void)i_thread;
+  job->sums[i_array] = conic_checksum(job->sources[i_array], job->layout->arrays[i_array].n_bytes);
+}
+
+static uint64_t sum_arrays(conic_context *context, const layout *l, const void *const *sources) {
+  sum_job job = {.layout = l, .sources = sources};
+  unsigned char bytes[8 * MOST_ARRAYS];
+  conic_parallel_for(context, (size_t)l->n, sum_task, &job);
+  for (int i = 0; i < l->n; i++)
+    conic_file_put(bytes + (size_t)i * 8, 8, job.sums[i]);
+  return conic_checksum(bytes, 8 * (size_t)l->n);
+}
+
+static conic_status write_body(conic_octree *octree, const char *path, header *h, const void *const *sources) {
+  static const unsigned char zeros[ALIGNMENT];
+  unsigned char bytes[HEADER_BYTES];
+  conic_output *output;
+  layout l = lay_out_file(h);
+  h->body_sum = sum_arrays(octree->context, &l, sources);
+  conic_file_make_header(&kind, h, bytes);
+  conic_status status = conic_output_open(octree->context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  FILE *stream = conic_output_stream(output);
+  size_t written = fwrite(bytes, 1, HEADER_BYTES, stream);
+  for (int i = 0; i < l.n; i++) { /* a failure is seen when the file is committed */
+    written += fwrite(sources[i], 1, l.arrays[i].n_bytes, stream);
+    size_t next = i + 1 < l.n ? l.arrays[i + 1].offset : l.n_bytes;
+    written += fwrite(zeros, 1, next - l.arrays[i].offset - l.arrays[i].n_bytes, stream);
+    if (written != next)
+      break;
+    status = conic_progress(octree->context, "write", (double)next / (double)l.n_bytes);
+    if (status != CONIC_OK) {
+      conic_output_abandon(output);
+      return status;
+    }
+  }
+  return conic_output_commit(output);
+}
+
+conic_status conic_octree_write(conic_octree *octree, const char *path) {
+  const void *sources[MOST_ARRAYS];
+  unsigned char *color_codes[3] = {NULL, NULL, NULL};
+  header h = describe_header(octree);
+  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
+  if (status == CONIC_OK)
+    status = encode_colors(octree, color_codes);
+  if (status == CONIC_OK) {
+    list_sources(octree, color_codes, sources);
+    status = write_body(octree, path, &h, sources);
+  }
+  for (int channel = 0; channel < 3; channel++)
+    conic_memory_release(octree->context, color_codes[channel]);
+  return status;
+}
+
+static int is_finite(double value) {
+  return value - value == 0.0;
+}
+
+/* What is wrong with a header whose sum is right, or null. */
+static const char *check_header(const header *h) {
+  if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
+    return "unknown flags";
+  if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
+    return "counts that do not go together";
+  if (h->n_clips > h->n_points)
+    return "more clip lines than points";
+  if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
+    return "counts that do not go together";
+  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
+    return "a cutoff or colour scale out of range";
+  if (!(h->length > 1e-60 && h->length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
+      !(h->position_error >= 0.0 && h->position_error < 1e30))
+    return "a length out of range";
+  for (int axis = 0; axis < 3; axis++)
+    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
+        !is_finite((double)h->high[axis]))
+      return "a box that is none";
+  return NULL;
+}
+
+static conic_status read_header(conic_octree *octree, const char *path, header *h) {
+  const conic_mapping *file = &octree->mapping;
+  conic_status status = conic_file_read_header(octree->context, path, &kind, file->bytes, file->n_bytes, h);
+  const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
+  return wrong ? conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong)
+               : status;
+}
+
+/* The size, the sums, and nothing between the arrays. */
+static conic_status check_body(const conic_octree *octree, const char *path, const header *h, const layout *l) {
+  const conic_mapping *file = &octree->mapping;
+  const void *sources[MOST_ARRAYS];
+  if (file->n_bytes != l->n_bytes)
+    return conic_fail(octree->context, CONIC_ERROR_INPUT,
+                      "%s: has %zu bytes where its header tells of %zu (at byte %zu)", path, file->n_bytes, l->n_bytes,
+                      file->n_bytes < l->n_bytes ? file->n_bytes : l->n_bytes);
+  for (int i = 0; i < l->n; i++) {
+    size_t next = i + 1 < l->n ? l->arrays[i + 1].offset : l->n_bytes;
+    for (size_t at = l->arrays[i].offset + l->arrays[i].n_bytes; at < next; at++)
+      if (file->bytes[at])
+        return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: is damaged (at byte %zu)", path, at);
+    sources[i] = file->bytes + l->arrays[i].offset;
+  }
+  if (sum_arrays(octree->context, l, sources) != h->body_sum)
+    return conic_fail(octree->context, CONIC_ERROR_INPUT,
+                      "%s: is damaged: its sum is not that of its header (at byte %d)", path, HEADER_BYTES);
+  return CONIC_OK;
+}
+
+void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
+  header h;
+  conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
+  layout l = {0};
+  if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
+    l = lay_out_file(&h);
+  if (l.n > 0 && l.n_bytes == n_bytes) {
+    unsigned char sums[8 * MOST_ARRAYS];
+    for (int i = 0; i < l.n; i++)
+      conic_file_put(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
+    h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
+    conic_file_fields_write(fields, kind.n_fields, &h, bytes + sizeof kind.magic);
+  }
+  conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
+}
+
+static void *array_at(const conic_octree *octree, const layout *l, int i) {
+  return octree->mapping.bytes + l->arrays[i].offset;
+}
+
+/* Colours that are kept as codes become floats. */
+static conic_status decode_colors(conic_octree *octree, const layout *l) {
+  for (int channel = 0; channel < 3; channel++) {
+    const unsigned char *codes = array_at(octree, l, ARRAY_LEAVES + 9 + channel);
+    float *color = conic_memory_allocate(octree->context, octree->n_points, sizeof *color);
+    if (!color)
+      return CONIC_ERROR_MEMORY;
+    octree->owned.color[channel] = octree->leaves.color[channel] = color;
+    for (size_t i = 0; i < octree->n_points; i++)
+      color[i] = octree->scale.colors[codes[i]];
+  }
+  return CONIC_OK;
+}
+
+static conic_status read_quantized(conic_octree *octree, const header *h, const layout *l) {
+  unsigned optional = (h->flags & FLAG_COLORS ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
+                      (h->flags & FLAG_OPACITIES ? (unsigned)CONIC_SPLATS_OPACITIES : 0u);
+  conic_status status =
+      conic_splats_allocate(octree->context, octree->n_leaves, CONIC_SPLATS_TANGENTS | optional, &octree->owned);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(octree->owned.origin, octree->leaves.origin, sizeof octree->owned.origin);
+  octree->leaves = octree->owned;
+  octree->leaf_codes = array_at(octree, l, ARRAY_LEAVES);
+  conic_leaf_decode(octree->context, &octree->scale, octree->leaf_codes, &octree->leaves);
+  return CONIC_OK;
+}
+
+static conic_status read_leaves(conic_octree *octree, const header *h, const layout *l) {
+  conic_splats *leaves = &octree->leaves;
+  int next = ARRAY_LEAVES + 9;
+  octree->n_clips = (size_t)h->n_clips;
+  if (h->n_clips) /* the last of all */
+    octree->clips = array_at(octree, l, l->n - 1);
+  memcpy(leaves->origin, h->origin, sizeof leaves->origin);
+  if (octree->is_quantized)
+    return read_quantized(octree, h, l);
+  leaves->count = octree->n_points;
+  for (int axis = 0; axis < 3; axis++) {
+    leaves->position[axis] = array_at(octree, l, ARRAY_LEAVES + axis);
+    leaves->tangent_u[axis] = array_at(octree, l, ARRAY_LEAVES + 3 + axis);
+    leaves->tangent_v[axis] = array_at(octree, l, ARRAY_LEAVES + 6 + axis);
+  }
+  if (h->flags & FLAG_COLORS) {
+    conic_status status = octree->has_color_codes ? decode_colors(octree, l) : CONIC_OK;
+    for (int channel = 0; channel < 3 && !octree->has_color_codes; channel++)
+      leaves->color[channel] = array_at(octree, l, next + channel);
+    if (status != CONIC_OK)
+      return status;
+    next += 3;
+  }
+  if (h->flags & FLAG_OPACITIES)
+    leaves->opacity = array_at(octree, l, next++);
+  return CONIC_OK;
+}
+
+/* Every leaf is a splat of its own in the input. */
+static conic_status check_index(const conic_octree *octree, const char *path, const layout *l) {
+  conic_status status = CONIC_OK;
+  unsigned char *is_taken = conic_memory_allocate_zeroed(octree->context, octree->n_points, 1);
+  if (!is_taken)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < octree->leaves.count && status == CONIC_OK; i++) {
+    size_t index = octree->index[i];
+    if (index >= octree->n_points || is_taken[index])
+      status = conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: an index out of range, or twice (at byte %zu)", path,
+                          l->arrays[ARRAY_INDEX].offset + 4 * i);
+    else
+      is_taken[index] = 1;
+  }
+  conic_memory_release(octree->context, is_taken);
+  return status;
+}
+
+/* Records in order, each of a point, with lines. */
+static conic_status check_clips(const conic_octree *octree, const char *path) {
+  for (size_t i = 0; i < octree->n_clips; i++) {
+    const conic_clip *clip = &octree->clips[i];
+    if (clip->splat >= octree->n_points || (i > 0 && clip->splat <= clip[-1].splat) || clip->n_lines < 1 ||
+        clip->n_lines > 2 || clip->operation > CONIC_CLIP_OR)
+      return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: clip lines out of order or range (at byte %zu)", path,
+                        (size_t)((const unsigned char *)clip - octree->mapping.bytes));
+  }
+  return CONIC_OK;
+}
+
+static conic_status read_structure(conic_octree *octree, const char *path, const layout *l) {
+  conic_context *context = octree->context;
+  octree->end = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->end);
+  octree->first_leaf = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *octree->first_leaf);
+  if (!octree->end || !octree->first_leaf)
+    return CONIC_ERROR_MEMORY;
+  const char *wrong = conic_octree_lay_out(octree);
+  if (wrong)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
+                      l->arrays[ARRAY_CODES].offset);
+  conic_status status = check_index(octree, path, l);
+  if (status == CONIC_OK)
+    status = check_clips(octree, path);
+  return status == CONIC_OK ? conic_octree_index_clips(octree) : status;
+}
+
+static conic_status read_octree(conic_octree *octree, const char *path) {
+  header h = {.n_points = 0};
+  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
+  if (status == CONIC_OK)
+    status = conic_mapping_open(octree->context, path, &octree->mapping);
+  if (status == CONIC_OK)
+    status = read_header(octree, path, &h);
+  if (status != CONIC_OK)
+    return status;
+  layout l = lay_out_file(&h);
+  status = check_body(octree, path, &h, &l);
+  if (status != CONIC_OK)
+    return status;
+  octree->n_points = (size_t)h.n_points;
+  octree->n_leaves = (size_t)h.n_leaves;
+  octree->n_nodes = (size_t)h.n_nodes;
+  octree->is_quantized = (h.flags & FLAG_QUANTIZED) != 0;
+  octree->has_color_codes = (h.flags & FLAG_COLOR_CODES) != 0;
+  octree->splat_length = h.splat_length;
+  octree->position_error = h.position_error;
+  memcpy(octree->low, h.low, sizeof octree->low);
+  memcpy(octree->high, h.high, sizeof octree->high);
+  conic_code_scale_init(h.length, (double)h.cutoff, h.color, &octree->scale);
+  octree->codes = array_at(octree, &l, ARRAY_CODES);
+  octree->index = array_at(octree, &l, ARRAY_INDEX);
+  status = read_leaves(octree, &h, &l);
+  return status == CONIC_OK ? read_structure(octree, path, &l) : status;
+}
+
+conic_status conic_octree_read(conic_context *context, const char *path, conic_octree **octree) {
+  *octree = NULL;
+  conic_octree *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  if (!made)
+    return CONIC_ERROR_MEMORY;
+  made->context = context;
+  conic_status status = read_octree(made, strcmp(path, "-") == 0 ? "-" : path);
+  if (status == CONIC_OK)
+    *octree = made;
+  else
+    conic_octree_destroy(made);
+  return status;
+}
+
+int conic_octree_is_file(const char *path) {
+  return conic_file_is_of_kind(&kind, path);
+}

@@ -1,0 +1,214 @@
+#include "lod/octree/octree_fit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/eigen.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_kernels.h"
+
+/* Subtrees up to this size are fitted side by side; the leaves of the nodes above are scanned in such chunks. */
+static const size_t task_leaves = 32768, chunk_leaves = 8192;
+
+/* A node's error is so many times the height of its leaves' outlines over its plane, and so much of its size. */
+static const double height_weight = 2.0, size_weight = 0.25;
+
+/* Ellipses may be narrower than a splat that is estimated (core/splats/estimate.h), for they bound and do not guess. */
+static const double least_ratio = 0.1;
+
+typedef struct fit_task {
+  uint32_t i_node;
+  conic_moments result;
+} fit_task;
+
+typedef struct fitter {
+  conic_octree *octree;
+  fit_task *tasks;
+  size_t n_tasks, next_task;
+  conic_octree_kernels kernels;
+} fitter;
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+typedef struct scan {
+  const fitter *fitter;
+  const conic_node_frame *frame;
+  size_t begin, end;
+  conic_leaf_reach *chunks;
+} scan;
+
+static void scan_chunk(void *data, size_t i_chunk, int i_thread) {
+  const scan *s = data;
+  size_t begin = s->begin + i_chunk * chunk_leaves, end = begin + chunk_leaves < s->end ? begin + chunk_leaves : s->end;
+  (void)i_thread;
+  memset(&s->chunks[i_chunk], 0, sizeof *s->chunks);
+  s->chunks[i_chunk].cosine = 1.0;
+  s->fitter->kernels.add_reach(&s->fitter->octree->leaves, begin, end, s->fitter->octree->scale.cutoff, s->frame,
+                               &s->chunks[i_chunk]);
+}
+
+/* The same for many leaves: chunk by chunk, side by side. Greatest and least do not ask for an order. */
+static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const conic_node_frame *frame,
+                                conic_leaf_reach *reach) {
+  size_t n_chunks = (end - begin + chunk_leaves - 1) / chunk_leaves;
+  conic_context *context = f->octree->context;
+  scan s = {f, frame, begin, end, NULL};
+  s.chunks = conic_memory_allocate(context, n_chunks, sizeof *s.chunks);
+  if (!s.chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, n_chunks, scan_chunk, &s);
+  for (size_t i = 0; i < n_chunks; i++) {
+    const conic_leaf_reach *more = &s.chunks[i];
+    reach->reach = more->reach > reach->reach ? more->reach : reach->reach;
+    reach->radius = more->radius > reach->radius ? more->radius : reach->radius;
+    reach->height = more->height > reach->height ? more->height : reach->height;
+    reach->cosine = more->cosine < reach->cosine ? more->cosine : reach->cosine;
+  }
+  conic_memory_release(context, s.chunks);
+  return CONIC_OK;
+}
+
+/* The mean normal, weighed by area; where normals cancel, the direction in which the points spread least. */
+static void find_normal(const conic_moments *moments, double normal[3]) {
+  double values[3], vectors[3][3];
+  if (dot(moments->normal, moments->normal) > 1e-4 * moments->area * moments->area) {
+    memcpy(normal, moments->normal, 3 * sizeof *normal);
+    return;
+  }
+  conic_eigen3(moments->scatter, values, vectors);
+  memcpy(normal, vectors[2], 3 * sizeof *normal);
+}
+
+static double quadratic(const double m[6], const double a[3], const double b[3]) {
+  return a[0] * (m[0] * b[0] + m[1] * b[1] + m[2] * b[2]) + a[1] * (m[1] * b[0] + m[3] * b[1] + m[4] * b[2]) +
+         a[2] * (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]);
+}
+
+/* Where the node is, and how its ellipse lies: the covariance in the tangent plane (Confetti Eq. 3, §4.3). */
+static void choose_frame(const fitter *f, const conic_moments *moments, size_t begin, size_t end, uint8_t *code,
+                         conic_node_frame *frame) {
+  const conic_octree *octree = f->octree;
+  double normal[3], u[3], v[3], n[3], first[3];
+  conic_octree_place(octree, begin, first);
+  find_normal(moments, normal);
+  conic_code_place(&octree->scale, moments->mean, first, code);
+  conic_code_facing(normal, code);
+  conic_code_basis(code, u, v, n);
+  const double covariance[3] = {quadratic(moments->scatter, u, u), quadratic(moments->scatter, u, v),
+                                quadratic(moments->scatter, v, v)};
+  conic_ellipse shape = conic_ellipse_shape(covariance, least_ratio);
+  if (end - begin <= CONIC_FEW_LEAVES)
+    shape.ratio = f->kernels.choose_ratio(&octree->leaves, begin, end, octree->scale.cutoff, moments->mean, u, v,
+                                          &shape, least_ratio);
+  conic_code_axes(shape.major[0], shape.major[1], shape.ratio, code);
+  conic_code_frame_in(&octree->scale, first, code, u, v, n, frame);
+}
+
+static void choose_color(const conic_octree *octree, const conic_moments *moments, double reach, double ratio,
+                         uint8_t *code) {
+  double color[3], major = reach / octree->scale.cutoff, opacity = moments->weight / (major * major * ratio);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] = moments->weight > 0.0 ? moments->color[channel] / moments->weight : 0.0;
+  conic_code_color(&octree->scale, color, opacity, code);
+}
+
+/* Fits node i to its leaves, whose sums these are. */
+static conic_status fit_node(const fitter *f, size_t i, const conic_moments *moments) {
+  const conic_octree *octree = f->octree;
+  size_t begin = octree->first_leaf[i], end = octree->first_leaf[octree->end[i]];
+  uint8_t *code = octree->codes + i * CONIC_NODE_BYTES;
+  conic_node_frame frame;
+  conic_leaf_reach reach = {.cosine = 1.0};
+  conic_status status = CONIC_OK;
+  choose_frame(f, moments, begin, end, code, &frame);
+  if (end - begin > task_leaves)
+    status = scan_leaves(f, begin, end, &frame, &reach);
+  else
+    f->kernels.add_reach(&octree->leaves, begin, end, octree->scale.cutoff, &frame, &reach);
+  const double hair = 1.0 + 1e-6; /* axes and radii are floats when they are used */
+  double major = reach.reach * hair, radius = (reach.radius > major ? reach.radius : major) * hair;
+  conic_code_extent(&octree->scale, &major, &radius, code);
+  conic_code_cone(reach.cosine - 1e-6, code);
+  choose_color(octree, moments, major, frame.ratio, code);
+  double by_height = height_weight * reach.height * hair, by_size = size_weight * major * hair;
+  conic_code_error(&octree->scale, by_height > by_size ? by_height : by_size, radius, code);
+  return status;
+}
+
+static conic_status fit_top(fitter *f, size_t i, conic_moments *moments);
+
+static conic_status fit_subtree(fitter *f, size_t i, int is_top, conic_moments *moments) {
+  const conic_octree *octree = f->octree;
+  conic_status status = CONIC_OK;
+  memset(moments, 0, sizeof *moments);
+  for (int k = 0; k < conic_octree_n_direct(octree, i); k++) {
+    conic_moments leaf;
+    conic_moments_of_splat(&octree->leaves, octree->first_leaf[i] + (size_t)k, &leaf);
+    conic_moments_merge(moments, &leaf);
+  }
+  for (size_t child = i + 1; child < octree->end[i] && status == CONIC_OK; child = octree->end[child]) {
+    conic_moments below;
+    status = is_top ? fit_top(f, child, &below) : fit_subtree(f, child, 0, &below);
+    if (status == CONIC_OK)
+      conic_moments_merge(moments, &below);
+  }
+  return status == CONIC_OK ? fit_node(f, i, moments) : status;
+}
+
+static int is_task(const conic_octree *octree, size_t i) {
+  return octree->first_leaf[octree->end[i]] - octree->first_leaf[i] <= task_leaves;
+}
+
+/* Nodes above the tasks, in the same order as those were listed. */
+static conic_status fit_top(fitter *f, size_t i, conic_moments *moments) {
+  if (is_task(f->octree, i)) {
+    *moments = f->tasks[f->next_task++].result;
+    return CONIC_OK;
+  }
+  return fit_subtree(f, i, 1, moments);
+}
+
+static void run_task(void *data, size_t i_task, int i_thread) {
+  fitter *f = data;
+  (void)i_thread;
+  fit_subtree(f, f->tasks[i_task].i_node, 0, &f->tasks[i_task].result); /* too small to allocate, so it cannot fail */
+}
+
+/* Counts the tasks, or lists them. */
+static size_t list_tasks(const conic_octree *octree, fit_task *tasks) {
+  size_t n = 0;
+  for (size_t i = 0; i < octree->n_nodes;)
+    if (is_task(octree, i)) {
+      if (tasks)
+        tasks[n].i_node = (uint32_t)i;
+      n++;
+      i = octree->end[i];
+    } else
+      i++;
+  return n;
+}
+
+conic_status conic_octree_fit(conic_octree *octree) {
+  fitter f = {.octree = octree, .kernels = conic_octree_kernels_choose()};
+  conic_moments root;
+  if (octree->n_nodes == 0)
+    return CONIC_OK;
+  f.n_tasks = list_tasks(octree, NULL);
+  f.tasks = conic_memory_allocate(octree->context, f.n_tasks, sizeof *f.tasks);
+  if (!f.tasks)
+    return CONIC_ERROR_MEMORY;
+  list_tasks(octree, f.tasks);
+  conic_status status = conic_progress(octree->context, "octree", 0.4);
+  if (status == CONIC_OK) {
+    conic_parallel_for(octree->context, f.n_tasks, run_task, &f);
+    status = fit_top(&f, 0, &root);
+  }
+  conic_memory_release(octree->context, f.tasks);
+  if (status == CONIC_OK)
+    status = conic_octree_find_errors(octree);
+  return status == CONIC_OK ? conic_progress(octree->context, "octree", 1.0) : status;
+}

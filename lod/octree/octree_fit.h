@@ -1,0 +1,36 @@
+/* What stands for many: the position, ellipse, colour and bounds of every inner node. */
+#ifndef CONIC_OCTREE_FIT_H
+#define CONIC_OCTREE_FIT_H
+
+#include "core/splats/ellipse.h"
+#include "lod/octree/moments.h"
+#include "lod/octree/octree_nodes.h"
+
+/* Fills in the codes of all nodes, whose structure and leaves are there. Errors: MEMORY, CANCELLED. */
+conic_status conic_octree_fit(conic_octree *octree);
+
+/* How far a range of leaves reaches in a frame: what a node's bounds are made of. */
+typedef struct conic_leaf_reach {
+  double reach;  /* the major half axis of an ellipse of the frame's directions and ratio that holds their outlines;
+                    the least is smaller by 2 % at most */
+  double radius; /* of the sphere that holds their outlines */
+  double height; /* how far from the plane their outlines go */
+  double cosine; /* the least of their normals to the frame's */
+} conic_leaf_reach;
+
+/* Widens *reach by the leaves begin … end. */
+typedef void conic_add_reach_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                                      const conic_node_frame *frame, conic_leaf_reach *reach);
+
+/* The ratio whose ellipse around the outlines of a few leaves is the smallest: those near the shape's are tried, which
+ * has its major direction in u, v. */
+enum { CONIC_FEW_LEAVES = 16 }; /* the more there are, the better the covariance's fits */
+typedef double conic_choose_ratio_function(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                                           const double place[3], const double u[3], const double v[3],
+                                           const conic_ellipse *shape, double least_ratio);
+
+/* Raises the errors that conic_octree_fit has left, which tell of the leaves' heights and the node's size alone, to how
+ * far its disc reaches past the surface. Errors: MEMORY, CANCELLED. */
+conic_status conic_octree_find_errors(conic_octree *octree);
+
+#endif

@@ -1,0 +1,306 @@
+#include "lod/octree/octree_nodes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+
+static const size_t chunk_nodes = 4096;
+
+void conic_octree_options_init(conic_octree_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->cutoff = 1.5f;
+}
+
+void conic_octree_destroy(conic_octree *octree) {
+  if (!octree)
+    return;
+  conic_context *context = octree->context;
+  conic_splats_release(context, &octree->owned);
+  conic_memory_release(context, octree->owned_index);
+  conic_memory_release(context, octree->owned_clips);
+  conic_memory_release(context, octree->clip_of_point);
+  conic_memory_release(context, octree->owned_codes);
+  conic_memory_release(context, octree->owned_leaf_codes);
+  conic_memory_release(context, octree->drawn);
+  conic_memory_release(context, octree->drawn_leaves);
+  float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,   octree->error,
+                     octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2]};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    conic_memory_release(context, arrays[i]);
+  conic_memory_release(context, octree->end);
+  conic_memory_release(context, octree->first_leaf);
+  conic_mapping_close(context, &octree->mapping);
+  conic_memory_release(context, octree);
+}
+
+conic_status conic_octree_index_clips(conic_octree *octree) {
+  if (octree->n_clips == 0)
+    return CONIC_OK;
+  octree->clip_of_point = conic_memory_allocate(octree->context, octree->n_points, sizeof *octree->clip_of_point);
+  if (!octree->clip_of_point)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < octree->n_points; i++)
+    octree->clip_of_point[i] = CONIC_NO_CLIP;
+  for (size_t i = 0; i < octree->n_clips; i++)
+    octree->clip_of_point[octree->clips[i].splat] = (uint32_t)i;
+  return CONIC_OK;
+}
+
+/* The nodes on the way from the root to the one that is looked at. */
+typedef struct open_node {
+  uint32_t i_node;
+  int n_left; /* inner children that are still to come */
+} open_node;
+
+/* The nodes that are complete get their end. Returns how many stay open. */
+static int close_nodes(conic_octree *octree, open_node *path, int depth, size_t next) {
+  while (depth > 0 && path[depth - 1].n_left == 0) {
+    octree->end[path[--depth].i_node] = (uint32_t)next;
+    if (depth > 0)
+      path[depth - 1].n_left--;
+  }
+  return depth;
+}
+
+const char *conic_octree_lay_out(conic_octree *octree) {
+  open_node path[CONIC_OCTREE_DEPTH];
+  size_t i_leaf = 0;
+  int depth = 0;
+  octree->n_levels = 0;
+  for (size_t i = 0; i < octree->n_nodes; i++) {
+    const uint8_t *code = octree->codes + i * CONIC_NODE_BYTES;
+    int n_direct = conic_code_n_direct(code), n_inner = conic_code_n_inner(code);
+    if (i > 0 && depth == 0)
+      return "nodes that hang on none";
+    if (n_direct + n_inner < 2 || n_direct + n_inner > CONIC_NODE_FANOUT)
+      return "a node with other than 2 to 8 children";
+    if (depth == CONIC_OCTREE_DEPTH)
+      return "more than 128 levels";
+    if ((size_t)n_direct > octree->n_leaves - i_leaf)
+      return "nodes with more leaves than there are";
+    octree->first_leaf[i] = (uint32_t)i_leaf;
+    i_leaf += (size_t)n_direct;
+    path[depth++] = (open_node){(uint32_t)i, n_inner};
+    octree->n_levels = depth > octree->n_levels ? depth : octree->n_levels;
+    depth = close_nodes(octree, path, depth, i + 1);
+  }
+  octree->first_leaf[octree->n_nodes] = (uint32_t)i_leaf;
+  if (depth > 0)
+    return "nodes that lack children";
+  if (octree->n_nodes ? i_leaf != octree->n_leaves : octree->n_leaves > 1)
+    return "leaves that hang on no node";
+  return NULL;
+}
+
+static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
+  conic_octree *octree = data;
+  size_t begin = i_chunk * chunk_nodes,
+         end = begin + chunk_nodes < octree->n_nodes ? begin + chunk_nodes : octree->n_nodes;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++) {
+    conic_node node;
+    double first[3];
+    conic_octree_place(octree, octree->first_leaf[i], first);
+    conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
+    conic_drawn_node *drawn = &octree->drawn[i];
+    memset(drawn, 0, sizeof *drawn);
+    memcpy(drawn->position, node.position, sizeof drawn->position);
+    memcpy(drawn->tangent_u, node.tangent_u, sizeof drawn->tangent_u);
+    memcpy(drawn->tangent_v, node.tangent_v, sizeof drawn->tangent_v);
+    memcpy(drawn->color, node.color, sizeof drawn->color);
+    drawn->opacity = node.opacity;
+    drawn->id = (uint32_t)(octree->n_points + i);
+    for (int axis = 0; axis < 3; axis++) {
+      octree->center[axis][i] = node.position[axis];
+      octree->normal[axis][i] = node.normal[axis];
+    }
+    octree->radius[i] = node.radius;
+    octree->error[i] = node.error;
+    octree->cone[i] = node.cone;
+  }
+}
+
+static conic_status allocate_decoded(conic_octree *octree) {
+  conic_context *context = octree->context;
+  float **arrays[] = {&octree->center[0], &octree->center[1], &octree->center[2], &octree->radius,   &octree->error,
+                      &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
+    *arrays[i] = conic_memory_allocate_zeroed(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));
+    if (!*arrays[i])
+      return CONIC_ERROR_MEMORY;
+  }
+  octree->drawn = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->drawn);
+  return octree->drawn ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_octree_decode(conic_octree *octree) {
+  if (octree->drawn)
+    return CONIC_OK;
+  conic_status status = allocate_decoded(octree);
+  if (status == CONIC_OK)
+    conic_parallel_for(octree->context, (octree->n_nodes + chunk_nodes - 1) / chunk_nodes, decode_chunk, octree);
+  return status;
+}
+
+static void copy_chunk(void *data, size_t i_chunk, int i_thread) {
+  conic_octree *octree = data;
+  const conic_splats *leaves = &octree->leaves;
+  size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < octree->n_leaves; i++) {
+    conic_drawn_node drawn = {.opacity = leaves->opacity ? leaves->opacity[i] : 1.0f, .id = octree->index[i]};
+    for (int axis = 0; axis < 3; axis++) {
+      drawn.position[axis] = leaves->position[axis][i];
+      drawn.tangent_u[axis] = leaves->tangent_u[axis][i];
+      drawn.tangent_v[axis] = leaves->tangent_v[axis][i];
+      drawn.color[axis] = leaves->color[axis] ? leaves->color[axis][i] : 1.0f;
+    }
+    octree->drawn_leaves[i] = drawn;
+  }
+}
+
+conic_status conic_octree_decode_all(conic_octree *octree) {
+  conic_status status = conic_octree_decode(octree);
+  if (status != CONIC_OK || octree->drawn_leaves)
+    return status;
+  octree->drawn_leaves = conic_memory_allocate(octree->context, octree->n_leaves, sizeof *octree->drawn_leaves);
+  if (!octree->drawn_leaves)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(octree->context, (octree->n_leaves + chunk_nodes - 1) / chunk_nodes, copy_chunk, octree);
+  return CONIC_OK;
+}
+
+static int compare_floats(const void *a, const void *b) {
+  const float *first = a, *second = b;
+  return (*first > *second) - (*first < *second);
+}
+
+/* Least, median, greatest. */
+static void find_quantiles(float *values, size_t n, double quantiles[3]) {
+  qsort(values, n, sizeof *values, compare_floats);
+  quantiles[0] = n ? (double)values[0] : 0.0;
+  quantiles[1] = n ? (double)values[(n - 1) / 2] : 0.0;
+  quantiles[2] = n ? (double)values[n - 1] : 0.0;
+}
+
+/* Of all radii and cones, straight from the codes. */
+static conic_status find_spreads(const conic_octree *octree, conic_octree_info *info) {
+  size_t n = octree->n_nodes;
+  float *radii = conic_memory_allocate(octree->context, n, sizeof *radii);
+  float *cones = conic_memory_allocate(octree->context, n, sizeof *cones);
+  conic_status status = radii && cones ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+    conic_node node;
+    double first[3];
+    conic_octree_place(octree, octree->first_leaf[i], first);
+    conic_code_decode(&octree->scale, first, octree->codes + i * CONIC_NODE_BYTES, &node);
+    radii[i] = node.radius;
+    cones[i] = node.cone;
+  }
+  if (status == CONIC_OK) {
+    find_quantiles(radii, n, info->radius);
+    find_quantiles(cones, n, info->cone);
+  }
+  conic_memory_release(octree->context, radii);
+  conic_memory_release(octree->context, cones);
+  return status;
+}
+
+/* A set of the two corners has the same box as the whole. */
+typedef struct box {
+  conic_splats corners;
+  float values[3][2];
+} box;
+
+static void make_box(const conic_octree *octree, box *b) {
+  memset(b, 0, sizeof *b);
+  b->corners.count = 2;
+  for (int axis = 0; axis < 3; axis++) {
+    b->values[axis][0] = octree->low[axis];
+    b->values[axis][1] = octree->high[axis];
+    b->corners.position[axis] = b->values[axis];
+    b->corners.origin[axis] = octree->leaves.origin[axis];
+  }
+}
+
+double conic_octree_near(const conic_octree *octree) {
+  box b;
+  make_box(octree, &b);
+  return conic_default_near(&b.corners);
+}
+
+conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info) {
+  box b;
+  memset(info, 0, sizeof *info);
+  info->n_points = octree->n_points;
+  info->n_leaves = octree->n_leaves;
+  info->n_nodes = octree->n_nodes;
+  info->n_levels = octree->n_levels;
+  info->is_quantized = octree->is_quantized;
+  info->cutoff = (float)octree->scale.cutoff;
+  info->splat_length = octree->splat_length;
+  info->position_error = octree->position_error;
+  info->n_bytes = conic_octree_file_bytes(octree);
+  make_box(octree, &b);
+  conic_splats_bounds(&b.corners, info->minimum, info->maximum);
+  info->near_z = conic_octree_near(octree);
+  return find_spreads(octree, info);
+}
+
+/* A splat that cannot be drawn. */
+static void blank(conic_splats *splats, size_t i) {
+  for (int axis = 0; axis < 3; axis++) {
+    splats->position[axis][i] = splats->tangent_u[axis][i] = splats->tangent_v[axis][i] = NAN;
+    if (splats->color[axis])
+      splats->color[axis][i] = 0.0f;
+  }
+  if (splats->opacity)
+    splats->opacity[i] = 0.0f;
+}
+
+typedef struct leaf_copy {
+  const conic_octree *octree;
+  conic_splats *splats;
+} leaf_copy;
+
+static void copy_leaves(void *data, size_t i_chunk, int i_thread) {
+  const leaf_copy *copy = data;
+  const conic_splats *from = &copy->octree->leaves;
+  conic_splats *to = copy->splats;
+  const uint32_t *index = copy->octree->index;
+  size_t begin = i_chunk * chunk_nodes, end = begin + chunk_nodes < from->count ? begin + chunk_nodes : from->count;
+  (void)i_thread;
+  for (int axis = 0; axis < 3; axis++)
+    for (size_t i = begin; i < end; i++) {
+      to->position[axis][index[i]] = from->position[axis][i];
+      to->tangent_u[axis][index[i]] = from->tangent_u[axis][i];
+      to->tangent_v[axis][index[i]] = from->tangent_v[axis][i];
+      if (from->color[axis])
+        to->color[axis][index[i]] = from->color[axis][i];
+    }
+  for (size_t i = begin; i < end && from->opacity; i++)
+    to->opacity[index[i]] = from->opacity[i];
+}
+
+conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats) {
+  const conic_splats *leaves = &octree->leaves;
+  leaf_copy copy = {octree, splats};
+  unsigned fields = conic_splats_fields(leaves) | (octree->n_clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u);
+  conic_status status = conic_splats_allocate(octree->context, octree->n_points, fields, splats);
+  if (status != CONIC_OK)
+    return status;
+  splats->n_clips = octree->n_clips;
+  if (octree->n_clips)
+    memcpy(splats->clips, octree->clips, octree->n_clips * sizeof *splats->clips);
+  memcpy(splats->origin, leaves->origin, sizeof splats->origin);
+  for (size_t i = 0; leaves->count < octree->n_points && i < octree->n_points; i++) /* those that are not kept */
+    blank(splats, i);
+  conic_parallel_for(octree->context, (leaves->count + chunk_nodes - 1) / chunk_nodes, copy_leaves, &copy);
+  return CONIC_OK;
+}

@@ -1,0 +1,112 @@
+/* The octree's inside: what its parts hand to each other. */
+#ifndef CONIC_OCTREE_NODES_H
+#define CONIC_OCTREE_NODES_H
+
+#include "conic/octree.h"
+#include "core/files/mapping.h"
+#include "lod/octree/octree_code.h"
+
+#define CONIC_NO_CLIP UINT32_MAX
+
+/* No inner node is deeper; splitting at the mean gives up well before (lod/octree/octree_split.c). */
+enum { CONIC_OCTREE_DEPTH = 128 };
+
+/* A quantised octree leaves out what cannot be drawn; were that more than this times what can, a small file would ask
+ * for much memory. */
+enum { CONIC_OCTREE_MOST_LEFT_OUT = 15 };
+
+/* Subtrees with no more inner nodes are walked by one thread. */
+enum { CONIC_OCTREE_BLOCK = 1024 };
+
+/* What of an inner node or a leaf is drawn: a line of the cache. */
+typedef struct conic_drawn_node {
+  float position[3], tangent_u[3], tangent_v[3], color[3], opacity;
+  uint32_t id; /* of a leaf, its index in the input; of a node, n_points + its number */
+  float unused[2];
+} conic_drawn_node;
+
+/* Measuring goes by groups of so many nodes; their arrays have room for a last one. */
+enum { CONIC_OCTREE_GROUP = 16 };
+
+/* Inner nodes are numbered in preorder, so that a subtree is a range; the leaves of a node are a range too: those that
+ * hang on it directly first, then those of each inner child in turn. */
+struct conic_octree {
+  conic_context *context;
+
+  size_t n_points, n_leaves, n_nodes;
+  conic_splats leaves; /* n_points of them: those of the hierarchy, then those that cannot be drawn */
+  uint32_t *index;     /* of each in the input */
+  size_t n_clips;
+  conic_clip *clips;       /* of the input, by index in it; the leaves' own are null */
+  uint32_t *clip_of_point; /* record of each point of the input, or CONIC_NO_CLIP; null where there are no clip lines */
+  uint8_t *codes;          /* CONIC_NODE_BYTES a node */
+
+  /* What the codes give, once it is asked for. */
+  conic_drawn_node *drawn;
+  conic_drawn_node *drawn_leaves; /* the n_leaves again, for they are chosen one here, one there; only for choosing */
+  float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
+  uint32_t *end;                                        /* the node after the subtree */
+  uint32_t *first_leaf;                                 /* n_nodes + 1 */
+  int n_levels;
+
+  conic_code_scale scale;
+  int is_quantized;
+  int has_color_codes;   /* every leaf's colour is that of an 8-bit sRGB code */
+  float low[3], high[3]; /* of the finite centres, from the origin */
+  double splat_length, position_error;
+  const unsigned char *leaf_codes; /* a quantised octree's leaves as its file has them */
+
+  /* Where all that lies: in memory of its own, or in the file's. What is not in memory of its own is null here. */
+  conic_splats owned;
+  uint32_t *owned_index;
+  conic_clip *owned_clips;
+  unsigned char *owned_codes, *owned_leaf_codes;
+  conic_mapping mapping;
+};
+
+/* Fills in what the codes give, from the leaves, where that has not been done: who only builds and writes does without,
+ * which would else be two fifths of its memory. Errors: MEMORY. */
+conic_status conic_octree_decode(conic_octree *octree);
+
+/* The same, and the leaves once more. Errors: MEMORY. */
+conic_status conic_octree_decode_all(conic_octree *octree);
+
+/* What conic_default_near gives for the splats that it was built from. */
+double conic_octree_near(const conic_octree *octree);
+
+/* Whether all colours of a set are those of 8-bit codes. */
+int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_splats *splats);
+
+/* Finds the clip lines of each point. Errors: MEMORY. */
+conic_status conic_octree_index_clips(conic_octree *octree);
+
+/* Lets the clip lines of leaves that were rounded lie where they lay. */
+void conic_octree_move_clips(conic_octree *octree, const conic_splats *before, const conic_splats *after);
+
+/* The clip lines of leaf i, or null. */
+static inline const conic_clip *conic_octree_clip(const conic_octree *octree, size_t i_leaf) {
+  uint32_t i = octree->clip_of_point ? octree->clip_of_point[octree->index[i_leaf]] : CONIC_NO_CLIP;
+  return i == CONIC_NO_CLIP ? NULL : &octree->clips[i];
+}
+
+/* The size of the file that holds it. */
+uint64_t conic_octree_file_bytes(const conic_octree *octree);
+
+/* Makes the sums in a file's bytes right, where its header tells of arrays that are all there: for tests and fuzzing,
+ * which would else see no further than the sums. */
+void conic_octree_mend(unsigned char *bytes, size_t n_bytes);
+
+/* Lays the codes' structure out: `end` and `first_leaf`. Returns what is wrong with it, or null. */
+const char *conic_octree_lay_out(conic_octree *octree);
+
+static inline int conic_octree_n_direct(const conic_octree *octree, size_t i_node) {
+  return conic_code_n_direct(octree->codes + i_node * CONIC_NODE_BYTES);
+}
+
+/* The position of leaf i, as the codes take it. */
+static inline void conic_octree_place(const conic_octree *octree, size_t i_leaf, double place[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    place[axis] = (double)octree->leaves.position[axis][i_leaf];
+}
+
+#endif

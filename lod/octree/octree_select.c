@@ -1,0 +1,302 @@
+#include <math.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "lod/octree/octree_kernels.h"
+
+/* What becomes part of the selection, in the order of the hierarchy. */
+typedef struct piece {
+  uint32_t begin, end; /* nodes of a block that is yet to be looked at; or, of `kind`, leaves or one node */
+  enum { PIECE_BLOCK, PIECE_LEAVES, PIECE_NODE } kind;
+  size_t place, count, n_inner, n_culled; /* in the selection */
+} piece;
+
+/* What is kept from call to call. */
+typedef struct scratch {
+  piece *pieces;
+  size_t n_pieces, pieces_room;
+  uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or CONIC_NODE_BIT and a node */
+  size_t sources_room;
+  float *arrays; /* the selection's */
+  conic_clip *clips;
+  size_t clips_room;
+} scratch;
+
+enum { PIECES_A_TASK = 2 };
+
+typedef struct selecting {
+  const conic_octree *octree;
+  conic_octree_view view;
+  float error_px;
+  conic_selection *selection;
+  scratch *scratch;
+  conic_put_function *put;
+} selecting;
+
+void conic_selection_options_init(conic_selection_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->error_px = 1.0;
+}
+
+void conic_selection_release(conic_context *context, conic_selection *selection) {
+  scratch *kept = selection->scratch;
+  if (kept) {
+    conic_memory_release(context, kept->arrays);
+    conic_memory_release(context, kept->clips);
+    conic_memory_release(context, kept->pieces);
+    conic_memory_release(context, kept->sources);
+  }
+  conic_memory_release(context, kept);
+  memset(selection, 0, sizeof *selection);
+}
+
+static conic_status add_piece(selecting *s, piece added) {
+  scratch *kept = s->scratch;
+  if (kept->n_pieces == kept->pieces_room) {
+    size_t room = 2 * kept->pieces_room + 256;
+    conic_status status =
+        conic_memory_grow(s->octree->context, (void **)&kept->pieces, kept->n_pieces, room, sizeof *kept->pieces);
+    if (status != CONIC_OK)
+      return status;
+    kept->pieces_room = room;
+  }
+  kept->pieces[kept->n_pieces++] = added;
+  return CONIC_OK;
+}
+
+/* Walks the nodes whose subtrees are larger than a block one by one; the blocks are left for later. */
+static conic_status list_pieces(selecting *s) {
+  const conic_octree *octree = s->octree;
+  conic_status status = CONIC_OK;
+  conic_measured measured = {0};
+  s->scratch->n_pieces = 0;
+  s->selection->n_culled = 0;
+  if (octree->n_nodes == 0)
+    return add_piece(s, (piece){.begin = 0, .end = 1, .kind = PIECE_LEAVES, .count = 1});
+  for (uint32_t i = 0; i < octree->n_nodes && status == CONIC_OK;) {
+    uint32_t end = octree->end[i];
+    if (end - i <= CONIC_OCTREE_BLOCK) {
+      status = add_piece(s, (piece){.begin = i, .end = end, .kind = PIECE_BLOCK});
+      i = end;
+      continue;
+    }
+    float pixels = conic_octree_look_up(octree, &s->view, i, &measured);
+    uint32_t first = octree->first_leaf[i], last = octree->first_leaf[i + 1];
+    if (pixels < 0.0f)
+      s->selection->n_culled++;
+    else if (pixels <= s->error_px)
+      status = add_piece(s, (piece){.begin = i, .end = i + 1, .kind = PIECE_NODE, .count = 1, .n_inner = 1});
+    else if (last > first)
+      status = add_piece(s, (piece){.begin = first, .end = last, .kind = PIECE_LEAVES, .count = last - first});
+    i = pixels < 0.0f || pixels <= s->error_px ? end : i + 1;
+  }
+  return status;
+}
+
+/* Lists what a block gives, where its first leaf has its place: it gives no more than it has leaves. */
+static void walk_block(const selecting *s, piece *block) {
+  const conic_octree *octree = s->octree;
+  uint32_t *const sources = s->scratch->sources + octree->first_leaf[block->begin], *next = sources;
+  conic_measured measured = {0};
+  for (uint32_t i = block->begin; i < block->end;) {
+    uint32_t end = octree->end[i];
+    float pixels = conic_octree_look_up(octree, &s->view, i, &measured);
+    if (pixels <= s->error_px) {
+      int is_culled = pixels < 0.0f;
+      *next = CONIC_NODE_BIT | i;
+      next += !is_culled;
+      block->n_inner += (size_t)!is_culled;
+      block->n_culled += (size_t)is_culled;
+      i = end;
+      continue;
+    }
+    uint32_t first = octree->first_leaf[i], last = octree->first_leaf[++i];
+    while (first < last)
+      *next++ = first++;
+  }
+  block->count = (size_t)(next - sources);
+}
+
+static void count_task(void *data, size_t i_task, int i_thread) {
+  selecting *s = data;
+  size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < s->scratch->n_pieces; i++) {
+    piece *p = &s->scratch->pieces[i];
+    if (p->kind == PIECE_BLOCK)
+      walk_block(s, p);
+  }
+}
+
+/* Puts n splats at `begin` of the selection. */
+static void put_splats(const selecting *s, const uint32_t *sources, size_t begin, size_t n) {
+  s->put(s->octree, sources, n, s->view.cull_back ? s->view.eye : NULL, &s->selection->splats, s->selection->ids,
+         begin);
+}
+
+static void fill_task(void *data, size_t i_task, int i_thread) {
+  selecting *s = data;
+  scratch *kept = s->scratch;
+  size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
+  (void)i_thread;
+  for (size_t i = begin; i < end && i < kept->n_pieces; i++) {
+    const piece *p = &kept->pieces[i];
+    if (p->kind == PIECE_BLOCK)
+      put_splats(s, kept->sources + s->octree->first_leaf[p->begin], p->place, p->count);
+    for (uint32_t k = p->begin; k < p->end && p->kind != PIECE_BLOCK; k++) {
+      uint32_t source = p->kind == PIECE_NODE ? CONIC_NODE_BIT | k : k;
+      put_splats(s, &source, p->place + k - p->begin, 1);
+    }
+  }
+}
+
+/* One block for all arrays, each a few lines of the cache further on in its page than the one before: at the same place
+ * in theirs, they would drive each other out of the cache. */
+static conic_status make_room(selecting *s, size_t room) {
+  enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 14 }; /* floats */
+  conic_context *context = s->octree->context;
+  conic_selection *selection = s->selection;
+  conic_splats *splats = &selection->splats;
+  size_t stride = (room + PAGE - 1) / PAGE * PAGE + SHIFT;
+  int n = 0;
+  conic_memory_release(context, s->scratch->arrays);
+  memset(splats, 0, sizeof *splats);
+  selection->ids = NULL;
+  selection->room = 0;
+  float *arrays = s->scratch->arrays = conic_memory_allocate(context, stride * N_ARRAYS, sizeof *arrays);
+  if (!arrays)
+    return CONIC_ERROR_MEMORY;
+  for (int axis = 0; axis < 3; axis++) {
+    splats->position[axis] = arrays + stride * (size_t)n++;
+    splats->tangent_u[axis] = arrays + stride * (size_t)n++;
+    splats->tangent_v[axis] = arrays + stride * (size_t)n++;
+    if (s->octree->leaves.color[0])
+      splats->color[axis] = arrays + stride * (size_t)n++;
+  }
+  splats->opacity = arrays + stride * (size_t)n++;
+  selection->ids = (uint32_t *)(arrays + stride * (size_t)n);
+  selection->room = room;
+  return CONIC_OK;
+}
+
+/* Gives every piece its place, and the selection room for all. */
+static conic_status place_pieces(selecting *s) {
+  conic_selection *selection = s->selection;
+  size_t count = 0;
+  selection->n_inner = 0;
+  for (size_t i = 0; i < s->scratch->n_pieces; i++) {
+    piece *p = &s->scratch->pieces[i];
+    p->place = count;
+    count += p->count;
+    selection->n_inner += p->n_inner;
+    selection->n_culled += p->n_culled;
+  }
+  if (count > selection->room || !selection->ids) {
+    conic_status status = make_room(s, count + count / 4 + 1024); /* the next picture's may be a few more */
+    if (status != CONIC_OK)
+      return status;
+  }
+  selection->splats.count = count;
+  memcpy(selection->splats.origin, s->octree->leaves.origin, sizeof selection->splats.origin);
+  return CONIC_OK;
+}
+
+/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
+static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
+  if (*memory && *room >= count)
+    return CONIC_OK;
+  conic_memory_release(context, *memory);
+  *memory = conic_memory_allocate(context, count, size);
+  *room = *memory ? count : 0;
+  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* The clip lines of the leaves that were chosen, in their new order. */
+static conic_status take_clips(selecting *s) {
+  const conic_octree *octree = s->octree;
+  conic_selection *selection = s->selection;
+  conic_splats *splats = &selection->splats;
+  splats->n_clips = 0;
+  splats->clips = NULL;
+  if (octree->n_clips == 0)
+    return CONIC_OK;
+  conic_status status = keep_room(octree->context, (void **)&s->scratch->clips, &s->scratch->clips_room,
+                                  octree->n_clips, sizeof *s->scratch->clips);
+  if (status != CONIC_OK)
+    return status;
+  splats->clips = s->scratch->clips;
+  for (size_t k = 0; k < splats->count; k++) {
+    uint32_t id = selection->ids[k];
+    if (id >= octree->n_points || octree->clip_of_point[id] == CONIC_NO_CLIP)
+      continue;
+    splats->clips[splats->n_clips] = octree->clips[octree->clip_of_point[id]];
+    splats->clips[splats->n_clips++].splat = (uint32_t)k;
+  }
+  return CONIC_OK;
+}
+
+static conic_status select_splats(selecting *s) {
+  conic_context *context = s->octree->context;
+  conic_status status = list_pieces(s);
+  if (status != CONIC_OK)
+    return status;
+  size_t n_tasks = (s->scratch->n_pieces + PIECES_A_TASK - 1) / PIECES_A_TASK;
+  conic_parallel_for(context, n_tasks, count_task, s);
+  status = place_pieces(s);
+  if (status == CONIC_OK)
+    conic_parallel_for(context, n_tasks, fill_task, s);
+  return status == CONIC_OK ? take_clips(s) : status;
+}
+
+static conic_status keep_scratch(const conic_octree *octree, conic_selection *selection) {
+  if (!selection->scratch)
+    selection->scratch = conic_memory_allocate_zeroed(octree->context, 1, sizeof(scratch));
+  scratch *kept = selection->scratch;
+  if (!kept)
+    return CONIC_ERROR_MEMORY;
+  return keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
+                   sizeof *kept->sources);
+}
+
+static const char *what_is_wrong(const conic_octree *octree, const conic_camera *camera,
+                                 const conic_render_options *render, const conic_selection_options *options) {
+  if (!camera || !render || !options || options->size != sizeof *options || render->size != sizeof *render)
+    return "an argument is null, or the options were not initialised";
+  if ((double)render->kernel.cutoff != octree->scale.cutoff)
+    return "the octree was built for another cutoff of the kernel";
+  if (!options->budget && !(options->error_px > 0.0))
+    return "the error must be above 0";
+  return NULL;
+}
+
+conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
+                                 const conic_selection_options *options, conic_selection *selection) {
+  const char *wrong = what_is_wrong(octree, camera, render, options);
+  if (wrong)
+    return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
+  selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
+  s.put = conic_octree_kernels_choose().put;
+  conic_status status = conic_octree_decode_all(octree);
+  if (status == CONIC_OK)
+    status = keep_scratch(octree, selection);
+  if (status != CONIC_OK)
+    return status;
+  s.scratch = selection->scratch;
+  conic_octree_view_init(octree, camera, render, render->near_z > 0.0 ? render->near_z : conic_octree_near(octree),
+                         &s.view);
+  if (options->budget && octree->n_nodes)
+    status = conic_octree_fit_budget(octree, &s.view, options->budget, &s.error_px);
+  selection->error_px = options->budget ? (double)s.error_px : options->error_px;
+  return status == CONIC_OK ? select_splats(&s) : status;
+}
+
+void conic_selection_name(const conic_selection *selection, conic_image *image) {
+  uint32_t *ids = image->planes[CONIC_PLANE_ID];
+  size_t n = (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; ids && i < n; i++)
+    if (ids[i] < selection->splats.count)
+      ids[i] = selection->ids[ids[i]];
+}

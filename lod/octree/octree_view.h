@@ -1,0 +1,59 @@
+/* How large the errors of inner nodes are in one picture. */
+#ifndef CONIC_OCTREE_VIEW_H
+#define CONIC_OCTREE_VIEW_H
+
+#include "lod/octree/octree_nodes.h"
+
+typedef struct conic_octree_view conic_octree_view;
+
+/* For n nodes from `begin` on: pixels[k] is below 0 where nothing of node begin + k is in sight, else the most that its
+ * error can be on the screen, which is infinite where it reaches the near plane; with --cull back, that of its diameter
+ * where some of its leaves may face away. `pixels` has room for n rounded up to whole groups. */
+typedef void conic_measure_function(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n,
+                                    float *pixels);
+
+/* A camera in floats. What that loses is less than `slack` times the coordinates, and every sphere is that much larger.
+ */
+struct conic_octree_view {
+  float rotation[3][3], translation[3], eye[3];
+  float side[4][3]; /* the planes of the picture's sides, widened by the prefilter: unit normals, inwards, through the
+                       eye */
+  float near_z;
+  float focal_px; /* the longer of the two */
+  float slack, slack_offset;
+  int cull_back;
+  conic_measure_function *measure; /* the fastest that there is; all give the same */
+};
+
+void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
+                            double near_z, conic_octree_view *view);
+
+static inline void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin,
+                                        size_t n, float *pixels) {
+  view->measure(octree, view, begin, n, pixels);
+}
+
+/* Some nodes that were measured together: the walk down the tree will look at most of them. */
+typedef struct conic_measured {
+  size_t begin, end;
+  float pixels[CONIC_OCTREE_GROUP];
+} conic_measured;
+
+/* What conic_octree_measure gives for node i. Where that is not known yet, measures it and those after it: its whole
+ * subtree, if that is small. `measured` is zero before the first use. */
+static inline float conic_octree_look_up(const conic_octree *octree, const conic_octree_view *view, size_t i,
+                                         conic_measured *measured) {
+  if (i < measured->begin || i >= measured->end) {
+    size_t n = octree->n_nodes - i < CONIC_OCTREE_GROUP ? octree->n_nodes - i : CONIC_OCTREE_GROUP;
+    conic_octree_measure(octree, view, i, n, measured->pixels);
+    measured->begin = i;
+    measured->end = i + n;
+  }
+  return measured->pixels[i - measured->begin];
+}
+
+/* The least error that `budget` splats can give: the least for which no more are chosen. Errors: MEMORY. */
+conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_octree_view *view, uint64_t budget,
+                                     float *error_px);
+
+#endif

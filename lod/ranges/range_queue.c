@@ -1,0 +1,92 @@
+#include "lod/ranges/range_queue.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+
+/* By priority, then by place in the file, so that neighbours follow each other. */
+static int is_sooner(const conic_queued_range *a, const conic_queued_range *b) {
+  if (a->range.priority != b->range.priority)
+    return a->range.priority < b->range.priority;
+  return a->range.offset < b->range.offset;
+}
+
+static void swap(conic_queued_range *a, conic_queued_range *b) {
+  conic_queued_range kept = *a;
+  *a = *b;
+  *b = kept;
+}
+
+static void rise(conic_range_queue *queue, size_t i) {
+  while (i > 0 && is_sooner(&queue->items[i], &queue->items[(i - 1) / 2])) {
+    swap(&queue->items[i], &queue->items[(i - 1) / 2]);
+    i = (i - 1) / 2;
+  }
+}
+
+static void sink(conic_range_queue *queue, size_t i) {
+  for (;;) {
+    size_t least = i;
+    for (size_t child = 2 * i + 1; child <= 2 * i + 2; child++)
+      if (child < queue->n && is_sooner(&queue->items[child], &queue->items[least]))
+        least = child;
+    if (least == i)
+      return;
+    swap(&queue->items[i], &queue->items[least]);
+    i = least;
+  }
+}
+
+static void take(conic_range_queue *queue, size_t i, conic_queued_range *item) {
+  *item = queue->items[i];
+  queue->items[i] = queue->items[--queue->n];
+  if (i < queue->n) {
+    rise(queue, i);
+    sink(queue, i);
+  }
+}
+
+conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item) {
+  if (queue->n == queue->room) {
+    size_t room = 2 * queue->room + 64;
+    conic_status status = conic_memory_grow(context, (void **)&queue->items, queue->n, room, sizeof *queue->items);
+    if (status != CONIC_OK)
+      return status;
+    queue->room = room;
+  }
+  queue->items[queue->n++] = *item;
+  rise(queue, queue->n - 1);
+  return CONIC_OK;
+}
+
+/* Few ranges wait for their time, and only after failures: then all are looked through. */
+int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_range *item, double *wait_s) {
+  *wait_s = -1.0;
+  if (queue->n == 0)
+    return 0;
+  size_t best = 0;
+  if (queue->items[0].not_before_s > now_s) {
+    double earliest = queue->items[0].not_before_s;
+    best = queue->n;
+    for (size_t i = 0; i < queue->n; i++) {
+      earliest = queue->items[i].not_before_s < earliest ? queue->items[i].not_before_s : earliest;
+      if (queue->items[i].not_before_s <= now_s &&
+          (best == queue->n || is_sooner(&queue->items[i], &queue->items[best])))
+        best = i;
+    }
+    *wait_s = earliest - now_s;
+    if (best == queue->n)
+      return 0;
+  }
+  take(queue, best, item);
+  return 1;
+}
+
+const conic_queued_range *conic_range_queue_first(const conic_range_queue *queue) {
+  return queue->n ? &queue->items[0] : NULL;
+}
+
+void conic_range_queue_release(conic_context *context, conic_range_queue *queue) {
+  conic_memory_release(context, queue->items);
+  memset(queue, 0, sizeof *queue);
+}

@@ -1,0 +1,77 @@
+/* Bytes of a file, asked for by ranges and handed over as they come: from a memory map, or from a web server
+ * (HTTP/1.1 range requests). Both answer in the same way, so that nothing above knows where a file lies.
+ *
+ * Nothing happens between the calls: transfers go on within conic_ranges_next, several at a time. One thread at a time.
+ */
+#ifndef CONIC_RANGES_H
+#define CONIC_RANGES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+typedef struct conic_ranges conic_ranges;
+
+typedef struct conic_ranges_options {
+  double connect_seconds;    /* a server that is not reached within these is tried again */
+  double stall_seconds;      /* so is one that sends under 1 KiB/s for so long */
+  int n_retries;             /* so often, each time after a longer pause, before a range is given up */
+  double pause_seconds;      /* the first pause; each is twice the one before */
+  int n_connections;         /* at a time */
+  uint64_t most_whole_bytes; /* of a server without ranges, a file up to this size is fetched as a whole */
+} conic_ranges_options;
+
+/* 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, 512 MiB. */
+void conic_ranges_options_init(conic_ranges_options *options);
+
+/* Whether a name is a URL. */
+int conic_ranges_is_url(const char *name);
+
+/* Opens a path, or an http:// or https:// URL, and finds out its size. "-" is standard input. On success the caller
+ * owns *ranges. Errors: INPUT (it is not there, or not to be had), IO (the network or the server fails), UNSUPPORTED
+ * (a URL, and this build has no libcurl), MEMORY, CANCELLED. */
+conic_status conic_ranges_open(conic_context *context, const char *name, const conic_ranges_options *options,
+                               conic_ranges **ranges);
+
+/* Gives up what is under way. Null is allowed. */
+void conic_ranges_close(conic_ranges *ranges);
+
+uint64_t conic_ranges_size(const conic_ranges *ranges);
+
+/* Bytes that came over the network. */
+uint64_t conic_ranges_received(const conic_ranges *ranges);
+
+typedef struct conic_range {
+  uint64_t offset;
+  size_t n_bytes;
+  uint64_t
+      priority; /* the lowest is asked for first; neighbours in this order that lie together are asked for as one */
+  uint32_t id;  /* the caller's */
+} conic_range;
+
+/* Asks for a range, which must lie within the file. Errors: ARGUMENT, MEMORY. */
+conic_status conic_ranges_request(conic_ranges *ranges, const conic_range *range);
+
+typedef struct conic_range_answer {
+  uint32_t id;
+  conic_status status;        /* CONIC_OK, or IO: given up */
+  const unsigned char *bytes; /* as many as were asked for */
+  size_t n_bytes;
+  const char *reason; /* where given up: why, in a few words; until the next call */
+  void *held;         /* private */
+} conic_range_answer;
+
+/* The next answer, in any order: 1, or 0 where none came within so many seconds or nothing is asked for. */
+int conic_ranges_next(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
+
+/* Gives an answer's bytes back, before the ranges are closed. */
+void conic_ranges_release(conic_ranges *ranges, conic_range_answer *answer);
+
+/* Forgets all that was asked for and not yet answered. */
+void conic_ranges_cancel(conic_ranges *ranges);
+
+/* How many ranges were asked for and not yet answered. */
+size_t conic_ranges_pending(const conic_ranges *ranges);
+
+#endif

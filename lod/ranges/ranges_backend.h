@@ -1,0 +1,27 @@
+/* What a backend of lod/ranges/ranges.h is: a struct that begins with a conic_ranges. */
+#ifndef CONIC_RANGES_BACKEND_H
+#define CONIC_RANGES_BACKEND_H
+
+#include "lod/ranges/range_queue.h"
+#include "lod/ranges/ranges.h"
+
+typedef struct conic_ranges_backend {
+  int (*next)(conic_ranges *ranges, double wait_seconds, conic_range_answer *answer);
+  void (*release)(conic_ranges *ranges, conic_range_answer *answer);
+  void (*cancel)(conic_ranges *ranges); /* what is under way; the queue is empty already */
+  void (*close)(conic_ranges *ranges);  /* releases all but the queue, the struct itself included */
+} conic_ranges_backend;
+
+struct conic_ranges {
+  conic_context *context;
+  const conic_ranges_backend *backend;
+  uint64_t size, n_received;
+  size_t n_pending; /* asked for, not answered */
+  conic_range_queue queue;
+};
+
+conic_status conic_ranges_open_file(conic_context *context, const char *path, conic_ranges **ranges);
+conic_status conic_ranges_open_url(conic_context *context, const char *url, const conic_ranges_options *options,
+                                   conic_ranges **ranges);
+
+#endif

@@ -1,0 +1,151 @@
+#include "opencl/opencl_renderer.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "opencl/frame.h"
+#include "opencl/program.h"
+
+static const char *kernel_name(const conic_opencl *opencl, int kernel) {
+  static const char *const names[] = {"project", "lanes_project", "scan_sums",    "scan_tops", "scan_places",
+                                      "compact", "count_tiles",   "place_chunks", "fill_tiles"};
+  static const char *const of_tiles[] = {"lanes_visibility", "lanes_accumulate", "lanes_nearest", "lanes_triangles",
+                                         "lanes_add_triangles"};
+  static const char *const of_pixels[] = {"gather_visibility", "gather_accumulate", "gather_nearest",
+                                          "gather_triangles", "gather_add_triangles"};
+  if (kernel < CONIC_KERNEL_VISIBILITY)
+    return names[kernel];
+  int i = kernel - CONIC_KERNEL_VISIBILITY;
+  return opencl->work == CONIC_OPENCL_WORK_TILES ? of_tiles[i] : of_pixels[i];
+}
+
+/* The kernels first … end - 1 of a program. */
+static conic_status make_kernels(conic_opencl *opencl, cl_program program, int first, int end) {
+  conic_status status = CONIC_OK;
+  for (int i = first; i < end && status == CONIC_OK; i++) {
+    cl_int answer;
+    opencl->kernels[i] = clCreateKernel(program, kernel_name(opencl, i), &answer);
+    status = conic_opencl_check(opencl->context, answer, "clCreateKernel");
+  }
+  return status;
+}
+
+static int tile_bits_of(const conic_opencl *opencl) {
+  return opencl->work == CONIC_OPENCL_WORK_TILES ? CONIC_TILE_BITS_OF_TILES : CONIC_TILE_BITS_OF_PIXELS;
+}
+
+/* Builds a program and makes its kernels first … end - 1. */
+static conic_status make_program(conic_opencl *opencl, const conic_opencl_text *text, int first, int end,
+                                 cl_program *program) {
+  if (*program) /* from an attempt that failed */
+    clReleaseProgram(*program);
+  conic_status status = conic_opencl_build(opencl->context, opencl->queue.cl, opencl->id, &opencl->device,
+                                           tile_bits_of(opencl), text, opencl->cache_folder, program);
+  return status == CONIC_OK ? make_kernels(opencl, *program, first, end) : status;
+}
+
+static conic_status keep_folder(conic_opencl *opencl, const char *folder) {
+  if (!folder)
+    return CONIC_OK;
+  size_t n = strlen(folder) + 1;
+  opencl->cache_folder = conic_memory_allocate(opencl->context, n, 1);
+  if (!opencl->cache_folder)
+    return CONIC_ERROR_MEMORY;
+  memcpy(opencl->cache_folder, folder, n);
+  return CONIC_OK;
+}
+
+static conic_status open_device(conic_opencl *opencl, const conic_opencl_options *options) {
+  conic_context *context = opencl->context;
+  conic_opencl_device *device = &opencl->device;
+  cl_platform_id platform;
+  conic_status status = conic_opencl_find(context, options, &platform, &opencl->id, device);
+  if (status == CONIC_OK)
+    status = keep_folder(opencl, options->cache_folder);
+  if (status != CONIC_OK)
+    return status;
+  opencl->projects_on_host = options->projects_on_host || !device->has_double;
+  opencl->part_splats = options->part_splats;
+  opencl->work = options->work;
+  if (opencl->work == CONIC_OPENCL_WORK_AUTO)
+    opencl->work = device->is_cpu ? CONIC_OPENCL_WORK_TILES : CONIC_OPENCL_WORK_PIXELS;
+  opencl->tile = 1 << tile_bits_of(opencl);
+  status = conic_queue_open(context, platform, opencl->id, &opencl->queue);
+  if (status == CONIC_OK && !opencl->projects_on_host)
+    status =
+        make_program(opencl, &conic_opencl_setup_text, CONIC_KERNEL_PROJECT, CONIC_KERNEL_SCAN_SUMS, &opencl->setup);
+  return status == CONIC_OK ? make_program(opencl, &conic_opencl_raster_text, CONIC_KERNEL_SCAN_SUMS,
+                                           CONIC_KERNEL_TRIANGLES, &opencl->raster)
+                            : status;
+}
+
+conic_status conic_opencl_need_triangles(conic_opencl *opencl) {
+  const conic_opencl_device *device = &opencl->device;
+  if (opencl->kernels[CONIC_KERNEL_ADD_TRIANGLES])
+    return CONIC_OK;
+  if (!device->has_double)
+    return conic_fail(opencl->context, CONIC_ERROR_UNSUPPORTED,
+                      "opencl:%d.%d: %s has no double precision, which triangles need", device->i_platform,
+                      device->i_device, device->name);
+  return make_program(opencl, &conic_opencl_triangles_text, CONIC_KERNEL_TRIANGLES, CONIC_N_KERNEL_NAMES,
+                      &opencl->triangles);
+}
+
+static void destroy_backend(conic_backend *backend) {
+  conic_opencl_close((conic_opencl *)backend);
+}
+
+conic_status conic_opencl_open(conic_context *context, const conic_opencl_options *options, conic_opencl **opened) {
+  *opened = conic_memory_allocate_zeroed(context, 1, sizeof **opened);
+  if (!*opened)
+    return CONIC_ERROR_MEMORY;
+  (*opened)->context = context;
+  (*opened)->backend.draw = conic_frame_draw;
+  (*opened)->backend.destroy = destroy_backend;
+  conic_status status = open_device(*opened, options);
+  if (status != CONIC_OK) {
+    conic_opencl_close(*opened);
+    *opened = NULL;
+  }
+  return status;
+}
+
+void conic_opencl_close(conic_opencl *opencl) {
+  if (!opencl)
+    return;
+  for (int i = 0; i < CONIC_N_BUFFER_NAMES; i++)
+    conic_queue_release(&opencl->buffers[i]);
+  for (int i = 0; i < CONIC_N_KERNEL_NAMES; i++)
+    if (opencl->kernels[i])
+      clReleaseKernel(opencl->kernels[i]);
+  if (opencl->setup)
+    clReleaseProgram(opencl->setup);
+  if (opencl->raster)
+    clReleaseProgram(opencl->raster);
+  if (opencl->triangles)
+    clReleaseProgram(opencl->triangles);
+  conic_queue_close(&opencl->queue);
+  conic_memory_release(opencl->context, opencl->cache_folder);
+  conic_memory_release(opencl->context, opencl);
+}
+
+conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
+                                          conic_opencl_device *device, conic_renderer **renderer) {
+  conic_opencl *opencl;
+  *renderer = NULL;
+  if (!options || options->size != sizeof *options)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "opencl: the options were not initialised");
+  conic_status status = conic_opencl_open(context, options, &opencl);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_renderer_create(context, renderer);
+  if (status != CONIC_OK) {
+    conic_opencl_close(opencl);
+    return status;
+  }
+  conic_renderer_take(*renderer, &opencl->backend);
+  if (device)
+    *device = opencl->device;
+  return CONIC_OK;
+}

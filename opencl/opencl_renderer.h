@@ -1,0 +1,102 @@
+/* A device that is ready to draw: its queue, its programs' kernels, its memory. */
+#ifndef CONIC_OPENCL_RENDERER_H
+#define CONIC_OPENCL_RENDERER_H
+
+#include "opencl/queue.h"
+#include "raster/frame/backend.h"
+
+/* Those of setup.cl, of raster.cl and of triangles.cl; of VISIBILITY and what follows, the kind that suits the device.
+ */
+typedef enum conic_kernel_name {
+  CONIC_KERNEL_PROJECT,
+  CONIC_KERNEL_PROJECT_LANES,
+  CONIC_KERNEL_SCAN_SUMS,
+  CONIC_KERNEL_SCAN_TOPS,
+  CONIC_KERNEL_SCAN_PLACES,
+  CONIC_KERNEL_COMPACT,
+  CONIC_KERNEL_COUNT_TILES,
+  CONIC_KERNEL_PLACE_CHUNKS,
+  CONIC_KERNEL_FILL_TILES,
+  CONIC_KERNEL_VISIBILITY,
+  CONIC_KERNEL_ACCUMULATE,
+  CONIC_KERNEL_NEAREST,
+  CONIC_KERNEL_TRIANGLES,
+  CONIC_KERNEL_ADD_TRIANGLES,
+  CONIC_N_KERNEL_NAMES
+} conic_kernel_name;
+
+typedef enum conic_buffer_name {
+  CONIC_BUFFER_VIEW,
+  CONIC_BUFFER_FRAME,
+  CONIC_BUFFER_COLUMNS, /* of the splat set: position, tangent_u, tangent_v, colour, opacity */
+  CONIC_BUFFER_CLIPS = CONIC_BUFFER_COLUMNS + 13,
+  CONIC_BUFFER_FOOTPRINTS,
+  CONIC_BUFFER_BOXES,
+  CONIC_BUFFER_SURFACES,
+  CONIC_BUFFER_RAYS,
+  CONIC_BUFFER_CLIP_RECORDS,
+  CONIC_BUFFER_N_DRAWN, /* an item of set-up */
+  CONIC_BUFFER_COUNTS,  /* CONIC_DEVICE_CULLED … */
+  CONIC_BUFFER_PLACES,  /* where each item's drawn splats begin in `order` */
+  CONIC_BUFFER_SCAN_SUMS,
+  CONIC_BUFFER_ORDER,       /* the drawn splats' records, in file order */
+  CONIC_BUFFER_TILE_COUNTS, /* [chunk][tile] */
+  CONIC_BUFFER_TILE_TOTALS,
+  CONIC_BUFFER_TILE_BEGIN,
+  CONIC_BUFFER_REFERENCES,
+  CONIC_BUFFER_MASKS,       /* of references: the blocks where the splat may be seen; by tiles only */
+  CONIC_BUFFER_THRESHOLDS,  /* [block][pixel] */
+  CONIC_BUFFER_SUMS,        /* [block][CONIC_SUM_WEIGHT …][pixel] */
+  CONIC_BUFFER_N_FRAGMENTS, /* a tile */
+  CONIC_BUFFER_N_COVERED,   /* a tile */
+  CONIC_BUFFER_DIRECTIONS_X,
+  CONIC_BUFFER_DIRECTIONS_Y,
+  CONIC_BUFFER_TRIANGLE_IZ,        /* [block][pixel]: of the nearest triangle; 0: there is none */
+  CONIC_BUFFER_TRIANGLE_NEAREST,   /* likewise: its record */
+  CONIC_BUFFER_TRIANGLE_FRAGMENTS, /* a tile: in two words */
+  CONIC_BUFFER_TRIANGLE_CHUNKS,
+  CONIC_BUFFER_TRIANGLE_MATERIALS, /* and textures */
+  CONIC_BUFFER_PLANES,
+  /* Of the frame's triangles and their set: */
+  CONIC_BUFFER_TRIANGLE_RECORDS = CONIC_BUFFER_PLANES + CONIC_N_DRAWN_PLANES,
+  CONIC_BUFFER_TRIANGLE_ENTRIES,
+  CONIC_BUFFER_TRIANGLE_TILES,
+  CONIC_BUFFER_TRIANGLE_PIECES,
+  CONIC_BUFFER_TRIANGLE_CORNERS,
+  CONIC_BUFFER_TRIANGLE_NORMAL_CORNERS,
+  CONIC_BUFFER_TRIANGLE_TEXTURE_CORNERS,
+  CONIC_BUFFER_TRIANGLE_MATERIAL,
+  CONIC_BUFFER_TRIANGLE_POSITIONS,
+  CONIC_BUFFER_TRIANGLE_COLORS = CONIC_BUFFER_TRIANGLE_POSITIONS + 3,
+  CONIC_BUFFER_TRIANGLE_NORMALS = CONIC_BUFFER_TRIANGLE_COLORS + 3,
+  CONIC_BUFFER_TRIANGLE_COORDINATES = CONIC_BUFFER_TRIANGLE_NORMALS + 3,
+  CONIC_N_BUFFER_NAMES = CONIC_BUFFER_TRIANGLE_COORDINATES + 2
+} conic_buffer_name;
+
+typedef struct conic_opencl {
+  conic_backend backend; /* first: what the renderer has */
+  conic_context *context;
+  conic_opencl_device device;
+  conic_opencl_work work; /* tiles or pixels */
+  int tile;               /* a tile's edge in pixels */
+  int projects_on_host;
+  size_t part_splats; /* 0: by the device's memory */
+  int keeps_sums;     /* for who wants to look at them */
+  conic_queue queue;
+  cl_device_id id;
+  char *cache_folder; /* null: built programs are kept nowhere */
+  cl_program setup, raster, triangles;
+  cl_kernel kernels[CONIC_N_KERNEL_NAMES];
+  conic_buffer buffers[CONIC_N_BUFFER_NAMES];
+} conic_opencl;
+
+/* Opens the device that the options ask for and builds its programs. On success the caller ends *opened with
+ * conic_opencl_close. Errors: as conic_opencl_renderer_create. */
+conic_status conic_opencl_open(conic_context *context, const conic_opencl_options *options, conic_opencl **opened);
+void conic_opencl_close(conic_opencl *opencl);
+
+/* Builds what triangles need, if nobody needed it before. Errors: UNSUPPORTED (also where the device has no double
+ * precision), MEMORY. */
+conic_status conic_opencl_need_triangles(conic_opencl *opencl);
+
+#endif

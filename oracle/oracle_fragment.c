@@ -1,0 +1,161 @@
+/* A splat at a pixel, and how far off single precision may be there. */
+#include "oracle/oracle_pixel.h"
+
+/* Segments are set up in double precision, as are rays that reach near: nothing disturbs those. Nor does a point know
+ * of its axes. */
+static int is_set_up_in_float(const oracle_view *view, const oracle_splat *splat) {
+  switch (splat->formula) {
+  case ORACLE_CONIC:
+  case ORACLE_AFFINE:
+  case ORACLE_LAPLACE:
+  case ORACLE_DISC:
+    return 1;
+  case ORACLE_RAY:
+    return conic_oracle_is_before_near(view, &splat->placed);
+  default:
+    return 0;
+  }
+}
+
+void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, oracle_candidate *candidate) {
+  candidate->splat = splat;
+  candidate->is_drawn =
+      splat->formula != ORACLE_NOT_DRAWN && conic_oracle_shape(view, &splat->placed, splat->formula, &candidate->shape);
+  candidate->n_disturbed = is_set_up_in_float(view, splat) ? ORACLE_N_INPUTS : 0;
+  for (int i = 0; i < candidate->n_disturbed; i++) {
+    oracle_placed moved = conic_oracle_disturb(&splat->placed, i);
+    candidate->is_disturbed[i] =
+        candidate->is_drawn && conic_oracle_shape(view, &moved, splat->formula, &candidate->disturbed[i]);
+  }
+  for (int i = 0; i < splat->n_others; i++)
+    candidate->is_other[i] = splat->others[i] != ORACLE_NOT_DRAWN &&
+                             conic_oracle_shape(view, &splat->placed, splat->others[i], &candidate->others[i]);
+}
+
+/* What the inputs' rounding and the evaluation's own may add up to: every disturbed splat the worst way at once. For
+ * the weight also `spread`, what they come to where they are independent. */
+static void find_errors(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+                        const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES], double *spread) {
+  conic_oracle_rounding(view, &candidate->shape, x, y, values, errors);
+  double squares = errors[ORACLE_WEIGHT] * errors[ORACLE_WEIGHT];
+  for (int i = 0; i < candidate->n_disturbed; i++) {
+    double disturbed[ORACLE_N_VALUES];
+    if (candidate->is_disturbed[i])
+      conic_oracle_evaluate(view, &candidate->disturbed[i], x, y, disturbed);
+    for (int j = 0; j < ORACLE_N_VALUES; j++)
+      errors[j] += candidate->is_disturbed[i] ? fabs(disturbed[j] - values[j]) : INFINITY;
+    double step = candidate->is_disturbed[i] ? disturbed[ORACLE_WEIGHT] - values[ORACLE_WEIGHT] : INFINITY;
+    squares += step * step;
+  }
+  *spread = sqrt(squares);
+  for (int j = 0; j < ORACLE_N_VALUES; j++)
+    if (!oracle_is_finite(errors[j]))
+      errors[j] = INFINITY;
+}
+
+/* Whether a margin may be positive, or fail to be. */
+static unsigned doubt_coverage(const double values[ORACLE_N_VALUES], const double errors[ORACLE_N_VALUES]) {
+  unsigned doubt = 0;
+  for (int i = 0; i < ORACLE_N_MARGINS; i++) {
+    if (values[i] < -errors[i])
+      return 0; /* surely not covered, whatever the others say */
+    if (!(values[i] > errors[i]))
+      doubt |= 1u << (i == ORACLE_MARGIN_Q ? CONIC_UNSTABLE_CUTOFF : CONIC_UNSTABLE_CLIP);
+  }
+  return doubt;
+}
+
+static oracle_interval around(double value, double error) {
+  return (oracle_interval){value - error, value, value + error};
+}
+
+/* The greater of both depths is what a splat is seen by, the lesser, moved back, what it hides by. */
+static void set_depths(const oracle_splat *splat, const oracle_shape *shape, const double values[ORACLE_N_VALUES],
+                       const double errors[ORACLE_N_VALUES], oracle_fragment *fragment) {
+  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, behind = splat->behind;
+  oracle_interval iz = around(values[ORACLE_IZ], errors[ORACLE_IZ]);
+  oracle_interval plane = around(values[ORACLE_IZ_PLANE], errors[ORACLE_IZ_PLANE]);
+  iz.low = oracle_max(iz.low, shape->range[0] * (1.0 - slack));
+  iz.high = oracle_min(iz.high, shape->range[1] * (1.0 + slack));
+  fragment->seen.low = oracle_max(iz.low, plane.low);
+  fragment->seen.value = oracle_max(iz.value, plane.value);
+  fragment->seen.high = oracle_max(iz.high, plane.high);
+  fragment->hides.low = behind * oracle_min(iz.low, plane.low) * (1.0 - slack);
+  fragment->hides.value = behind * oracle_min(iz.value, plane.value);
+  fragment->hides.high = behind * oracle_min(iz.high, plane.high) * (1.0 + slack);
+  fragment->iz = iz.value;
+  fragment->iz_error = oracle_max(iz.value - iz.low, iz.high - iz.value);
+  double clamped = oracle_min(oracle_max(plane.value, shape->range[0]), shape->range[1]);
+  double low = oracle_min(oracle_max(plane.low, shape->range[0]), shape->range[1]);
+  double high = oracle_min(oracle_max(plane.high, shape->range[0]), shape->range[1]);
+  fragment->z = 1.0 / clamped;
+  fragment->z_error = oracle_max(1.0 / low - fragment->z, fragment->z - 1.0 / high) + slack * fragment->z;
+}
+
+static void set_weight(const oracle_splat *splat, double weight, double error, double spread,
+                       oracle_fragment *fragment) {
+  const double floor_weight = 0x1p-60;
+  fragment->weight = oracle_max(weight * splat->opacity, floor_weight);
+  fragment->weight_error = error * fabs(splat->opacity);
+  fragment->weight_spread = spread * fabs(splat->opacity);
+}
+
+/* What another formula would make of the pixel: if it covers it, the splat's coverage and depth are in doubt. */
+static int doubt_formula(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+                         oracle_fragment *fragment) {
+  int may_cover = 0;
+  for (int i = 0; i < candidate->splat->n_others; i++) {
+    double values[ORACLE_N_VALUES], errors[ORACLE_N_VALUES] = {0.0};
+    oracle_fragment other;
+    if (!candidate->is_other[i])
+      continue;
+    conic_oracle_evaluate(view, &candidate->others[i], x, y, values);
+    if (!conic_oracle_covers(values))
+      continue;
+    set_depths(candidate->splat, &candidate->others[i], values, errors, &other);
+    if (!fragment->covers && !may_cover)
+      *fragment = other;
+    fragment->seen.low = oracle_min(fragment->seen.low, other.seen.low);
+    fragment->seen.high = oracle_max(fragment->seen.high, other.seen.high);
+    fragment->hides.low = oracle_min(fragment->hides.low, other.hides.low);
+    fragment->hides.high = oracle_max(fragment->hides.high, other.hides.high);
+    may_cover = 1;
+  }
+  return may_cover;
+}
+
+int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+                          oracle_fragment *fragment) {
+  const oracle_splat *splat = candidate->splat;
+  double errors[ORACLE_N_VALUES], spread = 0.0, clip_error;
+  double reach_px = (splat->box[1][0] - splat->box[0][0]) + (splat->box[1][1] - splat->box[0][1]);
+  double kept = conic_oracle_clip_margin(&splat->clip, x, y, reach_px, &clip_error);
+  int covers = 0;
+  unsigned doubt = 0;
+  if (kept < -clip_error)
+    return 0;
+  if (candidate->is_drawn) {
+    conic_oracle_evaluate(view, &candidate->shape, x, y, fragment->values);
+    /* Twice the cutoff's square away nothing is in doubt. */
+    if (fragment->values[ORACLE_MARGIN_Q] > -view->support) {
+      covers = conic_oracle_covers(fragment->values);
+      find_errors(view, candidate, x, y, fragment->values, errors, &spread);
+      doubt = doubt_coverage(fragment->values, errors);
+    }
+  }
+  if (covers || doubt) {
+    set_depths(splat, &candidate->shape, fragment->values, errors, fragment);
+    set_weight(splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], spread, fragment);
+  }
+  fragment->covers = covers;
+  if (splat->n_others && (doubt_formula(view, candidate, x, y, fragment) || covers))
+    doubt |= 1u << CONIC_UNSTABLE_FORMULA;
+  if ((covers || doubt) && !(kept > clip_error))
+    doubt |= 1u << CONIC_UNSTABLE_CLIP;
+  covers = covers && kept >= 0.0;
+  fragment->covers = covers;
+  fragment->doubt = doubt;
+  fragment->candidate = candidate;
+  fragment->is_visible = 0;
+  return covers || doubt;
+}

@@ -1,0 +1,252 @@
+#include "oracle/oracle_scene.h"
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/splats/clip.h"
+
+/* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
+ * rounding of the whole. */
+oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i) {
+  oracle_placed disturbed = *placed;
+  if (i < 3)
+    disturbed.tu[i] += ORACLE_UNIT * oracle_length(placed->tu);
+  else
+    disturbed.tv[i - 3] += ORACLE_UNIT * oracle_length(placed->tv);
+  return disturbed;
+}
+
+static void read_axis(float *const components[3], size_t i, double axis[3]) {
+  for (int c = 0; c < 3; c++)
+    axis[c] = (double)components[c][i];
+}
+
+static void rotate(const conic_camera *camera, const double v[3], double result[3]) {
+  for (int i = 0; i < 3; i++)
+    result[i] = oracle_dot(camera->cam_from_world[i], v);
+}
+
+/* The splat's inputs in the world; 0 where one is not finite, or past what picture.md allows. */
+static int read_splat(const conic_splats *splats, size_t i, oracle_placed *world, oracle_splat *splat) {
+  read_axis(splats->position, i, world->p);
+  read_axis(splats->tangent_u, i, world->tu);
+  read_axis(splats->tangent_v, i, world->tv);
+  splat->index = (uint32_t)i;
+  splat->opacity = splats->opacity ? (double)splats->opacity[i] : 1.0;
+  double sum = splat->opacity;
+  for (int c = 0; c < 3; c++) {
+    splat->color[c] = splats->color[0] ? (double)splats->color[c][i] : 1.0;
+    sum += world->p[c] + world->tu[c] + world->tv[c] + splat->color[c];
+  }
+  for (int c = 0; c < 3; c++)
+    if (fabs(splat->color[c]) > 1e18)
+      return 0;
+  return oracle_is_finite(sum) && splat->opacity <= 1e6;
+}
+
+/* 1e-4 × the diagonal of the box of the finite centres, as if that were 1 where it is 0. */
+static double default_near(const conic_splats *splats) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent[3];
+  for (size_t i = 0; i < splats->count; i++) {
+    double p[3];
+    read_axis(splats->position, i, p);
+    if (!oracle_is_finite(p[0] + p[1] + p[2]))
+      continue;
+    for (int c = 0; c < 3; c++) {
+      low[c] = oracle_min(low[c], p[c]);
+      high[c] = oracle_max(high[c], p[c]);
+    }
+  }
+  for (int c = 0; c < 3; c++)
+    extent[c] = low[0] <= high[0] ? high[c] - low[c] : 0.0;
+  double diagonal = oracle_length(extent);
+  return 1e-4 * (diagonal > 0.0 ? diagonal : 1.0);
+}
+
+static double longer_axis(const oracle_placed *placed) {
+  return oracle_max(oracle_length(placed->tu), oracle_length(placed->tv));
+}
+
+/* The lower median of the longer axes of the usable splats, which caps the automatic ε; 0 without any. */
+static conic_status median_length(conic_context *context, const conic_splats *splats, double *median) {
+  double *lengths = conic_memory_allocate(context, splats->count, sizeof *lengths);
+  size_t n = 0;
+  if (!lengths)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < splats->count; i++) {
+    oracle_placed placed;
+    read_axis(splats->position, i, placed.p);
+    read_axis(splats->tangent_u, i, placed.tu);
+    read_axis(splats->tangent_v, i, placed.tv);
+    double u = oracle_length(placed.tu), v = oracle_length(placed.tv);
+    if (oracle_is_finite(placed.p[0] + placed.p[1] + placed.p[2] + u + v) && u > 0.0 && v > 0.0)
+      lengths[n++] = longer_axis(&placed);
+  }
+  *median = n ? conic_oracle_select(lengths, n, (n - 1) / 2) : 0.0;
+  conic_memory_release(context, lengths);
+  return CONIC_OK;
+}
+
+/* How far off an answer may be in single precision: what the rounded inputs make of it, and its own roundings. */
+static void answer_errors(const oracle_view *view, const oracle_placed *placed,
+                          const double answers[ORACLE_N_QUESTIONS], double errors[ORACLE_N_QUESTIONS]) {
+  const double unit = ORACLE_ROUNDINGS * ORACLE_UNIT;
+  double reach = view->cutoff * (fabs(placed->tu[2]) + fabs(placed->tv[2]));
+  for (int i = 0; i < ORACLE_N_QUESTIONS; i++)
+    errors[i] = 0.0;
+  errors[ORACLE_IS_BEHIND] = errors[ORACLE_REACHES_NEAR] = unit * (fabs(placed->p[2]) + reach + view->near_z);
+  errors[ORACLE_IS_BAND_NARROW] = unit * view->cutoff;
+  errors[ORACLE_IS_CLOSE] = unit;
+  errors[ORACLE_IS_STEEP] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_STEEP]));
+  errors[ORACLE_IS_COARSE] = 2.0 * unit * (1.0 + fabs(answers[ORACLE_IS_COARSE]));
+  oracle_shape shape;
+  if (conic_oracle_shape(view, placed, ORACLE_CONIC, &shape)) {
+    double sigma = oracle_max(view->thin_px - answers[ORACLE_IS_THIN], 0.5 * view->thin_px);
+    errors[ORACLE_IS_THIN] = unit * oracle_greater_eigenvalue(shape.variance) / sigma;
+  }
+  for (int i = 0; i < ORACLE_N_INPUTS; i++) {
+    double disturbed[ORACLE_N_QUESTIONS];
+    oracle_placed moved = conic_oracle_disturb(placed, i);
+    conic_oracle_ask(view, &moved, disturbed);
+    for (int j = 0; j < ORACLE_N_QUESTIONS; j++)
+      errors[j] += fabs(disturbed[j] - answers[j]);
+  }
+}
+
+/* Whether single precision may overflow, or lose what it needs to nothing, on the way. */
+static int may_overflow(const oracle_view *view, const oracle_placed *placed) {
+  const double high = 1e36, low = 1e-34;
+  double p = oracle_length(placed->p), u = oracle_length(placed->tu), v = oracle_length(placed->tv);
+  double focal = oracle_max(view->camera.fx, view->camera.fy), z = oracle_max(fabs(placed->p[2]), view->near_z);
+  double longer = oracle_max(u, v), shorter = oracle_min(u, v);
+  double pixels = longer * focal * p / (z * z);
+  int is_dot =
+      view->method == CONIC_METHOD_DISC || view->method == CONIC_METHOD_POINT; /* without an area to be formed */
+  double area = is_dot ? 1.0 : pixels * pixels * pixels * pixels, volume = is_dot ? 1.0 : p * u * v;
+  double large[] = {p * p, longer * longer, volume, area, 1.0 / (z * z), pixels};
+  double small[] = {shorter * shorter, volume, is_dot ? 1.0 : u * v, z * z};
+  for (size_t i = 0; i < sizeof large / sizeof large[0]; i++)
+    if (!(large[i] < high))
+      return 1;
+  for (size_t i = 0; i < sizeof small / sizeof small[0]; i++)
+    if (!(small[i] > low))
+      return 1;
+  return 0;
+}
+
+static void add_other(oracle_splat *splat, oracle_formula formula) {
+  for (int i = 0; i < splat->n_others; i++)
+    if (splat->others[i] == formula)
+      return;
+  if (formula != splat->formula && splat->n_others < ORACLE_MAX_OTHERS)
+    splat->others[splat->n_others++] = formula;
+}
+
+/* Chooses the formula, and those that it might be if one of the answers were rounded to the other side. */
+static void choose(const oracle_view *view, oracle_splat *splat) {
+  double answers[ORACLE_N_QUESTIONS], errors[ORACLE_N_QUESTIONS];
+  int is_so[ORACLE_N_QUESTIONS];
+  conic_oracle_ask(view, &splat->placed, answers);
+  conic_oracle_answer(answers, is_so);
+  answer_errors(view, &splat->placed, answers, errors);
+  splat->formula = conic_oracle_choose(view, is_so);
+  splat->n_others = 0;
+  for (int i = 0; i < ORACLE_N_QUESTIONS; i++) {
+    if (fabs(answers[i]) > errors[i])
+      continue;
+    /* What is exactly without a plane is so however it is computed. */
+    if (i == ORACLE_HAS_NO_PLANE && answers[i] == 0.0)
+      continue;
+    is_so[i] = !is_so[i];
+    add_other(splat, conic_oracle_choose(view, is_so));
+    is_so[i] = !is_so[i];
+  }
+  splat->is_facing_unsure = !(fabs(answers[ORACLE_IS_BACK]) > errors[ORACLE_IS_BACK]);
+  if (splat->formula != ORACLE_NOT_DRAWN && may_overflow(view, &splat->placed))
+    add_other(splat, ORACLE_NOT_DRAWN);
+}
+
+/* The box of all formulas together; 0 where none of them can be set up. */
+static int bound(const oracle_view *view, oracle_splat *splat) {
+  int n_set = 0;
+  for (int i = -1; i < splat->n_others; i++) {
+    oracle_shape shape;
+    oracle_formula formula = i < 0 ? splat->formula : splat->others[i];
+    if (formula == ORACLE_NOT_DRAWN || !conic_oracle_shape(view, &splat->placed, formula, &shape))
+      continue;
+    for (int axis = 0; axis < 2; axis++) {
+      double margin = 1.0 + 1e-3 * (shape.box[1][axis] - shape.box[0][axis]);
+      double low = shape.box[0][axis] - margin, high = shape.box[1][axis] + margin;
+      splat->box[0][axis] = n_set ? oracle_min(splat->box[0][axis], low) : low;
+      splat->box[1][axis] = n_set ? oracle_max(splat->box[1][axis], high) : high;
+    }
+    n_set++;
+  }
+  return n_set > 0;
+}
+
+static void set_appearance(const oracle_view *view, const conic_render_options *options, const oracle_placed *world,
+                           double longest, oracle_splat *splat) {
+  double normal[3], turned[3], length = longer_axis(world);
+  oracle_cross(world->tu, world->tv, normal);
+  rotate(&view->camera, normal, turned);
+  double scale = (oracle_dot(splat->placed.p, turned) > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
+  for (int c = 0; c < 3; c++)
+    splat->normal[c] = normal[c] * scale;
+  double epsilon = options->epsilon;
+  if (!(epsilon >= 0.0)) /* automatic, with c = 1 */
+    epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
+  splat->behind = 1.0 / (1.0 + epsilon / oracle_length(splat->placed.p));
+}
+
+/* Places a splat; 0 where it can't show. */
+static int place(const oracle_view *view, const conic_splats *splats, const conic_render_options *options, size_t i,
+                 double longest, oracle_splat *splat) {
+  oracle_placed world;
+  if (!read_splat(splats, i, &world, splat))
+    return 0;
+  for (int c = 0; c < 3; c++)
+    world.p[c] += splats->origin[c];
+  rotate(&view->camera, world.p, splat->placed.p);
+  for (int c = 0; c < 3; c++)
+    splat->placed.p[c] += view->camera.cam_from_world[c][3];
+  rotate(&view->camera, world.tu, splat->placed.tu);
+  rotate(&view->camera, world.tv, splat->placed.tv);
+  size_t i_clip = conic_clip_find(splats, i);
+  int has_clip = i_clip < splats->n_clips && splats->clips[i_clip].splat == i;
+  double extent = oracle_length(world.p);
+  for (int c = 0; c < 3; c++)
+    extent += fabs(view->camera.cam_from_world[c][3]);
+  conic_oracle_clip(view, &splat->placed, has_clip ? &splats->clips[i_clip] : NULL, extent, &splat->clip);
+  choose(view, splat);
+  if (splat->formula == ORACLE_NOT_DRAWN && !splat->n_others)
+    return 0;
+  set_appearance(view, options, &world, longest, splat);
+  return bound(view, splat);
+}
+
+conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                       const conic_render_options *options, oracle_scene *scene) {
+  double median = options->splat_length; /* of all splats, where these are some that were chosen of them */
+  scene->n = 0;
+  scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
+  scene->splats = conic_memory_allocate(context, splats->count, sizeof *scene->splats);
+  conic_status status = scene->splats ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK && !(median > 0.0))
+    status = median_length(context, splats, &median);
+  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
+    if (place(&scene->view, splats, options, i, median, &scene->splats[scene->n]))
+      scene->n++;
+    if (i % 65536 == 0)
+      status = conic_progress(context, "verify", 0.0);
+  }
+  scene->longest = status == CONIC_OK ? median : 0.0;
+  if (status != CONIC_OK)
+    conic_oracle_scene_release(context, scene);
+  return status;
+}
+
+void conic_oracle_scene_release(conic_context *context, oracle_scene *scene) {
+  conic_memory_release(context, scene->splats);
+  scene->splats = NULL;
+  scene->n = 0;
+}

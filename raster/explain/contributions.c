@@ -1,0 +1,292 @@
+#include "raster/explain/pixel_contributions.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/kernels/tile_kernels.h"
+
+/* Splats that a thread projects at a time. */
+enum { CHUNK = 1 << 14 };
+
+const char *conic_fate_name(conic_fate fate) {
+  static const char *const names[] = {"variance", "ray", "culled", "skipped"};
+  return (unsigned)fate < sizeof names / sizeof names[0] ? names[fate] : NULL;
+}
+
+const char *conic_contribution_verdict_name(conic_contribution_verdict verdict) {
+  static const char *const names[CONIC_N_CONTRIBUTION_VERDICTS] = {"visible", "hidden", "clipped", "outside"};
+  return (unsigned)verdict < CONIC_N_CONTRIBUTION_VERDICTS ? names[verdict] : NULL;
+}
+
+static void project_task(void *data, size_t i_chunk, int i_thread) {
+  conic_contributions *c = data;
+  (void)i_thread;
+  conic_project_chunk(&c->view, c->splats, i_chunk, &c->projected);
+  if (c->projected.clips)
+    conic_clip_chunk(&c->view, c->splats, i_chunk * CHUNK, &c->projected, &c->projected.chunks[i_chunk]);
+}
+
+static conic_status project(conic_contributions *c) {
+  conic_projected *projected = &c->projected;
+  size_t n = c->splats->count;
+  projected->chunk_size = CHUNK;
+  projected->n_chunks = n / CHUNK + 1;
+  projected->chunks = conic_memory_allocate(c->context, projected->n_chunks, sizeof *projected->chunks);
+  projected->footprints = conic_memory_allocate(c->context, n, sizeof *projected->footprints);
+  projected->boxes = conic_memory_allocate(c->context, n, sizeof *projected->boxes);
+  projected->surfaces = conic_memory_allocate(c->context, n, sizeof *projected->surfaces);
+  projected->rays = conic_memory_allocate(c->context, n, sizeof *projected->rays);
+  if (!projected->chunks || !projected->footprints || !projected->boxes || !projected->surfaces || !projected->rays)
+    return CONIC_ERROR_MEMORY;
+  if (c->splats->n_clips) {
+    projected->clips = conic_memory_allocate(c->context, n, sizeof *projected->clips);
+    if (!projected->clips)
+      return CONIC_ERROR_MEMORY;
+  }
+  conic_parallel_for(c->context, projected->n_chunks, project_task, c);
+  return CONIC_OK;
+}
+
+/* Adds one to `next` for every band that the footprint touches; with references, enters it at that place. */
+static void enter_bands(const conic_contributions *c, uint32_t i_footprint, size_t *next, uint32_t *references) {
+  conic_reach reach = conic_reach_of(c, i_footprint);
+  size_t end = ((size_t)reach.y_end + CONIC_CONTRIBUTION_BAND - 1) / CONIC_CONTRIBUTION_BAND;
+  for (size_t band = (size_t)reach.y_begin / CONIC_CONTRIBUTION_BAND; band < end; band++) {
+    if (references)
+      references[next[band]] = i_footprint;
+    next[band]++;
+  }
+}
+
+static void enter_all(const conic_contributions *c, size_t *next, uint32_t *references) {
+  for (size_t i_chunk = 0; i_chunk < c->projected.n_chunks; i_chunk++) {
+    const conic_chunk *chunk = &c->projected.chunks[i_chunk];
+    for (size_t i = chunk->first; i < chunk->first + chunk->n_drawn; i++)
+      enter_bands(c, (uint32_t)i, next, references);
+  }
+}
+
+static conic_status list_bands(conic_contributions *c) {
+  size_t n_bands = ((size_t)c->view.height + CONIC_CONTRIBUTION_BAND - 1) / CONIC_CONTRIBUTION_BAND, total = 0;
+  c->band_begin = conic_memory_allocate_zeroed(c->context, n_bands + 2, sizeof *c->band_begin);
+  if (!c->band_begin)
+    return CONIC_ERROR_MEMORY;
+  size_t *next = c->band_begin + 1; /* first how many, then where the next goes; in the end where a band ends */
+  enter_all(c, next, NULL);
+  for (size_t band = 0; band < n_bands; band++) {
+    size_t n = next[band];
+    next[band] = total;
+    total += n;
+  }
+  c->references = conic_memory_allocate(c->context, total, sizeof *c->references);
+  if (!c->references)
+    return CONIC_ERROR_MEMORY;
+  enter_all(c, next, c->references);
+  return CONIC_OK;
+}
+
+static conic_status prepare_triangles(conic_contributions *c, const conic_camera *camera) {
+  const conic_triangles *triangles = c->drawing.triangles;
+  if (!triangles)
+    return CONIC_OK;
+  conic_status status = conic_triangles_check(c->context, triangles, "contributions");
+  if (status != CONIC_OK)
+    return status;
+  conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
+  c->triangles.first_id = (uint32_t)c->splats->count;
+  conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
+  return conic_triangle_frame_prepare(&c->triangles, conic_tile_kernels_of(CONIC_ISA_AUTO));
+}
+
+conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                        const conic_render_options *options, conic_contributions **contributions) {
+  const conic_drawing alone = {splats, NULL};
+  *contributions = NULL;
+  if (!splats)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "contributions: an argument is null, or the options were not initialised");
+  return conic_contributions_create_drawing(context, &alone, camera, options, contributions);
+}
+
+conic_status conic_contributions_create_drawing(conic_context *context, const conic_drawing *drawing,
+                                                const conic_camera *camera, const conic_render_options *options,
+                                                conic_contributions **contributions) {
+  *contributions = NULL;
+  if (!drawing || !camera || !options || options->size != sizeof *options)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "contributions: an argument is null, or the options were not initialised");
+  conic_contributions *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
+  if (!c)
+    return CONIC_ERROR_MEMORY;
+  c->context = context;
+  conic_whole_drawing_of(drawing, &c->drawing);
+  c->splats = c->drawing.splats;
+  c->options = *options;
+  conic_status status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
+  if (status == CONIC_OK)
+    status =
+        conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
+  if (status == CONIC_OK)
+    status = prepare_triangles(c, camera);
+  if (status == CONIC_OK)
+    status = project(c);
+  if (status == CONIC_OK)
+    status = list_bands(c);
+  if (status == CONIC_OK)
+    *contributions = c;
+  else
+    conic_contributions_destroy(c);
+  return status;
+}
+
+void conic_contributions_destroy(conic_contributions *c) {
+  if (!c)
+    return;
+  void *all[] = {c->projected.chunks,   c->projected.footprints, c->projected.boxes,
+                 c->projected.surfaces, c->projected.rays,       c->projected.clips,
+                 c->band_begin,         c->references,           c->list,
+                 c->triangle_list};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    conic_memory_release(c->context, all[i]);
+  conic_triangle_frame_release(c->context, &c->triangles);
+  conic_memory_release(c->context, c);
+}
+
+/* The ellipse of δ: (s₁δ_x + s₂δ_y)² + (s₃δ_y)². */
+static void describe_ellipse(const conic_footprint *footprint, conic_projection *to) {
+  double s1 = (double)footprint->s1, s2 = (double)footprint->s2, s3 = (double)footprint->s3;
+  double determinant = (s1 * s3) * (s1 * s3);
+  to->center_px[0] = (double)footprint->x + 0.5 - (double)footprint->dx0;
+  to->center_px[1] = (double)footprint->y + 0.5 - (double)footprint->dy0;
+  to->conic[0] = s1 * s1;
+  to->conic[1] = s1 * s2;
+  to->conic[2] = s2 * s2 + s3 * s3;
+  to->variance_px[0] = to->conic[2] / determinant;
+  to->variance_px[1] = -to->conic[1] / determinant;
+  to->variance_px[2] = to->conic[0] / determinant;
+}
+
+conic_status conic_contributions_project(const conic_contributions *c, size_t i, conic_projection *projection) {
+  conic_footprint footprint;
+  conic_box box;
+  conic_surface surface;
+  conic_ray ray;
+  conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
+  conic_chunk chunk = {.n_drawn = 0};
+  memset(projection, 0, sizeof *projection);
+  if (i >= c->splats->count)
+    return conic_fail(c->context, CONIC_ERROR_ARGUMENT, "there is no splat %zu: the last is %zu", i,
+                      c->splats->count - 1);
+  projection->splat = (uint32_t)i;
+  conic_project_one(&c->view, c->splats, i, &place, &chunk);
+  projection->fate = chunk.n_culled    ? CONIC_FATE_CULLED
+                     : chunk.n_skipped ? CONIC_FATE_SKIPPED
+                     : chunk.n_rays    ? CONIC_FATE_RAY
+                                       : CONIC_FATE_VARIANCE;
+  if (!chunk.n_drawn)
+    return CONIC_OK;
+  projection->x_begin = box.x_begin;
+  projection->x_end = box.x_end;
+  projection->y_begin = box.y_begin;
+  projection->y_end = box.y_end;
+  projection->amplitude = (double)footprint.amplitude;
+  projection->nearest_z = 1.0 / (double)footprint.iz_near;
+  projection->farthest_z = 1.0 / (double)footprint.iz_far;
+  projection->nearness = (double)footprint.nearness;
+  memcpy(projection->color, surface.color, sizeof projection->color);
+  memcpy(projection->normal, surface.normal, sizeof projection->normal);
+  if (projection->fate == CONIC_FATE_VARIANCE)
+    describe_ellipse(&footprint, projection);
+  return CONIC_OK;
+}
+
+conic_contribution conic_contribution_of(const conic_contributions *c, uint32_t i_footprint, int x, int y,
+                                         const conic_fragment *fragment) {
+  const conic_footprint *footprint = &c->projected.footprints[i_footprint];
+  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  float plane_iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx; /* as resolving has it */
+  return (conic_contribution){.splat = c->projected.surfaces[i_footprint].index,
+                              .q = fragment->q,
+                              .weight = conic_final_weight(&c->view, footprint, fragment->q, fragment->scale),
+                              .depth = 1.0f / conic_clamp_iz(footprint, plane_iz),
+                              .inverse_depth = fragment->iz,
+                              .plane_inverse_depth = fragment->plane_iz,
+                              .hides = conic_hiding_iz(footprint, fragment)};
+}
+
+/* Whether what does not cover the pixel fails by its clip lines, or as a ray by its range of depths. */
+static int is_out_of_range(const conic_contributions *c, const conic_footprint *footprint, int x, int y) {
+  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  if (conic_is_clipped(footprint) &&
+      !conic_clip_keeps(&c->projected.clips[footprint - c->projected.footprints], dx, dy))
+    return 1;
+  if (footprint->s3 != 0.0f || conic_is_laplace(footprint))
+    return 0;
+  const conic_ray *ray = &c->projected.rays[footprint->i_ray];
+  float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  return !(iz > 0.0f && iz >= ray->iz_low && iz <= ray->iz_high);
+}
+
+/* Splat i of the band at the pixel, before it is known what hides it; 0 where the pixel is not in its reach. */
+static int begin_contribution(const conic_contributions *c, uint32_t i_footprint, int x, int y,
+                              conic_contribution *contribution) {
+  const conic_footprint *footprint = &c->projected.footprints[i_footprint];
+  conic_reach reach = conic_reach_of(c, i_footprint);
+  conic_fragment fragment;
+  if (x < reach.x_begin || x >= reach.x_end || y < reach.y_begin || y >= reach.y_end)
+    return 0;
+  if (conic_fragment_at(&c->view, &c->projected, footprint, x, y, &fragment)) {
+    *contribution = conic_contribution_of(c, i_footprint, x, y, &fragment);
+    return 1;
+  }
+  *contribution = (conic_contribution){.splat = c->projected.surfaces[i_footprint].index};
+  contribution->verdict = is_out_of_range(c, footprint, x, y) ? CONIC_CONTRIBUTION_CLIPPED : CONIC_CONTRIBUTION_OUTSIDE;
+  return 1;
+}
+
+static void judge(conic_contribution *list, size_t n, int passes, const conic_triangle_contribution *triangle) {
+  float threshold = triangle ? triangle->hides : 0.0f, nearest_iz = 0.0f;
+  size_t nearest = n;
+  for (size_t i = 0; i < n; i++) {
+    if (list[i].verdict > CONIC_CONTRIBUTION_HIDDEN)
+      continue;
+    threshold = threshold < list[i].hides ? list[i].hides : threshold;
+    if (nearest_iz < list[i].inverse_depth) {
+      nearest_iz = list[i].inverse_depth;
+      nearest = i;
+    }
+  }
+  if (triangle && triangle->inverse_depth > nearest_iz)
+    nearest = n;
+  for (size_t i = 0; i < n; i++) {
+    conic_fragment f = {.iz = list[i].inverse_depth, .plane_iz = list[i].plane_inverse_depth};
+    if (list[i].verdict <= CONIC_CONTRIBUTION_HIDDEN && !(passes == 1 ? i == nearest : conic_seen_iz(&f) >= threshold))
+      list[i].verdict = CONIC_CONTRIBUTION_HIDDEN;
+  }
+}
+
+conic_status conic_contributions_at(conic_contributions *c, int x, int y, const conic_contribution **list, size_t *n) {
+  if (x < 0 || x >= c->view.width || y < 0 || y >= c->view.height)
+    return conic_fail(c->context, CONIC_ERROR_ARGUMENT, "the pixel %d,%d is not in a picture of %d x %d", x, y,
+                      c->view.width, c->view.height);
+  size_t band = (size_t)y / CONIC_CONTRIBUTION_BAND, first = c->band_begin[band], end = c->band_begin[band + 1];
+  if (end - first > c->list_room) {
+    conic_memory_release(c->context, c->list);
+    c->list_room = 0;
+    c->list = conic_memory_allocate(c->context, end - first, sizeof *c->list);
+    if (!c->list)
+      return CONIC_ERROR_MEMORY;
+    c->list_room = end - first;
+  }
+  *n = 0;
+  for (size_t i = first; i < end; i++)
+    *n += (size_t)begin_contribution(c, c->references[i], x, y, &c->list[*n]);
+  const conic_triangle_contribution *triangle;
+  size_t n_triangles;
+  conic_status status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
+  judge(c->list, *n, c->options.passes, triangle);
+  *list = c->list;
+  return status;
+}

@@ -1,0 +1,217 @@
+/* Every pixel's visible splats and its visible triangle, line by line, into a deep image. */
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/image/image_exr_deep.h"
+#include "raster/explain/pixel_contributions.h"
+
+/* A line that a thread works out; what it holds serves line after line. */
+typedef struct line {
+  int y;
+  float *threshold;               /* a pixel; the nearest iz, where one pass asks for that */
+  uint32_t *nearest;              /* a pixel: with one pass, the footprint that wins */
+  conic_near_triangle *triangles; /* a pixel; iz = 0 where none is visible */
+  uint32_t *counts;
+  size_t *next; /* a pixel: where its next sample goes */
+  float *depths, *weights;
+  uint32_t *ids;
+  size_t n_samples, room;
+  int has_failed;
+} line;
+
+typedef struct lines {
+  const conic_contributions *contributions;
+  line *lines;
+  int is_counting; /* only the counts are asked for */
+} lines;
+
+typedef void visit_fragment(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                            const conic_fragment *fragment);
+
+static void walk(const conic_contributions *c, line *l, visit_fragment *visit) {
+  size_t band = (size_t)l->y / CONIC_CONTRIBUTION_BAND;
+  for (size_t i = c->band_begin[band]; i < c->band_begin[band + 1]; i++) {
+    uint32_t i_footprint = c->references[i];
+    const conic_footprint *footprint = &c->projected.footprints[i_footprint];
+    conic_reach reach = conic_reach_of(c, i_footprint);
+    if (l->y < reach.y_begin || l->y >= reach.y_end)
+      continue;
+    for (int x = reach.x_begin; x < reach.x_end; x++) {
+      conic_fragment fragment;
+      if (conic_fragment_at(&c->view, &c->projected, footprint, x, l->y, &fragment))
+        visit(c, l, i_footprint, x, &fragment);
+    }
+  }
+}
+
+static void raise_threshold(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                            const conic_fragment *fragment) {
+  float hides = conic_hiding_iz(&c->projected.footprints[i_footprint], fragment);
+  l->threshold[x] = l->threshold[x] < hides ? hides : l->threshold[x];
+}
+
+static void keep_nearest(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                         const conic_fragment *fragment) {
+  (void)c;
+  if (l->threshold[x] < fragment->iz) {
+    l->threshold[x] = fragment->iz;
+    l->nearest[x] = i_footprint;
+  }
+}
+
+static int is_visible(const conic_contributions *c, const line *l, uint32_t i_footprint, int x,
+                      const conic_fragment *fragment) {
+  return c->options.passes == 1 ? l->nearest[x] == i_footprint : conic_seen_iz(fragment) >= l->threshold[x];
+}
+
+/* A pixel's triangle is visible unless splats hide it, and then hides them in turn. */
+static void judge_triangles(const conic_contributions *c, line *l) {
+  conic_contribution_triangle_line(c, l->y, l->triangles);
+  for (int x = 0; x < c->view.width; x++) {
+    conic_near_triangle *triangle = &l->triangles[x];
+    if (c->options.passes == 1 ? !(triangle->iz > l->threshold[x]) : !(triangle->iz >= l->threshold[x]))
+      triangle->iz = 0.0f;
+    else if (c->options.passes == 1)
+      l->nearest[x] = UINT32_MAX;
+    else if (l->threshold[x] < triangle->hides)
+      l->threshold[x] = triangle->hides;
+  }
+}
+
+static void keep_triangles(const conic_contributions *c, line *l) {
+  for (int x = 0; x < c->view.width; x++) {
+    const conic_near_triangle *triangle = &l->triangles[x];
+    if (!(triangle->iz > 0.0f))
+      continue;
+    size_t at = l->next[x]++;
+    l->depths[at] = 1.0f / triangle->iz;
+    l->ids[at] = c->triangles.first_id + triangle->triangle;
+    l->weights[at] = 1.0f;
+  }
+}
+
+static void count(const conic_contributions *c, line *l, uint32_t i_footprint, int x, const conic_fragment *fragment) {
+  l->counts[x] += (uint32_t)is_visible(c, l, i_footprint, x, fragment);
+}
+
+static void keep(const conic_contributions *c, line *l, uint32_t i_footprint, int x, const conic_fragment *fragment) {
+  if (!is_visible(c, l, i_footprint, x, fragment))
+    return;
+  conic_contribution contribution = conic_contribution_of(c, i_footprint, x, l->y, fragment);
+  size_t at = l->next[x]++;
+  l->depths[at] = contribution.depth;
+  l->ids[at] = contribution.splat;
+  l->weights[at] = contribution.weight;
+}
+
+static int make_room(conic_context *context, line *l) {
+  if (l->n_samples <= l->room)
+    return 1;
+  conic_memory_release(context, l->depths);
+  conic_memory_release(context, l->weights);
+  conic_memory_release(context, l->ids);
+  l->room = l->n_samples + l->n_samples / 4;
+  l->depths = conic_memory_allocate(context, l->room, sizeof *l->depths);
+  l->weights = conic_memory_allocate(context, l->room, sizeof *l->weights);
+  l->ids = conic_memory_allocate(context, l->room, sizeof *l->ids);
+  if (l->depths && l->weights && l->ids)
+    return 1;
+  l->room = 0;
+  return 0;
+}
+
+static void work_out(void *data, size_t i_item, int i_thread) {
+  const lines *all = data;
+  const conic_contributions *c = all->contributions;
+  line *l = &all->lines[i_item];
+  size_t width = (size_t)c->view.width;
+  (void)i_thread;
+  memset(l->threshold, 0, width * sizeof *l->threshold);
+  memset(l->nearest, 0xff, width * sizeof *l->nearest);
+  memset(l->counts, 0, width * sizeof *l->counts);
+  walk(c, l, c->options.passes == 1 ? keep_nearest : raise_threshold);
+  judge_triangles(c, l);
+  walk(c, l, count);
+  l->n_samples = 0;
+  for (size_t x = 0; x < width; x++) {
+    l->counts[x] += l->triangles[x].iz > 0.0f;
+    l->next[x] = l->n_samples;
+    l->n_samples += l->counts[x];
+  }
+  if (all->is_counting)
+    return;
+  l->has_failed = !make_room(c->context, l);
+  if (l->has_failed)
+    return;
+  walk(c, l, keep);
+  keep_triangles(c, l);
+}
+
+static conic_status allocate_line(conic_context *context, size_t width, line *l) {
+  l->threshold = conic_memory_allocate(context, width, sizeof *l->threshold);
+  l->nearest = conic_memory_allocate(context, width, sizeof *l->nearest);
+  l->triangles = conic_memory_allocate(context, width, sizeof *l->triangles);
+  l->counts = conic_memory_allocate(context, width, sizeof *l->counts);
+  l->next = conic_memory_allocate(context, width, sizeof *l->next);
+  return l->threshold && l->nearest && l->triangles && l->counts && l->next ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static void release_line(conic_context *context, line *l) {
+  void *all[] = {l->threshold, l->nearest, l->triangles, l->counts, l->next, l->depths, l->weights, l->ids};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    conic_memory_release(context, all[i]);
+}
+
+static conic_status append(conic_deep_writer *writer, const line *l) {
+  conic_deep_line whole = {l->counts, l->n_samples, l->depths, l->ids, l->weights};
+  return l->has_failed ? CONIC_ERROR_MEMORY : conic_deep_append(writer, &whole);
+}
+
+/* Works out every line, `n_lines` at a time; appends them to the writer, or without one finds the largest count. */
+static conic_status do_lines(lines *all, size_t n_lines, conic_deep_writer *writer, uint32_t *most) {
+  const conic_contributions *c = all->contributions;
+  conic_status status = CONIC_OK;
+  all->is_counting = !writer;
+  for (int y = 0; y < c->view.height && status == CONIC_OK; y += (int)n_lines) {
+    size_t left = (size_t)(c->view.height - y), n = left < n_lines ? left : n_lines;
+    for (size_t i = 0; i < n; i++)
+      all->lines[i].y = y + (int)i;
+    conic_parallel_for(c->context, n, work_out, all);
+    for (size_t i = 0; i < n && status == CONIC_OK; i++) {
+      for (int x = 0; x < c->view.width; x++)
+        *most = all->lines[i].counts[x] > *most ? all->lines[i].counts[x] : *most;
+      status = writer ? append(writer, &all->lines[i]) : CONIC_OK;
+    }
+    double done = (double)(y + (int)n) / (double)c->view.height;
+    if (status == CONIC_OK)
+      status = conic_progress(c->context, "deep", writer ? 0.4 + 0.6 * done : 0.4 * done);
+  }
+  return status;
+}
+
+conic_status conic_contributions_write(conic_contributions *c, const char *path, const conic_image *header) {
+  size_t n_lines = 8 * (size_t)conic_context_threads(c->context);
+  uint32_t most = 0;
+  conic_deep_writer *writer = NULL;
+  lines all = {.contributions = c};
+  all.lines = conic_memory_allocate_zeroed(c->context, n_lines, sizeof *all.lines);
+  conic_status status = all.lines ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < n_lines && status == CONIC_OK; i++)
+    status = allocate_line(c->context, (size_t)c->view.width, &all.lines[i]);
+  if (status == CONIC_OK)
+    status = do_lines(&all, n_lines, NULL, &most); /* the header has to say how many there are at most */
+  if (status == CONIC_OK)
+    status = conic_deep_open(c->context, path, c->view.width, c->view.height, most, header, &writer);
+  if (status == CONIC_OK)
+    status = do_lines(&all, n_lines, writer, &most);
+  if (status == CONIC_OK)
+    status = conic_deep_finish(writer);
+  else
+    conic_deep_abandon(writer);
+  for (size_t i = 0; i < n_lines && all.lines; i++)
+    release_line(c->context, &all.lines[i]);
+  conic_memory_release(c->context, all.lines);
+  return status;
+}

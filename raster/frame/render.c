@@ -1,0 +1,515 @@
+#include "conic/render.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/color.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "raster/frame/backend.h"
+#include "raster/frame/drawing.h"
+#include "raster/frame/tile.h"
+#include "raster/project/clip_lines.h"
+#include "raster/tiles/bins.h"
+#include "raster/view/method.h"
+#include "raster/view/part.h"
+#include "raster/view/ticks.h"
+
+/* Memory that is kept from frame to frame and only ever grows. */
+typedef struct kept {
+  void *pointer;
+  size_t bytes;
+} kept;
+
+/* A thread's ticks: what shares the wall-clock out. */
+typedef struct stage_times {
+  uint64_t setup, sort, lists, visibility, accumulate, resolve;
+} stage_times;
+
+struct conic_renderer {
+  conic_context *context;
+  conic_backend *backend; /* null: the loops here */
+  kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
+      times, lengths;
+  conic_triangle_frame triangles;
+};
+
+/* One frame on its way through the stages. */
+typedef struct frame {
+  conic_renderer *renderer;
+  const conic_splats *splats;
+  conic_view view;
+  conic_projected projected;
+  conic_bins bins;
+  conic_finish finish;
+  const conic_tile_kernels *kernels;
+  conic_image *image;
+  conic_window window;     /* the pixels that are drawn: whole tiles */
+  float *hiding;           /* in the place of an image; else null */
+  char *sorters, *scratch; /* of chunks and of tiles, a thread */
+  size_t sorter_bytes, scratch_bytes;
+  conic_triangle_frame *triangles;   /* null: there are none */
+  stage_times *times;                /* a thread */
+  uint64_t *n_fragments, *n_covered; /* a tile */
+  atomic_size_t n_triangle_fragments;
+  atomic_size_t n_tiles_done;
+  atomic_int is_cancelled;
+} frame;
+
+void conic_render_options_init(conic_render_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->kernel.cutoff = 1.5f;
+  options->kernel.a = 4.0f;
+  options->kernel.b = 1.5f;
+  options->kernel.n = 5;
+  options->prefilter = 1.0f;
+  options->epsilon = -1.0;
+  options->passes = 3;
+  options->shading = CONIC_SHADE_PHONG;
+  options->tile = 64;
+}
+
+conic_status conic_renderer_create(conic_context *context, conic_renderer **renderer) {
+  *renderer = conic_memory_allocate_zeroed(context, 1, sizeof **renderer);
+  if (!*renderer)
+    return CONIC_ERROR_MEMORY;
+  (*renderer)->context = context;
+  return CONIC_OK;
+}
+
+void conic_renderer_destroy(conic_renderer *renderer) {
+  if (!renderer)
+    return;
+  kept *all[] = {&renderer->footprints, &renderer->surfaces,    &renderer->rays,       &renderer->clips,
+                 &renderer->chunks,     &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts,
+                 &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times,
+                 &renderer->lengths};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    conic_memory_release(renderer->context, all[i]->pointer);
+  if (renderer->backend)
+    renderer->backend->destroy(renderer->backend);
+  conic_triangle_frame_release(renderer->context, &renderer->triangles);
+  conic_memory_release(renderer->context, renderer);
+}
+
+void conic_renderer_take(conic_renderer *renderer, conic_backend *backend) {
+  renderer->backend = backend;
+}
+
+/* Room for count × size bytes in `memory`; null where there is none. What was in it is gone if it had to grow. */
+static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
+  if (memory->pointer && count <= memory->bytes / size)
+    return memory->pointer;
+  conic_memory_release(renderer->context, memory->pointer);
+  memory->bytes = 0;
+  memory->pointer = conic_memory_allocate(renderer->context, count, size);
+  if (memory->pointer)
+    memory->bytes = count * size;
+  return memory->pointer;
+}
+
+/* The same for what fills up from its beginning. */
+static void *dense_room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
+  size_t before = memory->bytes;
+  void *pointer = room(renderer, memory, count, size);
+  if (memory->bytes != before)
+    conic_memory_prefer_large_pages(renderer->context, pointer, memory->bytes);
+  return pointer;
+}
+
+/* Chunks of splats are what set-up and binning share out: enough of them for balance, small enough for their records to
+ * stay in a core's cache until they are sorted, few enough for their tables. */
+static void choose_chunks(frame *f) {
+  enum { LEAST = 2048, GREATEST = 8192 };
+  size_t greatest = f->view.cull_back ? 3 * GREATEST : GREATEST; /* most of them are not drawn */
+  size_t n = f->splats->count, size = n / (8 * (size_t)conic_context_threads(f->renderer->context)) + 1;
+  size = size < LEAST ? LEAST : size > greatest ? greatest : size;
+  while ((n / size + 1) * f->bins.n_tiles > ((size_t)1 << 22) && size < n)
+    size *= 2;
+  size_t countable = (UINT32_MAX - 1) / f->bins.n_tiles; /* a chunk's entries are, even if all splats meet all tiles */
+  size = size < countable ? size : countable;
+  f->projected.chunk_size = size;
+  f->projected.n_chunks = f->bins.n_chunks = n / size + (n % size > 0);
+}
+
+static conic_status plan_records(frame *f) {
+  choose_chunks(f);
+  conic_renderer *renderer = f->renderer;
+  conic_projected *projected = &f->projected;
+  size_t n = f->splats->count;
+  projected->chunks = room(renderer, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
+  size_t n_named = n ? n : 1; /* where nothing is, sums name the first */
+  projected->footprints = dense_room(renderer, &renderer->footprints, n_named, sizeof *projected->footprints);
+  projected->surfaces = dense_room(renderer, &renderer->surfaces, n_named, sizeof *projected->surfaces);
+  projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
+  if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
+    return CONIC_ERROR_MEMORY;
+  projected->clips = NULL;
+  if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
+    projected->clips = room(renderer, &renderer->clips, n, sizeof *projected->clips);
+  return f->splats->n_clips && n && !projected->clips ? CONIC_ERROR_MEMORY : CONIC_OK;
+}
+
+static conic_status plan_bins(frame *f) {
+  conic_renderer *renderer = f->renderer;
+  conic_bins *bins = &f->bins;
+  size_t n = f->splats->count, n_threads = (size_t)conic_context_threads(renderer->context);
+  f->sorter_bytes = conic_sorter_bytes(bins, f->projected.chunk_size, f->splats->n_clips > 0);
+  f->sorters = room(renderer, &renderer->sorters, n_threads, f->sorter_bytes);
+  bins->chunk_begin = room(renderer, &renderer->chunk_begin, bins->n_chunks, sizeof *bins->chunk_begin);
+  bins->tile_begin =
+      room(renderer, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
+  bins->entries = dense_room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
+  bins->n_room = renderer->entries.bytes / sizeof *bins->entries;
+  bins->length = room(renderer, &renderer->lengths, bins->n_tiles, sizeof *bins->length);
+  f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
+  if (!f->sorters || !bins->chunk_begin || !bins->tile_begin || !bins->length || !bins->entries || !f->n_fragments)
+    return CONIC_ERROR_MEMORY;
+  f->n_covered = f->n_fragments + bins->n_tiles;
+  return CONIC_OK;
+}
+
+static conic_status plan_tiles(frame *f, int tile) {
+  conic_renderer *renderer = f->renderer;
+  size_t n_threads = (size_t)conic_context_threads(renderer->context);
+  f->bins.tile = tile;
+  f->bins.tile_bits = __builtin_ctz((unsigned)tile);
+  f->bins.by_pixels = f->finish.options->passes == 1 && !f->hiding;
+  f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
+  f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
+  f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
+  f->times = room(renderer, &renderer->times, n_threads, sizeof *f->times);
+  if (!f->times)
+    return CONIC_ERROR_MEMORY;
+  memset(f->times, 0, n_threads * sizeof *f->times);
+  return CONIC_OK;
+}
+
+static void project_task(void *data, size_t i_chunk, int i_thread) {
+  frame *f = data;
+  conic_sorter sorter;
+  size_t n = f->splats->count, begin = i_chunk * f->projected.chunk_size, end = begin + f->projected.chunk_size;
+  uint64_t start = conic_ticks();
+  conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
+                     f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
+  sorter.chunk.first_ray = begin;
+  f->kernels->project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
+  if (sorter.projected.clips)
+    conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
+  uint64_t projected = conic_ticks();
+  conic_bins_sort(&f->bins, f->kernels, &sorter, i_chunk, &f->projected);
+  f->times[i_thread].setup += projected - start;
+  f->times[i_thread].sort += conic_ticks() - projected;
+}
+
+static void begin_tile(const frame *f, size_t i_tile, int i_thread, conic_tile *tile) {
+  const conic_bins *bins = &f->bins;
+  tile->view = &f->view;
+  tile->projected = &f->projected;
+  tile->n_references = bins->length[i_tile];
+  tile->x_begin = (int)(i_tile % (size_t)bins->n_tiles_x) * bins->tile;
+  tile->y_begin = (int)(i_tile / (size_t)bins->n_tiles_x) * bins->tile;
+  tile->x_end = tile->x_begin + bins->tile < f->view.width ? tile->x_begin + bins->tile : f->view.width;
+  tile->y_end = tile->y_begin + bins->tile < f->view.height ? tile->y_begin + bins->tile : f->view.height;
+  tile->keeps_indices = f->image && (f->image->planes[CONIC_PLANE_COUNT] || f->image->planes[CONIC_PLANE_ID]);
+  tile->hiding = f->hiding;
+  conic_tile_place_scratch(tile, f->scratch + (size_t)i_thread * f->scratch_bytes);
+  conic_bins_gather(bins, i_tile, tile->scratch.entries);
+  tile->triangles = f->triangles && conic_triangle_frame_meets(f->triangles, i_tile) ? f->triangles : NULL;
+  tile->triangle_tile = f->triangles ? &f->triangles->tiles[i_thread] : NULL;
+  tile->i_tile = i_tile;
+}
+
+/* Tells the caller's progress callback, which runs on its own thread, how far the tiles are. */
+static void report_progress(frame *f) {
+  size_t done = atomic_load(&f->n_tiles_done);
+  if (conic_progress(f->renderer->context, "render", (double)done / (double)f->bins.n_tiles) != CONIC_OK)
+    atomic_store(&f->is_cancelled, 1);
+}
+
+static int is_in_window(const frame *f, size_t i_tile) {
+  int x = (int)(i_tile % (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  int y = (int)(i_tile / (size_t)f->bins.n_tiles_x) * f->bins.tile;
+  return x >= f->window.x_begin && x < f->window.x_end && y >= f->window.y_begin && y < f->window.y_end;
+}
+
+static void tile_task(void *data, size_t i_tile, int i_thread) {
+  frame *f = data;
+  f->n_fragments[i_tile] = f->n_covered[i_tile] = 0;
+  if (!is_in_window(f, i_tile) || atomic_load(&f->is_cancelled))
+    return;
+  if (i_thread == 0)
+    report_progress(f);
+  conic_tile tile;
+  conic_tile_report report;
+  uint64_t start = conic_ticks();
+  begin_tile(f, i_tile, i_thread, &tile);
+  f->times[i_thread].lists += conic_ticks() - start;
+  conic_tile_draw(&tile, f->kernels, &f->finish, f->image, &report);
+  f->times[i_thread].lists += report.lists;
+  f->times[i_thread].visibility += report.visibility;
+  f->times[i_thread].accumulate += report.accumulate;
+  f->times[i_thread].resolve += report.resolve;
+  f->n_fragments[i_tile] = report.n_fragments;
+  f->n_covered[i_tile] = report.n_covered;
+  atomic_fetch_add(&f->n_triangle_fragments, report.n_triangle_fragments);
+  atomic_fetch_add(&f->n_tiles_done, 1);
+}
+
+/* Sets the splats up and sorts them. How many entries that makes is known afterwards: where they had no room, again. */
+static conic_status project_and_sort(frame *f) {
+  conic_renderer *renderer = f->renderer;
+  conic_bins *bins = &f->bins;
+  for (;;) {
+    atomic_store(&bins->n_used, 0);
+    atomic_store(&bins->n_records, 0);
+    conic_parallel_for(renderer->context, f->projected.n_chunks, project_task, f);
+    size_t n_used = atomic_load(&bins->n_used);
+    if (n_used <= bins->n_room)
+      break;
+    bins->entries = dense_room(renderer, &renderer->entries, n_used, sizeof *bins->entries);
+    bins->n_room = n_used;
+    if (!bins->entries)
+      return CONIC_ERROR_MEMORY;
+  }
+  f->scratch_bytes = conic_tile_bytes(conic_bins_measure(bins));
+  f->scratch = room(renderer, &renderer->scratch, (size_t)conic_context_threads(renderer->context), f->scratch_bytes);
+  return f->scratch ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* The wall-clock of set-up and sorting, and that of the tiles, shared out by what their stages took on all threads. */
+static void share_out(const frame *f, double chunks_ms, double tiles_ms, conic_render_milliseconds *ms) {
+  stage_times sum = {0, 0, 0, 0, 0, 0};
+  for (int i = 0; i < conic_context_threads(f->renderer->context); i++) {
+    sum.setup += f->times[i].setup;
+    sum.sort += f->times[i].sort;
+    sum.lists += f->times[i].lists;
+    sum.visibility += f->times[i].visibility;
+    sum.accumulate += f->times[i].accumulate;
+    sum.resolve += f->times[i].resolve;
+  }
+  double of_chunks = (double)(sum.setup + sum.sort);
+  double of_tiles = (double)(sum.lists + sum.visibility + sum.accumulate + sum.resolve);
+  double chunks_scale = of_chunks > 0.0 ? chunks_ms / of_chunks : 0.0;
+  double tiles_scale = of_tiles > 0.0 ? tiles_ms / of_tiles : 0.0;
+  ms->setup = (double)sum.setup * chunks_scale;
+  ms->bin = (double)sum.sort * chunks_scale + (double)sum.lists * tiles_scale;
+  ms->visibility = (double)sum.visibility * tiles_scale;
+  ms->accumulate = (double)sum.accumulate * tiles_scale;
+  ms->resolve = (double)sum.resolve * tiles_scale;
+}
+
+static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  const conic_projected *projected = &f->projected;
+  uint64_t n_rays = 0;
+  for (size_t i = 0; i < projected->n_chunks; i++) {
+    const conic_chunk *chunk = &projected->chunks[i];
+    statistics->splats_culled += chunk->n_culled;
+    statistics->splats_skipped += chunk->n_skipped;
+    statistics->splats_drawn += chunk->n_drawn;
+    statistics->splats_fallback += chunk->n_fallback;
+    n_rays += chunk->n_rays;
+  }
+  conic_method_count(options->method, n_rays, statistics);
+  for (size_t i = 0; i < f->bins.n_tiles; i++) {
+    statistics->fragments += f->n_fragments[i];
+    statistics->pixels_covered += f->n_covered[i];
+  }
+  if (f->triangles)
+    conic_triangle_frame_count(f->triangles, statistics);
+  statistics->triangle_fragments = atomic_load(&f->n_triangle_fragments);
+  statistics->threads = conic_context_threads(f->renderer->context);
+  statistics->tile = f->bins.tile;
+  statistics->isa = f->kernels->name;
+}
+
+static void note_settings(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  statistics->splats_in = f->splats->count;
+  statistics->near_z = f->view.near_z;
+  statistics->epsilon_is_fixed = options->epsilon >= 0.0;
+  statistics->epsilon = statistics->epsilon_is_fixed ? options->epsilon : (double)CONIC_EPSILON_C;
+}
+
+double conic_default_near(const conic_splats *splats) {
+  double low[3], high[3], diagonal_squared = 0.0;
+  conic_splats_bounds(splats, low, high);
+  for (int i = 0; i < 3; i++)
+    diagonal_squared += (high[i] - low[i]) * (high[i] - low[i]);
+  return diagonal_squared > 0.0 ? 1e-4 * sqrt(diagonal_squared) : 1e-4;
+}
+
+static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {
+  conic_finish *finish = &f->finish;
+  double length_squared = 0.0;
+  finish->options = options;
+  for (int i = 0; i < 3; i++) {
+    length_squared += options->light[i] * options->light[i];
+    for (int j = 0; j < 3; j++)
+      finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
+  }
+  if (options->has_light && !(length_squared > 1e-200 && length_squared < 1e200))
+    return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
+  for (int i = 0; options->has_light && i < 3; i++)
+    finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
+  finish->exposure = conic_exposure_factor(options->exposure);
+  for (int i = 0; options->has_background && i < 3; i++)
+    finish->background[i] = options->background[i] * finish->exposure;
+  finish->background[3] = options->has_background ? 1.0f : 0.0f;
+  return CONIC_OK;
+}
+
+static conic_status draw(frame *f, conic_render_milliseconds *ms) {
+  conic_context *context = f->renderer->context;
+  double start = conic_seconds_now();
+  conic_status status = project_and_sort(f);
+  double sorted = conic_seconds_now();
+  if (status == CONIC_OK && f->triangles)
+    status = conic_triangle_frame_prepare(f->triangles, f->kernels);
+  if (status != CONIC_OK)
+    return status;
+  double prepared = conic_seconds_now();
+  conic_parallel_for(context, f->bins.n_tiles, tile_task, f);
+  double done = conic_seconds_now();
+  share_out(f, 1e3 * (sorted - start), 1e3 * (done - prepared), ms);
+  ms->setup += 1e3 * (prepared - sorted);
+  return atomic_load(&f->is_cancelled) ? CONIC_ERROR_CANCELLED : conic_progress(context, "render", 1.0);
+}
+
+/* The drawing's triangles, if there are any. */
+static conic_status begin_triangles(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
+                                    const conic_render_options *options) {
+  conic_context *context = f->renderer->context;
+  if (!drawing->triangles)
+    return CONIC_OK;
+  if (drawing->triangles->count > UINT32_MAX - 1 - f->splats->count)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: there are more than 4,294,967,294 splats and triangles");
+  f->triangles = &f->renderer->triangles;
+  f->triangles->first_id = (uint32_t)f->splats->count;
+  conic_triangle_frame_begin(f->triangles, context, drawing->triangles, &f->view, camera);
+  conic_triangle_frame_tiles(f->triangles, options->tile);
+  return conic_triangles_check(context, drawing->triangles, "render");
+}
+
+/* By the loops of this machine's processor. */
+static conic_status draw_here(frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
+  int blends = options->passes != 1 || f->hiding;
+  f->view.needs_nearness = blends;
+  f->view.needs_slope = blends || f->image->planes[CONIC_PLANE_Z];
+  conic_status status = plan_tiles(f, options->tile);
+  if (status == CONIC_OK)
+    status = plan_records(f);
+  if (status == CONIC_OK)
+    status = plan_bins(f);
+  if (status == CONIC_OK)
+    status = draw(f, &statistics->ms);
+  if (status == CONIC_OK)
+    count_up(f, options, statistics);
+  return status;
+}
+
+/* All of conic_render, for the window and the plane that `f` names already. */
+static conic_status render(frame *f, const conic_whole_drawing *drawing, const conic_camera *camera,
+                           const conic_render_options *options, conic_render_statistics *statistics) {
+  double start = conic_seconds_now();
+  conic_render_statistics counted;
+  conic_renderer *renderer = f->renderer;
+  conic_context *context = renderer->context;
+  memset(&counted, 0, sizeof counted);
+  f->kernels = conic_tile_kernels_of(options->isa);
+  if (!f->kernels)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
+                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
+  conic_render_options scaled = *options;
+  conic_status status = conic_whole_drawing_scale(context, drawing, &scaled);
+  if (status == CONIC_OK)
+    status = conic_view_init(context, f->splats, camera, options, scaled.near_z, scaled.splat_length, &f->view);
+  if (status == CONIC_OK)
+    status = prepare_finish(f, camera, options);
+  if (status == CONIC_OK)
+    status = begin_triangles(f, drawing, camera, options);
+  if (status == CONIC_OK && renderer->backend)
+    status =
+        renderer->backend->draw(renderer->backend, &f->view, f->splats, f->triangles, &f->finish, f->image, &counted);
+  else if (status == CONIC_OK)
+    status = draw_here(f, options, &counted);
+  if (status != CONIC_OK)
+    return status;
+  note_settings(f, options, &counted);
+  counted.ms.frame = 1e3 * (conic_seconds_now() - start);
+  if (statistics)
+    *statistics = counted;
+  return CONIC_OK;
+}
+
+static conic_status check_arguments(const conic_renderer *renderer, const conic_splats *splats,
+                                    const conic_camera *camera, const conic_render_options *options,
+                                    const conic_image *image) {
+  if (!splats || !camera || !options || options->size != sizeof *options)
+    return conic_fail(renderer->context, CONIC_ERROR_ARGUMENT,
+                      "render: an argument is null, or the options were not initialised");
+  if (image && (image->width != camera->width || image->height != camera->height))
+    return conic_fail(renderer->context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
+  return CONIC_OK;
+}
+
+static conic_window whole_of(const conic_camera *camera) {
+  return (conic_window){0, camera->width, 0, camera->height};
+}
+
+conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
+                                const conic_camera *camera, const conic_render_options *options, conic_image *image,
+                                conic_render_statistics *statistics) {
+  conic_status status = check_arguments(renderer, image ? drawing->splats : NULL, camera, options, image);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = drawing->splats, .image = image, .window = whole_of(camera)};
+  return render(&f, drawing, camera, options, statistics);
+}
+
+conic_status conic_render(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                          const conic_render_options *options, conic_image *image,
+                          conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  return conic_render_whole(renderer, &alone, camera, options, image, statistics);
+}
+
+int conic_renderer_has_parts(const conic_renderer *renderer) {
+  return !renderer->backend;
+}
+
+static conic_status check_part(const conic_renderer *renderer) {
+  if (!conic_renderer_has_parts(renderer))
+    return conic_fail(renderer->context, CONIC_ERROR_UNSUPPORTED,
+                      "render: only the processor draws a picture in parts; more memory makes it one");
+  return CONIC_OK;
+}
+
+conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, const conic_window *window, conic_image *image,
+                                 conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  conic_status status = check_arguments(renderer, image ? splats : NULL, camera, options, image);
+  if (status == CONIC_OK)
+    status = check_part(renderer);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = splats, .image = image, .window = *window};
+  return render(&f, &alone, camera, options, statistics);
+}
+
+conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, float *hiding) {
+  const conic_whole_drawing alone = {.splats = splats};
+  conic_status status = check_arguments(renderer, hiding ? splats : NULL, camera, options, NULL);
+  if (status == CONIC_OK)
+    status = check_part(renderer);
+  if (status != CONIC_OK)
+    return status;
+  frame f = {.renderer = renderer, .splats = splats, .window = whole_of(camera)};
+  f.hiding = hiding;
+  return render(&f, &alone, camera, options, NULL);
+}

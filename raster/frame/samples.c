@@ -1,0 +1,279 @@
+/* Supersampling: the picture drawn N times as wide and as high, and every N × N of its pixels made one. */
+#include <math.h>
+#include <string.h>
+
+#include "conic/render.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/image/image_common.h"
+#include "raster/frame/drawing.h"
+#include "raster/project/projected.h"
+#include "raster/view/method.h"
+
+/* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
+ * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
+ * where it begins. */
+#define BAND_PIXELS ((size_t)1 << 24)
+
+/* Splats that a task counts. */
+enum { COUNTED_TOGETHER = 1 << 14 };
+
+typedef struct reduction {
+  const conic_image *fine;
+  conic_image *image;
+  size_t first_row; /* of the image, where the fine band begins */
+  size_t samples;   /* N */
+} reduction;
+
+/* The fine picture's pixel k of an image's pixel: its first is `corner`. */
+static size_t fine_at(const reduction *r, size_t corner, size_t k) {
+  return corner + k / r->samples * (size_t)r->fine->width + k % r->samples;
+}
+
+static void take_mean(const reduction *r, conic_plane plane, size_t corner, size_t at) {
+  size_t n_channels = (size_t)conic_plane_describe(plane)->n_channels, n = r->samples * r->samples;
+  const float *fine = r->fine->planes[plane];
+  float *to = (float *)r->image->planes[plane] + n_channels * at;
+  for (size_t c = 0; c < n_channels; c++) {
+    double sum = 0.0; /* of floats, so exact where all are the same */
+    for (size_t k = 0; k < n; k++)
+      sum += (double)fine[n_channels * fine_at(r, corner, k) + c];
+    to[c] = (float)(sum / (double)n);
+  }
+}
+
+/* Twice the distance from the pixel's centre, squared. */
+static int off_center(const reduction *r, size_t k) {
+  int n = (int)r->samples, x = 2 * (int)(k % r->samples) + 1 - n, y = 2 * (int)(k / r->samples) + 1 - n;
+  return x * x + y * y;
+}
+
+/* The direction of the sum over the covered samples, whose normals are not zero; where they cancel, that of the covered
+ * one nearest to the centre. */
+static void take_normal(const reduction *r, size_t corner, size_t at) {
+  const float *fine = r->fine->planes[CONIC_PLANE_NORMAL];
+  float *to = (float *)r->image->planes[CONIC_PLANE_NORMAL] + 3 * at;
+  const float *nearest = NULL;
+  double sum[3] = {0.0, 0.0, 0.0};
+  int nearest_distance = 0;
+  for (size_t k = 0; k < r->samples * r->samples; k++) {
+    const float *normal = fine + 3 * fine_at(r, corner, k);
+    if (normal[0] == 0.0f && normal[1] == 0.0f && normal[2] == 0.0f)
+      continue;
+    if (!nearest || off_center(r, k) < nearest_distance) {
+      nearest = normal;
+      nearest_distance = off_center(r, k);
+    }
+    for (int axis = 0; axis < 3; axis++)
+      sum[axis] += (double)normal[axis];
+  }
+  double length = sqrt((sum[0] * sum[0] + sum[1] * sum[1]) + sum[2] * sum[2]);
+  for (int axis = 0; axis < 3; axis++)
+    to[axis] = !nearest ? 0.0f : length > 0.0 ? (float)(sum[axis] / length) : nearest[axis];
+}
+
+static void take_greatest_count(const reduction *r, size_t corner, size_t at) {
+  const uint32_t *fine = r->fine->planes[CONIC_PLANE_COUNT];
+  uint32_t greatest = 0;
+  for (size_t k = 0; k < r->samples * r->samples; k++)
+    greatest = fine[fine_at(r, corner, k)] > greatest ? fine[fine_at(r, corner, k)] : greatest;
+  ((uint32_t *)r->image->planes[CONIC_PLANE_COUNT])[at] = greatest;
+}
+
+/* Of the sample nearest to the centre; of four that are, the first. */
+static void take_central(const reduction *r, conic_plane plane, size_t corner, size_t at) {
+  size_t middle = (r->samples - 1) / 2;
+  const uint32_t *fine = r->fine->planes[plane]; /* bits are copied, whatever they mean */
+  memcpy((uint32_t *)r->image->planes[plane] + at, fine + fine_at(r, corner, middle * r->samples + middle),
+         sizeof *fine);
+}
+
+static void reduce_row(void *data, size_t i_row, int i_thread) {
+  const reduction *r = data;
+  void *const *planes = r->image->planes;
+  size_t width = (size_t)r->image->width;
+  (void)i_thread;
+  for (size_t x = 0; x < width; x++) {
+    size_t corner = (i_row * (size_t)r->fine->width + x) * r->samples, at = (r->first_row + i_row) * width + x;
+    if (planes[CONIC_PLANE_RGBA])
+      take_mean(r, CONIC_PLANE_RGBA, corner, at);
+    if (planes[CONIC_PLANE_ALBEDO])
+      take_mean(r, CONIC_PLANE_ALBEDO, corner, at);
+    if (planes[CONIC_PLANE_WEIGHT])
+      take_mean(r, CONIC_PLANE_WEIGHT, corner, at);
+    if (planes[CONIC_PLANE_NORMAL])
+      take_normal(r, corner, at);
+    if (planes[CONIC_PLANE_COUNT])
+      take_greatest_count(r, corner, at);
+    if (planes[CONIC_PLANE_Z])
+      take_central(r, CONIC_PLANE_Z, corner, at);
+    if (planes[CONIC_PLANE_ID])
+      take_central(r, CONIC_PLANE_ID, corner, at);
+  }
+}
+
+/* The camera of `n_rows` rows of the picture, as the fine picture sees them. */
+static conic_camera fine_camera(const conic_camera *camera, int samples, int first_row, int n_rows) {
+  conic_camera fine = *camera;
+  double n = (double)samples;
+  fine.width = samples * camera->width;
+  fine.height = samples * n_rows;
+  fine.fx = n * camera->fx;
+  fine.fy = n * camera->fy;
+  fine.cx = n * camera->cx;
+  fine.cy = n * (camera->cy - (double)first_row);
+  return fine;
+}
+
+static void add_statistics(const conic_render_statistics *band, conic_render_statistics *sum) {
+  conic_render_milliseconds ms = sum->ms;
+  uint64_t fragments = sum->fragments, pixels_covered = sum->pixels_covered;
+  uint64_t triangle_fragments = sum->triangle_fragments;
+  *sum = *band;
+  sum->triangle_fragments += triangle_fragments;
+  sum->fragments += fragments;
+  sum->pixels_covered += pixels_covered;
+  sum->ms.setup += ms.setup;
+  sum->ms.bin += ms.bin;
+  sum->ms.visibility += ms.visibility;
+  sum->ms.accumulate += ms.accumulate;
+  sum->ms.resolve += ms.resolve;
+}
+
+/* What becomes of the splats in the whole fine picture, which no band sees. */
+typedef struct census {
+  const conic_splats *splats;
+  conic_view view;
+  conic_chunk *chunks; /* a task */
+} census;
+
+static void count_splats(void *data, size_t i_item, int i_thread) {
+  census *c = data;
+  conic_footprint footprint;
+  conic_box box;
+  conic_surface surface;
+  conic_ray ray;
+  conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
+  conic_chunk *chunk = &c->chunks[i_item];
+  size_t first = i_item * COUNTED_TOGETHER, n = c->splats->count - first;
+  (void)i_thread;
+  for (size_t i = 0; i < (n < COUNTED_TOGETHER ? n : COUNTED_TOGETHER); i++) {
+    conic_chunk one = {.n_drawn = 0};
+    conic_project_one(&c->view, c->splats, first + i, &place, &one);
+    chunk->n_drawn += one.n_drawn;
+    chunk->n_rays += one.n_rays;
+    chunk->n_culled += one.n_culled;
+    chunk->n_skipped += one.n_skipped;
+    chunk->n_fallback += one.n_fallback;
+  }
+}
+
+static conic_status count_whole(conic_context *context, const conic_whole_drawing *drawing, const conic_camera *camera,
+                                const conic_render_options *options, conic_render_statistics *s) {
+  const conic_splats *splats = drawing->splats;
+  census c = {.splats = splats};
+  size_t n_tasks = (splats->count + COUNTED_TOGETHER - 1) / COUNTED_TOGETHER;
+  conic_status status =
+      conic_view_init(context, splats, camera, options, options->near_z, options->splat_length, &c.view);
+  if (status != CONIC_OK)
+    return status;
+  c.chunks = conic_memory_allocate_zeroed(context, n_tasks, sizeof *c.chunks);
+  if (!c.chunks)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, n_tasks, count_splats, &c);
+  s->splats_culled = s->splats_skipped = s->splats_drawn = s->splats_fallback = 0;
+  uint64_t n_rays = 0;
+  for (size_t i = 0; i < n_tasks; i++) {
+    s->splats_culled += c.chunks[i].n_culled;
+    s->splats_skipped += c.chunks[i].n_skipped;
+    s->splats_drawn += c.chunks[i].n_drawn;
+    s->splats_fallback += c.chunks[i].n_fallback;
+    n_rays += c.chunks[i].n_rays;
+  }
+  conic_method_count(options->method, n_rays, s);
+  conic_memory_release(context, c.chunks);
+  return conic_whole_drawing_count(context, drawing, &c.view, camera, s);
+}
+
+static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_whole_drawing *drawing,
+                              const conic_camera *camera, const conic_render_options *options, reduction *r,
+                              conic_render_statistics *sum) {
+  conic_render_statistics band;
+  conic_image fine;
+  conic_status status =
+      conic_image_allocate(context, camera->width, camera->height, conic_image_planes(r->image), &fine);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_render_whole(renderer, drawing, camera, options, &fine, &band);
+  if (status == CONIC_OK) {
+    double start = conic_seconds_now();
+    r->fine = &fine;
+    conic_parallel_for(context, (size_t)fine.height / r->samples, reduce_row, r);
+    add_statistics(&band, sum);
+    sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
+  }
+  conic_image_release(context, &fine);
+  return status;
+}
+
+/* Rows of the picture in a band. */
+static int band_rows(const conic_camera *camera, int samples) {
+  size_t n = BAND_PIXELS / ((size_t)camera->width * (size_t)samples * (size_t)samples);
+  return n < 1 ? 1 : n < (size_t)camera->height ? (int)n : camera->height;
+}
+
+static conic_status render_samples(conic_context *context, conic_renderer *renderer, const conic_whole_drawing *drawing,
+                                   const conic_camera *camera, const conic_render_options *options, int samples,
+                                   conic_image *image, conic_render_statistics *statistics) {
+  conic_render_statistics sum;
+  double start = conic_seconds_now();
+  if (samples == 1)
+    return conic_render_whole(renderer, drawing, camera, options, image, statistics);
+  if (!drawing->splats || !camera || !options || !image || options->size != sizeof *options)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "render: an argument is null, or the options were not initialised");
+  if (image->width != camera->width || image->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
+  if (samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > CONIC_IMAGE_MAX_SIZE / samples ||
+      camera->height > CONIC_IMAGE_MAX_SIZE / samples)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "samples: 1 to %d, and that times the picture's size at most %d",
+                      CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
+  conic_render_options same = *options;
+  reduction r = {.image = image, .samples = (size_t)samples};
+  conic_status status = conic_whole_drawing_scale(context, drawing, &same);
+  memset(&sum, 0, sizeof sum);
+  int rows = band_rows(camera, samples);
+  for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
+    int n_rows = camera->height - y < rows ? camera->height - y : rows;
+    conic_camera fine = fine_camera(camera, samples, y, n_rows);
+    r.first_row = (size_t)y;
+    status = draw_band(renderer, context, drawing, &fine, &same, &r, &sum);
+  }
+  if (status == CONIC_OK && rows < camera->height) {
+    conic_camera whole = fine_camera(camera, samples, 0, camera->height);
+    status = count_whole(context, drawing, &whole, &same, &sum);
+  }
+  sum.ms.frame = 1e3 * (conic_seconds_now() - start);
+  if (status == CONIC_OK && statistics)
+    *statistics = sum;
+  return status;
+}
+
+conic_status conic_render_samples(conic_context *context, conic_renderer *renderer, const conic_splats *splats,
+                                  const conic_camera *camera, const conic_render_options *options, int samples,
+                                  conic_image *image, conic_render_statistics *statistics) {
+  const conic_whole_drawing alone = {.splats = splats};
+  return render_samples(context, renderer, &alone, camera, options, samples, image, statistics);
+}
+
+conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
+                                  const conic_camera *camera, const conic_render_options *options, int samples,
+                                  conic_image *image, conic_render_statistics *statistics) {
+  conic_whole_drawing whole;
+  if (!drawing)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the drawing is null");
+  conic_whole_drawing_of(drawing, &whole);
+  return render_samples(context, renderer, &whole, camera, options, samples, image, statistics);
+}

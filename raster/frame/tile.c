@@ -1,0 +1,166 @@
+#include "raster/frame/tile.h"
+
+#include <string.h>
+
+#include "core/lanes/stream.h"
+#include "raster/triangles/triangle_tile.h"
+#include "raster/view/ticks.h"
+
+_Static_assert(CONIC_GATHER_SLACK <= CONIC_SELECT_SLACK, "room behind the entries");
+
+static size_t padded(size_t n) {
+  return (n + CONIC_SELECT_SLACK + 15) / 16 * 16;
+}
+
+size_t conic_tile_bytes(size_t n_references) {
+  return CONIC_BAND_BLOCKS * sizeof(conic_block_sums) + sizeof(conic_nearest) +
+         (CONIC_BAND_BLOCKS + 1) * sizeof(conic_kept) +
+         padded(n_references) * (sizeof(conic_tile_entry) + 2 * sizeof(uint32_t));
+}
+
+void conic_tile_place_scratch(conic_tile *tile, void *memory) {
+  conic_tile_scratch *scratch = &tile->scratch;
+  size_t n = padded(tile->n_references);
+  scratch->nearest = memory;
+  scratch->sums = (conic_block_sums *)(scratch->nearest + 1);
+  scratch->kept = (conic_kept *)(scratch->sums + CONIC_BAND_BLOCKS);
+  scratch->entries = (conic_tile_entry *)(scratch->kept + CONIC_BAND_BLOCKS + 1);
+  scratch->indices = (uint32_t *)(scratch->entries + n);
+  scratch->words = scratch->indices + n;
+}
+
+/* The splats that meet row i_row of the tile's blocks. */
+static void select_band(const conic_tile *tile, const conic_tile_kernels *kernels, int i_row, conic_band *band) {
+  band->n = kernels->select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
+                            tile->scratch.indices, tile->scratch.words);
+  band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
+}
+
+/* Takes the band's thresholds over. */
+static void raise_hiding(const conic_tile *tile, const conic_band *band) {
+  size_t width = (size_t)tile->view->width;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
+      int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
+      if (x >= tile->x_end || y >= tile->y_end)
+        continue;
+      float *hides = &tile->hiding[(size_t)y * width + (size_t)x], threshold = band->kept[block].threshold[l];
+      *hides = *hides < threshold ? threshold : *hides;
+    }
+}
+
+static void hide(const conic_tile *tile, const conic_tile_kernels *kernels, conic_band *band,
+                 conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    select_band(tile, kernels, i_row, band);
+    kernels->visibility(band);
+    raise_hiding(tile, band);
+  }
+  report->visibility += conic_ticks() - start;
+}
+
+/* The triangles of a row, if there are any. */
+static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band) {
+  band->triangles = NULL;
+  if (tile->triangles)
+    conic_triangle_tile_row(tile->triangles, tile->triangle_tile, i_row, band);
+}
+
+static void draw_triangles(const conic_tile *tile, const conic_tile_kernels *kernels, conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  kernels->triangles_draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
+  report->n_triangle_fragments = tile->triangle_tile->n_fragments;
+  report->visibility += conic_ticks() - start;
+}
+
+/* Visibility and accumulation of all rows, each resolved at once. */
+static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    uint64_t start = conic_ticks();
+    select_band(tile, kernels, i_row, band);
+    uint64_t listed = conic_ticks();
+    kernels->visibility(band);
+    begin_triangles(tile, i_row, band);
+    if (band->triangles)
+      kernels->triangles_hide(band, rays);
+    uint64_t seen = conic_ticks();
+    kernels->accumulate(band);
+    if (band->triangles)
+      kernels->triangles_add(band, finish, rays);
+    uint64_t summed = conic_ticks();
+    kernels->resolve(band, finish, rays, image);
+    report->lists += listed - start;
+    report->visibility += seen - listed;
+    report->accumulate += summed - seen;
+    report->resolve += conic_ticks() - summed;
+  }
+}
+
+/* Four rows a strip where that is cheaper, as the tile's first splats tell: a register of 16 pixels then has four
+ * columns and four rows, which most splats of up to four columns meet two of; and eight columns of two rows else, which
+ * is better the wider they are. Fewer pixels are never better off with four rows. */
+static int choose_strip(const conic_band *band, int n_lanes) {
+  enum { LOOKED_AT = 64 };
+  size_t n = band->n_entries < LOOKED_AT ? band->n_entries : LOOKED_AT, n_narrow = 0;
+  for (size_t i = 0; i < n; i++) {
+    uint32_t word = band->entries[i].word;
+    n_narrow += conic_word_last(word) - conic_word_first(word) < 4;
+  }
+  return n_lanes == 16 && 4 * n_narrow >= 3 * n ? 4 : 2;
+}
+
+/* The nearest splat alone: all rows in one go, since little is kept of it. */
+static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+  uint64_t start = conic_ticks();
+  band->strip_rows = choose_strip(band, kernels->n_lanes);
+  kernels->nearest(band);
+  uint64_t seen = conic_ticks();
+  report->visibility += seen - start;
+  for (int i_row = 0; i_row < band->n_rows; i_row++) {
+    band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
+    band->nearest_row = i_row * CONIC_BLOCK_EDGE;
+    kernels->take_nearest(band);
+    begin_triangles(tile, i_row, band);
+    if (band->triangles) {
+      conic_triangles_win(band);
+      kernels->triangles_add(band, finish, rays);
+    }
+    kernels->resolve(band, finish, rays, image);
+  }
+  report->resolve += conic_ticks() - seen;
+}
+
+void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                     conic_image *image, conic_tile_report *report) {
+  conic_tile_rays rays;
+  conic_band band = {.view = tile->view,
+                     .projected = tile->projected,
+                     .keeps_indices = tile->keeps_indices,
+                     .x = tile->x_begin,
+                     .y = tile->y_begin,
+                     .n_rows = (tile->y_end - tile->y_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
+                     .entries = tile->scratch.entries,
+                     .n_entries = tile->n_references,
+                     .n_blocks = (tile->x_end - tile->x_begin + CONIC_BLOCK_EDGE - 1) / CONIC_BLOCK_EDGE,
+                     .indices = tile->scratch.indices,
+                     .words = tile->scratch.words,
+                     .kept = tile->scratch.kept,
+                     .nearest = tile->scratch.nearest,
+                     .sums = tile->scratch.sums};
+  memset(report, 0, sizeof *report);
+  conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
+  if (tile->triangles)
+    draw_triangles(tile, kernels, report);
+  if (tile->hiding)
+    hide(tile, kernels, &band, report);
+  else if (finish->options->passes == 1)
+    draw_nearest(tile, kernels, finish, &rays, &band, image, report);
+  else
+    draw_blended(tile, kernels, finish, &rays, &band, image, report);
+  conic_stream_fence();
+  report->n_fragments = band.n_fragments;
+  report->n_covered = band.n_covered;
+}

@@ -1,0 +1,45 @@
+/* One tile: its list of splats, shared out to its rows of blocks, and these drawn one after the other. */
+#ifndef CONIC_TILE_H
+#define CONIC_TILE_H
+
+#include "raster/kernels/tile_kernels.h"
+
+/* What a thread's tiles work in. */
+typedef struct conic_tile_scratch {
+  conic_tile_entry *entries; /* the tile's, in file order */
+  uint32_t *indices, *words; /* of a row of blocks */
+  conic_kept *kept;
+  conic_nearest *nearest;
+  conic_block_sums *sums;
+} conic_tile_scratch;
+
+typedef struct conic_tile {
+  const conic_view *view;
+  const conic_projected *projected;
+  size_t n_references;
+  int x_begin, x_end, y_begin, y_end; /* its pixels of the image */
+  int keeps_indices;                  /* the image wants counts or ids */
+  float *hiding;                      /* not null: no picture is drawn, but this raised (raster/view/part.h) */
+  conic_tile_scratch scratch;
+  const conic_triangle_frame *triangles; /* null: there are none in it */
+  conic_triangle_tile *triangle_tile;    /* what they are drawn in */
+  size_t i_tile;
+} conic_tile;
+
+/* What a tile's passes took, in ticks, and found. */
+typedef struct conic_tile_report {
+  uint64_t lists, visibility, accumulate, resolve;
+  uint64_t n_fragments, n_covered, n_triangle_fragments;
+} conic_tile_report;
+
+/* The scratch memory that tiles of up to n_references need, one after the other. */
+size_t conic_tile_bytes(size_t n_references);
+
+/* Points the tile's scratch into `memory`, of conic_tile_bytes(tile->n_references) at least. */
+void conic_tile_place_scratch(conic_tile *tile, void *memory);
+
+/* Draws the tile, whose entries are in its scratch, into the image. */
+void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+                     conic_image *image, conic_tile_report *report);
+
+#endif

@@ -1,0 +1,510 @@
+/* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
+#include "core/lanes/lanes_store.h"
+#include "raster/kernels/tile_kernels.h"
+#include "raster/project/laplace_body.h"
+#include "raster/tiles/coverage.h"
+
+/* A block is so many vectors. */
+#define CONIC_PARTS (CONIC_BLOCK_PIXELS / CONIC_LANES)
+
+/* One splat's pixels in one part of a block, covered or not. */
+typedef struct fragments {
+  lanes_mask covered;
+  lanes q;
+  lanes iz, plane_iz; /* as in conic_fragment */
+  lanes scale;
+} fragments;
+
+/* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
+ * outside the image: what is compared with it is not covered. */
+typedef struct sites {
+  lanes x[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS], y;
+} sites;
+
+CONIC_INLINE lanes nan_beyond(int_lanes pixels, int size) {
+  lanes_mask inside = lanes_less_int(pixels, lanes_of_int(size));
+  return lanes_select(inside, __builtin_convertvector(pixels, lanes), lanes_of(__builtin_nanf("")));
+}
+
+CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
+  s->y = nan_beyond(lanes_rows() + band->y, band->view->height);
+  for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++)
+    s->x[part] = nan_beyond(lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE)), band->view->width);
+  for (int part = 0; part < CONIC_PARTS; part++)
+    s->x[CONIC_NO_BLOCK * CONIC_PARTS + part] = lanes_of(__builtin_nanf(""));
+}
+
+/* conic_key_of. */
+CONIC_INLINE void keys_in(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, int by_pixels,
+                          uint32_t *tiles, uint32_t *words, uint32_t *beyond) {
+  const uint32_t in_tile = (1u << tile_bits) - 1;
+  const int unit_bits = by_pixels ? 0 : 2;
+  const index_lanes zero = lanes_of_index(0), last_unit = lanes_of_index(in_tile >> unit_bits);
+  size_t i = 0;
+  for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
+    index_lanes columns, rows;
+    lanes_load_pairs((const uint32_t *)(const void *)&boxes[i], &columns, &rows);
+    index_lanes x_begin = columns & 0xffff, x_last = (columns >> 16) - 1;
+    index_lanes y_begin = rows & 0xffff, y_last = (rows >> 16) - 1;
+    index_lanes n_x = (x_last >> tile_bits) - (x_begin >> tile_bits);
+    index_lanes n_y = (y_last >> tile_bits) - (y_begin >> tile_bits);
+    index_lanes column = (x_last & in_tile) >> unit_bits, row = (y_last & in_tile) >> unit_bits;
+    lanes_mask is_wide = lanes_has_bits(n_x, ~0u), is_high = lanes_has_bits(n_y, ~0u);
+    lanes_mask has_more = lanes_has_bits(n_x >> 1 | n_y >> 1, ~0u);
+    index_lanes first_row = (y_begin & in_tile) >> unit_bits, last_row = lanes_select_indices(is_high, last_unit, row);
+    index_lanes met =
+        by_pixels ? first_row | last_row << 8 : (lanes_of_index(2) << last_row) - (lanes_of_index(1) << first_row);
+    index_lanes far = lanes_select_indices(is_wide, lanes_of_index(CONIC_BEYOND_X), zero) |
+                      lanes_select_indices(is_high, lanes_of_index(CONIC_BEYOND_Y), zero) |
+                      lanes_select_indices(has_more, lanes_of_index(CONIC_BEYOND_MORE), zero);
+    lanes_store_indices(tiles + i, (y_begin >> tile_bits) * (uint32_t)n_tiles_x + (x_begin >> tile_bits));
+    lanes_store_indices(words + i, (x_begin & in_tile) >> unit_bits |
+                                       lanes_select_indices(is_wide, last_unit, column) << 8 | met << 16);
+    lanes_store_indices(beyond + i, lanes_select_indices(lanes_has_bits(far, ~0u), far | column | row << 8, zero));
+  }
+  for (; i < n; i++) {
+    conic_key key = conic_key_of(&boxes[i], tile_bits, n_tiles_x, by_pixels);
+    tiles[i] = key.tile;
+    words[i] = key.word;
+    beyond[i] = key.beyond;
+  }
+}
+
+static void keys(const conic_box *boxes, size_t n, int tile_bits, int n_tiles_x, int by_pixels, uint32_t *tiles,
+                 uint32_t *words, uint32_t *beyond) {
+  if (by_pixels)
+    keys_in(boxes, n, tile_bits, n_tiles_x, 1, tiles, words, beyond);
+  else
+    keys_in(boxes, n, tile_bits, n_tiles_x, 0, tiles, words, beyond);
+}
+
+CONIC_INLINE void stream_record(void *to, const void *from, size_t bytes) {
+  lanes_stream(to, from, bytes);
+}
+
+#include "raster/tiles/sort_body.h"
+
+static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
+                                uint32_t *words) {
+  size_t i = 0, n_selected = 0;
+  for (; i + CONIC_LANES <= n; i += CONIC_LANES) {
+    index_lanes footprint, word;
+    lanes_load_pairs(&references[i].footprint, &footprint, &word);
+    lanes_mask has = lanes_has_bits(word, mask);
+    lanes_append(words + n_selected, has, word);
+    n_selected += lanes_append(footprints + n_selected, has, footprint);
+  }
+  for (; i < n; i++) {
+    footprints[n_selected] = references[i].footprint;
+    words[n_selected] = references[i].word;
+    n_selected += (references[i].word & mask) != 0;
+  }
+  return n_selected;
+}
+
+/* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
+ * every block would be most of what the loops read. */
+typedef struct splat_rows {
+  lanes dy, q_offset, q_rest, iz_offset, plane_offset;
+  lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
+} splat_rows;
+
+CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
+  splat_rows rows;
+  rows.dy = (y - footprint->y) + footprint->dy0;
+  lanes minor = footprint->s3 * rows.dy;
+  rows.q_offset = footprint->s2 * rows.dy;
+  rows.q_rest = minor * minor;
+  rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
+  rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
+  rows.x = lanes_of(footprint->x);
+  rows.dx0 = lanes_of(footprint->dx0);
+  rows.s1 = lanes_of(footprint->s1);
+  rows.iz_dx = lanes_of(footprint->iz_dx);
+  rows.plane_dx = lanes_of(footprint->plane_dx);
+  rows.iz_far = lanes_of(footprint->iz_far);
+  rows.iz_near = lanes_of(footprint->iz_near);
+  return rows;
+}
+
+/* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
+CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes dx, fragments *f) {
+  lanes major = rows->s1 * dx + rows->q_offset;
+  f->q = major * major + rows->q_rest;
+  f->covered = lanes_less(f->q, lanes_of(support));
+  f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
+  f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
+  f->scale = lanes_of(1.0f);
+}
+
+/* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
+CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                lanes dx, lanes dy, fragments *f) {
+  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  f->covered = lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
+               lanes_at_least(lanes_of(ray->iz_high), iz);
+  f->covered &= lanes_at_least(dx, lanes_of(ray->dx_low)) & lanes_at_least(lanes_of(ray->dx_high), dx) &
+                lanes_at_least(dy, lanes_of(ray->dy_low)) & lanes_at_least(lanes_of(ray->dy_high), dy);
+  lanes r = 1.0f / iz;
+  lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
+  lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
+  lanes u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
+  lanes v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
+  float h = view->prefilter;
+  lanes s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
+  lanes s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  lanes s_uv = h * (u_x * v_x + u_y * v_y);
+  lanes area = u_x * v_y - u_y * v_x;
+  lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
+  lanes along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
+  f->q = ((u * u) * determinant + along * along) * inverse;
+  f->covered &= lanes_less(f->q, lanes_of(view->support));
+  f->iz = lanes_min(lanes_max(iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = iz;
+  f->scale = lanes_sqrt(s_uu * inverse);
+}
+
+/* conic_laplace_fragment of coverage.h, lane by lane. */
+CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                    lanes dx, lanes dy, fragments *f) {
+  laplaces at = laplaces_at(view, footprint, ray, dx, dy);
+  f->covered = at.covered;
+  f->q = at.q;
+  f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = at.plane_iz;
+  f->scale = at.scale;
+}
+
+/* conic_clip_keeps, lane by lane. */
+CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+  lanes zero = lanes_of(0.0f);
+  lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
+  lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
+  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
+                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
+  return (clip->is_or ? first | second : first & second) & within;
+}
+
+/* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
+ * compiler can tell. */
+typedef struct sources {
+  const conic_view *view;
+  float support;
+  const conic_footprint *footprints;
+  const conic_surface *surfaces;
+  const conic_ray *rays;
+  const conic_clip_record *clips;
+  const uint32_t *indices, *words;
+  size_t n;
+} sources;
+
+CONIC_INLINE sources sources_of(const conic_band *band) {
+  const conic_projected *projected = band->projected;
+  return (sources){band->view,          band->view->support, projected->footprints,
+                   projected->surfaces, projected->rays,     projected->clips,
+                   band->indices,       band->words,         band->n};
+}
+
+/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. */
+CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
+                           int is_special, fragments *f) {
+  lanes dx = (x - rows->x) + rows->dx0;
+  if (is_special && conic_is_laplace(footprint))
+    laplace_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  else if (is_special && footprint->s3 == 0.0f)
+    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  else
+    ellipse_fragments(rows, from->support, dx, f);
+  if (is_special && conic_is_clipped(footprint))
+    f->covered &= clip_keeps(&from->clips[footprint - from->footprints], dx, rows->dy);
+}
+
+/* What the splat after the next few is read from, in this pass and the next. */
+CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
+  enum { AHEAD = 32 };
+  uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
+  __builtin_prefetch(&from->footprints[later]);
+  __builtin_prefetch(&from->surfaces[later]);
+}
+
+/* Where there is one ray there are more: that of the splat after the next few, whose footprint is there already. */
+CONIC_INLINE void prefetch_ray(const sources *from, uint32_t later) {
+  const conic_footprint *footprint = &from->footprints[later];
+  if (footprint->s3 == 0.0f) {
+    __builtin_prefetch(&from->rays[footprint->i_ray].u0);
+    __builtin_prefetch(&from->rays[footprint->i_ray].dy_high);
+  }
+}
+
+CONIC_INLINE void empty_blocks(conic_band *band) {
+  for (int block = 0; block < band->n_blocks; block++) {
+    band->n_kept[block] = 0;
+    band->not_kept[block] = band->n;
+  }
+}
+
+/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
+CONIC_INLINE unsigned pass_part(lanes nearness, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                                int is_special) {
+  lanes offset_iz = lanes_keep(f->covered, nearness * lanes_min(f->plane_iz, f->iz));
+  lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
+  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].seen_iz + at,
+              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
+  if (is_special)
+    lanes_store(kept->scale[place] + at, f->scale);
+  return lanes_count(f->covered);
+}
+
+/* The state of the first pass along a band, a copy of its own like `sources`. */
+typedef struct pass {
+  conic_kept *kept;
+  size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
+  uint64_t n_fragments;
+} pass;
+
+/* One splat, and what of it is the same in all blocks. */
+typedef struct passing {
+  const conic_footprint *footprint;
+  size_t i; /* in the band's list */
+  uint32_t i_footprint;
+  lanes nearness;
+  splat_rows rows;
+} passing;
+
+CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
+                             int is_special) {
+  conic_kept *kept = &p->kept[block];
+  size_t place = p->n_kept[block];
+  unsigned n_covered = 0;
+  fragments f;
+  kept->footprint[place] = splat->i_footprint;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
+    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
+    n_covered += pass_part(splat->nearness, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
+  }
+  p->n_fragments += n_covered;
+  if (place < p->room)
+    p->n_kept[block] = place + (n_covered > 0);
+  else if (n_covered > 0 && p->not_kept[block] > splat->i)
+    p->not_kept[block] = splat->i;
+}
+
+/* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
+ * splats have one or two, and which, no branch can foresee. */
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, int is_special) {
+  const uint32_t i_footprint = from->indices[i], word = from->words[i];
+  const uint32_t first = conic_word_first(word), last = conic_word_last(word);
+  const conic_footprint *footprint = &from->footprints[i_footprint];
+  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_rows(footprint, s->y)};
+  pass_block(p, from, s, &splat, first, is_special);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, is_special);
+  for (uint32_t block = first + 2; block <= last; block++)
+    pass_block(p, from, s, &splat, block, is_special);
+}
+
+static void visibility(conic_band *band) {
+  const sources from = sources_of(band);
+  pass p = {.kept = band->kept, .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
+  int has_special = 0;
+  sites s;
+  find_sites(band, &s);
+  for (int block = 0; block < band->n_blocks; block++) {
+    p.not_kept[block] = from.n;
+    memset(p.kept[block].threshold, 0, sizeof p.kept[block].threshold);
+  }
+  for (size_t i = 0; i < from.n; i++) {
+    prefetch_splat(&from, i);
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
+      pass_splat(&p, &from, &s, i, 0);
+    else {
+      prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
+      pass_splat(&p, &from, &s, i, 1);
+      has_special = 1;
+    }
+  }
+  memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);
+  memcpy(band->not_kept, p.not_kept, sizeof band->not_kept);
+  band->has_special = has_special;
+  band->n_fragments += p.n_fragments;
+}
+
+/* Which kernel a loop is made for. */
+typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER } kernel_kind;
+
+static kernel_kind kind_of(const conic_kernel *kernel) {
+  if (conic_kernel_is_narrow(kernel))
+    return KERNEL_NARROW_GAUSS;
+  return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
+}
+
+/* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
+CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
+  if (kernel->type == CONIC_KERNEL_HAT)
+    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
+  if (kernel->type == CONIC_KERNEL_BOX)
+    return lanes_of(1.0f);
+  lanes r = lanes_sqrt(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  lanes rest = 1.0f - power;
+  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
+}
+
+/* conic_final_weight in every lane; 0 in those that are not visible. */
+CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
+                         kernel_kind kind) {
+  lanes kernel;
+  if (kind == KERNEL_NARROW_GAUSS)
+    kernel = lanes_gauss_narrow(q);
+  else if (kind == KERNEL_GAUSS)
+    kernel = lanes_exp_negative(-0.5f * q);
+  else /* beyond the support, a kernel need not have a value */
+    kernel = other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
+  lanes weight = (amplitude * scale) * kernel;
+  return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
+}
+
+/* The sums of one part, in registers. */
+typedef struct part_sums {
+  lanes weight, color[3], normal[3], heaviest_weight, nearest_iz;
+  index_lanes heaviest, nearest, count;
+} part_sums;
+
+CONIC_INLINE void clear_sums(part_sums *sums) {
+  sums->weight = sums->heaviest_weight = sums->nearest_iz = lanes_of(0.0f);
+  for (int axis = 0; axis < 3; axis++)
+    sums->color[axis] = sums->normal[axis] = lanes_of(0.0f);
+  sums->heaviest = sums->nearest = sums->count = lanes_of_index(0);
+}
+
+/* Where `better` holds, `value` and `i_footprint` take the place of what is kept. */
+CONIC_INLINE void keep_better(lanes *kept, index_lanes *whose, lanes_mask better, lanes value, uint32_t i_footprint) {
+  *kept = lanes_select(better, value, *kept);
+  *whose = lanes_select_indices(better, lanes_of_index(i_footprint), *whose);
+}
+
+/* Adds visible fragments: an invisible one adds 0, which changes no bit. Splats come in file order: sums keep it, and
+ * the first of equals stays. */
+CONIC_INLINE void blend(const conic_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
+  to->weight += weight;
+  for (int axis = 0; axis < 3; axis++) {
+    to->color[axis] += weight * surface->color[axis];
+    to->normal[axis] += weight * surface->normal[axis];
+  }
+  lanes_mask heavier = lanes_less(to->heaviest_weight, weight);
+  to->heaviest_weight = lanes_max(weight, to->heaviest_weight);
+  to->heaviest = lanes_select_indices(heavier, lanes_of_index(i_footprint), to->heaviest);
+}
+
+CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, int has_special,
+                             kernel_kind kind, part_sums *to) {
+  enum { AHEAD = 8 };
+  lanes threshold = lanes_load(kept->threshold + at);
+  for (size_t i = 0; i < n_kept; i++) {
+    uint32_t i_footprint = kept->footprint[i];
+    __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
+    lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
+    if (!lanes_any(visible))
+      continue;
+    lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
+    if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
+      scale = lanes_load(kept->scale[i] + at);
+    const conic_surface *surface = &from->surfaces[i_footprint];
+    blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
+  }
+}
+
+/* What was not kept is evaluated again. */
+CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, int part, kernel_kind kind,
+                             part_sums *to) {
+  const sources from = sources_of(band);
+  int at = block * CONIC_PARTS + part;
+  lanes threshold = lanes_load(band->kept[block].threshold + (size_t)part * CONIC_LANES);
+  fragments f;
+  for (size_t i = band->not_kept[block]; i < from.n; i++) {
+    if (!conic_word_has(from.words[i], (uint32_t)block))
+      continue;
+    const conic_footprint *footprint = &from.footprints[from.indices[i]];
+    splat_rows rows = begin_rows(footprint, s->y);
+    evaluate(&from, footprint, &rows, s->x[at], !(footprint->s3 > 0.0f), &f);
+    lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
+    if (!lanes_any(visible))
+      continue;
+    uint32_t i_footprint = from.indices[i];
+    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint->amplitude, f.q, f.scale, visible, kind),
+          to);
+    if (!band->keeps_indices)
+      continue;
+    to->count = lanes_increment(visible, to->count);
+    keep_better(&to->nearest_iz, &to->nearest, visible & lanes_less(to->nearest_iz, f.iz), f.iz, i_footprint);
+  }
+}
+
+CONIC_INLINE void store_sums(const part_sums *from, size_t at, conic_block_sums *to) {
+  lanes_store(to->weight + at, from->weight);
+  for (int axis = 0; axis < 3; axis++) {
+    lanes_store(to->color[axis] + at, from->color[axis]);
+    lanes_store(to->normal[axis] + at, from->normal[axis]);
+  }
+  lanes_store_indices(to->heaviest + at, from->heaviest);
+  lanes_store_indices(to->nearest + at, from->nearest);
+  lanes_store_indices(to->count + at, from->count);
+}
+
+CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
+  const sources from = sources_of(band);
+  sites s;
+  find_sites(band, &s);
+  for (int block = 0; block < band->n_blocks; block++) {
+    if (conic_block_is_empty(band, block))
+      continue;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      size_t at = (size_t)part * CONIC_LANES;
+      part_sums of_part;
+      clear_sums(&of_part);
+      blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
+      if (band->not_kept[block] < band->n)
+        blend_rest(band, &s, block, part, kind, &of_part);
+      store_sums(&of_part, at, &band->sums[block]);
+    }
+  }
+}
+
+static void accumulate(conic_band *band) {
+  switch (kind_of(&band->view->kernel)) {
+  case KERNEL_NARROW_GAUSS:
+    accumulate_with(band, KERNEL_NARROW_GAUSS);
+    break;
+  case KERNEL_GAUSS:
+    accumulate_with(band, KERNEL_GAUSS);
+    break;
+  default:
+    accumulate_with(band, KERNEL_OTHER);
+  }
+}
+
+#include "raster/kernels/nearest_body.h"
+#include "raster/project/project_body.h"
+#include "raster/triangles/triangle_body.h"
+
+#include "raster/kernels/resolve_body.h"
+
+const conic_tile_kernels TABLE = {
+    .name = NAME,
+    .n_lanes = CONIC_LANES,
+    .project = project,
+    .keys = keys,
+    .sort = sort,
+    .select = select_references,
+    .visibility = visibility,
+    .accumulate = accumulate,
+    .nearest = nearest,
+    .take_nearest = take_nearest,
+    .resolve = resolve,
+    .triangle_vertices = triangle_vertices,
+    .triangles_draw = triangles_draw,
+    .triangles_hide = triangles_hide,
+    .triangles_add = triangles_add,
+    .texture = texture_at_places,
+};

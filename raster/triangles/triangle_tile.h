@@ -1,0 +1,48 @@
+/* A tile's triangles: which is the nearest at each pixel, and what that does to the splats' passes. */
+#ifndef CONIC_TRIANGLE_TILE_H
+#define CONIC_TRIANGLE_TILE_H
+
+#include "raster/tiles/resolve.h"
+#include "raster/triangles/triangle_frame.h"
+
+/* Points the band to the tile's row; null where no triangle is in it. */
+void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row, conic_band *band);
+
+/* A record in a tile, sample by sample; returns how many it covers. For those of a few samples, and the plain C
+ * reference for all. */
+unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
+                                     conic_triangle_tile *tile);
+
+/* Finds out where visible triangles of a block are the heaviest and the nearest of what is visible, before they are
+ * added to its sums. */
+void conic_triangle_rank_block(const conic_band *band, int block);
+
+/* A covered pixel's colour, and its unit normal towards the viewer, who looks along the ray (x, y, 1). */
+void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
+                             float normal[3]);
+
+/* Fetches what the look of a row's visible triangles is read from, where they are many. */
+void conic_triangle_fetch_row(const conic_band *band);
+
+/* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */
+typedef struct conic_triangle_sight {
+  float color[3], normal[3];
+  const conic_texture *texture; /* null: none */
+  float uv[2], along[2], across[2];
+} conic_triangle_sight;
+
+/* Of pixel l of the block. */
+void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays,
+                              int block, int l, conic_triangle_sight *sight);
+
+/* Adds it to the pixel's sums, all but the colour where it is still without its texture. */
+void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_block_sums *sums);
+
+/* The plain C references of the slots. */
+void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);
+void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays);
+void conic_triangles_win(conic_band *band);
+void conic_triangles_add(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays);
+
+#endif

@@ -1,0 +1,31 @@
+/* Parts of a frame: a window of its pixels, or only how deep it hides. Both are of the whole picture's own arithmetic,
+ * bit for bit. */
+#ifndef CONIC_PART_H
+#define CONIC_PART_H
+
+#include "conic/render.h"
+
+/* Pixels from begin to before end. Both are multiples of the tile, or the picture's ends. */
+typedef struct conic_window {
+  int x_begin, x_end, y_begin, y_end;
+} conic_window;
+
+/* Whether the renderer draws parts: the processor does, other devices do not. */
+int conic_renderer_has_parts(const conic_renderer *renderer);
+
+/* Draws the window of the picture that conic_render would draw, and leaves all around it alone: for pictures of more
+ * splats than memory holds, of which each window is given those that may meet it, in their order. Of `statistics`,
+ * fragments and pixels are the window's, all else the splats'. near_z and, with an automatic ε, splat_length have to be
+ * given in the options, for no window knows the scene. Errors: as conic_render; UNSUPPORTED on another device than the
+ * processor. */
+conic_status conic_render_window(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, const conic_window *window, conic_image *image,
+                                 conic_render_statistics *statistics);
+
+/* Raises hiding[y·width + x] to the inverse depth that the splats hide all beyond of at that pixel: the greatest
+ * s_k·min(iz_k, iz_plane,k) of docs/picture.md. No splat whose iz and iz_plane stay below it there is visible in a
+ * picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_window. */
+conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options, float *hiding);
+
+#endif

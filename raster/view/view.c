@@ -1,0 +1,134 @@
+#include "raster/view/view.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/base/message.h"
+#include "raster/view/method.h"
+
+static int camera_makes_sense(const conic_camera *camera) {
+  if (camera->width < 1 || camera->width > 65535 || camera->height < 1 || camera->height > 65535)
+    return 0;
+  if (!(camera->fx > 0.0 && camera->fx < 1e12 && camera->fy > 0.0 && camera->fy < 1e12 && fabs(camera->cx) < 1e12 &&
+        fabs(camera->cy) < 1e12))
+    return 0;
+  for (int i = 0; i < 3; i++) {
+    double length_squared = 0.0;
+    for (int j = 0; j < 3; j++)
+      length_squared += camera->cam_from_world[i][j] * camera->cam_from_world[i][j];
+    if (!(fabs(length_squared - 1.0) < 1e-3) || !(fabs(camera->cam_from_world[i][3]) < 1e30))
+      return 0;
+  }
+  return 1;
+}
+
+static int kernel_makes_sense(const conic_kernel *kernel) {
+  if (!(kernel->cutoff >= 0.25f && kernel->cutoff <= 5.0f))
+    return 0;
+  if (kernel->type == CONIC_KERNEL_CONFETTI)
+    return kernel->a > 0.0f && kernel->a < 1e6f && kernel->b > 0.0f && kernel->b < 1e6f && kernel->n >= 1 &&
+           kernel->n <= 16;
+  return kernel->type == CONIC_KERNEL_GAUSS || kernel->type == CONIC_KERNEL_HAT || kernel->type == CONIC_KERNEL_BOX;
+}
+
+static const char *what_is_wrong(const conic_splats *splats, const conic_camera *camera,
+                                 const conic_render_options *options) {
+  if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
+    return "the splats have no tangent axes";
+  if (splats->count > UINT32_MAX - 1)
+    return "there are more than 4,294,967,294 splats";
+  if (!camera_makes_sense(camera))
+    return "the camera makes no sense";
+  if (!kernel_makes_sense(&options->kernel))
+    return "the kernel's cutoff or parameters are out of range";
+  if (!(options->prefilter >= 0.0f && options->prefilter <= 1e4f))
+    return "the prefilter is out of range (0 to 10000)";
+  if (options->passes != 1 && options->passes != 3)
+    return "there are 3 passes or 1";
+  if (options->tile < 8 || options->tile > 64 || (options->tile & (options->tile - 1)))
+    return "the tile is not 8, 16, 32 or 64";
+  if (!conic_method_name(options->method))
+    return "the method is unknown";
+  if (!(options->near_z >= 0.0) || !(options->epsilon < 1e30) || !(fabs(options->exposure) <= 100.0))
+    return "near, epsilon or exposure is out of range";
+  for (int i = 0; i < 3; i++)
+    if (options->has_background && !(fabsf(options->background[i]) <= 1e18f))
+      return "the background is out of range";
+  return NULL;
+}
+
+/* Half a pixel a standard deviation; for `auto`, whose other formula follows thin splats further, an eighth
+ * (docs/picture.md, Auto). */
+static float thin_variance(const conic_render_options *options) {
+  float h = options->prefilter;
+  if (options->method != CONIC_METHOD_AUTO)
+    return 0.25f;
+  return (h > 1.0f ? h : 1.0f) / 64.0f;
+}
+
+/* The eye, and from where on float tells which side of it a plane is on (raster/project/project_body.h). */
+static void place_eye(conic_view *view) {
+  const double(*m)[3] = (const double(*)[3])view->rotation;
+  double reach = 0.0, farthest_from_rotation = 0.0;
+  for (int i = 0; i < 3; i++) {
+    double eye = 0.0;
+    for (int j = 0; j < 3; j++) {
+      double dot = (m[i][0] * m[j][0] + m[i][1] * m[j][1]) + m[i][2] * m[j][2];
+      farthest_from_rotation = fmax(farthest_from_rotation, fabs(dot - (i == j)));
+      eye -= m[j][i] * view->translation[j];
+    }
+    view->eye[i] = (float)eye;
+    reach += fabs(eye);
+  }
+  double determinant =
+      (m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])) +
+      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  int is_usual = farthest_from_rotation < 1e-5 && determinant > 0.0 && view->fx > 0.1 && view->fy > 0.1 &&
+                 view->fx < 1e6 && view->fy < 1e6;
+  view->nearest_sure = is_usual ? (float)fmax(1e-3 * reach, 1e-15) : HUGE_VALF;
+}
+
+conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                             const conic_render_options *options, double near_z, double splat_length,
+                             conic_view *view) {
+  const char *wrong = what_is_wrong(splats, camera, options);
+  if (wrong)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s", wrong);
+  memset(view, 0, sizeof *view);
+  view->width = camera->width;
+  view->height = camera->height;
+  for (int i = 0; i < 3; i++) {
+    const double *row = camera->cam_from_world[i];
+    for (int j = 0; j < 3; j++) {
+      view->rotation[i][j] = row[j];
+      view->rotation_float[i][j] = (float)row[j];
+    }
+    view->translation[i] =
+        ((row[0] * splats->origin[0] + row[1] * splats->origin[1]) + row[2] * splats->origin[2]) + row[3];
+  }
+  view->fx = camera->fx;
+  view->fy = camera->fy;
+  view->focal_px = (float)sqrt(camera->fx * camera->fy);
+  view->cx = camera->cx;
+  view->cy = camera->cy;
+  view->near_z = near_z;
+  view->method = options->method;
+  view->kernel = options->kernel;
+  view->cutoff = options->kernel.cutoff;
+  view->support = conic_kernel_support(&options->kernel);
+  view->prefilter = options->prefilter;
+  view->growth_px = view->cutoff * sqrtf(view->prefilter);
+  view->cull_back = options->cull_back;
+  place_eye(view);
+  view->thin = thin_variance(options);
+  view->auto_limit = (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS) * (CONIC_AUTO_ERROR / CONIC_AUTO_STEEPNESS);
+  if (options->epsilon >= 0.0) {
+    view->epsilon_scale = HUGE_VALF;
+    view->epsilon_cap = (float)options->epsilon;
+  } else {
+    view->epsilon_scale = CONIC_EPSILON_C;
+    view->epsilon_cap = 4.0f * CONIC_EPSILON_C * view->cutoff * (float)splat_length;
+  }
+  view->needs_nearness = view->needs_slope = 1;
+  return CONIC_OK;
+}

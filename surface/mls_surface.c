@@ -1,0 +1,267 @@
+#include "surface/mls_surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "surface/clusters.h"
+#include "surface/kernels/weight.h"
+
+enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
+
+void conic_surface_options_init(conic_surface_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->degree = 3;
+  options->neglect = 2.0;
+  options->n_local = 32;
+}
+
+const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
+  static const char *const names[CONIC_N_SURFACE_OUTCOMES] = {"done", "not finite", "too few neighbours", "no minimum",
+                                                              "ill-conditioned"};
+  return (unsigned)outcome < CONIC_N_SURFACE_OUTCOMES ? names[outcome] : NULL;
+}
+
+static conic_status check_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
+  if (o->size != sizeof *o || (unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
+      (unsigned)o->weight > CONIC_WEIGHT_FLAT)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: options that were not initialised");
+  if (o->degree < 1 || o->degree > CONIC_SURFACE_MAX_DEGREE)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: degree %d is not 1 to %d", o->degree,
+                      CONIC_SURFACE_MAX_DEGREE);
+  if (!(o->h >= 0.0 && o->h < 1e30) || !(o->neglect >= 1.0 && o->neglect <= 6.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: h %g or neglect %g is out of range", o->h, o->neglect);
+  if (o->n_local < 6 || o->n_local > 64 || !(o->cluster >= 0.0 && o->cluster <= 1.0))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: n_local %d or cluster %g is out of range", o->n_local,
+                      o->cluster);
+  if (o->type == CONIC_SURFACE_APSS && !(fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS)))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: algebraic spheres need normals");
+  return CONIC_OK;
+}
+
+void conic_surface_unit_normal(const conic_splats *points, size_t i, double normal[3]) {
+  double n[3];
+  for (int axis = 0; axis < 3; axis++) {
+    int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    n[axis] = points->tangent_u[0] ? (double)points->tangent_u[next][i] * (double)points->tangent_v[last][i] -
+                                         (double)points->tangent_u[last][i] * (double)points->tangent_v[next][i]
+                                   : (double)points->normal[axis][i];
+  }
+  double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  int is_sound = length > 0.0 && length - length == 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = is_sound ? n[axis] / length : 0.0;
+}
+
+static conic_status copy_points(conic_context *context, const conic_splats *from, conic_splats *to) {
+  unsigned fields = conic_splats_fields(from), kept = fields & CONIC_SPLATS_COLORS;
+  if (fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))
+    kept |= CONIC_SPLATS_NORMALS;
+  conic_status status = conic_splats_allocate(context, from->count, kept, to);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(to->origin, from->origin, sizeof to->origin);
+  for (int axis = 0; axis < 3; axis++) {
+    memcpy(to->position[axis], from->position[axis], from->count * sizeof(float));
+    if (kept & CONIC_SPLATS_COLORS)
+      memcpy(to->color[axis], from->color[axis], from->count * sizeof(float));
+  }
+  for (size_t i = 0; i < from->count && (kept & CONIC_SPLATS_NORMALS); i++) {
+    double normal[3];
+    conic_surface_unit_normal(from, i, normal);
+    for (int axis = 0; axis < 3; axis++)
+      to->normal[axis][i] = (float)normal[axis];
+  }
+  return CONIC_OK;
+}
+
+static int allocate_slots(conic_surface *surface) {
+  conic_context *context = surface->context;
+  const conic_neighbours *tree = &surface->tree;
+  size_t n = tree->n_slots;
+  surface->h = conic_memory_allocate(context, n, sizeof(float));
+  surface->mass = conic_memory_allocate_zeroed(context, n, sizeof(float));
+  surface->node_reach = conic_memory_allocate(context, 2 * tree->n_leaves, sizeof(float));
+  int is_whole = surface->h && surface->mass && surface->node_reach;
+  for (int axis = 0; axis < 3; axis++) {
+    if (surface->points.normal[0])
+      is_whole &= (surface->normal[axis] = conic_memory_allocate_zeroed(context, n, sizeof(float))) != NULL;
+    if (surface->points.color[0])
+      is_whole &= (surface->color[axis] = conic_memory_allocate_zeroed(context, n, sizeof(float))) != NULL;
+  }
+  return is_whole;
+}
+
+/* Coincident points are one slot: it weighs as much as they do, and has their mean colour and normal. */
+static void fill_slots(conic_surface *surface) {
+  const conic_neighbours *tree = &surface->tree;
+  for (size_t i = 0; i < tree->n_points; i++) {
+    uint32_t slot = tree->slot_of_point[i];
+    if (slot == CONIC_NO_SLOT)
+      continue;
+    float share = 1.0f / ++surface->mass[slot];
+    for (int axis = 0; axis < 3; axis++) {
+      if (surface->normal[axis])
+        surface->normal[axis][slot] += (surface->points.normal[axis][i] - surface->normal[axis][slot]) * share;
+      if (surface->color[axis])
+        surface->color[axis][slot] += (surface->points.color[axis][i] - surface->color[axis][slot]) * share;
+    }
+  }
+}
+
+/* A slot's own scale: its n_local-th neighbour lies at the neglect distance. */
+static void find_local_h(void *data, size_t i_item, int i_thread) {
+  conic_surface *surface = data;
+  const conic_neighbours *tree = &surface->tree;
+  size_t end = (i_item + 1) * CHUNK < tree->n_slots ? (i_item + 1) * CHUNK : tree->n_slots;
+  uint32_t slots[64];
+  double distances2[64];
+  (void)i_thread;
+  for (size_t slot = i_item * CHUNK; slot < end; slot++) {
+    const double query[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                             (double)tree->position[2][slot]};
+    size_t n = conic_neighbours_nearest(tree, query, (uint32_t)slot, (size_t)surface->options.n_local, HUGE_VAL, slots,
+                                        distances2);
+    surface->h[slot] = n ? (float)(sqrt(distances2[n - 1]) / surface->options.neglect) : 0.0f;
+  }
+}
+
+static int compare_floats(const void *a, const void *b) {
+  float first = *(const float *)a, second = *(const float *)b;
+  return (first > second) - (first < second);
+}
+
+static conic_status find_median_h(conic_surface *surface) {
+  size_t n = surface->tree.n_slots;
+  float *sorted = conic_memory_allocate(surface->context, n, sizeof *sorted);
+  if (!sorted)
+    return CONIC_ERROR_MEMORY;
+  memcpy(sorted, surface->h, n * sizeof *sorted);
+  qsort(sorted, n, sizeof *sorted, compare_floats);
+  surface->median_h = (double)sorted[(n - 1) / 2];
+  conic_memory_release(surface->context, sorted);
+  return CONIC_OK;
+}
+
+/* The least float that is not below a double. */
+static float float_above(double value) {
+  float rounded = (float)value;
+  return (double)rounded < value ? rounded * (1.0f + 0x1p-22f) : rounded;
+}
+
+static void find_node_reach(conic_surface *surface) {
+  const conic_neighbours *tree = &surface->tree;
+  for (size_t i = 2 * tree->n_leaves - 1; i-- > 0;) {
+    float reach = 0.0f;
+    if (i >= tree->n_leaves - 1) {
+      size_t i_leaf = i - (tree->n_leaves - 1);
+      for (size_t slot = conic_neighbours_leaf_begin(tree, i_leaf);
+           slot < conic_neighbours_leaf_begin(tree, i_leaf + 1); slot++) {
+        float own = float_above((double)surface->h[slot] * surface->options.neglect);
+        reach = own > reach ? own : reach;
+      }
+    } else {
+      float left = surface->node_reach[2 * i + 1], right = surface->node_reach[2 * i + 2];
+      reach = left > right ? left : right;
+    }
+    surface->node_reach[i] = reach;
+  }
+}
+
+static conic_status find_scales(conic_surface *surface) {
+  size_t n = surface->tree.n_slots;
+  conic_status status = CONIC_OK;
+  if (surface->options.h > 0.0)
+    for (size_t slot = 0; slot < n; slot++)
+      surface->h[slot] = (float)surface->options.h;
+  else
+    status = conic_parallel_runs(surface->context, "scales", (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT, find_local_h,
+                                 surface);
+  if (status == CONIC_OK)
+    status = find_median_h(surface);
+  find_node_reach(surface);
+  return status;
+}
+
+static conic_status prepare(conic_surface *surface, const conic_splats *points) {
+  conic_context *context = surface->context;
+  conic_status status = copy_points(context, points, &surface->points);
+  if (status == CONIC_OK)
+    status =
+        conic_neighbours_build(context, (const float *const *)surface->points.position, points->count, &surface->tree);
+  if (status == CONIC_OK && surface->tree.n_slots == 0)
+    status = conic_fail(context, CONIC_ERROR_INPUT, "surface: no point is finite");
+  if (status == CONIC_OK && surface->tree.n_slots >= CONIC_CLUSTER_BIT)
+    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: more than 2147483648 points");
+  if (status == CONIC_OK && !allocate_slots(surface))
+    status = CONIC_ERROR_MEMORY;
+  if (status != CONIC_OK)
+    return status;
+  fill_slots(surface);
+  status = find_scales(surface);
+  if (status == CONIC_OK && surface->options.cluster > 0.0)
+    status = conic_clusters_create(surface);
+  return status;
+}
+
+conic_status conic_surface_create(conic_context *context, const conic_splats *points,
+                                  const conic_surface_options *options, conic_surface **surface) {
+  conic_surface_options defaults;
+  *surface = NULL;
+  if (!options) {
+    conic_surface_options_init(&defaults);
+    options = &defaults;
+  }
+  conic_status status = check_options(context, options, conic_splats_fields(points));
+  if (status != CONIC_OK)
+    return status;
+  const conic_surface_kernels *kernels = conic_surface_kernels_of(options->isa);
+  if (!kernels)
+    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "surface: %s is not on this machine",
+                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "this instruction set");
+  conic_surface *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
+  if (!made)
+    return CONIC_ERROR_MEMORY;
+  made->context = context;
+  made->options = *options;
+  made->kernels = kernels;
+  made->weighing.weight = options->weight;
+  made->weighing.end = options->neglect * options->neglect;
+  made->weighing.edge = conic_weight_exp(made->weighing.end);
+  status = prepare(made, points);
+  if (status == CONIC_OK)
+    *surface = made;
+  else
+    conic_surface_destroy(made);
+  return status;
+}
+
+void conic_surface_destroy(conic_surface *surface) {
+  if (!surface)
+    return;
+  conic_context *context = surface->context;
+  conic_clusters_release(surface);
+  for (int axis = 0; axis < 3; axis++) {
+    conic_memory_release(context, surface->normal[axis]);
+    conic_memory_release(context, surface->color[axis]);
+  }
+  conic_memory_release(context, surface->node_reach);
+  conic_memory_release(context, surface->mass);
+  conic_memory_release(context, surface->h);
+  conic_neighbours_release(context, &surface->tree);
+  conic_splats_release(context, &surface->points);
+  conic_memory_release(context, surface);
+}
+
+double conic_surface_scale(const conic_surface *surface, const double r[3]) {
+  uint32_t slot;
+  double distance2;
+  if (surface->options.h > 0.0)
+    return surface->options.h;
+  conic_neighbours_nearest(&surface->tree, r, CONIC_NO_SLOT, 1, HUGE_VAL, &slot, &distance2);
+  return (double)surface->h[slot];
+}

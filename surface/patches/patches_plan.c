@@ -1,0 +1,157 @@
+/* Who is drawn in a picture, and how finely: down the tree. */
+#include <math.h>
+#include <string.h>
+
+#include "core/base/threads.h"
+#include "surface/patches/patch_set.h"
+
+const int conic_grid_sizes[CONIC_N_GRIDS] = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+
+enum { N_SUBTREES = 64 };
+
+/* A patch of fewer pixels than the first about its middle is its point's splat; from the second on it is itself. */
+static const double LEAST_RADIUS_PX = 4.0, SURE_RADIUS_PX = 6.0;
+
+/* No grid need be so fine that its samples are nearer to the surface, or to its slope, than this; nor coarser. */
+static const double OFF_PX = 0.25, OFF_SLOPE = 0.01, LEAST_ROWS = 6.0;
+
+typedef struct planning {
+  conic_patches *patches;
+  const conic_patches_view *view;
+  uint8_t *plans;
+  size_t first_subtree;
+} planning;
+
+/* So many that samples are a step apart on the screen, or so many that they are as good as nearer ones. */
+double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around) {
+  double across_px = 2.0 * conic_patches_pixels(view, p, around, (double)patch->radius);
+  double bend_px = conic_patches_pixels(view, p, around, (double)patch->bend);
+  double flat2 =
+      4.0 * CONIC_SAMPLE_OUTLINE * CONIC_SAMPLE_OUTLINE * bend_px / OFF_PX; /* a disc's rim off the surface */
+  double even2 = 4.0 * CONIC_SAMPLE_BLUR * CONIC_SAMPLE_BLUR * (double)patch->twist / OFF_SLOPE;
+  double enough2 = flat2 > even2 ? flat2 : even2, enough = sqrt(enough2);
+  enough = enough > LEAST_ROWS ? enough : LEAST_ROWS;
+  double fine = across_px / view->step_px;
+  return fine < enough ? fine : enough;
+}
+
+/* Whether all of a patch turns its back to the eye. */
+static int faces_away(const conic_patches_view *view, const conic_patch *patch, double around) {
+  double center[3], p[3], normal[3], n[3], across2 = 0.0, along = 0.0, slope = (double)patch->slope;
+  for (int axis = 0; axis < 3; axis++) {
+    center[axis] = (double)patch->center[axis];
+    normal[axis] = (double)patch->normal[axis];
+  }
+  conic_patches_to_camera(view, center, p);
+  for (int i = 0; i < 3; i++) {
+    n[i] = view->rotation[i][0] * normal[0] + view->rotation[i][1] * normal[1] + view->rotation[i][2] * normal[2];
+    along += n[i] * p[i];
+    across2 += p[i] * p[i];
+  }
+  across2 -= along * along;
+  return along > 1.001 * (slope * sqrt(across2 > 0.0 ? across2 : 0.0) + around * (1.0 + slope));
+}
+
+/* A slot's place in camera space; returns how far it reaches. */
+static double place_of(const conic_patches *patches, const conic_patches_view *view, size_t slot, double p[3]) {
+  const conic_neighbours *tree = &patches->surface->tree;
+  const double place[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
+                           (double)tree->position[2][slot]};
+  conic_patches_to_camera(view, place, p);
+  return (double)patches->patches[slot].reach;
+}
+
+double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot) {
+  double p[3], reach = place_of(patches, view, slot, p);
+  double radius_px = conic_patches_pixels(view, p, reach, (double)patches->patches[slot].radius);
+  return (radius_px - LEAST_RADIUS_PX) / (SURE_RADIUS_PX - LEAST_RADIUS_PX);
+}
+
+static uint8_t plan_slot(const planning *work, size_t slot) {
+  const conic_patch *patch = &work->patches->patches[slot];
+  double p[3], reach = place_of(work->patches, work->view, slot, p);
+  if (!conic_patches_sees(work->view, p, reach))
+    return CONIC_PLAN_CULLED;
+  double radius_px = conic_patches_pixels(work->view, p, reach, (double)patch->radius);
+  if (!(radius_px > LEAST_RADIUS_PX))
+    return CONIC_PLAN_SPLAT;
+  if (work->view->cull_back && faces_away(work->view, patch, reach))
+    return CONIC_PLAN_CULLED;
+  double rows = conic_patch_rows(work->view, patch, p, reach);
+  int fading = radius_px < SURE_RADIUS_PX ? CONIC_PLAN_FADING : 0;
+  for (int i = 0; i < CONIC_N_GRIDS; i++)
+    if (rows <= (double)conic_grid_sizes[i])
+      return (uint8_t)((CONIC_PLAN_GRID + i) | fading);
+  return CONIC_PLAN_DEEP;
+}
+
+/* The leaves below a node. */
+static void leaves_of(const conic_neighbours *tree, size_t i_node, size_t *begin, size_t *end) {
+  size_t first = i_node, last = i_node;
+  while (first < tree->n_leaves - 1) {
+    first = 2 * first + 1;
+    last = 2 * last + 2;
+  }
+  *begin = first - (tree->n_leaves - 1);
+  *end = last - (tree->n_leaves - 1) + 1;
+}
+
+static uint32_t deep_count(const planning *work, size_t slot) {
+  const conic_patches *patches = work->patches;
+  size_t n = conic_patch_sample_deep(work->view, &patches->patches[slot], patches->options.surface.degree,
+                                     (double)patches->options.cutoff, NULL);
+  return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; /* which is too many, and will be told */
+}
+
+static void plan_all(planning *work, size_t i_node, int is_splat) {
+  const conic_neighbours *tree = &work->patches->surface->tree;
+  size_t begin, end;
+  leaves_of(tree, i_node, &begin, &end);
+  size_t first = conic_neighbours_leaf_begin(tree, begin), last = conic_neighbours_leaf_begin(tree, end);
+  for (size_t slot = first; slot < last; slot++) {
+    uint8_t plan = is_splat ? CONIC_PLAN_SPLAT : plan_slot(work, slot);
+    work->plans[slot] = plan;
+    if (plan == CONIC_PLAN_DEEP)
+      work->patches->counts[slot] = deep_count(work, slot);
+  }
+}
+
+static void plan_node(planning *work, size_t i_node) {
+  const conic_patches *patches = work->patches;
+  const conic_neighbours *tree = &patches->surface->tree;
+  const float *box = tree->boxes[i_node];
+  double center[3], p[3], half2 = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    double half = 0.5 * ((double)box[3 + axis] - (double)box[axis]);
+    center[axis] = 0.5 * ((double)box[axis] + (double)box[3 + axis]);
+    half2 += half * half;
+  }
+  double around = 1.001 * sqrt(half2) + (double)patches->node_reach[i_node];
+  conic_patches_to_camera(work->view, center, p);
+  if (!conic_patches_sees(work->view, p, around))
+    return; /* culled, as it was set */
+  if (conic_patches_pixels(work->view, p, around, (double)patches->node_radius[i_node]) <= LEAST_RADIUS_PX)
+    plan_all(work, i_node, 1);
+  else if (i_node >= tree->n_leaves - 1)
+    plan_all(work, i_node, 0);
+  else {
+    plan_node(work, 2 * i_node + 1);
+    plan_node(work, 2 * i_node + 2);
+  }
+}
+
+static void plan_subtree(void *data, size_t i_item, int i_thread) {
+  planning *work = data;
+  (void)i_thread;
+  plan_node(work, work->first_subtree + i_item);
+}
+
+void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, uint8_t *plans) {
+  const conic_neighbours *tree = &patches->surface->tree;
+  size_t n = 1;
+  while (n < tree->n_leaves && n < N_SUBTREES)
+    n *= 2;
+  planning work = {patches, view, plans, n - 1};
+  memset(plans, CONIC_PLAN_CULLED, tree->n_slots);
+  conic_parallel_for(patches->context, n, plan_subtree, &work);
+}

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# conic bench: what it prints and writes, and what it refuses. No test here knows a time.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+has() { # PATTERN: in the output
+  grep -qe "$1" out || fail "no \"$1\" in: $(head -c 1500 out)"
+}
+lines() { # NUMBER: of lines in the statistics in FILE
+  [[ $(grep -cE '^    "[^"]+/[a-z]+/[a-z0-9]+/[0-9]+": \{' "$2") -eq $1 ]] || fail "not $1 lines: $(grep -E '^    "' "$2")"
+}
+
+small=(--size 64x48 --repeat 2)
+
+# The table, and the statistics
+run 0 bench --scenes sphere-2k,mixed-100 --methods conic,nearest --isa scalar,auto --threads 1,2 "${small[@]}" --json old.json
+has '^sphere-2k@64x48/conic/scalar/1 '
+has '^mixed-100@64x48/nearest/[a-z0-9]*/2 '
+[[ $(grep -c '^[a-z0-9-]*@' out) -eq 16 ]] || fail "not 16 lines in the table"
+lines 16 old.json
+[[ $(grep -c '"identical": true' old.json) -eq 16 ]] || fail "not every picture is said to be right"
+grep -q '"wrong_pictures": 0' old.json || fail "no count of wrong pictures"
+[[ $(grep -c '"cycles": [0-9n]' old.json) -eq 16 ]] || fail "no cycles, not even null"
+# One picture by every instruction set and number of threads: two methods and two scenes, four in all
+[[ $(grep '"rgba": "' old.json | sort -u | wc -l) -eq 4 ]] || fail "not four pictures"
+# The same as conic render draws
+run 0 make sphere -n 2k -o sphere.ply
+run 0 bench sphere.ply --scenes sphere-2k --threads 1 "${small[@]}" --json -
+lines 2 out
+run 0 render sphere.ply -o sphere.pfm --size 64x48 --json render.json
+run 0 bench sphere.ply --threads 1 "${small[@]}" --json -
+grep -qF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" out || fail "bench draws a file otherwise than render"
+cat > camera.json << 'END'
+{"width": 90, "height": 90, "fx": 80, "fy": 75, "cx": 44, "cy": 36,
+ "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
+END
+run 0 render sphere.ply -o sphere.pfm --camera camera.json --cull back --json render.json
+run 0 bench sphere.ply --camera camera.json --cull back --size 90x90 --repeat 1 --threads 1 --json -
+grep -qF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" out || fail "bench takes the camera otherwise than render"
+
+# Comparing with an earlier run
+run 0 bench --scenes sphere-2k,plane-500 --isa scalar --threads 1 "${small[@]}" --compare old.json --json new.json
+has '^times as fast as old.json'
+has '^1 line is not in it'
+[[ $(grep -c '"speedup": {' new.json) -eq 1 ]] || fail "not one speedup"
+# Half the old time is half the speed, and no failure
+sed -E '/"ms": \{/,/\}/s/("frame": )[0-9.e+-]+/\10.000001/' old.json > fast.json
+run 0 bench --scenes sphere-2k --isa scalar --threads 1 "${small[@]}" --compare fast.json --json -
+has '"frame": [0-9.]*e-0'
+
+# The curve's and the machine's tables
+run 0 bench --curve --quick --repeat 1 --threads 1 --size 64x64
+has '^cost curve'
+has '^sphere-100k@512x512/conic/'
+run 0 bench --floor --scenes sphere-2k --threads 1 "${small[@]}" --json floor.json
+has '^1 thread: reads [0-9.]*, writes [0-9.]*, copies [0-9.]* GB/s'
+has '^| accumulate | '
+grep -q '"floor_ms": {' floor.json || fail "no floor in the statistics"
+run 0 bench --machine --threads 1 --json -
+grep -q '"operations_per_s": [0-9]' out || fail "no rate of the machine"
+lines 0 out
+run 0 bench --scenes plane-100 --threads 1 "${small[@]}" --quiet
+[[ ! -s out ]] || fail "--quiet prints"
+if command -v python3 > /dev/null; then
+  for file in old.json new.json floor.json; do
+    python3 -m json.tool < $file > /dev/null || fail "$file is not JSON"
+  done
+fi
+
+# Refusals
+refused() { # EXIT_CODE PATTERN ARGUMENTS …
+  run "$1" bench "${@:3}"
+  [[ $(wc -l < err) -eq 1 ]] || fail "bench ${*:3}: not one line: $(cat err)"
+  grep -qe "$2" err || fail "bench ${*:3}: no \"$2\" in: $(cat err)"
+}
+refused 2 'did you mean sphere?' --scenes spere-2k
+refused 2 'how many splats' --scenes sphere-many
+refused 2 'how many splats' --scenes sphere-0
+refused 2 'it takes LIST' --scenes ''
+refused 2 'no list' --scenes sphere-2k,
+refused 2 'did you mean affine?' --methods afine
+refused 2 'unknown instruction set' --isa mmx
+refused 2 'threads' --threads many
+refused 2 'scenes of its own' --curve --scenes sphere-2k
+refused 2 'for files' --camera camera.json
+refused 3 'absent.ply' absent.ply
+refused 3 'absent.json' --scenes sphere-2k --compare absent.json
+echo '{"splats_in": 3}' > other.json
+refused 3 'no "lines"' --scenes sphere-2k --compare other.json
+echo '{"lines": {"sphere-2k' > cut.json
+refused 3 'cut.json' --scenes sphere-2k --compare cut.json
+case $(uname -m) in
+  x86_64) refused 4 'neon' --isa neon ;;
+  *) refused 4 'avx2' --isa avx2 ;;
+esac
+
+[[ $failures -eq 0 ]]

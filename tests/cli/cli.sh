@@ -1,0 +1,249 @@
+#!/usr/bin/env bash
+# The program as its users and their scripts rely on it: help, exit codes, messages, and nothing half-written.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+# The same for a run that must fail: one line on standard error, in the one form; nothing on standard output.
+run_wrong() { # EXIT_CODE, PATTERN, ARGUMENTS …
+  local pattern=$2
+  run "$1" "${@:3}"
+  [[ ! -s out ]] || fail "conic ${*:3}: something on standard output"
+  [[ $(wc -l < err) -eq 1 ]] || fail "conic ${*:3}: not one line of error: $(head -c 300 err)"
+  grep -q '^conic: error: ' err || fail "conic ${*:3}: not an error line: $(head -c 300 err)"
+  grep -qe "$pattern" err || fail "conic ${*:3}: no \"$pattern\" in: $(head -c 300 err)"
+}
+no_files_but() { # NAMES: what may be in the folder `outputs`
+  local found
+  found=$(cd outputs && find . -mindepth 1 -printf '%P ')
+  [[ $found == "$*" ]] || fail "left in the folder: $found"
+}
+mkdir outputs
+
+# Help and version
+run 2
+[[ ! -s out && -s err ]] || fail "without arguments the short help belongs on standard error"
+grep -q '^usage: conic ' err || fail "no usage without arguments"
+run 0 help
+[[ -s out && ! -s err ]] || fail "help belongs on standard output"
+cp out help
+for ask in --help -h; do
+  run 0 $ask
+  cmp -s out help || fail "conic $ask is not conic help"
+done
+for command in make prepare render diff verify info explain chart bench; do
+  grep -q "^  $command " help || fail "conic help does not list $command"
+  run 0 help $command
+  [[ -s out && ! -s err ]] || fail "conic help $command belongs on standard output"
+  grep -q "^usage: conic $command" out || fail "conic help $command shows no usage"
+  grep -qe "^  --quiet " out || fail "conic help $command shows no common options"
+  cp out help_command
+  run 0 $command --help
+  cmp -s out help_command || fail "conic $command --help is not conic help $command"
+done
+run 0 --version
+grep -qE '^conic [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no version"
+grep -q 'BSD-3-Clause' out || fail "no license"
+grep -q '^In this build:' out || fail "no features"
+grep -q 'CURL' out || fail "it is not said whether libcurl is in"
+
+# Wrong usage
+run_wrong 2 'did you mean render?' rendr
+run_wrong 2 'did you mean prepare?' help prepar
+run_wrong 2 'did you mean --version?' --versoin
+run_wrong 2 'unknown option -o; see conic help' explain -o a.png # and not: did you mean --fov?
+: > ./-a.ply
+run_wrong 2 'is ./-a.ply' info -a.ply
+run_wrong 2 'standard input' diff - -
+run_wrong 2 'web server' info http://localhost/a.lpc
+run_wrong 2 'unknown command xyzzy' xyzzy
+for command in make prepare render diff verify info explain chart bench; do
+  run_wrong 2 'did you mean --quiet?' $command --quite
+  run_wrong 2 'threads' $command --threads many
+  run_wrong 2 'needs a value' $command --json
+done
+run_wrong 2 '' make
+run_wrong 2 '' make nothing-known -n 10 -o outputs/a.ply
+run_wrong 2 '' make sphere -n 10
+run_wrong 2 '' render
+run_wrong 2 '' diff one.pfm
+run_wrong 2 'standard output' make sphere -n 10 -o - --json -
+for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|a.ply|-o|outputs/a.pfm|--json|"; do
+  IFS='|' read -ra words <<< "$arguments" # as from a variable that was never set
+  run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
+done
+# What cannot be written is said before anything is read
+run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'needs an ending' render absent.ply -o outputs/a
+run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
+run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
+run_wrong 2 'a lone Z' render absent.ply -o outputs/a.pfm --aov Z,N
+run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
+run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
+run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
+for command in prepare octree layer hybrid 'mls project'; do # $command is one or two words
+  case $command in octree) ending=cot ;; layer) ending=lpc ;; hybrid) ending=chy ;; *) ending=ply ;; esac
+  run_wrong 4 'outputs/none/a: cannot write' $command absent.ply -o outputs/none/a
+  run_wrong 4 'outputs: cannot write: it is a directory' $command absent.ply -o outputs
+  run_wrong 2 "give the name the ending .$ending" $command absent.ply -o outputs/a.PNG
+done
+run_wrong 4 'cannot make the folder' chart -o "$conic" --quick
+# Nor is what the work would be done with
+absent_isa=neon
+[[ $(uname -m) == x86_64 ]] || absent_isa=avx2
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' 'mls project -o outputs/a.ply' bench; do
+  # shellcheck disable=SC2086 # the options are words
+  run_wrong 4 "no $absent_isa" $command absent.ply --isa $absent_isa
+done
+for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' bench; do
+  # shellcheck disable=SC2086
+  run_wrong 4 'opencl' $command absent.ply --device opencl:77.0
+  # shellcheck disable=SC2086
+  run_wrong 3 'absent.json' $command absent.ply --camera absent.json
+done
+run_wrong 3 'absent.png' render absent.obj -o outputs/a.pfm --as mesh --texture absent.png
+# A file has many names: none of the outputs is another one, or what the work begins with
+mkdir linked
+: > linked/there.pfm
+: > linked/there.ply
+ln -s linked elsewhere
+ln -s linked/there.pfm linked.pfm
+ln linked/there.ply twin.ply
+for pair in 'outputs/a.pfm ./outputs/a.pfm' "outputs/a.pfm $work/outputs/a.pfm" 'linked/a.pfm elsewhere/a.pfm' \
+  'linked/there.pfm linked.pfm' 'a.pfm ./a.pfm'; do
+  run_wrong 2 'two outputs' render absent.ply -o "${pair% *}" -o "${pair#* }"
+done
+for name in linked/there.ply elsewhere/there.ply twin.ply; do
+  run_wrong 2 "$name is an input" render ./linked/there.ply -o outputs/a.pfm --json $name
+  run_wrong 2 "$name is an input" info ./linked/there.ply --json $name
+done
+run_wrong 2 'is an input' diff linked.pfm outputs/a.pfm --heatmap linked/there.pfm
+run_wrong 2 'is an input' layer linked/there.ply -o twin.lpc --json twin.ply
+no_files_but
+
+# Inputs that cannot be used
+run_wrong 3 'absent.ply' info absent.ply
+run_wrong 3 'absent.ply' render absent.ply -o outputs/a.pfm
+run_wrong 3 'absent.ply' prepare absent.ply -o outputs/a.ply
+run_wrong 3 'absent.pfm' diff absent.pfm absent.pfm
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n' \
+  > short.ply
+head -c 5000 /dev/zero > zeros.ply
+: > empty.ply
+for input in short.ply zeros.ply empty.ply .; do
+  run_wrong 3 "^conic: error: $input: " render $input -o outputs/a.pfm
+done
+no_files_but
+
+# Resources that fail
+run_wrong 4 'outputs/none/a.ply' make sphere -n 10 -o outputs/none/a.ply
+run_wrong 4 'outputs' make sphere -n 10 -o outputs
+run_wrong 4 'outputs/none/a.json' make sphere -n 10 -o outputs/a.ply --json outputs/none/a.json
+rm -f outputs/a.ply
+if [[ -w /dev/full ]]; then
+  run_wrong 4 '/dev/full' make sphere -n 100000 -o /dev/full
+  "$conic" help > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "help on a full disk: exit code"
+  "$conic" --version > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "version on a full disk: exit code"
+  "$conic" make sphere -n 10 -o outputs/a.ply --json - > /dev/full 2> err
+  [[ $? -eq 4 ]] || fail "statistics on a full disk: exit code"
+  rm -f outputs/a.ply
+fi
+no_files_but
+
+# Done: pictures of the same splats are equal, of others different
+run 0 make sphere -n 2000 -o a.ply --json -
+head -n 1 out | grep -q '^{$' || fail "statistics do not begin the standard output"
+tail -n 1 out | grep -q '^}$' || fail "statistics do not end the standard output"
+grep -q '"points_out": 2000' out || fail "statistics without points_out"
+run 0 make torus -n 2000 -o - # the same bytes by way of a pipe
+cp out b.ply
+run 0 make torus -n 2000 -o c.ply
+cmp -s b.ply c.ply || fail "make writes other bytes to standard output"
+[[ ! -s err ]] || fail "make says something without a terminal: $(head -c 300 err)"
+for scene in a b c; do
+  run 0 render $scene.ply -o $scene.pfm --size 64x48
+  [[ ! -s out && ! -s err ]] || fail "render says something without a terminal: $(head -c 300 err)"
+done
+run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6
+[[ $(cat err) == 'conic: warning: a.ply: the picture is empty: all is out of sight' ]] || fail "nothing is said of an empty picture"
+run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6 --quiet
+[[ ! -s err ]] || fail "a quiet run speaks of an empty picture"
+run 0 octree a.ply -o a.cot
+run_wrong 3 'this is a point-octree' prepare a.cot -o outputs/a.ply
+run 0 diff b.pfm c.pfm
+run 1 diff a.pfm b.pfm
+run 1 diff a.pfm b.pfm --max-abs 0.0001
+run 0 diff a.pfm b.pfm --max-abs 1e9
+run_wrong 3 'b.ply' diff a.pfm b.ply
+run 0 info a.ply --json -
+grep -q '"points": 2000' out || fail "info does not count"
+
+# What --verbose says is on standard error, and nowhere without it
+printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' > square.obj
+printf 'f 1 2 3 4\n' >> square.obj
+has_zstd=$("$conic" --version | grep -c '^In this build:.* zstd')
+for command in 'make torus -n 2000 -o told.ply' 'prepare a.ply -o told.ply' 'octree a.ply -o told.cot' \
+  'layer a.ply -o told.lpc' 'hybrid square.obj -o told.chy' 'mls project a.ply -o told.ply' \
+  'mls thin a.ply -o told.ply --count 500' 'render a.ply -o told.pfm --size 64x48'; do
+  [[ $command == layer* && $has_zstd -eq 0 ]] && continue
+  # shellcheck disable=SC2086
+  run 0 $command --verbose
+  [[ ! -s out ]] || fail "conic $command --verbose: something on standard output"
+  grep -q '^conic: .* in all, [0-9]* MiB of memory at most$' err || fail "conic $command --verbose: no times: $(cat err)"
+  grep -q 'write [0-9.]* m\?s' err || fail "conic $command --verbose: no stages: $(cat err)"
+  grep -qv 'in all' err || fail "conic $command --verbose: nothing of what was done: $(cat err)"
+  # shellcheck disable=SC2086
+  run 0 $command
+  [[ ! -s err ]] || fail "conic $command: not silent: $(cat err)"
+done
+printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n1 1 0\nnan 0 0\n' > odd.xyz
+for command in 'prepare -o told.ply' 'octree -o told.cot' 'render --size 64x48 -o told.pfm'; do
+  # shellcheck disable=SC2086
+  run 0 $command odd.xyz --verbose
+  grep -q '^conic: odd.xyz: of the points: 1 left out, not finite.*1 at the place of another' err ||
+    fail "conic $command --verbose does not say what was left out: $(cat err)"
+done
+
+# Where render refuses a scene for its extent, info --check says so
+printf '0 0 0\n0 1e30 0\n' > giant.xyz
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' render giant.xyz -o outputs/a.pfm
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' octree giant.xyz -o outputs/a.cot
+run 0 info giant.xyz --check
+grep -q '^sound *no' out || fail "info takes what cannot be drawn for sound"
+grep -q 'cannot be drawn: a point is farther out than 1e20' out || fail "info does not say why: $(cat out)"
+run 0 info giant.xyz --check --json -
+grep -q '"extent": "a point' out || fail "info does not say why in JSON"
+
+# A table that has no line has no head
+run_wrong 3 'absent.ply' bench absent.ply
+
+# The progress bar of a turntable names the frame
+if [[ -n $(type -P script) ]] && script -qec true /dev/null > /dev/null 2>&1 < /dev/null; then
+  script -qec "'$conic' render a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1" /dev/null \
+    > out 2> err < /dev/null
+  grep -q 'frame [0-9]*/20' out || fail "no frame in the progress bar: $(head -c 300 out)"
+else
+  echo "skipped: there is no script(1) to make a terminal"
+fi
+
+# A run that is stopped leaves nothing behind; nor when the signal comes twice at once, as from a terminal or from timeout
+for signals in 1 2; do
+  "$conic" make sphere -n 2G -o outputs/a.ply > out 2> err &
+  process=$!
+  for ((i = 0; i < 600; i++)); do # until it writes: only then are signals caught
+    [[ -z $(ls -A outputs) ]] || break
+    sleep 0.1
+  done
+  kill -TERM $process
+  if [[ $signals -eq 2 ]]; then
+    sleep 0.01
+    kill -TERM $process 2> /dev/null
+  fi
+  wait $process
+  got=$?
+  [[ $got -eq 4 ]] || fail "a run that is stopped by $signals signals: exit code $got"
+  no_files_but
+done
+
+[[ $failures -eq 0 ]]

@@ -1,0 +1,100 @@
+#!/usr/bin/env bash
+# conic mls: what the command line promises.
+set -uo pipefail
+# shellcheck source=tests/support/program.bash
+source "$1/tests/support/program.bash"
+
+value() { # KEY FILE: the first value of a key in a JSON file
+  sed -nE "s/^ *\"$1\": \"?([^\",]*)\"?,?$/\1/p" "$2" | head -n 1
+}
+
+holds() { # an awk expression
+  awk "BEGIN { exit !($1) }" || fail "not so: $1"
+}
+
+run 0 make torus -n 20k --jitter 0.5 --noise 0.2 -o torus.ply
+
+# Project: every point is somewhere, or counted.
+for options in "" "--plane fast" "--type apss" "--weight compact --degree 2" "--h 2.5x --neglect 3" "--cluster 0.3"; do
+  # shellcheck disable=SC2086 # options are words
+  run 0 mls project torus.ply -o clean.ply $options --json clean.json
+  n_in=$(value points_in clean.json) n_out=$(value points_out clean.json)
+  [[ $n_in == 20000 && $((n_in - n_out)) == "$(value failed clean.json)" ]] || fail "mls project $options: counts"
+  [[ $n_out -gt 19000 && $(value "done" clean.json) == "$n_out" ]] || fail "mls project $options: $n_out points"
+  run 0 info clean.ply --check
+done
+run 0 mls project torus.ply -o all.ply
+for options in "--threads 1" "--isa scalar" "--isa sse2"; do
+  # shellcheck disable=SC2086
+  run 0 mls project torus.ply -o again.ply $options
+  cmp -s again.ply all.ply || fail "mls project $options: other bytes"
+done
+
+# One h for all: cell by cell, with the same bytes whatever memory there is.
+run 0 mls project torus.ply -o all-h.ply --h 0.06 --json all.json
+for options in "--memory 14" "--memory 100 --threads 1 --isa scalar"; do
+  # shellcheck disable=SC2086
+  run 0 mls project torus.ply -o again.ply --h 0.06 $options --json again.json
+  cmp -s again.ply all-h.ply || fail "mls project $options: other bytes"
+  [[ $(value points_out again.json) == "$(value points_out all.json)" ]] || fail "mls project $options: other counts"
+done
+run 4 mls project torus.ply -o x.ply --h 0.06 --memory 1
+run 2 mls project torus.ply -o x.ply --memory 100
+run 2 mls project torus.ply -o x.ply --h 2x --memory 100
+run 2 mls project - -o x.ply --h 0.06 --memory 100
+run 2 mls thin torus.ply -o x.ply --h 0.06 --memory 100 --count 10
+[[ ! -e x.ply && -z $(compgen -G '*.cells-*') ]] || fail "something was left of what failed"
+
+# Raw points get sides, meshes are sets of vertices, and pipes work.
+printf '%s %s %s\n' $(for ((i = 0; i < 400; i++)); do echo $((i % 20)) $((i / 20)) $((i * 37 % 5)).0e-1; done) > raw.xyz
+run 0 mls project raw.xyz -o raw.ply --degree 1
+head -c 300 raw.ply | grep -aq 'property float nx' || fail "no normals"
+"$conic" mls project - -o - < torus.ply > piped.ply || fail "from and to a pipe"
+cmp -s piped.ply all.ply || fail "a pipe changes the file"
+
+# Thin: to a count, within an error that was measured.
+run 0 mls thin all.ply -o thin.ply --count 4k --json thin.json
+[[ $(value points_out thin.json) == 4000 ]] || fail "mls thin --count"
+holds "$(value hausdorff thin.json) > 0"
+run 0 mls thin all.ply -o thin.ply --max-error 0.5x --json thin.json
+spacing=0.0222
+holds "$(value hausdorff thin.json) <= 0.5 * $spacing * 1.2 && $(value points_out thin.json) < 15000"
+
+# Densify: more of them.
+run 0 mls densify thin.ply -o dense.ply --spacing 0.3x --json dense.json
+holds "$(value points_out dense.json) > 2 * $(value points_in dense.json)"
+run 0 mls densify thin.ply -o dense.ply --spacing 0.01 --count 3000 --json dense.json
+[[ $(value points_out dense.json) -le 3000 || $(value points_in dense.json) -gt 3000 ]] || fail "mls densify --count"
+run 0 render dense.ply -o dense.pfm --size 64x64
+
+# What is asked for in vain.
+run 2 mls
+run 2 mls smooth torus.ply -o x.ply
+run 2 mls project
+run 2 mls project torus.ply
+run 2 mls project torus.ply all.ply -o x.ply
+run 2 mls thin torus.ply -o x.ply
+run 2 mls densify torus.ply -o x.ply
+run 2 mls project torus.ply -o x.ply --count 3
+run 2 mls project torus.ply -o x.ply --degree 5
+run 2 mls project torus.ply -o - --json -
+run 3 mls project missing.ply -o x.ply
+run 3 mls project torus.ply -o x.ply --h 1e-9
+grep -q 'too few neighbours' err || fail "no reason given"
+printf '1 2 3\n%.0s' {1..30} > same.xyz
+run 3 mls densify same.xyz -o x.ply --spacing 1x
+grep -q '^conic: error: same.xyz: no two points are apart' err || fail "a spacing of points that are not apart: $(cat err)"
+run 4 mls project torus.ply -o /nowhere/x.ply
+printf 'nan 0 0\n0 inf 0\n' > nan.xyz
+printf '0\n' > none.pts
+for memory in "" "--memory 100"; do
+  # shellcheck disable=SC2086
+  run 3 mls project nan.xyz -o x.ply --h 0.1 $memory
+  grep -q '^conic: error: nan.xyz: no point is finite$' err || fail "points that are not finite: $(cat err)"
+  # shellcheck disable=SC2086
+  run 3 mls project none.pts -o x.ply --h 0.1 $memory
+  grep -q '^conic: error: none.pts: it holds no points$' err || fail "no points: $(cat err)"
+done
+[[ ! -e x.ply ]] || fail "a file of a run that failed"
+
+[[ $failures -eq 0 ]]

@@ -1,0 +1,155 @@
+/* EXR files: every bit there and back, what stands in the header, and files that are cut short. */
+#include "tests/support/image_fixture.h"
+
+static conic_attribute text_attribute(const char *name, const char *text) {
+  conic_attribute attribute = {.type = CONIC_ATTRIBUTE_TEXT};
+  snprintf(attribute.name, sizeof attribute.name, "%s", name);
+  snprintf(attribute.text, sizeof attribute.text, "%s", text);
+  return attribute;
+}
+
+static void test_round_trip(conic_context *context, int width, int height, unsigned planes) {
+  conic_image image = random_image(context, width, height, planes), back;
+  CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
+  CHECK_OK(conic_image_read(context, in_folder("a.exr"), &back));
+  CHECK(same_planes(&image, &back));
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    CHECK(conic_image_hash(&image, (conic_plane)i) == conic_image_hash(&back, (conic_plane)i));
+  conic_image_release(context, &image);
+  conic_image_release(context, &back);
+}
+
+/* The file is the same whatever the threads. */
+static void test_threads(conic_context *context) {
+  conic_image image = random_image(context, 61, 301, EVERY_PLANE);
+  size_t n_bytes, n_alone;
+  conic_context *alone = check_context(1);
+  CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
+  CHECK_OK(conic_image_write(alone, in_folder("b.exr"), &image));
+  unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+  unsigned char *bytes_alone = read_bytes(in_folder("b.exr"), &n_alone);
+  CHECK(n_bytes > 1000 && n_bytes == n_alone && memcmp(bytes, bytes_alone, n_bytes) == 0);
+  free(bytes);
+  free(bytes_alone);
+  conic_context_destroy(alone);
+  conic_image_release(context, &image);
+}
+
+/* Where `wanted` stands in the bytes; null where it does not. */
+static const unsigned char *find(const unsigned char *bytes, size_t n_bytes, const void *wanted, size_t n_wanted) {
+  for (size_t i = 0; i + n_wanted <= n_bytes; i++)
+    if (memcmp(bytes + i, wanted, n_wanted) == 0)
+      return bytes + i;
+  return NULL;
+}
+
+/* Whether the header has an attribute of this name, type and value, by the format's own layout: name, type, size,
+ * value. */
+static int has_attribute(const unsigned char *bytes, size_t n_bytes, const char *name, const char *type,
+                         const void *value, uint32_t n_value) {
+  unsigned char wanted[512];
+  size_t n = 0;
+  memcpy(wanted, name, strlen(name) + 1);
+  n += strlen(name) + 1;
+  memcpy(wanted + n, type, strlen(type) + 1);
+  n += strlen(type) + 1;
+  memcpy(wanted + n, &n_value, 4);
+  memcpy(wanted + n + 4, value, n_value);
+  return find(bytes, n_bytes, wanted, n + 4 + n_value) != NULL;
+}
+
+static void test_attributes(conic_context *context) {
+  conic_image image = random_image(context, 3, 3, 1u << CONIC_PLANE_RGBA), back;
+  const char *long_name = "conicANameOverThirtyOneCharacters";
+  conic_attribute number = {.name = "conicEpsilon", .type = CONIC_ATTRIBUTE_DOUBLE, .values = {0.1}};
+  conic_attribute matrix = {.name = "worldToCamera", .type = CONIC_ATTRIBUTE_MATRIX};
+  size_t n_bytes;
+  for (int i = 0; i < 16; i++)
+    matrix.values[i] = i / 3.0;
+  image.n_attributes = 4;
+  image.attributes[0] = text_attribute("conicMethod", "conic \xc3\xa9");
+  image.attributes[1] = number;
+  image.attributes[2] = matrix;
+  image.attributes[3] = text_attribute(long_name, "");
+  CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
+  unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+  CHECK(has_attribute(bytes, n_bytes, "conicMethod", "string", "conic \xc3\xa9", 8));
+  CHECK(has_attribute(bytes, n_bytes, "conicEpsilon", "double", number.values, 8));
+  CHECK(has_attribute(bytes, n_bytes, "worldToCamera", "m44d", matrix.values, 128));
+  free(bytes);
+  CHECK_OK(conic_image_read(context, in_folder("a.exr"), &back));
+  for (int i = 0; i < image.n_attributes; i++) {
+    int is_found = 0;
+    for (int k = 0; k < back.n_attributes; k++)
+      is_found |= memcmp(&image.attributes[i], &back.attributes[k], sizeof image.attributes[i]) == 0;
+    CHECK(is_found);
+  }
+  conic_image_release(context, &back);
+  empty_test_folder();
+  image.attributes[0] = text_attribute("channels", "a name that the format needs itself");
+  CHECK(conic_image_write(context, in_folder("a.exr"), &image) == CONIC_ERROR_ARGUMENT);
+  CHECK(empty_test_folder() == 0);
+  conic_image_release(context, &image);
+}
+
+/* The channels stand in the header in the order of their names, with the types 0 (UINT) and 2 (FLOAT). */
+static void test_channels(conic_context *context) {
+  static const char *const names[] = {"A",        "B",        "G",        "N.X",     "N.Y",   "N.Z", "R",     "Z",
+                                      "albedo.B", "albedo.G", "albedo.R", "cluster", "count", "id",  "weight"};
+  conic_image image = random_image(context, 3, 3, EVERY_PLANE);
+  size_t n_bytes;
+  CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
+  unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+  const unsigned char *at = find(bytes, n_bytes, "channels\0chlist\0", 16);
+  CHECK(at);
+  at = at ? at + 16 + 4 : NULL;
+  for (size_t i = 0; at && i < sizeof names / sizeof names[0]; i++) {
+    CHECK(strcmp((const char *)at, names[i]) == 0);
+    at += strlen((const char *)at) + 1;
+    CHECK(*at == (i >= 11 && i <= 13 ? 0 : 2));
+    at += 16;
+  }
+  CHECK(at && *at == 0);
+  free(bytes);
+  conic_image_release(context, &image);
+}
+
+static void test_cut_short(conic_context *context) {
+  conic_image image = random_image(context, 50, 70, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_ID), back;
+  size_t n_bytes;
+  CHECK_OK(conic_image_write(context, in_folder("a.exr"), &image));
+  unsigned char *bytes = read_bytes(in_folder("a.exr"), &n_bytes);
+  for (size_t part = 0; part < 40; part++) {
+    write_bytes(in_folder("b.exr"), bytes, n_bytes * part / 40);
+    CHECK(conic_image_read(context, in_folder("b.exr"), &back) == CONIC_ERROR_INPUT);
+    CHECK(conic_image_planes(&back) == 0);
+  }
+  write_bytes(in_folder("b.exr"), bytes, n_bytes - 1);
+  CHECK(conic_image_read(context, in_folder("b.exr"), &back) == CONIC_ERROR_INPUT);
+  free(bytes);
+  conic_image_release(context, &image);
+}
+
+int main(void) {
+  conic_context *context = check_context(3);
+  if (!has_feature("OpenEXR")) {
+    conic_image image = {.width = 1, .height = 1, .planes = {(float[4]){0}}};
+    CHECK(conic_image_write(context, "/tmp/conic-unsupported.exr", &image) == CONIC_ERROR_UNSUPPORTED);
+    conic_context_destroy(context);
+    fprintf(stderr, "skipped: this build is without OpenEXR\n");
+    return check_failures ? 1 : 77;
+  }
+  open_test_folder();
+  test_round_trip(context, 1, 1, 1u << CONIC_PLANE_ID);
+  test_round_trip(context, 130, 97, EVERY_PLANE);
+  test_round_trip(context, 7, 16, 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    test_round_trip(context, 17, 33, 1u << i);
+  test_threads(context);
+  test_attributes(context);
+  test_channels(context);
+  test_cut_short(context);
+  close_test_folder();
+  conic_context_destroy(context);
+  return check_result();
+}

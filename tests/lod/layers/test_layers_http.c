@@ -1,0 +1,175 @@
+/* Layered point clouds from web servers: from a good one the same picture as from the file; from hostile ones an error
+ * or, where that is allowed, a coarser picture; never a wrong one, and never a hang. */
+#include "tests/support/files.h"
+#include "tests/support/http_server.h"
+#include "tests/support/image_fixture.h"
+#include "tests/support/layers_frame.h"
+
+static unsigned char *bytes;
+static size_t n_bytes;
+static layers_frame local; /* has drawn the file */
+
+static conic_layers_access quick(void) {
+  conic_layers_access access;
+  conic_layers_access_init(&access);
+  access.connect_seconds = 2.0;
+  access.stall_seconds = 0.3;
+  access.n_retries = 2;
+  access.pause_seconds = 0.01;
+  return access;
+}
+
+static layers_frame open_mode(const http_server *server, const char *mode, const conic_layers_access *access) {
+  char url[128];
+  snprintf(url, sizeof url, "http://127.0.0.1:%d/%s/m.lpc", server->port, mode);
+  return layers_open(2, url, access);
+}
+
+static void expect_same(layers_frame *frame, const char *mode) {
+  CHECK(frame->status == CONIC_OK);
+  if (frame->status == CONIC_OK && layers_draw(frame) == CONIC_OK &&
+      layers_same_picture(&frame->f.image, &local.f.image))
+    return;
+  fprintf(stderr, "%s: not the picture of the file\n", mode);
+  check_failures++;
+}
+
+/* Also where the server fails now and then, knows no ranges, or there is little memory. */
+static void check_good(void) {
+  const struct {
+    const char *mode;
+    int n_retries, n_good;
+    uint64_t memory_bytes;
+  } cases[] = {{"good", 2, 1 << 30, (uint64_t)512 << 20}, {"good", 2, 1 << 30, (uint64_t)1 << 20},
+               {"flaky", 12, 1, (uint64_t)512 << 20},     {"mended", 12, 6, (uint64_t)512 << 20},
+               {"whole", 2, 0, (uint64_t)512 << 20},      {"unlengthy", 2, 0, (uint64_t)512 << 20}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    http_server server;
+    conic_layers_access access = quick();
+    access.n_retries = cases[i].n_retries;
+    access.pause_seconds = 0.001;
+    access.memory_bytes = cases[i].memory_bytes;
+    http_server_start(&server, bytes, n_bytes, cases[i].n_good);
+    layers_frame frame = open_mode(&server, cases[i].mode, &access);
+    expect_same(&frame, cases[i].mode);
+    if (i == 0) {
+      fprintf(stderr, "%llu of %zu bytes in %d requests\n", (unsigned long long)frame.drawn.n_bytes_received, n_bytes,
+              atomic_load(&server.n_requests));
+      CHECK(frame.drawn.n_bytes_received > n_bytes / 4 && atomic_load(&server.n_requests) < 100);
+      expect_same(&frame, "warm");
+      CHECK(frame.drawn.n_bytes_received == 0);
+    }
+    layers_close(&frame);
+    http_server_stop(&server);
+  }
+}
+
+static void check_bad_start(void) {
+  const char *const modes[] = {"404", "500", "garbage", "damaged", "shifted", "dead", "endless"};
+  for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+    http_server server;
+    conic_layers_access access = quick();
+    access.memory_bytes = (uint64_t)4 << 20;
+    http_server_start(&server, bytes, n_bytes, 0);
+    layers_frame frame = open_mode(&server, modes[i], &access);
+    CHECK(frame.status ==
+          (strcmp(modes[i], "404") == 0 || strcmp(modes[i], "damaged") == 0 ? CONIC_ERROR_INPUT : CONIC_ERROR_IO));
+    CHECK(!frame.layers);
+    layers_close(&frame);
+    http_server_stop(&server);
+  }
+}
+
+/* What is drawn for want of clouds is coarser, without holes, and says so. */
+static void check_coarser(layers_frame *frame, const char *mode) {
+  conic_difference difference;
+  CHECK_OK(conic_image_compare(local.f.context, &local.f.image, &frame->f.image, &difference));
+  CHECK(frame->drawn.n_clouds_missing > 0 && frame->drawn.n_places_coarser > 0);
+  CHECK(frame->f.statistics.splats_in < local.f.statistics.splats_in);
+  if (difference.largest_hole > 3) {
+    fprintf(stderr, "%s: a hole of %zu pixels\n", mode, difference.largest_hole);
+    check_failures++;
+  }
+}
+
+/* The first answers bring header, index and some clouds; then it turns bad. */
+static void check_turning(void) {
+  const char *const modes[] = {"500", "short", "shifted", "changed", "forgets", "dead", "stalled", "damaged"};
+  for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+    http_server server;
+    conic_layers_access access = quick();
+    access.n_connections = 1; /* so that it is known what the first answers bring */
+    http_server_start(&server, bytes, n_bytes, 3);
+    layers_frame frame = open_mode(&server, modes[i], &access);
+    CHECK(frame.status == CONIC_OK && layers_draw(&frame) == CONIC_ERROR_IO);
+    frame.draw.may_be_coarser = 1;
+    CHECK(frame.status == CONIC_OK && layers_draw(&frame) == CONIC_OK);
+    check_coarser(&frame, modes[i]);
+    layers_close(&frame);
+    http_server_stop(&server);
+  }
+}
+
+static double seconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* A server that would take for ever, and a deadline. */
+static void check_deadline(void) {
+  http_server server;
+  conic_layers_access access = quick();
+  access.n_connections = 1;
+  access.stall_seconds = 1000.0;
+  http_server_start(&server, bytes, n_bytes, 1 << 30);
+  layers_frame frame = open_mode(&server, "trickle", &access);
+  frame.draw.error_px = 20.0; /* the coarsest clouds still come well */
+  CHECK(frame.status == CONIC_OK && layers_draw(&frame) == CONIC_OK);
+  atomic_store(&server.n_good, 0);
+  frame.draw.error_px = 0.0;
+  frame.draw.may_be_coarser = 1;
+  frame.draw.seconds = 0.4;
+  double start = seconds_now();
+  CHECK(frame.status == CONIC_OK && layers_draw(&frame) == CONIC_OK);
+  CHECK(seconds_now() - start < 60.0); /* and not a thousand */
+  check_coarser(&frame, "trickle");
+  layers_close(&frame);
+  http_server_stop(&server);
+}
+
+/* An index that is wrong behind the first answer. */
+static void check_index(void) {
+  http_server server;
+  conic_layers_access access = quick();
+  http_server_start(&server, bytes, n_bytes, 1);
+  layers_frame frame = open_mode(&server, "damaged", &access);
+  CHECK(frame.status == CONIC_ERROR_IO);
+  layers_close(&frame);
+  http_server_stop(&server);
+}
+
+int main(void) {
+  conic_context *context = files_context();
+  if (!has_feature("zstd") || !has_feature("CURL")) {
+    fprintf(stderr, "skipped: this build is without zstd or libcurl\n");
+    return 77;
+  }
+  const char *path = files_path("shells.lpc");
+  setenv("no_proxy", "127.0.0.1", 1);
+  layers_build(context, path, 64);
+  bytes = read_bytes(path, &n_bytes);
+  local = layers_open(2, path, NULL);
+  CHECK(local.status == CONIC_OK && layers_draw(&local) == CONIC_OK);
+  check_good();
+  check_bad_start();
+  check_turning();
+  check_deadline();
+  check_index();
+  layers_close(&local);
+  free(bytes);
+  remove(path);
+  rmdir(files_folder);
+  conic_context_destroy(context);
+  return check_result();
+}

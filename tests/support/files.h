@@ -1,0 +1,71 @@
+/* Hand-made files for the readers' tests: a temporary folder, and a context that keeps its last message. */
+#ifndef CONIC_FILES_H
+#define CONIC_FILES_H
+
+#include <stdarg.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/support/check.h"
+
+static char files_folder[64];
+static char files_message[1024];
+
+static inline void files_log(void *cookie, conic_log_level level, const char *message) {
+  (void)cookie;
+  if (level == CONIC_LOG_ERROR)
+    snprintf(files_message, sizeof files_message, "%s", message);
+}
+
+static inline conic_context *files_context(void) {
+  conic_context_options options;
+  conic_context *context;
+  conic_context_options_init(&options);
+  options.log = files_log;
+  options.threads = 1;
+  snprintf(files_folder, sizeof files_folder, "/tmp/conic-test-XXXXXX");
+  if (!mkdtemp(files_folder) || conic_context_create(&options, &context) != CONIC_OK)
+    exit(1);
+  return context;
+}
+
+/* The path of NAME in the temporary folder. Four may be in use at a time. */
+static inline const char *files_path(const char *name) {
+  static char paths[4][160];
+  static int i_path;
+  char *path = paths[i_path++ & 3];
+  snprintf(path, sizeof paths[0], "%s/%s", files_folder, name);
+  return path;
+}
+
+static inline const char *files_write_bytes(const char *name, const void *bytes, size_t n) {
+  const char *path = files_path(name);
+  FILE *file = fopen(path, "wb");
+  if (!file || fwrite(bytes, 1, n, file) != n || fclose(file) != 0)
+    exit(1);
+  return path;
+}
+
+static inline const char *files_write(const char *name, const char *text) {
+  return files_write_bytes(name, text, strlen(text));
+}
+
+static inline void files_end(conic_context *context) {
+  conic_context_destroy(context);
+  CHECK(rmdir(files_folder) == 0); /* every test removes its files */
+}
+
+/* The call must have failed as INPUT with a message that has all of the texts (up to the null). */
+static inline void files_check_failed(const char *what, conic_status status, ...) {
+  va_list texts;
+  va_start(texts, status);
+  for (const char *text = va_arg(texts, const char *); text; text = va_arg(texts, const char *))
+    if (status != CONIC_ERROR_INPUT || !strstr(files_message, text)) {
+      fprintf(stderr, "%s: status %d, message '%s' lacks '%s'\n", what, (int)status, files_message, text);
+      check_failures++;
+    }
+  va_end(texts);
+  files_message[0] = 0;
+}
+
+#endif

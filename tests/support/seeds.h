@@ -1,0 +1,335 @@
+/* A small sound file of every kind that is read: what the tests of bad input spoil, and what fuzzing starts from. */
+#ifndef CONIC_SEEDS_H
+#define CONIC_SEEDS_H
+
+#include "tests/support/files.h"
+#include "tests/support/las_file.h"
+
+typedef struct seed {
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,
+                         chy */
+  char name[32];      /* of the file */
+  unsigned char *bytes;
+  size_t n_bytes;
+  int is_text; /* what is left of it when it is cut may still be sound */
+} seed;
+
+enum { SEEDS_ROOM = 64 };
+
+typedef struct seed_set {
+  seed seeds[SEEDS_ROOM];
+  int n;
+} seed_set;
+
+static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int is_text, const void *bytes,
+                              size_t n_bytes) {
+  seed *added = &set->seeds[set->n++];
+  if (set->n > SEEDS_ROOM)
+    exit(1);
+  added->target = target;
+  added->is_text = is_text;
+  snprintf(added->name, sizeof added->name, "%02d.%s", set->n, ending);
+  added->n_bytes = n_bytes;
+  added->bytes = malloc(n_bytes + 1);
+  if (!added->bytes)
+    exit(1);
+  memcpy(added->bytes, bytes, n_bytes);
+  return added;
+}
+
+static inline void seeds_text(seed_set *set, const char *target, const char *ending, const char *text) {
+  seeds_add(set, target, ending, 1, text, strlen(text));
+}
+
+/* Values of a binary PLY are written by letters: b and B bytes, s shorts, i ints, f floats, d doubles. */
+static inline size_t seeds_value(unsigned char *to, char type, double value, int is_big) {
+  float as_float = (float)value;
+  uint32_t float_bits;
+  uint64_t bits = (uint64_t)(int64_t)value;
+  size_t n_bytes = type == 'd' ? 8 : type == 'f' || type == 'i' ? 4 : type == 's' ? 2 : 1;
+  memcpy(&float_bits, &as_float, sizeof float_bits);
+  if (type == 'd')
+    memcpy(&bits, &value, sizeof bits);
+  else if (type == 'f')
+    bits = float_bits;
+  for (size_t i = 0; i < n_bytes; i++)
+    to[i] = (unsigned char)(bits >> 8 * (is_big ? n_bytes - 1 - i : i));
+  return n_bytes;
+}
+
+/* A PLY of `rows` rows of these types after a header; a letter l is a list of three indices, c one of six floats. */
+static inline void seeds_ply(seed_set *set, const char *header, const char *types, int rows, const char *face_types,
+                             int face_rows, int is_big) {
+  unsigned char bytes[4096];
+  const char *kinds[2] = {types, face_types};
+  int counts[2] = {rows, face_rows};
+  size_t n = (size_t)snprintf((char *)bytes, sizeof bytes, "ply\nformat binary_%s_endian 1.0\n%send_header\n",
+                              is_big ? "big" : "little", header);
+  for (int kind = 0; kind < 2; kind++)
+    for (int row = 0; row < counts[kind]; row++)
+      for (const char *type = kinds[kind]; *type; type++) {
+        if (*type == 'c') {
+          n += seeds_value(bytes + n, 'b', 6, is_big);
+          for (int k = 0; k < 6; k++)
+            n += seeds_value(bytes + n, 'f', row + 0.125 * k, is_big);
+          continue;
+        }
+        if (*type != 'l') {
+          n += seeds_value(bytes + n, *type, row + 0.25 * (double)(type - kinds[kind]), is_big);
+          continue;
+        }
+        n += seeds_value(bytes + n, 'b', 3, is_big);
+        for (int corner = 0; corner < 3; corner++)
+          n += seeds_value(bytes + n, 'i', (row + corner) % rows, is_big);
+      }
+  seeds_add(set, "ply", "ply", 0, bytes, n);
+}
+
+static inline void seeds_all_ply(seed_set *set) {
+  const char *mesh = "element vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+                     "property uchar green\nproperty uchar blue\nelement face 3\n"
+                     "property list uchar int vertex_indices\n";
+  seeds_ply(set, mesh, "fffbbb", 5, "l", 3, 0);
+  seeds_ply(set, mesh, "fffbbb", 5, "l", 3, 1);
+  seeds_ply(set,
+            "comment far\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+            "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\n"
+            "property list uchar int extra\nelement tristrips 1\nproperty list uchar int vertex_indices\n",
+            "dddffffl", 4, "l", 1, 0);
+  seeds_ply(set,
+            "element camera 1\nproperty short a\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nproperty float tu_x\nproperty float tu_y\nproperty float tu_z\nproperty float tv_x\n"
+            "property float tv_y\nproperty float tv_z\nproperty float opacity\nproperty ushort red\n"
+            "property ushort green\nproperty ushort blue\n",
+            "s", 1, "ffffffffffsss", 3, 0);
+  seeds_ply(set,
+            "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float f_dc_0\n"
+            "property float f_dc_1\nproperty float f_dc_2\nproperty float opacity\nproperty float scale_0\n"
+            "property float scale_1\nproperty float scale_2\nproperty float rot_0\nproperty float rot_1\n"
+            "property float rot_2\nproperty float rot_3\n",
+            "ffffffffffffff", 3, "", 0, 0);
+  seeds_ply(set,
+            "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float tu_x\n"
+            "property float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\nproperty float tv_z\n"
+            "property uchar a\nproperty list uchar int clip_or\nproperty float opacity\n",
+            "fffffffffblf", 3, "", 0, 0);
+  seeds_ply(set,
+            "comment TextureFile gone.pfm\ncomment TextureFile gone too.pfm\nelement vertex 3\nproperty float x\n"
+            "property float y\nproperty float z\nproperty float s\nproperty double t\nelement face 2\n"
+            "property list uchar float texcoord\nproperty list uchar int vertex_indices\nproperty short texnumber\n",
+            "ffffd", 3, "cls", 2, 1);
+  seeds_text(
+      set, "ply", "ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float tu_x\nproperty float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\n"
+      "property float tv_z\nproperty list uchar float clip_and\nproperty list uchar float clip_or\nend_header\n"
+      "0 0 0 1 0 0 0 1 0 0 6 1 0 .5 0 1 .5\n1 0 0 1 0 0 0 1 0 3 1 nan 0 0\n2 0 0 0 0 0 0 1 0 6 0 0 1 -1 0 1 0\n");
+  seeds_text(set, "ply", "ply",
+             "ply\nformat ascii 1.0\nobj_info by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
+             "property int z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 2\n"
+             "property list uchar int vertex_index\nproperty uchar flag\nend_header\n0 0 0 0 0 1\n1e0 0 0 0 0 -1\n"
+             "1 1 1 nan 0 inf\n.5 +1 -1 0 1 0\n3 0 1 2 7\n4 0 1 2 3 0\n");
+  seeds_text(set, "ply", "ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+             "property float texture_u\nproperty float texture_v\nelement face 2\n"
+             "property list uchar int vertex_index\nproperty list int float texcoord\nend_header\n0 0 0 0 0\n"
+             "1 0 0 1 0\n1 1 0 1 1\n0 1 0 nan 1\n3 0 1 2 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n");
+}
+
+static inline void seeds_all_text(seed_set *set) {
+  seeds_text(set, "obj", "obj",
+             "# by hand\nmtllib a.mtl\nv 0 0 0\nv 1 0 0 1 0.5 0\nv 1 1 \\\n 0\nv 0 1 0 1\nvt 0.5 0.5\nvn 0 0 1\n"
+             "f 1/1/1 2/1/1 3/1/1\nf -4//-1 3//1 4//1\nf 1 2 3 4\no thing\ns off\n");
+  seeds_text(set, "obj", "obj", "v 589500.5 231300.25 1e7\nv 589501 231300 1e7\nv 589501 231301 1e7\nf 1 2 3\n");
+  seeds_text(
+      set, "obj", "obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0.5\nusemtl red\nf 1/1 2/2 3/-1\nusemtl plain\nf 1 2 3\nf 3/2 2 1\n");
+  seeds_text(set, "mtl", "mtl",
+             "# by hand\nnewmtl red\nKd 0.5 0.25 1e-3\nmap_Kd -clamp on -s 1 1 1 gone.png\nnewmtl other\nKd 1\n");
+  seeds_text(set, "mtl", "mtl", "newmtl plain\nKd .7\nNs 3\nillum 2\nmap_Kd /proc/self/gone\n");
+  seeds_text(set, "xyz", "xyz", "# by hand\n0 0 0\n1 2 3\n-1e3 .5 +7\n");
+  seeds_text(set, "xyz", "xyz", "// X,Y,Z,R,G,B\n0,0,0,255,0,10\n1,2,3,0,1,2\n");
+  seeds_text(set, "xyz", "pts", "3\n0 0 0 -100 255 0 10\n1 2 3 50 0 1 2\n5 6 7 0 1 2 3\n");
+  seeds_text(set, "xyz", "xyz", "0 0 0 0 0 1\n1 2 nan 0 1 0\n");
+  seeds_text(set, "xyz", "xyz", "0 0 0 65535 256 1 0 0 1\n1 2 3 7 8 9 0 1 0\n");
+  seeds_text(
+      set, "camera", "json",
+      "{\"width\": 64, \"height\": 48, \"fx\": 50.5, \"fy\": 5e1, \"cx\": 32, \"cy\": 24, \"more\": [true, null,\n"
+      "{\"a\\u0041\": \"b\\n\"}],\n\"world_to_camera\": [[1,0,0,0],[0,1,0,0],[0,0,1,-3.5],[0,0,0,1]]}\n");
+}
+
+static inline void seeds_all_las(seed_set *set) {
+  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    las_file file = las_begin(kinds[i][0], kinds[i][1], 3, i);
+    las_set_scale(&file, 0.01, 589500.0, 231300.0, 0.0);
+    las_set_point(&file, 1, 100, -200, 300);
+    if (kinds[i][1] == 3 || kinds[i][1] == 2 || kinds[i][1] > 6)
+      las_set_color(&file, 2, 255, 128, i == 2 ? 65535 : 7);
+    seeds_add(set, "las", "las", 0, file.bytes, file.n_bytes);
+    free(file.bytes);
+  }
+}
+
+/* Pictures are written by the library into the tests' folder, and removed there. */
+static inline void seeds_picture(seed_set *set, conic_context *context, const char *target, unsigned planes) {
+  conic_image image;
+  static unsigned char bytes[1 << 16];
+  char name[16];
+  snprintf(name, sizeof name, "seed.%s", target);
+  const char *path = files_path(name);
+  if (conic_image_allocate(context, 5, 4, planes, &image) != CONIC_OK)
+    exit(1);
+  for (int plane = 0; plane < CONIC_N_PLANES; plane++)
+    for (int i = 0; image.planes[plane] && i < 20 * conic_plane_describe((conic_plane)plane)->n_channels; i++)
+      if (conic_plane_describe((conic_plane)plane)->is_uint)
+        ((uint32_t *)image.planes[plane])[i] = (uint32_t)i;
+      else
+        ((float *)image.planes[plane])[i] = 0.125f * (float)i;
+  image.n_attributes = 1;
+  memset(image.attributes, 0, sizeof *image.attributes);
+  snprintf(image.attributes[0].name, sizeof image.attributes[0].name, "note");
+  snprintf(image.attributes[0].text, sizeof image.attributes[0].text, "by hand");
+  conic_status status = conic_image_write(context, path, &image);
+  conic_image_release(context, &image);
+  FILE *file = status == CONIC_OK ? fopen(path, "rb") : NULL;
+  if (!file)
+    return; /* a build without the library for it */
+  size_t n = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  unlink(path);
+  seeds_add(set, target, target, 0, bytes, n);
+}
+
+/* Octrees, written by the library into the tests' folder, and removed there. */
+static inline void seeds_octree(seed_set *set, conic_context *context, size_t n, int quantize) {
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.cot");
+  conic_octree_options options;
+  conic_octree *octree;
+  conic_splats splats;
+  conic_octree_options_init(&options);
+  options.quantize = quantize;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_TANGENTS | CONIC_SPLATS_COLORS, &splats) != CONIC_OK)
+    exit(1);
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)((i * (size_t)(7 + 4 * axis)) % 31);
+      splats.tangent_u[axis][i] = axis == 0 ? 1.0f : 0.0f;
+      splats.tangent_v[axis][i] = axis == 1 ? 0.75f : 0.0f;
+      splats.color[axis][i] = axis == 2 ? 0.3f : 1.0f;
+    }
+  if (conic_octree_build(context, &splats, &options, &octree) != CONIC_OK ||
+      conic_octree_write(octree, path) != CONIC_OK)
+    exit(1);
+  conic_octree_destroy(octree);
+  FILE *file = fopen(path, "rb");
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "cot", "cot", 0, bytes, n_bytes);
+}
+
+/* Two squares at an angle, one with a texture of 2 × 2; as triangles, or gathered to surfels. */
+static inline void seeds_hybrid(seed_set *set, conic_context *context, int is_gathered) {
+  static const float places[3][6] = {{0, 0, 1, 1, 1, 1}, {0, 1, 0, 1, 0, 1}, {0, 0, 0, 0, 1, 1}};
+  static const uint32_t corners[4][3] = {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}};
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.chy");
+  conic_triangles mesh;
+  conic_hybrid_options options;
+  conic_hybrid *hybrid;
+  conic_image image;
+  conic_texture *texture;
+  conic_hybrid_options_init(&options);
+  options.phase2 = is_gathered ? 1e6 : -2.0;
+  options.most_error = 0.0;
+  if (conic_triangles_allocate(context, 4, 6, CONIC_TRIANGLES_COLORS | CONIC_TRIANGLES_TEXTURE_COORDINATES, &mesh) !=
+          CONIC_OK ||
+      conic_image_allocate(context, 2, 2, 1u << CONIC_PLANE_RGBA, &image) != CONIC_OK)
+    exit(1);
+  memcpy(mesh.corners, corners, sizeof corners);
+  for (int i = 0; i < 6; i++) {
+    for (int axis = 0; axis < 3; axis++) {
+      mesh.position[axis][i] = places[axis][i];
+      mesh.color[axis][i] = 0.5f + 0.1f * (float)axis;
+    }
+    mesh.texture_coordinate[0][i] = 0.5f * (float)(i / 2);
+    mesh.texture_coordinate[1][i] = (float)(i % 2);
+  }
+  for (int i = 0; i < 16; i++)
+    ((float *)image.planes[CONIC_PLANE_RGBA])[i] = i % 4 == 3 ? 1.0f : (float)i / 16.0f;
+  if (conic_texture_create(context, &image, CONIC_WRAP_REPEAT, &texture) != CONIC_OK ||
+      conic_triangles_texture(context, &mesh, texture) != CONIC_OK ||
+      conic_hybrid_build(context, &mesh, &options, &hybrid, NULL) != CONIC_OK ||
+      conic_hybrid_write(hybrid, path) != CONIC_OK)
+    exit(1);
+  conic_image_release(context, &image);
+  conic_hybrid_destroy(hybrid);
+  FILE *file = fopen(path, "rb");
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "chy", "chy", 0, bytes, n_bytes);
+}
+
+/* Layered point clouds, likewise; none where this build cannot write them. */
+static inline void seeds_layers(seed_set *set, conic_context *context, size_t n, unsigned fields) {
+  static unsigned char bytes[1 << 16];
+  const char *path = files_path("seed.lpc");
+  conic_layers_options options;
+  conic_layers_builder *builder;
+  conic_splats splats;
+  conic_layers_options_init(&options);
+  options.cloud_size = 64;
+  if (conic_splats_allocate(context, n, CONIC_SPLATS_NORMALS | fields, &splats) != CONIC_OK)
+    exit(1);
+  for (size_t i = 0; i < n; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      splats.position[axis][i] = (float)((i * (size_t)(7 + 4 * axis)) % 31);
+      splats.normal[axis][i] = axis == (int)(i % 3) ? 1.0f : 0.25f;
+      if (splats.color[0])
+        splats.color[axis][i] = (float)(i % 7) / 6.0f;
+    }
+  conic_status status = conic_layers_builder_open(context, path, &options, &builder);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_append(builder, &splats);
+  if (status == CONIC_OK)
+    status = conic_layers_builder_finish(builder, NULL);
+  conic_splats_release(context, &splats);
+  if (status == CONIC_ERROR_UNSUPPORTED)
+    return;
+  FILE *file = status == CONIC_OK ? fopen(path, "rb") : NULL;
+  size_t n_bytes = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+  if (!file || fclose(file) != 0 || unlink(path) != 0)
+    exit(1);
+  seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
+}
+
+static inline seed_set *seeds_make(conic_context *context) {
+  seed_set *set = calloc(1, sizeof *set);
+  if (!set)
+    exit(1);
+  seeds_all_ply(set);
+  seeds_all_text(set);
+  seeds_all_las(set);
+  seeds_octree(set, context, 1, 0);
+  seeds_octree(set, context, 40, 0);
+  seeds_octree(set, context, 40, 1);
+  seeds_hybrid(set, context, 1);
+  seeds_layers(set, context, 1, 0);
+  seeds_layers(set, context, 300, CONIC_SPLATS_COLORS);
+  seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_RGBA);
+  seeds_picture(set, context, "pfm", 1u << CONIC_PLANE_Z);
+  seeds_picture(set, context, "exr", 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z);
+  seeds_picture(set, context, "exr", (1u << CONIC_N_PLANES) - 1u);
+  return set;
+}
+
+static inline void seeds_release(seed_set *set) {
+  for (int i = 0; i < set->n; i++)
+    free(set->seeds[i].bytes);
+  free(set);
+}
+
+#endif

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Every header compiles alone, the public ones as C11 and as C++17; what libconic exports is what the headers declare;
+# every global name has the project's prefix.
+set -euo pipefail
+
+source_folder=$1
+build_folder=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$source_folder"
+failures=0
+
+fail() {
+  echo "$*"
+  failures=$((failures + 1))
+}
+
+setting() { # NAME: its value in the build
+  sed -nE "s/^$1:[A-Z]+=(.*)$/\1/p" "$build_folder/CMakeCache.txt"
+}
+library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
+c_compiler=$(setting CMAKE_C_COMPILER)
+cpp_compiler=$(setting CMAKE_CXX_COMPILER)
+
+for header in $(find include core raster oracle lod surface opencl bench cli -name '*.h' | sort); do
+  [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
+  [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
+  [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
+  [[ $header != opencl/*.h || -e $build_folder/opencl ]] || continue # a build without OpenCL
+  printf '#include "%s"\ntypedef int not_empty;\n' "${header#include/}" > "$work/alone.c"
+  "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. \
+    "$work/alone.c" || fail "$header does not compile alone as C11"
+done
+for header in include/conic/*.h; do
+  printf '#include "%s"\n' "${header#include/}" > "$work/alone.cpp"
+  [[ ! -x $cpp_compiler ]] || "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude \
+    "$work/alone.cpp" || fail "$header does not compile alone as C++17"
+done
+
+perl -0777 -ne 's{/\*.*?\*/}{}gs; s{^\s*#.*$}{}gm; print "$1\n" while /\bCONIC_API\b[^;(]*?(\w+)\s*\(/g' \
+  include/conic/*.h | sort -u > "$work/declared"
+nm -D --defined-only "$library_folder/libconic.so" | awk '{print $3}' | sort -u > "$work/exported"
+[[ $(wc -l < "$work/declared") -gt 10 ]] || fail "the headers' declarations were not found"
+while read -r name; do
+  fail "$name is declared in a public header and not exported"
+done < <(comm -23 "$work/declared" "$work/exported")
+while read -r name; do
+  fail "$name is exported and declared in no public header"
+done < <(comm -13 "$work/declared" "$work/exported")
+while read -r name; do
+  fail "$name is declared in a public header and does not start with conic_"
+done < <(grep -v '^conic_' "$work/declared" || true)
+
+global_names() { # FILES: strong definitions
+  nm -g --defined-only "$@" | awk 'NF == 3 && $2 ~ /^[TDBRC]$/ {print $3}' | sort -u
+}
+while read -r name; do
+  fail "$name is global in the library and does not start with conic_"
+done < <(global_names "$library_folder/libconic.a" | grep -v '^conic_' || true)
+while read -r name; do
+  fail "$name is global in the program and does not start with cli_"
+done < <(global_names $(find "$build_folder/CMakeFiles/conic.dir" -name '*.o') | grep -vE '^(cli_|main$)' || true)
+
+exit $((failures > 0))
