@@ -14,8 +14,8 @@ static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, d
   if (site->is_settled)
     return;
   conic_lattice_bary(l, i, j, bary);
-  conic_patch_color(s->job->mesh, l->face, bary, color);
-  conic_patch_texel(s->job->mesh, l->face, bary, side, texel);
+  conic_cluster_color(s->job->mesh, l->face, bary, color);
+  conic_cluster_texel(s->job->mesh, l->face, bary, side, texel);
   for (int channel = 0; channel < 3; channel++) {
     double shown = conic_as_shown(color[channel] * texel[channel]);
     site->darkest[channel] = shown < site->darkest[channel] ? shown : site->darkest[channel];
@@ -23,7 +23,7 @@ static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, d
   }
 }
 
-void conic_patch_find_contrasts(conic_sampler *s) {
+void conic_cluster_find_contrasts(conic_sampler *s) {
   if (!has_colors(s->job->mesh->triangles))
     return;
   for (size_t i = 0; i < s->n_sites; i++)

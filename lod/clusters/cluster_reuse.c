@@ -1,6 +1,6 @@
 #include "lod/clusters/cluster_reuse.h"
 
-void conic_patch_end_pass(conic_sampler *s) {
+void conic_cluster_end_pass(conic_sampler *s) {
   conic_sampling_pass now = {.n_sites = s->n_sites,
                              .lattices_room = s->lattices_room,
                              .owner_room = s->owner_room,
@@ -63,7 +63,7 @@ static void unsettle(conic_sampler *s, size_t k) {
   }
 }
 
-void conic_patch_settle_sites(conic_sampler *s) {
+void conic_cluster_settle_sites(conic_sampler *s) {
   match_sites(s);
   for (size_t k = 0; k < s->n_lattices; k++)
     if (!is_as_it_was(s, k))

@@ -1,5 +1,5 @@
-/* How far a patch and its simpler triangles are from each other. What is found depends on no other patch's, so that
- * patches may be measured at the same time. */
+/* How far a cluster and its simpler triangles are from each other. What is found depends on no other cluster's, so that
+ * clusters may be measured at the same time. */
 #include <math.h>
 
 #include "lod/clusters/cluster_simplifier.h"
@@ -70,13 +70,13 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
   return a.least2;
 }
 
-static void measure_points(conic_simplifier *s, uint32_t patch, const size_t *starts) {
-  double most2 = s->errors2[patch];
-  for (size_t i = starts[patch]; i < starts[patch + 1]; i++) {
+static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *starts) {
+  double most2 = s->errors2[cluster];
+  for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++) {
     double distance2 = distance2_of(s, &s->points[i], most2);
     most2 = distance2 > most2 ? distance2 : most2;
   }
-  s->errors2[patch] = most2;
+  s->errors2[cluster] = most2;
 }
 
 /* --- from the triangles to the mesh --- */
@@ -114,9 +114,9 @@ static double farther(const conic_simplifier *s, const double *const places[3], 
 }
 
 /* The middles of the triangles, and those of their edges. */
-static double measure_back(const conic_simplifier *s, uint32_t patch, double most) {
-  size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + patch] - first,
-         end = s->mesh->starts[s->begin + patch + 1] - first;
+static double measure_back(const conic_simplifier *s, uint32_t cluster, double most) {
+  size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + cluster] - first,
+         end = s->mesh->starts[s->begin + cluster + 1] - first;
   for (size_t i = begin; i < end; i++) {
     const triangle *t = &s->triangles[i];
     if (!t->is_alive)
@@ -145,8 +145,8 @@ static int loses_some(const conic_simplifier *s, const conic_hybrid_border *bord
   return 0;
 }
 
-/* The fan that a border's triangle becomes beside a patch of an earlier stage: the middles of its triangles and of the
- * edges between them. */
+/* The fan that a border's triangle becomes beside a cluster of an earlier stage: the middles of its triangles and of
+ * the edges between them. */
 static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage, double most) {
   const triangle *t = &s->triangles[border->edge / 4];
   const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
@@ -165,19 +165,19 @@ static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *
   }
 }
 
-static double measure_fans(const conic_simplifier *s, uint32_t patch, double most) {
-  for (size_t i = s->border_starts[patch]; i < s->border_starts[patch + 1]; i++)
+static double measure_fans(const conic_simplifier *s, uint32_t cluster, double most) {
+  for (size_t i = s->border_starts[cluster]; i < s->border_starts[cluster + 1]; i++)
     for (uint32_t stage = 0; stage < s->stage; stage++)
       if (stage == 0 || loses_some(s, &s->borders[i].of, stage))
         most = measure_fan(s, &s->borders[i].of, stage, most);
   return most;
 }
 
-void conic_region_measure(conic_simplifier *s, uint32_t patch) {
-  measure_points(s, patch, s->point_starts[0]);
-  measure_points(s, patch, s->point_starts[1]);
-  if (!conic_simplifier_is_worth_a_level(s, patch))
+void conic_region_measure(conic_simplifier *s, uint32_t cluster) {
+  measure_points(s, cluster, s->point_starts[0]);
+  measure_points(s, cluster, s->point_starts[1]);
+  if (!conic_simplifier_is_worth_a_level(s, cluster))
     return;
-  double most = measure_fans(s, patch, measure_back(s, patch, sqrt(s->errors2[patch])));
-  s->errors2[patch] = most * most;
+  double most = measure_fans(s, cluster, measure_back(s, cluster, sqrt(s->errors2[cluster])));
+  s->errors2[cluster] = most * most;
 }

@@ -48,18 +48,18 @@ static const triangle *triangle_of(const conic_simplifier *s, const spoke *of_tr
   return &s->triangles[of_triangle->slot / 3];
 }
 
-/* How many triangles are beside the edge to v. Between patches they are of two. */
-static int count_beside(const conic_simplifier *s, const fan *f, uint32_t v, int *is_between_patches) {
-  uint32_t patch = CONIC_NONE;
+/* How many triangles are beside the edge to v. Between clusters they are of two. */
+static int count_beside(const conic_simplifier *s, const fan *f, uint32_t v, int *is_between_clusters) {
+  uint32_t cluster = CONIC_NONE;
   int n = 0;
-  *is_between_patches = 0;
+  *is_between_clusters = 0;
   for (size_t i = 0; i < f->n_triangles; i++) {
     if (!has(&f->spokes[i], v))
       continue;
     const triangle *t = triangle_of(s, &f->spokes[i]);
     n++;
-    *is_between_patches |= patch != CONIC_NONE && t->patch != patch;
-    patch = t->patch;
+    *is_between_clusters |= cluster != CONIC_NONE && t->cluster != cluster;
+    cluster = t->cluster;
   }
   return n;
 }
@@ -85,8 +85,8 @@ static int count_common(const conic_simplifier *s, const fan *f, uint32_t v) {
  * corner that neighbours both its ends, opposite, and there are no others; and some of the triangles stay. */
 static int keeps_surface(const conic_simplifier *s, const fan *f, uint32_t v) {
   uint8_t kind = s->vertices[f->vertex].kind;
-  int is_between_patches, n = count_beside(s, f, v, &is_between_patches);
-  if (n != (kind == CONIC_VERTEX_BORDER ? 1 : 2) || (kind == CONIC_VERTEX_CHAIN && !is_between_patches))
+  int is_between_clusters, n = count_beside(s, f, v, &is_between_clusters);
+  if (n != (kind == CONIC_VERTEX_BORDER ? 1 : 2) || (kind == CONIC_VERTEX_CHAIN && !is_between_clusters))
     return 0;
   return f->n_triangles > (size_t)n && count_common(s, f, v) == n;
 }
@@ -117,16 +117,16 @@ static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
   return 1;
 }
 
-/* Whether a triangle is left of each patch, and to each corner of what goes. */
+/* Whether a triangle is left of each cluster, and to each corner of what goes. */
 static int leaves_some(const conic_simplifier *s, const fan *f, uint32_t v) {
-  uint32_t last_patch = CONIC_NONE;
+  uint32_t last_cluster = CONIC_NONE;
   for (size_t i = 0; i < f->n_triangles; i++) {
     if (!has(&f->spokes[i], v))
       continue;
     const triangle *t = triangle_of(s, &f->spokes[i]);
-    if (s->alive[t->patch] <= 1u + (t->patch == last_patch))
+    if (s->alive[t->cluster] <= 1u + (t->cluster == last_cluster))
       return 0;
-    last_patch = t->patch;
+    last_cluster = t->cluster;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t ring = conic_simplifier_living(s, s->vertices[t->corners[corner]].ring);
       if (conic_simplifier_after(s, ring) == CONIC_NONE)

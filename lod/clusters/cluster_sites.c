@@ -39,8 +39,8 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 }
 
 static conic_status lay_lattices(conic_sampler *s) {
-  const conic_patch_mesh *mesh = s->job->mesh;
-  size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
+  const conic_clustered_mesh *mesh = s->job->mesh;
+  size_t begin = mesh->starts[s->job->cluster], n = mesh->starts[s->job->cluster + 1] - begin;
   void *lattices = s->lattices, *facing = s->facing;
   conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
   s->lattices = lattices;
@@ -60,7 +60,7 @@ static conic_status lay_lattices(conic_sampler *s) {
     s->finest = depth > s->finest ? depth : s->finest;
     s->coarsest = depth < s->coarsest ? depth : s->coarsest;
     s->n_places += conic_lattice_places(s->lattices[i].sides);
-    conic_patch_face_normal(mesh, face, s->facing[i]);
+    conic_cluster_face_normal(mesh, face, s->facing[i]);
   }
   size_t lattice_room = s->places_room;
   void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
@@ -75,7 +75,7 @@ static conic_status lay_lattices(conic_sampler *s) {
   return status;
 }
 
-/* As conic_patch_place of each. */
+/* As conic_cluster_place of each. */
 static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
   const conic_lattice *l = &s->lattices[i_lattice];
   double corners[3][3], shares[MOST_SIDES + 1];
@@ -101,28 +101,28 @@ static int sides_at(const conic_lattice *l, int i, int j) {
 }
 
 /* Those that the surfels must reach to by themselves: what lies across is no surfels, or nothing. */
-static int rims_of(const conic_patch_mesh *mesh, uint32_t face) {
+static int rims_of(const conic_clustered_mesh *mesh, uint32_t face) {
   int rims = 0;
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-    int is_rim = conic_patch_ends_at(mesh, face, corner) &&
+    int is_rim = conic_cluster_ends_at(mesh, face, corner) &&
                  (!conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]]);
     rims |= is_rim << corner;
   }
   return rims;
 }
 
-/* Those whose places are another face's of the patch, too, which answers for them. */
-static int sides_of_others(const conic_patch_mesh *mesh, uint32_t face) {
+/* Those whose places are another face's of the cluster, too, which answers for them. */
+static int sides_of_others(const conic_clustered_mesh *mesh, uint32_t face) {
   int sides = 0;
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-    sides |= (!conic_patch_ends_at(mesh, face, corner) && across / 3 < face) << corner;
+    sides |= (!conic_cluster_ends_at(mesh, face, corner) && across / 3 < face) << corner;
   }
   return sides;
 }
 
-int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+int conic_lattice_is_own(const conic_clustered_mesh *mesh, const conic_lattice *l, int i, int j) {
   return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
 }
 
@@ -232,7 +232,7 @@ static conic_status choose_in_folds(conic_sampler *s) {
   return status;
 }
 
-conic_status conic_patch_find_sites(conic_sampler *s) {
+conic_status conic_cluster_find_sites(conic_sampler *s) {
   conic_status status = lay_lattices(s);
   if (status != CONIC_OK)
     return status;

@@ -1,4 +1,4 @@
-/* The places that surfels are put at, and what of the patch each of them stands for. */
+/* The places that surfels are put at, and what of the cluster each of them stands for. */
 #ifndef CONIC_CLUSTER_SITES_H
 #define CONIC_CLUSTER_SITES_H
 
@@ -74,7 +74,7 @@ struct conic_sampler {
   size_t n_lattices, lattices_room, facing_room;
   conic_lattice *lattices;
   double (*facing)[3]; /* of each lattice's face */
-  uint8_t *depth;      /* of each face of the patch: how often the spacing is halved there */
+  uint8_t *depth;      /* of each face of the cluster: how often the spacing is halved there */
   size_t depth_room;
   int coarsest, finest; /* of those */
   size_t n_places, places_room, owner_room;
@@ -98,11 +98,11 @@ static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
   return sampler->job->spacing / (double)(1 << depth);
 }
 
-/* Of a place on a side that two faces of the patch share, only the one answers other than 0. */
-int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *lattice, int i, int j);
+/* Of a place on a side that two faces of the cluster share, only the one answers other than 0. */
+int conic_lattice_is_own(const conic_clustered_mesh *mesh, const conic_lattice *lattice, int i, int j);
 
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
-conic_status conic_patch_find_sites(conic_sampler *sampler);
+conic_status conic_cluster_find_sites(conic_sampler *sampler);
 
 /* Room for `count` in an array of the sampler's that grows by half. Errors: MEMORY. */
 conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,

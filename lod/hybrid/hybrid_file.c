@@ -15,7 +15,7 @@ typedef conic_chy_header header;
 
 static const conic_file_field fields[] = {
     FIELD(version, 1),   FIELD(flags, 1),    FIELD(n_vertices, 1), FIELD(n_triangles, 1), FIELD(n_listed, 1),
-    FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_patches, 1),  FIELD(n_nodes, 1),     FIELD(n_materials, 1),
+    FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_clusters, 1), FIELD(n_nodes, 1),     FIELD(n_materials, 1),
     FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
     FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1),   FIELD(n_slots, 1),     FIELD(n_borders, 1)};
 
@@ -58,7 +58,7 @@ static header header_of(const conic_hybrid *hybrid) {
               .n_listed = hybrid->n_listed,
               .n_surfels = hybrid->n_surfels,
               .n_levels = hybrid->n_levels,
-              .n_patches = hybrid->n_patches,
+              .n_clusters = hybrid->n_clusters,
               .n_nodes = hybrid->n_nodes,
               .n_slots = hybrid->n_slots,
               .n_borders = hybrid->n_borders,
@@ -118,15 +118,15 @@ static int is_finite(double value) {
 
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const header *h) {
-  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_patches,
+  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_clusters,
                              h->n_nodes,    h->n_texels,    h->n_materials, h->n_slots,   h->n_borders};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i] > UINT32_MAX)
       return "counts that do not go together";
   if (h->flags & ~(uint32_t)CONIC_CHY_ALL_FLAGS || h->zero)
     return "unknown flags";
-  if (h->n_patches < 1 || h->n_patches + h->n_nodes > UINT32_MAX || h->n_levels < h->n_patches || h->n_nodes < 1 ||
-      h->n_nodes >= 2 * h->n_patches || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
+  if (h->n_clusters < 1 || h->n_clusters + h->n_nodes > UINT32_MAX || h->n_levels < h->n_clusters || h->n_nodes < 1 ||
+      h->n_nodes >= 2 * h->n_clusters || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
       (h->n_texels && h->n_materials < 1))
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))

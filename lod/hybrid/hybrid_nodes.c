@@ -20,7 +20,7 @@ enum { MOST_SITES = 64 };
  * made. */
 static const double first_spacing = 0.35, finer = 0.5;
 
-/* A patch's surfel as a part of what one of a node's stands for. */
+/* A cluster's surfel as a part of what one of a node's stands for. */
 typedef struct piece {
   double at[3], normal[3], area;
   uint32_t site;
@@ -67,15 +67,15 @@ static conic_status add_piece(const nodes_pass *pass, worker *w, const conic_sur
   return CONIC_OK;
 }
 
-/* Of a patch the coarsest surfels that are small beside the spacing, or its finest. */
-static const conic_surfels *fine_enough(const conic_patch_ways *ways, double spacing) {
+/* Of a cluster the coarsest surfels that are small beside the spacing, or its finest. */
+static const conic_surfels *fine_enough(const conic_cluster_ways *ways, double spacing) {
   int k = ways->n_surfels - 1;
   while (k > 0 && ways->surfels[k].reach > finer * spacing)
     k--;
   return &ways->surfels[k];
 }
 
-/* All of a node's patches as surfels, shuffled; none where there is a patch without. */
+/* All of a node's clusters as surfels, shuffled; none where there is a cluster without. */
 static conic_status gather(const nodes_pass *pass, worker *w, const conic_hybrid_node *node, double spacing) {
   conic_status status = CONIC_OK;
   w->n_pieces = 0;
@@ -167,7 +167,7 @@ static conic_status note_piece(conic_sampler *s, const piece *p) {
     for (int axis = 0; axis < 3; axis++)
       at[axis] = p->at[axis] + s->job->cutoff * (octagon[k][0] * (double)p->surfel->tangent_u[axis] +
                                                  octagon[k][1] * (double)p->surfel->tangent_v[axis]);
-    status = conic_patch_note_support(s, p->site, at, p->surfel->face, p->normal);
+    status = conic_cluster_note_support(s, p->site, at, p->surfel->face, p->normal);
   }
   return status;
 }
@@ -180,10 +180,10 @@ static conic_status shape_sites(worker *w) {
     w->pieces[i].site = nearest_alike(s, &w->pieces[i], HUGE_VAL);
     add_to_site(&s->sites[w->pieces[i].site], &w->pieces[i]);
   }
-  conic_patch_settle_planes(s);
+  conic_cluster_settle_planes(s);
   for (size_t i = 0; i < w->n_pieces && status == CONIC_OK; i++)
     status = note_piece(s, &w->pieces[i]);
-  return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
+  return status == CONIC_OK ? conic_cluster_shape_supported(s) : status;
 }
 
 /* What the pieces are off, and the site is off from them; or its ellipse from the mesh, if that is more. Where it is
@@ -240,7 +240,7 @@ static size_t count_coarsest(const conic_ways_job *job, const conic_hybrid_node 
   return n;
 }
 
-/* Each level has a fourth less than the one before, the first than the patches by themselves. */
+/* Each level has a fourth less than the one before, the first than the clusters by themselves. */
 static conic_status find_levels(const nodes_pass *pass, worker *w, size_t i) {
   const conic_hybrid_node *node = &pass->job->nodes[i];
   conic_node_ways *ways = &pass->job->node_ways[i];
@@ -265,7 +265,7 @@ static conic_status find_levels(const nodes_pass *pass, worker *w, size_t i) {
 /* A disc as large as the sphere hides all that is in it. None of that is farther from the disc than the centre is; nor
  * is a place of the disc farther from the mesh than the centre, and a radius more. */
 static conic_status find_point(const nodes_pass *pass, worker *w, size_t i) {
-  const conic_patch_mesh *mesh = pass->job->mesh;
+  const conic_clustered_mesh *mesh = pass->job->mesh;
   conic_hybrid_node *node = &pass->job->nodes[i];
   double center[3], farthest2 = 0.0, color[3] = {0.0, 0.0, 0.0}, area = 0.0;
   conic_status status = gather(pass, w, node, HUGE_VAL);
@@ -333,8 +333,8 @@ static conic_status find_ways(conic_ways_job *job) {
   return status;
 }
 
-/* How far each patch's surfels may stand out of its sphere. */
-static float reach_of(const conic_patch_ways *ways) {
+/* How far each cluster's surfels may stand out of its sphere. */
+static float reach_of(const conic_cluster_ways *ways) {
   float longest = 0.0f;
   for (int k = 0; k < ways->n_surfels; k++) {
     float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));

@@ -5,12 +5,12 @@
 
 #include "core/base/memory.h"
 
-/* Rounds in which each patch is thought over; and how much less a picture of both kinds must promise to be preferred to
- * one of a single kind. */
+/* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred
+ * to one of a single kind. */
 enum { ROUNDS = 4 };
 static const double margin = 0.97;
 
-/* A patch in sight. Infinite costs are of a kind that is not good enough. */
+/* A cluster in sight. Infinite costs are of a kind that is not good enough. */
 typedef struct candidate {
   conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
   double alone_ns;              /* of its own surfels */
@@ -18,8 +18,8 @@ typedef struct candidate {
   uint8_t kind;
 } candidate;
 
-/* Two patches side by side: what triangles of the one take more if the other is drawn as surfels, for then their border
- * has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
+/* Two clusters side by side: what triangles of the one take more if the other is drawn as surfels, for then their
+ * border has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
 typedef struct link {
   uint32_t candidate;
   double own_ns, other_ns;
@@ -28,27 +28,27 @@ typedef struct link {
 typedef struct planning {
   const conic_hybrid *hybrid;
   size_t n;
-  const uint32_t *patches;
+  const uint32_t *clusters;
   candidate *candidates;
-  uint32_t *of_patch; /* of each of the model's patches, where it is in sight: its candidate, else n */
+  uint32_t *of_cluster; /* of each of the model's clusters, where it is in sight: its candidate, else n */
   size_t n_links;
   link *links;
   uint8_t *kinds; /* what was found before */
   const conic_hybrid_camera *view;
   double error_px;
-  double *amounts, *below; /* of each patch of the model, and of each node, for cutting */
+  double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
   uint32_t *nodes;
 } planning;
 
 static const conic_hybrid_level *triangles_of(const planning *p, size_t i) {
-  const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
-  return &p->hybrid->levels[patch->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
+  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
+  return &p->hybrid->levels[cluster->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
 }
 
 static void ask(planning *p) {
   for (size_t i = 0; i < p->n; i++) {
     candidate *c = &p->candidates[i];
-    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->patches[p->patches[i]], p->error_px, c->offers);
+    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->clusters[p->clusters[i]], p->error_px, c->offers);
     c->alone_ns = c->offers[CONIC_HYBRID_SURFELS].amount;
   }
 }
@@ -58,13 +58,13 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
   return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
 }
 
-/* Lets nodes stand for patches that are surfels now. Returns how much less these take by that. */
+/* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
 static double cut(const planning *p) {
   const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
   for (size_t i = 0; i < p->n; i++) {
     const candidate *c = &p->candidates[i];
     int is_free = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
-    p->amounts[p->patches[i]] = is_free ? c->alone_ns : NAN;
+    p->amounts[p->clusters[i]] = is_free ? c->alone_ns : NAN;
   }
   return conic_hybrid_cut(&cutting, p->nodes);
 }
@@ -76,7 +76,7 @@ static void add_links(planning *p, uint32_t i, uint32_t *last) {
   c->first_link = (uint32_t)p->n_links;
   for (size_t k = 0; k < level->n_borders; k++) {
     const conic_hybrid_border *border = &p->hybrid->borders[level->first_border + k];
-    uint32_t other = p->of_patch[border->across];
+    uint32_t other = p->of_cluster[border->across];
     uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
     if (other == p->n)
       continue;
@@ -128,7 +128,7 @@ static void weigh(const planning *p, const candidate *c, double costs[2]) {
   }
 }
 
-/* Each patch in turn becomes what is cheaper, until none does. */
+/* Each cluster in turn becomes what is cheaper, until none does. */
 static void improve(planning *p) {
   int is_changed = 1;
   for (int round = 0; round < ROUNDS && is_changed; round++) {
@@ -152,12 +152,12 @@ static int is_mixed(const planning *p) {
   return 0;
 }
 
-/* What a picture of both kinds takes more than its parts; patches share tiles, of which there are no more than all. */
+/* What a picture of both kinds takes more than its parts; clusters share tiles, of which there are no more than all. */
 static double mixing(const planning *p) {
   double n_pixels = 0.0;
   for (size_t i = 0; i < p->n; i++)
     if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
-      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->patches[p->patches[i]]);
+      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->clusters[p->clusters[i]]);
   n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
   return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
 }
@@ -183,7 +183,7 @@ static void take_kind(planning *p, uint8_t kind) {
     p->candidates[i].kind = p->candidates[i].offers[kind].amount < HUGE_VAL ? kind : !kind;
 }
 
-/* What each patch's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
+/* What each cluster's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
 static void share(planning *p) {
   take_kind(p, CONIC_HYBRID_SURFELS);
   if (cut(p) > 0.0)
@@ -196,7 +196,7 @@ static void share(planning *p) {
         sum += p->amounts[k];
       for (uint32_t k = node->begin; k < node->end; k++)
         if (p->amounts[k] > 0.0)
-          p->candidates[p->of_patch[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
+          p->candidates[p->of_cluster[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
     }
   for (size_t i = 0; i < p->n; i++) {
     candidate *c = &p->candidates[i];
@@ -225,7 +225,7 @@ static void settle(planning *p) {
     p->candidates[i].kind = p->kinds[i];
 }
 
-/* Whether all of one kind takes hardly more than the cheaper of both for each patch: then no better one has to be
+/* Whether all of one kind takes hardly more than the cheaper of both for each cluster: then no better one has to be
  * looked for. */
 static int is_settled(planning *p) {
   double sums[2] = {0.0, 0.0}, least = 0.0;
@@ -245,11 +245,11 @@ static int is_settled(planning *p) {
 /* The kind that is asked for; where it is good enough nowhere, its finest. */
 static void obey(planning *p, int only_kind) {
   for (size_t i = 0; i < p->n; i++) {
-    const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
+    const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
     conic_hybrid_offer *offer = &p->candidates[i].offers[only_kind];
     p->candidates[i].kind = (uint8_t)only_kind;
     if (!(offer->amount < HUGE_VAL))
-      offer->level = conic_hybrid_finest(p->hybrid, patch, only_kind);
+      offer->level = conic_hybrid_finest(p->hybrid, cluster, only_kind);
   }
 }
 
@@ -266,23 +266,23 @@ static conic_status plan_kinds(planning *p) {
 static conic_status begin(planning *p) {
   conic_context *context = p->hybrid->context;
   p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
-  p->of_patch = conic_memory_allocate(context, p->hybrid->n_patches, sizeof *p->of_patch);
+  p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
   p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
-  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_patches, sizeof *p->amounts);
+  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
   p->below = conic_memory_allocate(context, p->hybrid->n_nodes, sizeof *p->below);
-  if (!p->candidates || !p->of_patch || !p->kinds || !p->amounts || !p->below)
+  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < p->hybrid->n_patches; i++)
-    p->of_patch[i] = (uint32_t)p->n;
+  for (size_t i = 0; i < p->hybrid->n_clusters; i++)
+    p->of_cluster[i] = (uint32_t)p->n;
   for (size_t i = 0; i < p->n; i++)
-    p->of_patch[p->patches[i]] = (uint32_t)i;
+    p->of_cluster[p->clusters[i]] = (uint32_t)i;
   return CONIC_OK;
 }
 
 conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes) {
+                               int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels, uint32_t *nodes) {
   conic_context *context = hybrid->context;
-  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px};
+  planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
   p.nodes = nodes;
   conic_status status = begin(&p);
   if (status == CONIC_OK) {
@@ -300,7 +300,7 @@ conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_ca
   conic_memory_release(context, p.below);
   conic_memory_release(context, p.amounts);
   conic_memory_release(context, p.kinds);
-  conic_memory_release(context, p.of_patch);
+  conic_memory_release(context, p.of_cluster);
   conic_memory_release(context, p.candidates);
   return status;
 }

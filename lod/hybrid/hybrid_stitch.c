@@ -1,6 +1,6 @@
 #include "lod/hybrid/hybrid_stitch.h"
 
-/* The next slot of a border after `slot` that the patch across still has, or the border's end. */
+/* The next slot of a border after `slot` that the cluster across still has, or the border's end. */
 static uint32_t next_slot(const conic_hybrid *h, const conic_hybrid_border *border, uint32_t stage, uint32_t slot) {
   uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */
   do
