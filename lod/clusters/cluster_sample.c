@@ -152,9 +152,9 @@ static double error_to_part(const conic_sampler *s) {
 static int refine_faces(conic_sampler *s, double limit) {
   int is_any = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     int is_bad = 0;
-    for (uint32_t i = 0; i < conic_lattice_places(l->sides) && !is_bad; i++)
+    for (uint32_t i = 0; i < conic_face_lattice_places(l->sides) && !is_bad; i++)
       is_bad = s->sites[s->owner[l->first + i]].error > limit;
     if (is_bad && s->depth[k] < CONIC_MOST_DEPTH) {
       s->depth[k]++;

@@ -16,7 +16,7 @@ static const double steep = 0.5;
 /* --- the small triangles of the lattices --- */
 
 typedef struct small_triangle {
-  const conic_lattice *lattice;
+  const conic_face_lattice *lattice;
   const double *facing;
   const double *at[3];
   int steps[3][2];
@@ -30,8 +30,8 @@ static const int corner_steps[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1,
 typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
 
 /* Whether something of a face's belongs to a site that is not settled. */
-static int has_work(const conic_sampler *s, const conic_lattice *l) {
-  uint32_t n = conic_lattice_places(l->sides), i = 0;
+static int has_work(const conic_sampler *s, const conic_face_lattice *l) {
+  uint32_t n = conic_face_lattice_places(l->sides), i = 0;
   while (i < n && s->sites[s->owner[l->first + i]].is_settled)
     i++;
   return i < n;
@@ -40,7 +40,7 @@ static int has_work(const conic_sampler *s, const conic_lattice *l) {
 static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     if (!has_work(s, l))
       continue;
     for (int i = 0; i < l->sides; i++)
@@ -53,7 +53,7 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
           for (int corner = 0; corner < 3; corner++) {
             t.steps[corner][0] = i + corner_steps[between][corner][0];
             t.steps[corner][1] = j + corner_steps[between][corner][1];
-            uint32_t place = conic_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
+            uint32_t place = conic_face_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
             t.at[corner] = s->places[place];
             t.owners[corner] = s->owner[place];
           }
@@ -69,7 +69,7 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
 static void look_at_corner(const conic_sampler *s, const small_triangle *t, int corner, double normal[3],
                            double color[3]) {
   double bary[3];
-  conic_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
+  conic_face_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
   conic_cluster_normal(s->job->mesh, t->lattice->face, bary, t->facing, normal);
   conic_cluster_color(s->job->mesh, t->lattice->face, bary, color);
 }
@@ -167,8 +167,8 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
 static conic_status cover_places(conic_sampler *s) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
-    size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
+    const conic_face_lattice *l = &s->lattices[k];
+    size_t begin = l->first, end = begin + conic_face_lattice_places(l->sides);
     if (!has_work(s, l))
       continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)

@@ -6,8 +6,6 @@
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_triangle triangle;
-
 conic_status conic_simplifier_create(conic_context *context, const conic_clustered_mesh *mesh,
                                      const conic_face_tree *tree, conic_simplifier **simplifier) {
   conic_simplifier *s = conic_memory_allocate_zeroed(context, 1, sizeof *s);
@@ -58,7 +56,7 @@ static void leave_slot(conic_simplifier *s, uint32_t u) {
 
 static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;) {
-    triangle *t = &s->triangles[slot / 3];
+    conic_simplifier_triangle *t = &s->triangles[slot / 3];
     uint32_t following = conic_simplifier_after(s, slot);
     if (conic_simplifier_has(t, v)) {
       t->is_alive = 0;

@@ -5,9 +5,6 @@
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_vertex vertex;
-typedef conic_simplifier_triangle triangle;
-
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */
 static const double border_weight = 10.0;
 
@@ -73,7 +70,7 @@ static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3]
 /* The region's number of a mesh's vertex. */
 static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
   uint32_t i = s->number[s->mesh->adjacency->place[original]];
-  vertex *v = &s->vertices[i];
+  conic_simplifier_vertex *v = &s->vertices[i];
   if (v->original == CONIC_NONE) {
     v->original = original;
     v->material = material;
@@ -89,7 +86,7 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t mate
 
 static void add_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
-  triangle *t = &s->triangles[i];
+  conic_simplifier_triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
   t->face = s->near[i][0] = s->near[i][1] = s->near[i][2] = s->near[i][3] = face;
   t->cluster = cluster;
@@ -100,7 +97,7 @@ static void add_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
     const uint32_t *materials = s->mesh->triangles->material;
     s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
     uint32_t k = use_vertex(s, s->originals[i][corner], materials ? materials[face] : 0);
-    vertex *v = &s->vertices[k];
+    conic_simplifier_vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
     v->ring = 3 * i + (uint32_t)corner;
@@ -119,7 +116,7 @@ static void add_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
 
 /* --- borders --- */
 
-static void stand_on_edge(const triangle *t, vertex *ends[2]) {
+static void stand_on_edge(const conic_simplifier_triangle *t, conic_simplifier_vertex *ends[2]) {
   double side[3], upright[3];
   for (int axis = 0; axis < 3; axis++)
     side[axis] = ends[1]->at[axis] - ends[0]->at[axis];
@@ -135,9 +132,9 @@ static void stand_on_edge(const triangle *t, vertex *ends[2]) {
 }
 
 /* The ends of an edge on a border are on an open one, or within a chain, or they stay. */
-static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
+static void treat_border(conic_simplifier *s, const conic_simplifier_triangle *t, int corner) {
   uint32_t across = s->mesh->adjacency->across[3 * (size_t)t->face + (size_t)corner];
-  vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
+  conic_simplifier_vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
   if (!conic_cluster_ends_at(s->mesh, t->face, corner))
     return;
   add_point(s, t->corners[corner], ends[0]->at); /* it is of each cluster that has it */
@@ -152,7 +149,7 @@ static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
     stand_on_edge(t, ends);
 }
 
-static void add_planes(conic_simplifier *s, const triangle *t) {
+static void add_planes(conic_simplifier *s, const conic_simplifier_triangle *t) {
   double sides[2][3], cross[3];
   for (int k = 0; k < 2; k++)
     for (int axis = 0; axis < 3; axis++)
@@ -163,7 +160,7 @@ static void add_planes(conic_simplifier *s, const triangle *t) {
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }
 
-static void treat_triangle(conic_simplifier *s, const triangle *t) {
+static void treat_triangle(conic_simplifier *s, const conic_simplifier_triangle *t) {
   for (int corner = 0; corner < 3; corner++)
     treat_border(s, t, corner);
   add_planes(s, t);

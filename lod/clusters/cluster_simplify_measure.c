@@ -5,8 +5,6 @@
 #include "lod/clusters/cluster_simplifier.h"
 #include "lod/mesh/distance.h"
 
-typedef conic_simplifier_triangle triangle;
-
 /* What a vertex has become, at the end of a way that is made shorter on it. */
 static uint32_t now_at(conic_simplifier *s, uint32_t v) {
   while (s->vertices[v].is_gone) {
@@ -33,11 +31,11 @@ typedef struct approach {
 } approach;
 
 /* The nearest of the triangles about a vertex, if it is nearer than all before. */
-static const triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
-  const triangle *nearest = NULL;
+static const conic_simplifier_triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
+  const conic_simplifier_triangle *nearest = NULL;
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring); slot != CONIC_NONE && a->least2 > a->enough2;
        slot = conic_simplifier_after(s, slot)) {
-    const triangle *t = &s->triangles[slot / 3];
+    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
     double distance2 = conic_distance2_to_triangle(a->at, s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
                                                    s->vertices[t->corners[2]].at);
     if (!(distance2 < a->least2))
@@ -54,14 +52,14 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
   uint32_t first = own->is_gone ? own->target : point->vertex;
   approach a = {.at = point->at, .least2 = HUGE_VAL, .enough2 = enough2};
-  const triangle *before = NULL, *from = nearest_about(s, first, &a);
+  const conic_simplifier_triangle *before = NULL, *from = nearest_about(s, first, &a);
   while (from && a.least2 > enough2) {
-    const triangle *nearest = NULL;
+    const conic_simplifier_triangle *nearest = NULL;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t v = from->corners[corner];
       if (before ? conic_simplifier_has(before, v) : v == first)
         continue;
-      const triangle *found = nearest_about(s, v, &a);
+      const conic_simplifier_triangle *found = nearest_about(s, v, &a);
       nearest = found ? found : nearest;
     }
     before = from;
@@ -118,7 +116,7 @@ static double measure_back(const conic_simplifier *s, uint32_t cluster, double m
   size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + cluster] - first,
          end = s->mesh->starts[s->begin + cluster + 1] - first;
   for (size_t i = begin; i < end; i++) {
-    const triangle *t = &s->triangles[i];
+    const conic_simplifier_triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
     const double *const corners[4] = {s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
@@ -148,7 +146,7 @@ static int loses_some(const conic_simplifier *s, const conic_hybrid_border *bord
 /* The fan that a border's triangle becomes beside a cluster of an earlier stage: the middles of its triangles and of
  * the edges between them. */
 static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage, double most) {
-  const triangle *t = &s->triangles[border->edge / 4];
+  const conic_simplifier_triangle *t = &s->triangles[border->edge / 4];
   const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
   const double *corners[3] = {opposite, slot_at(s, border->from), NULL};
   uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */

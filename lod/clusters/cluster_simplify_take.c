@@ -6,8 +6,6 @@
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_triangle triangle;
-
 /* --- borders --- */
 
 static int compare_borders(const void *a, const void *b) {
@@ -23,7 +21,7 @@ static int add_border(conic_simplifier *s, const conic_chain *chain, int side, c
     ends[k] = s->number[s->mesh->adjacency->place[s->chains->slots[slots[k]].vertex]];
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[ends[0]].ring); slot != CONIC_NONE;
        slot = conic_simplifier_after(s, slot)) {
-    const triangle *t = &s->triangles[slot / 3];
+    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
     uint32_t corner = slot % 3;
     int is_ahead = t->corners[(corner + 1) % 3] == ends[1], is_back = t->corners[(corner + 2) % 3] == ends[1];
     if (t->cluster != cluster || (!is_ahead && !is_back))
@@ -119,7 +117,7 @@ static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, co
   if (!level->corners || !level->face || !level->borders)
     return CONIC_ERROR_MEMORY;
   for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++) {
-    const triangle *t = &s->triangles[i];
+    const conic_simplifier_triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
     for (; level->n_borders < n_borders && borders[level->n_borders].of.edge / 4 == i; level->n_borders++) {

@@ -25,7 +25,7 @@ typedef struct choice {
 } choice;
 
 /* What is kept from call to call. */
-typedef struct scratch {
+typedef struct hybrid_scratch {
   choice *choices;
   size_t n_choices, choices_room;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
@@ -38,23 +38,23 @@ typedef struct scratch {
   size_t vertices_room;
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
-} scratch;
+} hybrid_scratch;
 
 /* The level of a choice that is a node's point. */
 #define CONIC_HYBRID_POINT UINT32_MAX
 
 enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
 
-typedef struct selecting {
+typedef struct hybrid_selecting {
   const conic_hybrid *hybrid;
   conic_hybrid_camera camera;
   const conic_hybrid_view *view;
   conic_hybrid_selection *selection;
-  scratch *scratch;
-} selecting;
+  hybrid_scratch *scratch;
+} hybrid_selecting;
 
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
-  scratch *kept = selection->scratch;
+  hybrid_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
     conic_memory_release(context, kept->stages);
@@ -82,8 +82,8 @@ static int is_together(const conic_hybrid_view *view) {
   return view->budget || view->error_px > 0.0;
 }
 
-static conic_status add_choice(selecting *s, uint32_t i_cluster) {
-  scratch *kept = s->scratch;
+static conic_status add_choice(hybrid_selecting *s, uint32_t i_cluster) {
+  hybrid_scratch *kept = s->scratch;
   const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
   if (kept->n_choices == kept->choices_room) {
     size_t room = 2 * kept->choices_room + 256;
@@ -101,7 +101,7 @@ static conic_status add_choice(selecting *s, uint32_t i_cluster) {
   return CONIC_OK;
 }
 
-static conic_status choose_all(selecting *s) {
+static conic_status choose_all(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   conic_status status = CONIC_OK;
   s->scratch->n_choices = 0;
@@ -124,9 +124,9 @@ static conic_status choose_all(selecting *s) {
 }
 
 /* A node's choice takes the place of the first of its clusters; those that are left close up. */
-static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
+static void let_nodes_stand(hybrid_selecting *s, const uint32_t *nodes) {
   const conic_hybrid *h = s->hybrid;
-  scratch *kept = s->scratch;
+  hybrid_scratch *kept = s->scratch;
   uint32_t last = CONIC_HYBRID_NO_NODE;
   size_t n = 0;
   for (size_t i = 0; i < kept->n_choices; i++) {
@@ -145,8 +145,8 @@ static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
 }
 
 /* The stages of what was chosen; all else is hidden. Nodes have all of their clusters' borders. */
-static void note_stages(selecting *s) {
-  scratch *kept = s->scratch;
+static void note_stages(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
   for (size_t i = 0; i < s->hybrid->n_clusters; i++) {
     kept->stages[i] = CONIC_HYBRID_HIDDEN;
     kept->standing[i] = CONIC_HYBRID_NO_NODE;
@@ -156,10 +156,10 @@ static void note_stages(selecting *s) {
 }
 
 /* Chooses for all clusters in sight, for a budget or for the least time. */
-static conic_status choose_together(selecting *s) {
+static conic_status choose_together(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   const conic_hybrid_view *view = s->view;
-  scratch *kept = s->scratch;
+  hybrid_scratch *kept = s->scratch;
   size_t n = kept->n_choices;
   uint32_t *clusters = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *clusters);
   if (!clusters)
@@ -184,18 +184,18 @@ static conic_status choose_together(selecting *s) {
   return status;
 }
 
-static const conic_hybrid_node *node_of(const selecting *s, const choice *c) {
+static const conic_hybrid_node *node_of(const hybrid_selecting *s, const choice *c) {
   return c->cluster < s->hybrid->n_clusters ? NULL : &s->hybrid->nodes[c->cluster - s->hybrid->n_clusters];
 }
 
-static void judge_cluster(const selecting *s, const choice *c) {
+static void judge_cluster(const hybrid_selecting *s, const choice *c) {
   const conic_hybrid_cluster *cluster = &s->hybrid->clusters[c->cluster];
   s->selection->n_clusters[s->hybrid->levels[c->level].kind]++;
   s->selection->n_simpler += c->level != cluster->first_level + cluster->built;
 }
 
 /* What the choices come to. */
-static void judge(const selecting *s) {
+static void judge(const hybrid_selecting *s) {
   conic_hybrid_selection *selection = s->selection;
   selection->n_simpler = selection->n_joined;
   for (size_t i = 0; i < s->scratch->n_choices; i++) {
@@ -213,8 +213,8 @@ static void judge(const selecting *s) {
   }
 }
 
-static conic_status make_stages(selecting *s) {
-  scratch *kept = s->scratch;
+static conic_status make_stages(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
   conic_context *context = s->hybrid->context;
   size_t n = s->hybrid->n_clusters;
   if (kept->stages && kept->standing && n <= kept->stages_room)
@@ -231,8 +231,8 @@ static conic_status make_stages(selecting *s) {
 }
 
 /* Where each choice's parts go, and how many there are of all. */
-static void place_parts(selecting *s) {
-  scratch *kept = s->scratch;
+static void place_parts(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
   size_t n_splats = 0, n_triangles = 0, n_vertices = 0;
   for (size_t i = 0; i < kept->n_choices; i++) {
     choice *c = &kept->choices[i];
@@ -253,7 +253,7 @@ static void place_parts(selecting *s) {
   s->selection->triangles.n_vertices = n_vertices;
 }
 
-static conic_status make_splats(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_splats(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->splats && kept->splat_cluster && n <= kept->splats_room)
     return CONIC_OK;
   conic_memory_release(context, kept->splats);
@@ -267,7 +267,7 @@ static conic_status make_splats(conic_context *context, scratch *kept, size_t n)
   return CONIC_OK;
 }
 
-static conic_status make_vertices(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_vertices(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->vertices && n <= kept->vertices_room)
     return CONIC_OK;
   conic_memory_release(context, kept->vertices);
@@ -277,7 +277,7 @@ static conic_status make_vertices(conic_context *context, scratch *kept, size_t 
   return kept->vertices ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static conic_status make_triangles(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_triangles(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->triangles && n <= kept->triangles_room)
     return CONIC_OK;
   conic_memory_release(context, kept->triangles);
@@ -288,7 +288,7 @@ static conic_status make_triangles(conic_context *context, scratch *kept, size_t
 }
 
 /* Room for all parts of the choices. */
-static conic_status make_room(selecting *s) {
+static conic_status make_room(hybrid_selecting *s) {
   conic_context *context = s->hybrid->context;
   const conic_hybrid_selection *selection = s->selection;
   place_parts(s);
@@ -301,9 +301,9 @@ static conic_status make_room(selecting *s) {
 }
 
 /* Points the selection's arrays into what is kept. */
-static void attach(selecting *s) {
+static void attach(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
-  const scratch *kept = s->scratch;
+  const hybrid_scratch *kept = s->scratch;
   conic_splats *splats = &s->selection->splats;
   conic_triangles *triangles = &s->selection->triangles;
   memcpy(splats->origin, h->origin, sizeof splats->origin);
@@ -327,8 +327,8 @@ static void attach(selecting *s) {
   triangles->materials = h->materials;
 }
 
-static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid_level *level) {
-  const scratch *kept = s->scratch;
+static void copy_surfels(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const hybrid_scratch *kept = s->scratch;
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
     memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
            level->count * sizeof(float));
@@ -336,8 +336,8 @@ static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid
     kept->splat_cluster[c->splat + i] = c->cluster;
 }
 
-static void put_point(const selecting *s, const choice *c) {
-  const scratch *kept = s->scratch;
+static void put_point(const hybrid_selecting *s, const choice *c) {
+  const hybrid_scratch *kept = s->scratch;
   float values[SPLAT_ARRAYS];
   conic_hybrid_point_splat(&s->camera, node_of(s, c), (double)s->hybrid->cutoff, values);
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
@@ -350,7 +350,7 @@ static void gather(float *to, const float *from, const uint32_t *listed, size_t 
     to[i] = from[listed[i]];
 }
 
-static void copy_triangles(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+static void copy_triangles(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
   const conic_hybrid *h = s->hybrid;
   const conic_triangles *to = &s->selection->triangles;
   const uint32_t *listed = h->listed + level->first_vertex;
@@ -383,7 +383,7 @@ static void copy_triangles(const selecting *s, const choice *c, const conic_hybr
 }
 
 static void copy_task(void *data, size_t i_task, int i_thread) {
-  const selecting *s = data;
+  const hybrid_selecting *s = data;
   size_t begin = i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
   (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
@@ -409,8 +409,8 @@ static conic_status check_view(conic_context *context, const conic_hybrid_view *
 }
 
 /* On success there is scratch. */
-static conic_status begin(selecting *s, const conic_camera *camera, const conic_render_options *render) {
-  scratch *kept = s->selection->scratch;
+static conic_status begin(hybrid_selecting *s, const conic_camera *camera, const conic_render_options *render) {
+  hybrid_scratch *kept = s->selection->scratch;
   conic_render_options known = *render;
   conic_hybrid_info info;
   if (!kept) {
@@ -431,7 +431,7 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
 conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
                                  const conic_render_options *render, const conic_hybrid_view *view,
                                  conic_hybrid_selection *selection) {
-  selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
+  hybrid_selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
   conic_status status = check_view(hybrid->context, view);
   if (status == CONIC_OK)
     status = begin(&s, camera, render);

@@ -17,13 +17,13 @@ size_t conic_hybrid_count_nodes(size_t n) {
   return 1 + conic_hybrid_count_nodes(conic_hybrid_half(n)) + conic_hybrid_count_nodes(n - conic_hybrid_half(n));
 }
 
-typedef struct place {
+typedef struct cluster_place {
   float at;
   uint32_t cluster;
-} place;
+} cluster_place;
 
 static int compare_places(const void *a, const void *b) {
-  const place *first = a, *second = b;
+  const cluster_place *first = a, *second = b;
   if (first->at != second->at)
     return first->at < second->at ? -1 : 1;
   return (first->cluster > second->cluster) - (first->cluster < second->cluster);
@@ -47,12 +47,12 @@ static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order,
   return longest;
 }
 
-static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_t n, place *places) {
+static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_t n, cluster_place *places) {
   if (n <= CONIC_HYBRID_LEAF)
     return;
   int axis = longest_axis(bounds, order, n);
   for (size_t i = 0; i < n; i++)
-    places[i] = (place){bounds[order[i]].center[axis], order[i]};
+    places[i] = (cluster_place){bounds[order[i]].center[axis], order[i]};
   qsort(places, n, sizeof *places, compare_places);
   for (size_t i = 0; i < n; i++)
     order[i] = places[i].cluster;
@@ -62,7 +62,7 @@ static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_
 
 conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_clusters,
                                 uint32_t *order) {
-  place *places = conic_memory_allocate(context, n_clusters, sizeof *places);
+  cluster_place *places = conic_memory_allocate(context, n_clusters, sizeof *places);
   if (!places)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n_clusters; i++)

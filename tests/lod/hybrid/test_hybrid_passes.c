@@ -125,9 +125,9 @@ static void check_passes(conic_context *context, const one_cluster *p, double to
 }
 
 static int owns_some(const conic_sampler *s, uint32_t site, size_t lattice) {
-  const conic_lattice *l = &s->lattices[lattice];
+  const conic_face_lattice *l = &s->lattices[lattice];
   int is_any = 0;
-  for (uint32_t i = 0; i < conic_lattice_places(l->sides); i++)
+  for (uint32_t i = 0; i < conic_face_lattice_places(l->sides); i++)
     is_any |= s->owner[l->first + i] == site;
   return is_any;
 }
