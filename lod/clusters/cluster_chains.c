@@ -96,7 +96,7 @@ static void put_slot(finding *f, uint32_t place, int is_between_ends) {
   conic_cluster_chains *c = f->chains;
   if (is_between_ends)
     c->of_vertex[place] = (uint32_t)c->n_slots;
-  c->slots[c->n_slots++] = (conic_hybrid_slot){.vertex = f->places[place].vertex, .stage = CONIC_HYBRID_ALWAYS};
+  c->slots[c->n_slots++] = (conic_cluster_slot){.vertex = f->places[place].vertex, .stage = CONIC_CLUSTER_ALWAYS};
 }
 
 /* From an edge back to the chain's beginning, then along all of it. A closed one begins where the edge does. */

@@ -4,7 +4,7 @@
 #define CONIC_CLUSTER_CHAINS_H
 
 #include "lod/clusters/cluster.h"
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/clusters/cluster_border.h"
 
 #define CONIC_NO_SLOT UINT32_MAX
 
@@ -17,7 +17,7 @@ typedef struct conic_chain {
 typedef struct conic_cluster_chains {
   size_t n_chains, n_slots;
   conic_chain *chains; /* each has something between its ends */
-  conic_hybrid_slot *slots;
+  conic_cluster_slot *slots;
   uint32_t *of_vertex; /* of each place between a chain's ends: its slot; else CONIC_NO_SLOT */
 } conic_cluster_chains;
 

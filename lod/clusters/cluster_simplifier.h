@@ -53,8 +53,8 @@ typedef struct conic_simplifier_spoke {
 
 /* Along it, vertices were left out. */
 typedef struct conic_simplifier_border {
-  conic_hybrid_border of; /* the triangle's number is that in the region */
-  uint32_t cluster;       /* from the region's first */
+  conic_cluster_border of; /* the triangle's number is that in the region */
+  uint32_t cluster;        /* from the region's first */
 } conic_simplifier_border;
 
 struct conic_simplifier {

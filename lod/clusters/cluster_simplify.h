@@ -12,7 +12,7 @@ typedef struct conic_cluster_level {
   size_t n, n_borders;
   uint32_t (*corners)[3];
   uint32_t *face; /* of each: the face of the mesh that it came from */
-  conic_hybrid_border *borders;
+  conic_cluster_border *borders;
   uint32_t stage;
   double error; /* no vertex of the cluster, nor middle of an edge or a face, is farther from these triangles, those of
                    the other clusters of the same stage beside them; nor are the middles of these and of their edges

@@ -135,7 +135,7 @@ static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
 }
 
 /* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
-static int loses_some(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage) {
+static int loses_some(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage) {
   uint32_t low = border->from < border->to ? border->from : border->to, high = low ^ border->from ^ border->to;
   for (uint32_t slot = low + 1; slot < high; slot++)
     if (s->chains->slots[slot].stage + 1 == stage)
@@ -145,7 +145,7 @@ static int loses_some(const conic_simplifier *s, const conic_hybrid_border *bord
 
 /* The fan that a border's triangle becomes beside a cluster of an earlier stage: the middles of its triangles and of
  * the edges between them. */
-static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage, double most) {
+static double measure_fan(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage, double most) {
   const conic_simplifier_triangle *t = &s->triangles[border->edge / 4];
   const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
   const double *corners[3] = {opposite, slot_at(s, border->from), NULL};

@@ -39,11 +39,11 @@ static int add_border(conic_simplifier *s, const conic_chain *chain, int side, c
 
 /* Both sides of a chain, where something was left out. Whether each has just one triangle there. */
 static int add_chain(conic_simplifier *s, const conic_chain *chain) {
-  const conic_hybrid_slot *slots = s->chains->slots;
+  const conic_cluster_slot *slots = s->chains->slots;
   uint32_t last = chain->first;
   int is_sound = 1;
   for (uint32_t i = last + 1; i < chain->first + chain->n; i++) {
-    if (slots[i].stage != CONIC_HYBRID_ALWAYS)
+    if (slots[i].stage != CONIC_CLUSTER_ALWAYS)
       continue; /* it is gone */
     const uint32_t ends[2] = {last, i};
     for (int side = 0; side < 2 && i > last + 1; side++)

@@ -9,8 +9,8 @@ enum { ALIGNMENT = 64 };
 
 /* The records are in the file as they are in memory. */
 _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
-_Static_assert(sizeof(conic_hybrid_slot) == 8, "slots of 8 bytes");
-_Static_assert(sizeof(conic_hybrid_border) == 16, "borders of 16 bytes");
+_Static_assert(sizeof(conic_cluster_slot) == 8, "slots of 8 bytes");
+_Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
 _Static_assert(sizeof(conic_hybrid_cluster) == 48, "clusters of 48 bytes");
 _Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
@@ -36,8 +36,8 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
     sizes[CONIC_CHY_TEXTURE + k] = h->flags & CONIC_CHY_TEXTURE_COORDINATES ? vertices : 0;
   for (int k = 0; k < 12; k++)
     sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
-  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_hybrid_slot);
-  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_hybrid_border);
+  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_cluster_slot);
+  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_cluster_border);
   for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
     l.arrays[i] = (conic_chy_array){l.n_bytes, sizes[i]};
     l.n_bytes = (l.n_bytes + sizes[i] + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;

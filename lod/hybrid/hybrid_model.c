@@ -89,7 +89,7 @@ static const char *wrong_borders(const conic_hybrid *h, uint32_t cluster, const 
                                  size_t *n_left_out) {
   *n_left_out = 0;
   for (uint32_t i = 0; i < level->n_borders; i++) {
-    const conic_hybrid_border *border = &h->borders[level->first_border + i];
+    const conic_cluster_border *border = &h->borders[level->first_border + i];
     if ((i > 0 && border->edge <= border[-1].edge) || border->edge / 4 >= level->count || border->edge % 4 > 2 ||
         border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_clusters ||
         border->across == cluster)

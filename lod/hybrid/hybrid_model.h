@@ -4,6 +4,7 @@
 
 #include "conic/hybrid.h"
 #include "core/files/mapping.h"
+#include "lod/clusters/cluster_border.h"
 
 /* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
 
@@ -19,21 +20,6 @@ typedef struct conic_hybrid_level {
   uint32_t first_border, n_borders;
   float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
 } conic_hybrid_level;
-
-/* A vertex where two clusters meet, and the last stage of simplification at which it is still there. */
-typedef struct conic_hybrid_slot {
-  uint32_t vertex, stage;
-} conic_hybrid_slot;
-
-#define CONIC_HYBRID_ALWAYS UINT32_MAX
-
-/* An edge of a level's triangle along which vertices were left out: what the cluster across still has of them is put in
- * when they are drawn side by side. */
-typedef struct conic_hybrid_border {
-  uint32_t edge;     /* 4 · triangle, counted from the level's first, + the corner where the edge begins */
-  uint32_t from, to; /* slots of its two ends; what was left out lies between */
-  uint32_t across;   /* the other cluster */
-} conic_hybrid_border;
 
 /* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
 typedef struct conic_hybrid_bound {
@@ -79,8 +65,8 @@ struct conic_hybrid {
   const conic_hybrid_level *levels;
   const conic_hybrid_cluster *clusters;
   const conic_hybrid_node *nodes;
-  const conic_hybrid_slot *slots;
-  const conic_hybrid_border *borders; /* by level, in the order of their edges */
+  const conic_cluster_slot *slots;
+  const conic_cluster_border *borders; /* by level, in the order of their edges */
   size_t n_materials, n_texels;
   const struct conic_chy_material *material_list;
   const unsigned char *texels;

@@ -136,7 +136,7 @@ static void put_triangles(packing *p, cursor *at, const conic_cluster_level *fro
   for (size_t i = 0; i < from->n && p->header.flags & CONIC_CHY_MATERIALS; i++)
     material[at->triangle + i] = p->flat->material[from->face[i]];
   if (from->n_borders > 0)
-    memcpy((conic_hybrid_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
+    memcpy((conic_cluster_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
            from->n_borders * sizeof *from->borders);
   at->triangle += from->n;
   at->listed += level->n_vertices;

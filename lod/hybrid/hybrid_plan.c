@@ -75,7 +75,7 @@ static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
   plan_candidate *c = &p->candidates[i];
   c->first_link = (uint32_t)p->n_links;
   for (size_t k = 0; k < level->n_borders; k++) {
-    const conic_hybrid_border *border = &p->hybrid->borders[level->first_border + k];
+    const conic_cluster_border *border = &p->hybrid->borders[level->first_border + k];
     uint32_t other = p->of_cluster[border->across];
     uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
     if (other == p->n)

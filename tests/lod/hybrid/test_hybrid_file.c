@@ -154,7 +154,8 @@ static size_t place_to_change(uint64_t *state, const unsigned char *bytes, size_
   size_t from = 8;
   if (random_unit(state) < 0.5) {
     conic_chy_header h = {.n_slots = conic_file_get(bytes + 160, 8), .n_borders = conic_file_get(bytes + 168, 8)};
-    size_t n_chains = (size_t)h.n_slots * sizeof(conic_hybrid_slot) + (size_t)h.n_borders * sizeof(conic_hybrid_border);
+    size_t n_chains =
+        (size_t)h.n_slots * sizeof(conic_cluster_slot) + (size_t)h.n_borders * sizeof(conic_cluster_border);
     from = n_chains < n_bytes - 8 ? n_bytes - n_chains - 8 : 8;
   }
   return from + (size_t)(random_unit(state) * (double)(n_bytes - from));
