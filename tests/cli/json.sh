@@ -89,14 +89,14 @@ write mls-project mls_project mls project knot.ply -o clean.ply
 write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
 write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
 write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
-write render render render knot.ply -o knot.exr --aov all
-write render-octree render_octree render knot.cot -o lod.exr --error 2
+write render render render knot.ply -o knot.exr --aov all --size 512x512
+write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
 write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
 write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
 write render-hybrid render_hybrid render tent.chy -o tent.exr
 write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
-write render-auto render render knot.ply -o auto.exr --method auto --zoom 20
-write render-other render render thin.ply -o other.exr --method disc --samples 2 --epsilon 2x
+write render-auto render render knot.ply -o auto.exr --method auto --zoom 20 --size 256x256
+write render-other render render thin.ply -o other.exr --size 256x256 --method disc --samples 2 --epsilon 2x
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 write verify verify verify thinner.ply --size 160x120
@@ -109,7 +109,7 @@ write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 -
 write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
 write explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
 write explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
-write chart chart chart -o chart --quick
+write chart chart chart -o chart --quick --only representations
 write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
 cp runs/bench-old.json old.json
 write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
@@ -125,7 +125,7 @@ unseen="device.name device.platform device.version device.driver device.is_cpu d
   device.rounds_correctly device.compute_units device.memory_bytes"
 if [[ $has_zstd -eq 1 ]]; then
   write layer layer layer knot.ply -o knot.lpc
-  write render-layers render_layers render knot.lpc -o layers.exr --error 4
+  write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check
 else
