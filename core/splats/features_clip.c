@@ -135,12 +135,8 @@ conic_status conic_creases_clip(conic_context *context, const conic_creases *cre
     conic_clip clip;
     if (!clip_vertex(split, creases, &r, cutoff, vertex, &clip))
       continue;
-    if (points->n_clips == capacity) {
-      void *clips = points->clips;
-      capacity += capacity / 2 + 1024;
-      status = conic_memory_grow(context, &clips, points->n_clips, capacity, sizeof *points->clips);
-      points->clips = clips;
-    }
+    status = conic_memory_reserve(context, &points->clips, points->n_clips, points->n_clips + 1, &capacity,
+                                  sizeof *points->clips);
     if (status == CONIC_OK)
       points->clips[points->n_clips++] = clip;
   }

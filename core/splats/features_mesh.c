@@ -140,15 +140,9 @@ static size_t run_of(const spoke *spokes, size_t i, size_t n) {
 }
 
 static conic_status add_crease(splitting *s, uint32_t wedge, uint32_t mate, uint32_t inside) {
-  if (s->n_creases == s->crease_capacity) {
-    void *creases = s->creases;
-    size_t capacity = s->n_creases + s->n_creases / 2 + 1024;
-    conic_status status = conic_memory_grow(s->context, &creases, s->n_creases, capacity, sizeof *s->creases);
-    if (status != CONIC_OK)
-      return status;
-    s->creases = creases;
-    s->crease_capacity = capacity;
-  }
+  if (conic_memory_reserve(s->context, &s->creases, s->n_creases, s->n_creases + 1, &s->crease_capacity,
+                           sizeof *s->creases) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   s->creases[s->n_creases++] = (conic_crease){wedge, mate, inside};
   return CONIC_OK;
 }

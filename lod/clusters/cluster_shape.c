@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/memory.h"
 #include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/least_ellipse.h"
@@ -118,10 +119,8 @@ void conic_cluster_settle_planes(conic_sampler *s) {
 /* --- what must be covered --- */
 
 static conic_status grow_supports(conic_sampler *s) {
-  void *supports = s->supports;
-  conic_status status =
-      conic_sampler_grow(s, &supports, s->n_supports, s->n_supports + 1, &s->supports_room, sizeof *s->supports);
-  s->supports = supports;
+  conic_status status = conic_memory_reserve(s->context, &s->supports, s->n_supports, s->n_supports + 1,
+                                             &s->supports_room, sizeof *s->supports);
   return status;
 }
 
@@ -204,7 +203,6 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
 
 /* Lists the supports of this pass site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
-  void *of_sites = s->of_sites;
   size_t begin = s->n_sorted, most = 0;
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
@@ -214,15 +212,12 @@ static conic_status sort_supports(conic_sampler *s) {
     begin += site->n_supports;
     site->first_support = begin;
   }
-  conic_status status =
-      conic_sampler_grow(s, &of_sites, s->n_sorted, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
-  s->of_sites = of_sites;
+  conic_status status = conic_memory_reserve(s->context, &s->of_sites, s->n_sorted, s->n_supports, &s->of_sites_room,
+                                             sizeof *s->of_sites);
   size_t points_room = s->points_room;
   for (int i = 0; i < 2 && status == CONIC_OK; i++) {
-    void *points = s->points[i];
     s->points_room = points_room;
-    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points[i]);
-    s->points[i] = points;
+    status = conic_memory_reserve(s->context, &s->points[i], 0, most, &s->points_room, sizeof *s->points[i]);
   }
   for (; s->n_sorted < s->n_supports && status == CONIC_OK; s->n_sorted++)
     s->of_sites[--s->sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;
