@@ -7,6 +7,7 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
@@ -301,12 +302,6 @@ static conic_status check_indices(const obj_reader *reader) {
   return CONIC_OK;
 }
 
-static void normalize(double vector[3]) {
-  double length = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
-  for (int axis = 0; axis < 3; axis++)
-    vector[axis] = length > 0.0 && length - length == 0.0 ? vector[axis] / length : 0.0;
-}
-
 /* A vertex's normal is the sum over all corners, in the file's order, made unit; zero where no corner names one. */
 static conic_status gather_normals(obj_reader *reader) {
   conic_splats *points = &reader->builder.model->points;
@@ -322,7 +317,7 @@ static conic_status gather_normals(obj_reader *reader) {
     for (int axis = 0; axis < 3; axis++)
       sums[reader->corners[i].i_vertex][axis] += reader->normals[reader->corners[i].i_normal][axis];
   for (size_t i = 0; i < points->count; i++) {
-    normalize(sums[i]);
+    conic_normalize(sums[i]);
     for (int axis = 0; axis < 3; axis++)
       points->normal[axis][i] = (float)sums[i][axis];
   }

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/splats/features.h"
 #include "core/splats/splats_gather.h"
 
@@ -34,20 +35,13 @@ typedef struct splitting {
 } splitting;
 
 static void find_normal(const conic_model *model, const uint32_t triangle[3], double normal[3]) {
-  double edges[2][3], squared = 0.0;
+  double edges[2][3];
   for (int i = 0; i < 2; i++)
     for (int axis = 0; axis < 3; axis++)
       edges[i][axis] =
           (double)model->points.position[axis][triangle[i + 1]] - (double)model->points.position[axis][triangle[0]];
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, after = (axis + 2) % 3;
-    normal[axis] = edges[0][next] * edges[1][after] - edges[0][after] * edges[1][next];
-    squared += normal[axis] * normal[axis];
-  }
-  double length = sqrt(squared);
-  int is_good = length > 0.0 && length * 0.0 == 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = is_good ? normal[axis] / length : 0.0;
+  conic_cross(edges[0], edges[1], normal);
+  conic_normalize(normal);
 }
 
 /* A counting sort of the corners by vertex; starts[i + 1] is first where the next one of vertex i goes. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/least_ellipse.h"
@@ -84,7 +85,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
     sides[1][axis] = t->at[2][axis] - t->at[0][axis];
   }
   conic_cross(sides[0], sides[1], cross);
-  double share = sqrt(conic_dot(cross, cross)) / 6.0;
+  double share = conic_length(cross) / 6.0;
   for (int corner = 0; corner < 3; corner++) {
     conic_site *site = &s->sites[t->owners[corner]];
     if (site->is_settled)
@@ -107,7 +108,7 @@ void conic_cluster_settle_planes(conic_sampler *s) {
     conic_site *site = &s->sites[i];
     if (site->is_settled)
       continue;
-    double length = sqrt(conic_dot(site->normal, site->normal));
+    double length = conic_length(site->normal);
     for (int axis = 0; axis < 3; axis++)
       site->normal[axis] = length > 0.0 ? site->normal[axis] / length : site->facing[axis];
     if (!(conic_dot(site->normal, site->normal) > 0.0))

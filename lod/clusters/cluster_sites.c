@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;
@@ -20,7 +21,7 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
     conic_mesh_corner(&s->job->mesh->mesh, face, (corner + 1) % 3, b);
     for (int axis = 0; axis < 3; axis++)
       b[axis] -= a[axis];
-    double length = sqrt(conic_dot(b, b));
+    double length = conic_length(b);
     longest = length > longest ? length : longest;
   }
   double sides = longest / (lattice_step * conic_spacing_at(s, depth));

@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/cluster_shape.h"
@@ -56,7 +57,7 @@ static conic_status add_piece(const nodes_pass *pass, node_worker *w, const coni
     v[axis] = (double)surfel->tangent_v[axis];
   }
   conic_cross(u, v, p->normal);
-  double length = sqrt(conic_dot(p->normal, p->normal));
+  double length = conic_length(p->normal);
   for (int axis = 0; axis < 3; axis++)
     p->normal[axis] /= length;
   p->area = CONIC_PI * cutoff * cutoff * length;
