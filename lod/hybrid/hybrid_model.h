@@ -7,7 +7,7 @@
 #include "core/files/mapping.h"
 #include "lod/clusters/cluster_border.h"
 
-/* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
+/* The records of a .chy file (docs/reference/format-chy.md), as they are in memory too. */
 
 /* One way to draw a cluster, or a node. */
 typedef struct conic_hybrid_level {
