@@ -31,34 +31,37 @@ powers='(exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erf|erfc|tgamm
 locale='strtod|strtof|strtold|atof|sscanf|fscanf|scanf'
 forbidden="\\b($output|$process|$memory|$angles|$powers|$locale)\\s*\\(|\\bf(printf|puts|putc|write)\\s*\\([^;]*\\bstd(out|err)\\b|\\bstderr\\b"
 
-# Prints FILE with comments and texts blanked, lines as they were; includes keep theirs.
-code_of() {
-  perl -0777 -pe '
+# Copies the sources of FOLDER in the tree TREE to $work/code, with comments and texts blanked, lines as they were;
+# includes keep theirs.
+copy_code() { # TREE, FOLDER
+  local sources
+  rm -rf "$work/code"
+  mkdir -p "$work/code"
+  mapfile -t sources < <(cd "$1" && find "$2" -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' \) | sort)
+  [[ ${#sources[@]} -gt 0 ]] || return 0
+  (cd "$1" && cp --parents "${sources[@]}" "$work/code")
+  (cd "$work/code" && perl -0777 -i -pe '
     s{(/\*.*?\*/|//[^\n]*)|(#\s*include\s*"[^"\n]*")|"(?:\\.|[^"\\\n])*"|\x27(?:\\.|[^\x27\\\n])+\x27}
-     {defined $2 ? $2 : defined $1 ? "\n" x ($1 =~ tr/\n//) : "\"\""}gse' "$1"
-}
-
-sources_in() { # FOLDER
-  find "$1" -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' \) 2> /dev/null | sort
+     {defined $2 ? $2 : defined $1 ? "\n" x ($1 =~ tr/\n//) : "\"\""}gse' "${sources[@]}")
 }
 
 # Prints every breach in the tree FOLDER.
 breaches() {
   local folder file included allowed
   for folder in "${!may_include[@]}"; do
+    [[ -d $1/$folder ]] || continue
+    copy_code "$1" "$folder"
     allowed=" ${folder#include/} ${may_include[$folder]} "
-    for file in $(sources_in "$1/$folder"); do
-      while IFS= read -r included; do
-        [[ $allowed == *" ${included%%/*} "* ]] || echo "${file#"$1/"} may not include $included"
-      done < <(code_of "$file" | sed -nE 's/^\s*#\s*include\s*["<]([a-z]+\/[^">]+)[">].*/\1/p' |
-        grep -E "^(conic|core|raster|oracle|lod|surface|opencl|cli|bench|tests|examples)/" || true)
-      case $folder/${file##*/} in
-        include/conic/* | core/context.c) ;;
-        core/* | raster/* | oracle/* | lod/* | surface/* | opencl/*)
-          code_of "$file" | grep -nE "$forbidden" | sed "s|^|${file#"$1/"}:|" || true
-          ;;
-      esac
-    done
+    while IFS=: read -r file included; do
+      [[ $allowed == *" ${included%%/*} "* ]] || echo "$file may not include $included"
+    done < <(cd "$work/code" && grep -rE '^\s*#\s*include\s*["<][a-z]+/[^">]+[">]' . |
+      sed -nE 's/^\.\/([^:]*):\s*#\s*include\s*["<]([^">]+)[">].*/\1:\2/p' |
+      grep -E ":(conic|core|raster|oracle|lod|surface|opencl|cli|bench|tests|examples)/" || true)
+    case $folder in
+      core | raster | oracle | lod | surface | opencl)
+        (cd "$work/code" && grep -rnE --exclude=context.c "$forbidden" . | sed 's/^\.\///' || true)
+        ;;
+    esac
   done
 }
 
