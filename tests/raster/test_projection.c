@@ -31,7 +31,7 @@ static contour sample_contour(const fixture *f, const conic_footprint *footprint
 }
 
 /* The unit normal of the splat's axes, on the side of the viewer. */
-static void check_normal(const fixture *f, const conic_surface *surface) {
+static void check_normal(const fixture *f, const conic_projected_surface *surface) {
   double u[3], v[3], n[3], length2 = 0.0, away = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)f->splats.tangent_u[axis][0];
