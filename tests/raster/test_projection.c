@@ -31,7 +31,7 @@ static contour sample_contour(const fixture *f, const conic_footprint *footprint
 }
 
 /* The unit normal of the splat's axes, on the side of the viewer. */
-static void check_normal(const fixture *f, const conic_surface *surface) {
+static void check_normal(const fixture *f, const conic_projected_surface *surface) {
   double u[3], v[3], n[3], length2 = 0.0, away = 0.0;
   for (int axis = 0; axis < 3; axis++) {
     u[axis] = (double)f->splats.tangent_u[axis][0];
@@ -51,7 +51,7 @@ static void check_normal(const fixture *f, const conic_surface *surface) {
 static int project_one(fixture *f, conic_footprint *footprint, conic_box *box) {
   conic_view view;
   conic_chunk chunk;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected projected = {1, 1, &chunk, footprint, box, &surface, &ray};
   f->options.prefilter = 0.0f;
