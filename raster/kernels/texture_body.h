@@ -1,7 +1,8 @@
 /* The slot `texture` in lanes, a pixel a lane: the operations of core/image/texture_sample.c in the same order, so that
- * each pixel's sums run over its texels as they do there. Included by tile_kernels_body.h. */
+ * each pixel's sums run over its texels as they do there. Included by raster_kernels_body.h. */
 #include "core/image/texture_filter.h"
 #include "core/image/texture_levels.h"
+#include "core/lanes/lanes_store.h"
 #include "raster/tiles/texture_places.h"
 
 /* A texture's coordinates and the footprints' variances, in texels² of the first level, in as many pixels as there are
