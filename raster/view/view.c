@@ -58,7 +58,7 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
 }
 
 /* Half a pixel a standard deviation; for `auto`, whose other formula follows thin splats further, an eighth
- * (docs/picture.md, Auto). */
+ * (docs/reference/picture.md, Auto). */
 static float thin_variance(const conic_render_options *options) {
   float h = options->prefilter;
   if (options->method != CONIC_METHOD_AUTO)
@@ -66,7 +66,7 @@ static float thin_variance(const conic_render_options *options) {
   return (h > 1.0f ? h : 1.0f) / 64.0f;
 }
 
-/* The eye, and from where on float tells which side of it a plane is on (raster/project/project_body.h). */
+/* The eye, and from where on float tells which side of it a plane is on (raster/kernels/project_body.h). */
 static void place_eye(conic_view *view) {
   const double(*m)[3] = (const double(*)[3])view->rotation;
   double reach = 0.0, farthest_from_rotation = 0.0;
