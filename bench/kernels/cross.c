@@ -1,9 +1,9 @@
 #include "bench/kernels/cross.h"
 
 /* A family more is a line here. */
-static int (*const families[])(cross *c) = {cross_splats, cross_triangles, cross_texture, cross_surface, cross_octree};
+static int (*const families[])(cross *c) = {cli_cross_splats, cli_cross_triangles, cli_cross_texture, cli_cross_surface, cli_cross_octree};
 
-int cross_all(uint64_t seed, int is_bench) {
+int cli_cross_all(uint64_t seed, int is_bench) {
   cross c = {.seed = seed, .is_bench = is_bench};
   if (is_bench)
     printf("%-15s  %-15s  %-6s  %22s  %8s\n", "slot", "variant", "isa", "time", "scalar");

@@ -29,11 +29,11 @@ typedef struct cross {
 } cross;
 
 /* A family's slots; each returns how much failed. */
-int cross_splats(cross *c);
-int cross_triangles(cross *c);
-int cross_texture(cross *c);
-int cross_surface(cross *c);
-int cross_octree(cross *c);
+int cli_cross_splats(cross *c);
+int cli_cross_triangles(cross *c);
+int cli_cross_texture(cross *c);
+int cli_cross_surface(cross *c);
+int cli_cross_octree(cross *c);
 
 enum { CROSS_GUARD = 256, CROSS_PATTERN = 0xa5, CROSS_MOST_ARENAS = 32 };
 

@@ -8,6 +8,6 @@
 
 /* Prints the seed and compares, or compares less and prints times, which end where something failed. Returns how much
  * failed. */
-int cross_all(uint64_t seed, int is_bench);
+int cli_cross_all(uint64_t seed, int is_bench);
 
 #endif

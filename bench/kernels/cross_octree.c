@@ -309,7 +309,7 @@ static void try_choose(cross *c) {
   fixture_close(&f);
 }
 
-int cross_octree(cross *c) {
+int cli_cross_octree(cross *c) {
   try_choose(c);
   try_cover(c);
   try_fit(c);

@@ -508,7 +508,7 @@ static void bench_all(cross *c, fixture *f) {
     }
 }
 
-int cross_splats(cross *c) {
+int cli_cross_splats(cross *c) {
   fixture f = fixture_open(1);
   if (c->is_bench)
     bench_all(c, &f);

@@ -73,7 +73,7 @@ static void try_slots(cross *c, size_t n, int weight, double neglect, int degree
     cross_close(&desks[i]->memory);
 }
 
-int cross_surface(cross *c) {
+int cli_cross_surface(cross *c) {
   static const size_t counts[] = {1, 7, 8, 9, 26, 93};
   if (c->is_bench)
     try_slots(c, 64, CONIC_WEIGHT_GAUSS, 2.0, 3, c->seed);

@@ -107,7 +107,7 @@ static void try_texture(cross *c, conic_texture *texture, uint64_t state) {
   }
 }
 
-int cross_texture(cross *c) {
+int cli_cross_texture(cross *c) {
   static const int sizes[][2] = {{512, 512}, {1, 1}, {1, 64}, {64, 1}, {2, 2}, {37, 20}, {5, 64}, {300, 7}, {20000, 2}};
   conic_context *context = check_context(1);
   for (int i = 0; i < (c->is_bench ? 1 : (int)(sizeof sizes / sizeof *sizes)); i++)

@@ -174,7 +174,7 @@ static conic_triangle_frame prepare(cross *c, fixture *f, const conic_triangles 
   return frame;
 }
 
-int cross_triangles(cross *c) {
+int cli_cross_triangles(cross *c) {
   static const int tiles[] = {64, 8, 32};
   fixture f = fixture_open(1);
   fixture_camera(&f, 171, 103, 110.0);

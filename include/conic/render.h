@@ -11,6 +11,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 #include "conic/image.h"
+#include "conic/isa.h"
 #include "conic/splats.h"
 
 #ifdef __cplusplus
