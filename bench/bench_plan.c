@@ -7,7 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/suggest.h"
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";
 static const char quick_scenes[] = "sphere-100k,sphere-1M,mixed";

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 
 /* P.D: two numbers of up to four digits. */
 static int is_place(const char *text) {

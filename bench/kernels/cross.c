@@ -1,7 +1,8 @@
 #include "bench/kernels/cross.h"
 
 /* A family more is a line here. */
-static int (*const families[])(cross *c) = {cli_cross_splats, cli_cross_triangles, cli_cross_texture, cli_cross_surface, cli_cross_octree};
+static int (*const families[])(cross *c) = {cli_cross_splats, cli_cross_triangles, cli_cross_texture, cli_cross_surface,
+                                            cli_cross_octree};
 
 int cli_cross_all(uint64_t seed, int is_bench) {
   cross c = {.seed = seed, .is_bench = is_bench};

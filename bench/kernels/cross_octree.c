@@ -79,7 +79,7 @@ static conic_node_disc node_over(const conic_discs *discs, size_t begin, int i) 
 }
 
 /* Finds what is near a node, up to `reach` about its centre. */
-static void find_near(const cross_tables *tables, cover_desk *s, const conic_node_disc *node, float reach) {
+static void look_near(const cross_tables *tables, cover_desk *s, const conic_node_disc *node, float reach) {
   for (int axis = 0; axis < 3; axis++) {
     s->near.center[axis] = node->center[axis];
     s->near.half[axis] = reach;
@@ -91,7 +91,7 @@ static void run_find_near(const cross_tables *tables, cross_desk *desk) {
   cover_desk *s = (cover_desk *)(void *)desk;
   for (int i = 0; i < N_OVER; i++) {
     conic_node_disc node = node_over(&s->discs, (size_t)(i * 37) % (N_DISCS - 8), i);
-    find_near(tables, s, &node, 0.06f * (float)(i % 50));
+    look_near(tables, s, &node, 0.06f * (float)(i % 50));
     s->n_near[i] = s->near.blocks.count;
   }
 }
@@ -101,11 +101,11 @@ static void run_cover(const cross_tables *tables, cross_desk *desk) {
   for (int i = 0; i < N_OVER; i++) {
     size_t begin = (size_t)(i * 37) % (N_DISCS - 8), end = begin + 2 + (size_t)(i % 6);
     conic_node_disc node = node_over(&s->discs, begin, i);
-    find_near(tables, s, &node, 3.0f);
+    look_near(tables, s, &node, 3.0f);
     CHECK(s->near.blocks.count == (N_DISCS + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK);
     s->errors[0][i] = tables->octree.cover(&s->samples, &s->discs, begin, end, &s->near, &node);
     s->errors[1][i] = tables->octree.cover(&s->samples, &s->discs, 0, N_DISCS, &s->near, &node);
-    find_near(tables, s, &node, 0.06f * (float)(i % 5));
+    look_near(tables, s, &node, 0.06f * (float)(i % 5));
     s->errors[2][i] = tables->octree.cover(&s->samples, &s->discs, begin, end, &s->near, &node);
   }
 }

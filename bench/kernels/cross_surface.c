@@ -14,7 +14,7 @@ typedef struct surface_desk {
 
 static const double q[3] = {0.05, -0.1, 0.2};
 
-static surface_desk *open_desk(size_t n, int weight, double neglect, int degree, uint64_t seed) {
+static surface_desk *open_sums(size_t n, int weight, double neglect, int degree, uint64_t seed) {
   surface_desk *d = cross_calloc(sizeof *d);
   size_t bytes = (n + 7) / 8 * 8 * sizeof(double);
   for (int axis = 0; axis < 3; axis++) {
@@ -66,7 +66,7 @@ static void try_slots(cross *c, size_t n, int weight, double neglect, int degree
                               {"surface factor", variant, run_factor, "neighbour", (double)n}};
   snprintf(variant, sizeof variant, "w %d, d %d, %zu", weight, degree, n);
   for (int i = 0; i < c->n_tables; i++)
-    desks[i] = open_desk(n, weight, neglect, degree, seed);
+    desks[i] = open_sums(n, weight, neglect, degree, seed);
   for (size_t i = 0; i < sizeof slots / sizeof slots[0]; i++)
     cross_try(c, &slots[i], (cross_desk **)(void *)desks);
   for (int i = 0; i < c->n_tables; i++)

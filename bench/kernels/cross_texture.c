@@ -12,7 +12,7 @@ typedef struct texture_desk {
   float (*colors)[3][CONIC_BLOCK_PIXELS];
 } texture_desk;
 
-static conic_texture *make_texture(conic_context *context, int width, int height, conic_texture_wrap wrap) {
+static conic_texture *random_texture(conic_context *context, int width, int height, conic_texture_wrap wrap) {
   conic_image image;
   conic_texture *texture;
   uint64_t state = (uint64_t)width * 71 + (uint64_t)height;
@@ -54,7 +54,7 @@ static void place_block(uint64_t *state, double texel, conic_texture_places *p) 
   *state ^= shape << 1 | 1;
 }
 
-static void spoil(uint64_t *state, conic_texture_places *p) {
+static void spoil_places(uint64_t *state, conic_texture_places *p) {
   static const float specials[] = {NAN, INFINITY, -INFINITY, 0.0f, -0.0f, 1e-42f, 1e6f, -1e6f, 1e30f, 3e38f, 1.0f};
   for (int i = 0; i < 8; i++) {
     float(*values)[CONIC_BLOCK_PIXELS] = i % 3 == 0 ? p->uv : i % 3 == 1 ? p->along : p->across;
@@ -90,7 +90,7 @@ static void try_texture(cross *c, conic_texture *texture, uint64_t state) {
     slot.n_units += __builtin_popcount(pixels[i]);
     place_block(&state, 1.0 / (width > height ? width : height), &places[i]);
     if (i % 7 == 0)
-      spoil(&state, &places[i]);
+      spoil_places(&state, &places[i]);
   }
   for (int i = 0; i < c->n_tables; i++) {
     desks[i] = cross_calloc(sizeof *desks[i]);
@@ -112,7 +112,7 @@ int cli_cross_texture(cross *c) {
   conic_context *context = check_context(1);
   for (int i = 0; i < (c->is_bench ? 1 : (int)(sizeof sizes / sizeof *sizes)); i++)
     for (int wrap = 0; wrap < (c->is_bench ? 1 : 2); wrap++) {
-      conic_texture *texture = make_texture(context, sizes[i][0], sizes[i][1], (conic_texture_wrap)wrap);
+      conic_texture *texture = random_texture(context, sizes[i][0], sizes[i][1], (conic_texture_wrap)wrap);
       try_texture(c, texture, c->seed + (uint64_t)(2 * i + wrap));
       conic_texture_destroy(texture);
     }

@@ -22,7 +22,7 @@ typedef struct triangle_desk {
 
 enum { VERTICES, TILE, KEPT, SUMS };
 
-static triangle_desk *open_desk(const conic_triangle_frame *frame, const conic_finish *finish) {
+static triangle_desk *open_tile(const conic_triangle_frame *frame, const conic_finish *finish) {
   triangle_desk *d = cross_calloc(sizeof *d);
   d->frame = frame;
   d->finish = finish;
@@ -35,7 +35,7 @@ static triangle_desk *open_desk(const conic_triangle_frame *frame, const conic_f
 }
 
 /* Vertices with special values in them. */
-static void spoil(conic_triangles *t, uint64_t seed) {
+static void spoil_vertices(conic_triangles *t, uint64_t seed) {
   static const float specials[] = {NAN, INFINITY, -INFINITY, 0.0f, -0.0f, 1e-42f, 1e30f, -1e30f, 1e-20f, 3e38f};
   uint64_t state = seed;
   for (size_t i = 0; i < t->n_vertices; i++)
@@ -146,7 +146,7 @@ static void try_frame(cross *c, const conic_triangle_frame *frame, const conic_f
   triangle_desk *desks[CONIC_N_ISAS];
   uint64_t n_fragments = 0;
   for (int i = 0; i < c->n_tables; i++)
-    desks[i] = open_desk(frame, finish);
+    desks[i] = open_tile(frame, finish);
   try_vertices(c, desks);
   for (size_t i_tile = c->is_bench ? frame->n_tiles / 2 : 0; i_tile < frame->n_tiles; i_tile++) {
     n_fragments += try_tile(c, desks, i_tile);
@@ -159,7 +159,7 @@ static void try_frame(cross *c, const conic_triangle_frame *frame, const conic_f
 }
 
 /* A frame of them in tiles of the size, by plain C. */
-static conic_triangle_frame prepare(cross *c, fixture *f, const conic_triangles *t, conic_view *view, int tile) {
+static conic_triangle_frame prepare_frame(cross *c, fixture *f, const conic_triangles *t, conic_view *view, int tile) {
   static float nothing;
   conic_triangle_frame frame;
   conic_splats none;
@@ -183,8 +183,8 @@ int cli_cross_triangles(cross *c) {
     conic_view view;
     conic_triangles t = triangles_wild(&f, 1500);
     if (i == 2)
-      spoil(&t, c->seed);
-    conic_triangle_frame frame = prepare(c, &f, &t, &view, tiles[i]);
+      spoil_vertices(&t, c->seed);
+    conic_triangle_frame frame = prepare_frame(c, &f, &t, &view, tiles[i]);
     try_frame(c, &frame, &finish);
     conic_triangle_frame_release(f.context, &frame);
     conic_triangles_release(f.context, &t);

@@ -2,7 +2,7 @@
 #ifndef CONIC_OCTREE_KERNELS_H
 #define CONIC_OCTREE_KERNELS_H
 
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 #include "lod/octree/octree_cover.h"
 #include "lod/octree/octree_fit.h"
 #include "lod/octree/octree_view.h"

@@ -4,6 +4,6 @@
 #include "lod/octree/octree_put_body.h"
 #include "lod/octree/octree_reach_body.h"
 
-void CONIC_KERNELS_OF_THIS_ISA(conic_octree_kernels)(conic_octree_kernels *kernels) {
+CONIC_FILL_KERNELS(conic_octree_kernels) {
   *kernels = (conic_octree_kernels){find_cover, find_near, add_reach, choose_ratio, measure, put};
 }

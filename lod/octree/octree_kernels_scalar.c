@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "lod/octree/octree_measure_body.h"
 #include "lod/octree/outline_corners.h"
 
@@ -17,13 +18,13 @@ typedef struct flat_node {
   float u[3], v[3], major, minor, gap;
 } flat_node;
 
-static float dot(const float a[3], const float b[3]) {
+static float dot_floats(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
 /* Unit vector; returns the length it had. */
-static float normalize(const float a[3], float unit[3]) {
-  float length = sqrtf(dot(a, a)), scale = length > 0.0f ? 1.0f / length : 0.0f;
+static float unit_of(const float a[3], float unit[3]) {
+  float length = sqrtf(dot_floats(a, a)), scale = length > 0.0f ? 1.0f / length : 0.0f;
   for (int axis = 0; axis < 3; axis++)
     unit[axis] = a[axis] * scale;
   return length;
@@ -38,29 +39,30 @@ static int reaches_into(float *const center[3], float *const half[3], size_t i, 
 
 /* How far disc k, seen along the node's normal, lets the sample at (x, y) of its plane count as off it: along the line
  * to its centre, from its outline; inside, it is known from how much larger the disc could be. */
-static float count_error(const flat_node *node, const conic_discs *discs, size_t k, float x, float y) {
+static float error_of_sample(const flat_node *node, const conic_discs *discs, size_t k, float x, float y) {
   float apart[3], u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
     apart[axis] = discs->center[axis][k] - node->disc->center[axis];
     u[axis] = discs->u[axis][k];
     v[axis] = discs->v[axis][k];
   }
-  float ux = dot(u, node->u), uy = dot(u, node->v), vx = dot(v, node->u), vy = dot(v, node->v);
+  float ux = dot_floats(u, node->u), uy = dot_floats(u, node->v), vx = dot_floats(v, node->u),
+        vy = dot_floats(v, node->v);
   float determinant = ux * vy - uy * vx, sum = (ux * ux + uy * uy) + (vx * vx + vy * vy);
   float root = sqrtf(sum), scale = 1.0f / determinant, area = fabsf(determinant);
   int is_flat = sum * 1e-3f < area; /* one seen from its edge counts by its centre */
   float point = 1.0f / (root * 1e-3f + 1e-30f);
   const float inverse[4] = {is_flat ? vy * scale : point, is_flat ? -vx * scale : 0.0f, is_flat ? -uy * scale : 0.0f,
                             is_flat ? ux * scale : point};
-  float uz = is_flat ? dot(u, node->disc->n) : 0.0f, vz = is_flat ? dot(v, node->disc->n) : 0.0f;
+  float uz = is_flat ? dot_floats(u, node->disc->n) : 0.0f, vz = is_flat ? dot_floats(v, node->disc->n) : 0.0f;
   float slope_x = uz * inverse[0] + vz * inverse[2], slope_y = uz * inverse[1] + vz * inverse[3];
   float lift = sqrtf(slope_x * slope_x + slope_y * slope_y) * node->gap, minor = is_flat ? area / root : 0.0f;
 
-  float dx = x - dot(apart, node->u), dy = y - dot(apart, node->v);
+  float dx = x - dot_floats(apart, node->u), dy = y - dot_floats(apart, node->v);
   float a = dx * inverse[0] + dy * inverse[1], b = dx * inverse[2] + dy * inverse[3];
   float out = sqrtf(a * a + b * b), inside = 1.0f / (out > 1.0f ? out : 1.0f), beyond = 1.0f - inside;
   float outside2 = (dx * dx + dy * dy) * (beyond * beyond);
-  float z = inside * (a * uz + b * vz) + dot(apart, node->disc->n), distance = sqrtf(outside2 + z * z);
+  float z = inside * (a * uz + b * vz) + dot_floats(apart, node->disc->n), distance = sqrtf(outside2 + z * z);
   float within = (1.0f - out > 0.0f ? 1.0f - out : 0.0f) * minor, rest = node->gap - within;
   float around = (distance + (rest > 0.0f ? rest : 0.0f)) + (out < 1.0f ? lift : 0.0f);
   float weighted = distance * CONIC_COVER_WEIGHT;
@@ -68,7 +70,8 @@ static float count_error(const flat_node *node, const conic_discs *discs, size_t
 }
 
 /* The error of the sample at (x, y), or what is `enough`, over all discs that can lower it below `nearest`. */
-static float search(const flat_node *node, const conic_discs *discs, float x, float y, float nearest, float enough) {
+static float lower_sample(const flat_node *node, const conic_discs *discs, float x, float y, float nearest,
+                          float enough) {
   reach_box box;
   for (int axis = 0; axis < 3; axis++)
     box.center[axis] = node->disc->center[axis] + (x * node->u[axis] + y * node->v[axis]);
@@ -77,7 +80,7 @@ static float search(const flat_node *node, const conic_discs *discs, float x, fl
     if (!reaches_into(discs->block_center, discs->block_half, block, &box))
       continue;
     for (size_t k = block * CONIC_DISC_BLOCK; k < (block + 1) * CONIC_DISC_BLOCK; k++) {
-      float error = reaches_into(discs->center, discs->half, k, &box) ? count_error(node, discs, k, x, y) : nearest;
+      float error = reaches_into(discs->center, discs->half, k, &box) ? error_of_sample(node, discs, k, x, y) : nearest;
       nearest = error < nearest ? error : nearest;
     }
   }
@@ -85,20 +88,20 @@ static float search(const flat_node *node, const conic_discs *discs, float x, fl
 }
 
 /* First the node's own discs lower all samples' errors; then of the worst, one by one, all that can. */
-static float find_cover(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
-                        conic_near_discs *near, const conic_node_disc *disc) {
+static float plain_cover(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
+                         conic_near_discs *near, const conic_node_disc *disc) {
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES], nearest[CONIC_DISC_SAMPLES], enough = disc->enough;
   flat_node node = {.disc = disc};
   (void)near;
-  node.major = normalize(disc->u, node.u);
-  node.minor = normalize(disc->v, node.v);
+  node.major = unit_of(disc->u, node.u);
+  node.minor = unit_of(disc->v, node.v);
   node.gap = (float)CONIC_DISC_GAP * (node.major > node.minor ? node.major : node.minor);
   for (int i = 0; i < CONIC_DISC_SAMPLES; i++) {
     x[i] = samples->x[i] * node.major;
     y[i] = samples->y[i] * node.minor;
     nearest[i] = 1e30f;
     for (size_t k = begin; k < end && nearest[i] > enough; k++) {
-      float error = count_error(&node, discs, k, x[i], y[i]);
+      float error = error_of_sample(&node, discs, k, x[i], y[i]);
       nearest[i] = error < nearest[i] ? error : nearest[i];
     }
   }
@@ -108,12 +111,12 @@ static float find_cover(const conic_disc_samples *samples, const conic_discs *di
       worst = nearest[i] > nearest[worst] ? i : worst;
     if (!(nearest[worst] > enough))
       return enough;
-    nearest[worst] = search(&node, discs, x[worst], y[worst], nearest[worst], enough);
+    nearest[worst] = lower_sample(&node, discs, x[worst], y[worst], nearest[worst], enough);
     enough = nearest[worst] > enough ? nearest[worst] : enough;
   }
 }
 
-static void find_near(const conic_discs *discs, conic_near_discs *near) {
+static void plain_find_near(const conic_discs *discs, conic_near_discs *near) {
   conic_block_list *list = &near->blocks;
   reach_box box;
   memcpy(box.center, near->center, sizeof box.center);
@@ -140,12 +143,8 @@ typedef struct framed_leaf {
   double p[3], u[3], v[3]; /* from the node's position */
 } framed_leaf;
 
-static double dot3(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Whether (a + b)² ≤ (1 + 1/8) a² + (1 + 8) b² is no more than c². */
-static int is_within(double a2, double b2, double c) {
+static int is_held(double a2, double b2, double c) {
   return a2 * 1.125 + b2 * 9.0 <= c * c;
 }
 
@@ -153,14 +152,14 @@ static double raised(double value, double by) {
   return by > value ? by : value;
 }
 
-static void add_outline(const framed_leaf *leaf, double cutoff, const conic_node_frame *frame, double before,
+static void raise_reach(const framed_leaf *leaf, double cutoff, const conic_node_frame *frame, double before,
                         conic_leaf_reach *reach) {
   const double across = 1.0 / frame->ratio;
-  double x = dot3(leaf->p, frame->u), y = dot3(leaf->p, frame->v) * across;
-  double ux = dot3(leaf->u, frame->u), uy = dot3(leaf->u, frame->v) * across;
-  double vx = dot3(leaf->v, frame->u), vy = dot3(leaf->v, frame->v) * across;
+  double x = conic_dot(leaf->p, frame->u), y = conic_dot(leaf->p, frame->v) * across;
+  double ux = conic_dot(leaf->u, frame->u), uy = conic_dot(leaf->u, frame->v) * across;
+  double vx = conic_dot(leaf->v, frame->u), vy = conic_dot(leaf->v, frame->v) * across;
   double square = x * x + y * y, greatest2 = 0.0;
-  if (is_within(square, cutoff * cutoff * (ux * ux + uy * uy + vx * vx + vy * vy), before))
+  if (is_held(square, cutoff * cutoff * (ux * ux + uy * uy + vx * vx + vy * vy), before))
     return;
   for (int k = 0; k < CONIC_OUTLINE_CORNERS; k++) {
     double a = cutoff * (conic_corners_x[k] * ux + conic_corners_y[k] * vx);
@@ -170,35 +169,35 @@ static void add_outline(const framed_leaf *leaf, double cutoff, const conic_node
   reach->reach = raised(reach->reach, sqrt(greatest2));
 }
 
-static void add_radius(const framed_leaf *leaf, double cutoff, double before, conic_leaf_reach *reach) {
-  double square = dot3(leaf->p, leaf->p), uu = dot3(leaf->u, leaf->u);
-  double vv = dot3(leaf->v, leaf->v), uv = dot3(leaf->u, leaf->v);
-  if (is_within(square, cutoff * cutoff * (uu + vv), before))
+static void raise_radius(const framed_leaf *leaf, double cutoff, double before, conic_leaf_reach *reach) {
+  double square = conic_dot(leaf->p, leaf->p), uu = conic_dot(leaf->u, leaf->u);
+  double vv = conic_dot(leaf->v, leaf->v), uv = conic_dot(leaf->u, leaf->v);
+  if (is_held(square, cutoff * cutoff * (uu + vv), before))
     return;
   double longest2 = 0.5 * (uu + vv + sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv));
   reach->radius = raised(reach->radius, sqrt(square) + cutoff * sqrt(longest2));
 }
 
-static void add_height(const framed_leaf *leaf, double cutoff, const double n[3], double before,
-                       conic_leaf_reach *reach) {
-  double z = dot3(leaf->p, n), uz = dot3(leaf->u, n), vz = dot3(leaf->v, n);
+static void raise_height(const framed_leaf *leaf, double cutoff, const double n[3], double before,
+                         conic_leaf_reach *reach) {
+  double z = conic_dot(leaf->p, n), uz = conic_dot(leaf->u, n), vz = conic_dot(leaf->v, n);
   double square = cutoff * cutoff * (uz * uz + vz * vz);
-  if (!is_within(z * z, square, before))
+  if (!is_held(z * z, square, before))
     reach->height = raised(reach->height, fabs(z) + sqrt(square));
 }
 
-static void add_normal(const framed_leaf *leaf, const double n[3], double before, conic_leaf_reach *reach) {
-  const double *u = leaf->u, *v = leaf->v;
-  const double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double along = dot3(normal, n), square = dot3(normal, normal);
+static void lower_cosine(const framed_leaf *leaf, const double n[3], double before, conic_leaf_reach *reach) {
+  double normal[3];
+  conic_cross(leaf->u, leaf->v, normal);
+  double along = conic_dot(normal, n), square = conic_dot(normal, normal);
   if (along > 0.0 && along * along > square * (before * fabs(before)))
     return;
   double cosine = along / sqrt(square);
   reach->cosine = cosine < reach->cosine ? cosine : reach->cosine;
 }
 
-static void add_reach(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
-                      const conic_node_frame *frame, conic_leaf_reach *reach) {
+static void plain_add_reach(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                            const conic_node_frame *frame, conic_leaf_reach *reach) {
   conic_leaf_reach before = *reach;
   for (size_t i = begin; i < end; i++) {
     framed_leaf leaf;
@@ -209,16 +208,16 @@ static void add_reach(const conic_splats *leaves, size_t begin, size_t end, doub
       leaf.u[axis] = (double)leaves->tangent_u[axis][i];
       leaf.v[axis] = (double)leaves->tangent_v[axis][i];
     }
-    add_outline(&leaf, cutoff, frame, before.reach, reach);
-    add_radius(&leaf, cutoff, before.radius, reach);
-    add_height(&leaf, cutoff, frame->n, before.height, reach);
-    add_normal(&leaf, frame->n, before.cosine, reach);
+    raise_reach(&leaf, cutoff, frame, before.reach, reach);
+    raise_radius(&leaf, cutoff, before.radius, reach);
+    raise_height(&leaf, cutoff, frame->n, before.height, reach);
+    lower_cosine(&leaf, frame->n, before.cosine, reach);
   }
 }
 
 /* Raises, for each ratio, the square of the greatest extent by what a leaf's outline has. */
-static void widen(const double flat[3][2], double cutoff, const float across2[CONIC_N_RATIOS],
-                  float greatest[CONIC_N_RATIOS]) {
+static void widen_extents(const double flat[3][2], double cutoff, const float across2[CONIC_N_RATIOS],
+                          float greatest[CONIC_N_RATIOS]) {
   for (int corner = 0; corner < 2 * CONIC_OUTLINE_CORNERS; corner++) {
     double cx = conic_corners_x[corner / 2], cy = conic_corners_y[corner / 2];
     double dx = cutoff * (cx * flat[1][0] + cy * flat[2][0]), dy = cutoff * (cx * flat[1][1] + cy * flat[2][1]);
@@ -243,8 +242,9 @@ static void turn_flat(const double value[3], const double u[3], const double v[3
   flat[1] = major[0] * along_v - major[1] * along_u;
 }
 
-static double choose_ratio(const conic_splats *leaves, size_t begin, size_t end, double cutoff, const double place[3],
-                           const double u[3], const double v[3], const conic_ellipse *shape, double least_ratio) {
+static double plain_choose_ratio(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                                 const double place[3], const double u[3], const double v[3],
+                                 const conic_ellipse *shape, double least_ratio) {
   double best = shape->ratio, ratios[CONIC_N_RATIOS];
   float across2[CONIC_N_RATIOS], greatest[CONIC_N_RATIOS] = {0.0f}, best_area = HUGE_VALF;
   for (int k = 0; k < CONIC_N_RATIOS; k++) {
@@ -261,7 +261,7 @@ static double choose_ratio(const conic_splats *leaves, size_t begin, size_t end,
     }
     for (int part = 0; part < 3; part++)
       turn_flat(vectors[part], u, v, shape->major, flat[part]);
-    widen((const double(*)[2])flat, cutoff, across2, greatest);
+    widen_extents((const double(*)[2])flat, cutoff, across2, greatest);
   }
   for (int k = 0; k < CONIC_N_RATIOS; k++) {
     float area = greatest[k] * (float)ratios[k];
@@ -284,8 +284,8 @@ static int is_away(const conic_drawn_node *node, const float eye[3]) {
   return along > 0.0f;
 }
 
-static void put(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye, const conic_splats *to,
-                uint32_t *ids, size_t place) {
+static void plain_put(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye,
+                      const conic_splats *to, uint32_t *ids, size_t place) {
   for (size_t k = 0; k < n; k++) {
     int is_node = (sources[k] & CONIC_NODE_BIT) != 0;
     const conic_drawn_node *from = &(is_node ? octree->drawn : octree->drawn_leaves)[sources[k] & ~CONIC_NODE_BIT];
@@ -304,5 +304,6 @@ static void put(const conic_octree *octree, const uint32_t *sources, size_t n, c
 }
 
 void conic_octree_kernels_scalar(conic_octree_kernels *kernels) {
-  *kernels = (conic_octree_kernels){find_cover, find_near, add_reach, choose_ratio, measure, put};
+  *kernels =
+      (conic_octree_kernels){plain_cover, plain_find_near, plain_add_reach, plain_choose_ratio, measure, plain_put};
 }

@@ -1,5 +1,5 @@
 /* The renderer's hot loops, a small table a family, which stands with what it works on. All instruction
- * sets give the same bits as plain C (core/lanes/isa.h).
+ * sets give the same bits as plain C (core/lanes/instruction_sets.h).
  *
  * Contract of every slot: it writes what is named there and nothing else. Records are finite; a lane that is not
  * covered may hold anything, and is dropped by a comparison, never by a multiplication with zero. Sums are in the order
@@ -7,7 +7,7 @@
 #ifndef CONIC_RASTER_KERNELS_H
 #define CONIC_RASTER_KERNELS_H
 
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 #include "raster/project/project_kernels.h"
 #include "raster/tiles/tile_kernels.h"
 #include "raster/triangles/triangle_kernels.h"

@@ -7,7 +7,7 @@
 #include "raster/kernels/resolve_body.h"
 #include "raster/kernels/triangle_body.h"
 
-void CONIC_KERNELS_OF_THIS_ISA(conic_raster_kernels)(conic_raster_kernels *kernels) {
+CONIC_FILL_KERNELS(conic_raster_kernels) {
   *kernels = (conic_raster_kernels){
       .project = {.project = project},
       .bins = {.keys = keys, .sort = sort, .select = select_references},

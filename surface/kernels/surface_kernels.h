@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "conic/surface.h"
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 
 #define CONIC_NEAR_LANES 8
 

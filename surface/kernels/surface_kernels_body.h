@@ -259,6 +259,6 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
   add_up(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 
-void CONIC_KERNELS_OF_THIS_ISA(conic_surface_kernels)(conic_surface_kernels *kernels) {
+CONIC_FILL_KERNELS(conic_surface_kernels) {
   *kernels = (conic_surface_kernels){moments, plane, factor, sphere};
 }

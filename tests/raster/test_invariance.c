@@ -1,6 +1,6 @@
 /* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
  * And every plane is defined on every pixel. */
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 #include "tests/support/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {

@@ -1,6 +1,6 @@
 /* One image, one set of bits, of meshes and of hybrid models: over threads, tile sizes, instruction sets and passes;
  * and the models themselves over threads. */
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 #include "lod/hybrid/hybrid_model.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/triangle_fixture.h"

@@ -1,7 +1,7 @@
 /* Splats and triangles in one picture: no fringe, no hole, no seam; one set of bits. */
 #include <unistd.h>
 
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/triangle_fixture.h"
 

@@ -4,8 +4,8 @@
  * A family of kernels is a table, a struct of functions, which has one text in plain C and one in lanes (core/lanes/
  * lanes.h), compiled once an instruction set. FAMILY_init fills a table with plain C; each instruction set that is
  * allowed, the narrowest first, then overwrites the slots that it has. */
-#ifndef CONIC_LANES_ISA_H
-#define CONIC_LANES_ISA_H
+#ifndef CONIC_INSTRUCTION_SETS_H
+#define CONIC_INSTRUCTION_SETS_H
 
 #include "conic/context.h"
 
@@ -44,15 +44,16 @@ conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa
     CONIC_FOR_ISAS(CONIC_OVERWRITE_KERNELS, family)                                                                    \
   }
 
-/* What fills a table in a file that is compiled for one instruction set. */
+/* Begins what fills a table in a file that is compiled for one instruction set. */
+#define CONIC_FILL_KERNELS_BY(family, name) void family##_##name(family *kernels)
 #if defined(__AVX512F__)
-#define CONIC_KERNELS_OF_THIS_ISA(family) family##_avx512
+#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx512)
 #elif defined(__AVX2__)
-#define CONIC_KERNELS_OF_THIS_ISA(family) family##_avx2
+#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx2)
 #elif defined(__aarch64__)
-#define CONIC_KERNELS_OF_THIS_ISA(family) family##_neon
+#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, neon)
 #else
-#define CONIC_KERNELS_OF_THIS_ISA(family) family##_sse2
+#define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, sse2)
 #endif
 
 #endif

@@ -1,4 +1,4 @@
-#include "core/lanes/isa.h"
+#include "core/lanes/instruction_sets.h"
 
 #include <stddef.h>
 
