@@ -1,4 +1,6 @@
-#include "cli/commands/hybrid_mesh.h"
+#include "source/mesh_input.h"
+
+#include "core/base/message.h"
 
 static int is_apart(const conic_triangles *mesh, uint32_t a, uint32_t b) {
   for (int axis = 0; axis < 3; axis++)
@@ -21,34 +23,33 @@ static int has_face(const conic_triangles *mesh) {
   return 0;
 }
 
-conic_status cli_mesh_check(const char *path, const conic_triangles *triangles) {
+conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles) {
   if (has_face(triangles))
     return CONIC_OK;
-  cli_error(CLI_INPUT, "%s: no face has three finite corners at three places", path);
-  return CONIC_ERROR_INPUT;
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: no face has three finite corners at three places", path);
 }
 
-conic_status cli_mesh_read(cli_session *session, const char *path, const char *texture_path,
-                           conic_triangles *triangles) {
+conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_path, conic_triangles *triangles) {
   conic_texture *texture;
-  conic_status status = conic_triangles_read(session->context, path, triangles);
+  if (!triangles->texture_coordinate[0])
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the mesh has no texture coordinates for it", texture_path);
+  conic_status status = conic_texture_read(context, texture_path, CONIC_WRAP_REPEAT, &texture);
   if (status != CONIC_OK)
     return status;
-  status = cli_mesh_check(path, triangles);
-  if (status == CONIC_OK && !texture_path)
-    return CONIC_OK;
-  if (status == CONIC_OK && !triangles->texture_coordinate[0]) {
-    cli_error(CLI_INPUT, "%s: the mesh has no texture coordinates for it", texture_path);
-    status = CONIC_ERROR_INPUT;
-  }
-  if (status == CONIC_OK)
-    status = conic_texture_read(session->context, texture_path, CONIC_WRAP_REPEAT, &texture);
-  if (status == CONIC_OK) {
-    status = conic_triangles_texture(session->context, triangles, texture);
-    if (status != CONIC_OK)
-      conic_texture_destroy(texture);
-  }
+  status = conic_triangles_texture(context, triangles, texture);
   if (status != CONIC_OK)
-    conic_triangles_release(session->context, triangles);
+    conic_texture_destroy(texture);
+  return status;
+}
+
+conic_status conic_mesh_read(conic_context *context, const char *path, const char *texture_path,
+                             conic_triangles *triangles) {
+  conic_status status = conic_triangles_read(context, path, triangles);
+  if (status == CONIC_OK)
+    status = conic_mesh_check(context, path, triangles);
+  if (status == CONIC_OK && texture_path)
+    status = conic_mesh_lay_texture(context, texture_path, triangles);
+  if (status != CONIC_OK)
+    conic_triangles_release(context, triangles);
   return status;
 }

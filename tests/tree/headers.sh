@@ -22,7 +22,7 @@ library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
 c_compiler=$(setting CMAKE_C_COMPILER)
 cpp_compiler=$(setting CMAKE_CXX_COMPILER)
 
-for header in $(find include core raster oracle lod surface opencl bench cli -name '*.h' | sort); do
+for header in $(find include core raster oracle lod surface source opencl bench cli -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
