@@ -96,8 +96,8 @@ static const char *name_splat(const conic_source *source, uint32_t splat, uint32
 static void tell_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_hybrid_selection *selection = &((const hybrid_source *)source)->selection;
   (void)n_splats;
-  CONIC_ADD_FACTS(facts, CONIC_COUNT("triangle_patches", selection->n_patches[CONIC_HYBRID_TRIANGLES]),
-                  CONIC_COUNT("surfel_patches", selection->n_patches[CONIC_HYBRID_SURFELS]),
+  CONIC_ADD_FACTS(facts, CONIC_COUNT("triangle_patches", selection->n_clusters[CONIC_HYBRID_TRIANGLES]),
+                  CONIC_COUNT("surfel_patches", selection->n_clusters[CONIC_HYBRID_SURFELS]),
                   CONIC_COUNT("simpler_patches", selection->n_simpler),
                   CONIC_COUNT("joined_patches", selection->n_joined), CONIC_COUNT("nodes", selection->n_nodes),
                   CONIC_COUNT("points", selection->n_points));
@@ -111,17 +111,17 @@ static conic_status tell_file(conic_source *source, conic_facts *facts) {
     return status;
   CONIC_ADD_FACTS(
       facts, CONIC_COUNT("triangles", info->n_triangles), CONIC_COUNT("surfels", info->n_surfels),
-      CONIC_COUNT("clusters", info->n_patches), CONIC_COUNT("surfel_clusters", info->n_surfel_patches),
+      CONIC_COUNT("clusters", info->n_clusters), CONIC_COUNT("surfel_clusters", info->n_surfel_clusters),
       CONIC_COUNT("nodes", info->n_nodes), CONIC_COUNT("levels", info->n_levels),
       CONIC_COUNT("node_levels", info->n_node_levels), CONIC_COUNT("all_triangles", info->n_all_triangles),
       CONIC_COUNT("all_surfels", info->n_all_surfels), CONIC_COUNT("vertices", info->n_vertices),
       CONIC_COUNT("textures", info->n_textures), CONIC_NUMBER("cutoff", info->cutoff),
       CONIC_NUMBER("splat_length", info->splat_length), CONIC_NUMBER("near", info->near_z),
-      CONIC_LINE("patches", "%zu: %zu of triangles, %zu of surfels", info->n_patches,
-                 info->n_patches - info->n_surfel_patches, info->n_surfel_patches),
+      CONIC_LINE("patches", "%zu: %zu of triangles, %zu of surfels", info->n_clusters,
+                 info->n_clusters - info->n_surfel_clusters, info->n_surfel_clusters),
       CONIC_LINE("triangles", "%zu, %zu in all levels", info->n_triangles, info->n_all_triangles),
       CONIC_LINE("surfels", "%zu, %zu in all levels", info->n_surfels, info->n_all_surfels),
-      CONIC_LINE("levels", "%zu, %.1f a patch", info->n_levels, (double)info->n_levels / (double)info->n_patches),
+      CONIC_LINE("levels", "%zu, %.1f a patch", info->n_levels, (double)info->n_levels / (double)info->n_clusters),
       CONIC_LINE("nodes", "%zu with %zu levels", info->n_nodes, info->n_node_levels),
       CONIC_LINE("vertices", "%zu", info->n_vertices));
   if (info->n_textures)

@@ -1,4 +1,4 @@
-/* conic render --clusters: what belongs to which patch of a hybrid. */
+/* conic render --clusters: what belongs to which cluster of a hybrid. */
 #include "cli/render/render_job.h"
 
 /* A colour for a number: bright, and unlike those of its neighbours. */

@@ -84,7 +84,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
 
-/* --clusters: the patches of a hybrid in colours of their own, as they are shaded in `image`. */
+/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
 
 /* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.

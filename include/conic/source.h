@@ -36,7 +36,7 @@ typedef enum conic_representation {
 /* What a source can do besides being drawn, as bits. */
 typedef enum conic_source_ability {
   CONIC_SOURCE_CHOOSES = 1,  /* draws less than everything: by an error, or within a budget */
-  CONIC_SOURCE_CLUSTERS = 2, /* is of two kinds of patches: only_kind, and the image's cluster plane */
+  CONIC_SOURCE_CLUSTERS = 2, /* draws clusters of two kinds: only_kind, and the image's cluster plane */
   CONIC_SOURCE_STREAMS = 4   /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
                                 over unless it is opened whole */
 } conic_source_ability;
@@ -113,7 +113,7 @@ typedef struct conic_source_view {
   size_t size;               /* sizeof(conic_source_view), set by the init function */
   double error_px;           /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
   uint64_t budget;           /* or, where not 0: the least error that so many splats and triangles can give */
-  int only_kind;             /* -1, or the conic_hybrid_kind that all patches are drawn as */
+  int only_kind;             /* -1, or the conic_hybrid_kind that all clusters are drawn as */
   int samples;               /* N × N a pixel */
   int most_levels;           /* no more levels are drawn; 0: all */
   conic_occlusion occlusion; /* leave out what is hidden */
