@@ -13,13 +13,13 @@ typedef struct drawing_source {
   conic_triangles triangles;
 } drawing_source;
 
-static int takes(const char *path, const conic_source_options *options) {
+static int takes_drawing(const char *path, const conic_source_options *options) {
   (void)path;
   (void)options;
   return 1;
 }
 
-static conic_status append(drawing_source *d, conic_splats *more) {
+static conic_status append_to_drawing(drawing_source *d, conic_splats *more) {
   conic_status status = CONIC_OK;
   if (d->splats.count == 0) { /* the first input's arrays are taken over, not copied */
     conic_splats_release(d->base.context, &d->splats);
@@ -57,7 +57,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);
-  return append(d, &model->points);
+  return append_to_drawing(d, &model->points);
 }
 
 /* *kind is what the model turned out to be. */
@@ -87,8 +87,8 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   return status;
 }
 
-static conic_status read(drawing_source *d, const char *path, const conic_source_options *options,
-                         conic_model_kind *kind) {
+static conic_status read_into_drawing(drawing_source *d, const char *path, const conic_source_options *options,
+                                      conic_model_kind *kind) {
   const conic_source_kind *special = conic_source_kind_of_file(path);
   conic_source *part;
   conic_splats splats;
@@ -99,7 +99,7 @@ static conic_status read(drawing_source *d, const char *path, const conic_source
     return status;
   status = special->take_splats(part, &splats);
   conic_source_close(part);
-  return status == CONIC_OK ? append(d, &splats) : status;
+  return status == CONIC_OK ? append_to_drawing(d, &splats) : status;
 }
 
 /* What the options say of triangles. */
@@ -118,7 +118,7 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
              : status;
 }
 
-static conic_status measure(drawing_source *d) {
+static conic_status measure_drawing(drawing_source *d) {
   conic_source_scale *scale = &d->base.scale;
   double start = conic_seconds_now();
   conic_source_choice *choice = &d->base.choice;
@@ -135,15 +135,15 @@ static conic_status measure(drawing_source *d) {
   return status;
 }
 
-static conic_status open(conic_source *source, const char *const *paths, size_t n_paths,
-                         const conic_source_options *options) {
+static conic_status open_drawing(conic_source *source, const char *const *paths, size_t n_paths,
+                                 const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
   conic_source_scale *scale = &source->scale;
   size_t n_surveys = 0;
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
     conic_model_kind kind = CONIC_MODEL_PLY;
-    status = read(d, paths[i], options, &kind);
+    status = read_into_drawing(d, paths[i], options, &kind);
     n_surveys += kind == CONIC_MODEL_LAS;
   }
   if (status == CONIC_OK)
@@ -152,7 +152,7 @@ static conic_status open(conic_source *source, const char *const *paths, size_t 
     scale->up[1] = 0.0;
     scale->up[2] = 1.0;
   }
-  return status == CONIC_OK ? measure(d) : status;
+  return status == CONIC_OK ? measure_drawing(d) : status;
 }
 
 conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
@@ -171,24 +171,24 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
     d->triangles = *triangles;
     memset(triangles, 0, sizeof *triangles);
   }
-  return conic_source_finish(measure(d), source);
+  return conic_source_finish(measure_drawing(d), source);
 }
 
-static void close(conic_source *source) {
+static void close_drawing(conic_source *source) {
   drawing_source *d = (drawing_source *)source;
   conic_splats_release(source->context, &d->splats);
   conic_triangles_release(source->context, &d->triangles);
 }
 
-static conic_status find_spacing(conic_source *source, double *spacing) {
+static conic_status find_drawing_spacing(conic_source *source, double *spacing) {
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
 const conic_source_kind conic_source_kind_drawing = {
     .size = sizeof(drawing_source),
     .company = CONIC_SOURCE_MANY,
-    .takes = takes,
-    .open = open,
-    .close = close,
-    .find_spacing = find_spacing,
+    .takes = takes_drawing,
+    .open = open_drawing,
+    .close = close_drawing,
+    .find_spacing = find_drawing_spacing,
 };

@@ -13,11 +13,11 @@ typedef struct hybrid_source {
   conic_hybrid_selection selection;
 } hybrid_source;
 
-static int takes(const char *path, const conic_source_options *options) {
+static int takes_hybrid(const char *path, const conic_source_options *options) {
   return options->as == CONIC_AS_HYBRID || conic_hybrid_is_file(path);
 }
 
-static conic_status measure(hybrid_source *h) {
+static conic_status measure_hybrid(hybrid_source *h) {
   conic_source_scale *scale = &h->base.scale;
   conic_status status = conic_hybrid_describe(h->hybrid, &h->info);
   memcpy(scale->minimum, h->info.minimum, sizeof scale->minimum);
@@ -29,7 +29,7 @@ static conic_status measure(hybrid_source *h) {
   return status;
 }
 
-static conic_status build(hybrid_source *h, const char *path, const conic_source_options *options) {
+static conic_status build_hybrid(hybrid_source *h, const char *path, const conic_source_options *options) {
   conic_triangles mesh;
   conic_hybrid_options building;
   conic_status status = conic_mesh_read(h->base.context, path, options->texture_path, &mesh);
@@ -43,13 +43,13 @@ static conic_status build(hybrid_source *h, const char *path, const conic_source
   return status;
 }
 
-static conic_status open(conic_source *source, const char *const *paths, size_t n_paths,
-                         const conic_source_options *options) {
+static conic_status open_hybrid(conic_source *source, const char *const *paths, size_t n_paths,
+                                const conic_source_options *options) {
   hybrid_source *h = (hybrid_source *)source;
   (void)n_paths;
   conic_status status = conic_hybrid_is_file(paths[0]) ? conic_hybrid_read(source->context, paths[0], &h->hybrid)
-                                                       : build(h, paths[0], options);
-  return status == CONIC_OK ? measure(h) : status;
+                                                       : build_hybrid(h, paths[0], options);
+  return status == CONIC_OK ? measure_hybrid(h) : status;
 }
 
 conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid, conic_source **source) {
@@ -59,17 +59,17 @@ conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid
     return status;
   }
   ((hybrid_source *)*source)->hybrid = hybrid;
-  return conic_source_finish(measure((hybrid_source *)*source), source);
+  return conic_source_finish(measure_hybrid((hybrid_source *)*source), source);
 }
 
-static void close(conic_source *source) {
+static void close_hybrid(conic_source *source) {
   hybrid_source *h = (hybrid_source *)source;
   conic_hybrid_selection_release(source->context, &h->selection);
   conic_hybrid_destroy(h->hybrid);
 }
 
-static conic_status choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
-                           const conic_source_view *view) {
+static conic_status choose_from_hybrid(conic_source *source, const conic_camera *camera,
+                                       const conic_render_options *render, const conic_source_view *view) {
   hybrid_source *h = (hybrid_source *)source;
   conic_hybrid_view wanted;
   conic_hybrid_view_init(&wanted);
@@ -83,17 +83,17 @@ static conic_status choose(conic_source *source, const conic_camera *camera, con
   return status;
 }
 
-static void name_image(const conic_source *source, conic_image *image) {
+static void name_hybrid_image(const conic_source *source, conic_image *image) {
   if (image->planes[CONIC_PLANE_CLUSTER])
     conic_hybrid_name(&((const hybrid_source *)source)->selection, image);
 }
 
-static const char *name_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+static const char *name_hybrid_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
   *number = ((const hybrid_source *)source)->selection.splat_cluster[splat];
   return "cluster";
 }
 
-static void tell_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
+static void tell_hybrid_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_hybrid_selection *selection = &((const hybrid_source *)source)->selection;
   (void)n_splats;
   CONIC_ADD_FACTS(facts, CONIC_COUNT("triangle_patches", selection->n_clusters[CONIC_HYBRID_TRIANGLES]),
@@ -103,10 +103,10 @@ static void tell_primitives(const conic_source *source, conic_facts *facts, uint
                   CONIC_COUNT("points", selection->n_points));
 }
 
-static conic_status tell_file(conic_source *source, conic_facts *facts) {
+static conic_status tell_hybrid_file(conic_source *source, conic_facts *facts) {
   const char *const path = source->name;
   const conic_hybrid_info *info = &((hybrid_source *)source)->info;
-  conic_status status = open(source, &path, 1, NULL);
+  conic_status status = open_hybrid(source, &path, 1, NULL);
   if (status != CONIC_OK)
     return status;
   CONIC_ADD_FACTS(
@@ -131,7 +131,7 @@ static conic_status tell_file(conic_source *source, conic_facts *facts) {
   return CONIC_OK;
 }
 
-static conic_status tell_defects(conic_source *source, conic_facts *facts) {
+static conic_status tell_hybrid_defects(conic_source *source, conic_facts *facts) {
   conic_hybrid_defects broken;
   conic_status status = conic_hybrid_check(((hybrid_source *)source)->hybrid, &broken);
   if (status == CONIC_OK)
@@ -146,15 +146,15 @@ const conic_source_kind conic_source_kind_hybrid = {
     .size = sizeof(hybrid_source),
     .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_CLUSTERS,
     .company = CONIC_SOURCE_ALONE,
-    .takes = takes,
-    .open = open,
-    .close = close,
-    .choose = choose,
-    .name_image = name_image,
-    .name_splat = name_splat,
-    .tell_primitives = tell_primitives,
+    .takes = takes_hybrid,
+    .open = open_hybrid,
+    .close = close_hybrid,
+    .choose = choose_from_hybrid,
+    .name_image = name_hybrid_image,
+    .name_splat = name_hybrid_splat,
+    .tell_primitives = tell_hybrid_primitives,
     .is_file = conic_hybrid_is_file,
     .name = "chy",
-    .tell_file = tell_file,
-    .tell_defects = tell_defects,
+    .tell_file = tell_hybrid_file,
+    .tell_defects = tell_hybrid_defects,
 };

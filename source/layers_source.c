@@ -14,16 +14,16 @@ typedef struct layers_source {
   conic_layers_drawn drawn;
 } layers_source;
 
-static int is_file(const char *path) {
+static int is_layers_file(const char *path) {
   return conic_layers_is_url(path) || conic_layers_is_file(path);
 }
 
-static int takes(const char *path, const conic_source_options *options) {
-  return !options->is_whole && options->as != CONIC_AS_PATCHES && is_file(path);
+static int takes_layers(const char *path, const conic_source_options *options) {
+  return !options->is_whole && options->as != CONIC_AS_PATCHES && is_layers_file(path);
 }
 
-static conic_status open(conic_source *source, const char *const *paths, size_t n_paths,
-                         const conic_source_options *options) {
+static conic_status open_layers(conic_source *source, const char *const *paths, size_t n_paths,
+                                const conic_source_options *options) {
   layers_source *l = (layers_source *)source;
   conic_source_scale *scale = &source->scale;
   conic_layers_scale found;
@@ -45,13 +45,13 @@ static conic_status open(conic_source *source, const char *const *paths, size_t 
   return CONIC_OK;
 }
 
-static void close(conic_source *source) {
+static void close_layers(conic_source *source) {
   conic_layers_close(((layers_source *)source)->layers);
 }
 
-static conic_status draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
-                         const conic_render_options *render, const conic_source_view *view, conic_image *image,
-                         conic_render_statistics *statistics) {
+static conic_status draw_layers(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                                conic_render_statistics *statistics) {
   layers_source *l = (layers_source *)source;
   conic_layers_draw_options options;
   conic_layers_draw_options_init(&options);
@@ -68,7 +68,7 @@ static conic_status draw(conic_source *source, conic_renderer *renderer, const c
   return status;
 }
 
-static void tell_rest(const conic_source *source, conic_facts *facts) {
+static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   const conic_layers_drawn *d = &((const layers_source *)source)->drawn;
   CONIC_ADD_FACTS(facts, CONIC_OBJECT("layers"), CONIC_COUNT("clouds", ((const layers_source *)source)->n_clouds),
                   CONIC_COUNT("clouds_drawn", d->n_clouds), CONIC_COUNT("clouds_grazing", d->n_clouds_grazing),
@@ -83,7 +83,7 @@ static void tell_rest(const conic_source *source, conic_facts *facts) {
   CONIC_ADD_FACTS(facts, CONIC_END);
 }
 
-static conic_status tell_file(conic_source *source, conic_facts *facts) {
+static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
   conic_layers_info info;
   conic_status status = conic_layers_describe(source->context, source->name, &info);
   if (status != CONIC_OK)
@@ -111,7 +111,7 @@ static conic_status tell_file(conic_source *source, conic_facts *facts) {
   return CONIC_OK;
 }
 
-static conic_status tell_defects(conic_source *source, conic_facts *facts) {
+static conic_status tell_layers_defects(conic_source *source, conic_facts *facts) {
   conic_layers_defects broken;
   conic_status status = conic_layers_check(source->context, source->name, &broken);
   if (status == CONIC_OK)
@@ -123,7 +123,7 @@ static conic_status tell_defects(conic_source *source, conic_facts *facts) {
 }
 
 /* Measured from the world's origin, whatever the file's. */
-static conic_status take_splats(conic_source *source, conic_splats *splats) {
+static conic_status take_layers_splats(conic_source *source, conic_splats *splats) {
   const layers_source *l = (layers_source *)source;
   conic_splats samples;
   memset(splats, 0, sizeof *splats);
@@ -138,14 +138,14 @@ const conic_source_kind conic_source_kind_layers = {
     .size = sizeof(layers_source),
     .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS,
     .company = CONIC_SOURCE_SINGLE,
-    .takes = takes,
-    .open = open,
-    .close = close,
-    .draw = draw,
-    .tell_rest = tell_rest,
-    .is_file = is_file,
+    .takes = takes_layers,
+    .open = open_layers,
+    .close = close_layers,
+    .draw = draw_layers,
+    .tell_rest = tell_layers_rest,
+    .is_file = is_layers_file,
     .name = "lpc",
-    .tell_file = tell_file,
-    .tell_defects = tell_defects,
-    .take_splats = take_splats,
+    .tell_file = tell_layers_file,
+    .tell_defects = tell_layers_defects,
+    .take_splats = take_layers_splats,
 };

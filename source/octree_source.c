@@ -15,11 +15,11 @@ typedef struct octree_source {
   conic_splats leaves; /* empty until all of them are asked for */
 } octree_source;
 
-static int takes(const char *path, const conic_source_options *options) {
+static int takes_octree(const char *path, const conic_source_options *options) {
   return !options->is_whole && conic_octree_is_file(path);
 }
 
-static conic_status measure(octree_source *o) {
+static conic_status measure_octree(octree_source *o) {
   conic_source_scale *scale = &o->base.scale;
   conic_status status = conic_octree_describe(o->octree, &o->info);
   memcpy(scale->minimum, o->info.minimum, sizeof scale->minimum);
@@ -30,13 +30,13 @@ static conic_status measure(octree_source *o) {
   return status;
 }
 
-static conic_status open(conic_source *source, const char *const *paths, size_t n_paths,
-                         const conic_source_options *options) {
+static conic_status open_octree(conic_source *source, const char *const *paths, size_t n_paths,
+                                const conic_source_options *options) {
   octree_source *o = (octree_source *)source;
   (void)n_paths;
   (void)options;
   conic_status status = conic_octree_read(source->context, paths[0], &o->octree);
-  return status == CONIC_OK ? measure(o) : status;
+  return status == CONIC_OK ? measure_octree(o) : status;
 }
 
 conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source) {
@@ -46,10 +46,10 @@ conic_status conic_source_of_octree(conic_context *context, conic_octree *octree
     return status;
   }
   ((octree_source *)*source)->octree = octree;
-  return conic_source_finish(measure((octree_source *)*source), source);
+  return conic_source_finish(measure_octree((octree_source *)*source), source);
 }
 
-static void close(conic_source *source) {
+static void close_octree(conic_source *source) {
   octree_source *o = (octree_source *)source;
   conic_selection_release(source->context, &o->selection);
   conic_splats_release(source->context, &o->leaves);
@@ -60,14 +60,14 @@ static conic_status need_leaves(octree_source *o) {
   return o->leaves.count ? CONIC_OK : conic_octree_leaves(o->octree, &o->leaves);
 }
 
-static conic_status find_spacing(conic_source *source, double *spacing) {
+static conic_status find_octree_spacing(conic_source *source, double *spacing) {
   octree_source *o = (octree_source *)source;
   conic_status status = need_leaves(o);
   return status == CONIC_OK ? conic_splats_spacing(source->context, &o->leaves, spacing) : status;
 }
 
-static conic_status choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
-                           const conic_source_view *view) {
+static conic_status choose_from_octree(conic_source *source, const conic_camera *camera,
+                                       const conic_render_options *render, const conic_source_view *view) {
   octree_source *o = (octree_source *)source;
   conic_source_choice *choice = &source->choice;
   conic_selection_options options;
@@ -85,18 +85,18 @@ static conic_status choose(conic_source *source, const conic_camera *camera, con
   return status;
 }
 
-static void name_image(const conic_source *source, conic_image *image) {
+static void name_octree_image(const conic_source *source, conic_image *image) {
   conic_selection_name(&((const octree_source *)source)->selection, image);
 }
 
-static const char *name_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+static const char *name_octree_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
   const octree_source *o = (const octree_source *)source;
   uint32_t id = o->selection.ids[splat], n_points = (uint32_t)o->info.n_points;
   *number = id < n_points ? id : id - n_points;
   return id < n_points ? "point" : "node";
 }
 
-static void tell_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
+static void tell_octree_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_selection *selection = &((const octree_source *)source)->selection;
   (void)n_splats;
   CONIC_ADD_FACTS(facts, CONIC_COUNT("leaves", selection->splats.count - selection->n_inner), /* handed over */
@@ -123,12 +123,12 @@ static void tell_three(conic_facts *facts, const char *key, const double sorted[
                   CONIC_NUMBER("max", sorted[2]), CONIC_END);
 }
 
-static conic_status tell_file(conic_source *source, conic_facts *facts) {
+static conic_status tell_octree_file(conic_source *source, conic_facts *facts) {
   const char *const path = source->name;
   const conic_octree_info *info = &((octree_source *)source)->info;
   double cone[3];
   char missing[64] = "", moved[64] = "as they were";
-  conic_status status = open(source, &path, 1, NULL);
+  conic_status status = open_octree(source, &path, 1, NULL);
   if (status != CONIC_OK)
     return status;
   for (int i = 0; i < 3; i++)
@@ -155,7 +155,7 @@ static conic_status tell_file(conic_source *source, conic_facts *facts) {
   return CONIC_OK;
 }
 
-static conic_status tell_defects(conic_source *source, conic_facts *facts) {
+static conic_status tell_octree_defects(conic_source *source, conic_facts *facts) {
   conic_octree_defects broken;
   conic_status status = conic_octree_check(((octree_source *)source)->octree, &broken);
   if (status == CONIC_OK)
@@ -167,7 +167,7 @@ static conic_status tell_defects(conic_source *source, conic_facts *facts) {
   return status;
 }
 
-static conic_status take_splats(conic_source *source, conic_splats *splats) {
+static conic_status take_octree_splats(conic_source *source, conic_splats *splats) {
   return conic_octree_leaves(((octree_source *)source)->octree, splats);
 }
 
@@ -175,17 +175,17 @@ const conic_source_kind conic_source_kind_octree = {
     .size = sizeof(octree_source),
     .abilities = CONIC_SOURCE_CHOOSES,
     .company = CONIC_SOURCE_SINGLE,
-    .takes = takes,
-    .open = open,
-    .close = close,
-    .find_spacing = find_spacing,
-    .choose = choose,
-    .name_image = name_image,
-    .name_splat = name_splat,
-    .tell_primitives = tell_primitives,
+    .takes = takes_octree,
+    .open = open_octree,
+    .close = close_octree,
+    .find_spacing = find_octree_spacing,
+    .choose = choose_from_octree,
+    .name_image = name_octree_image,
+    .name_splat = name_octree_splat,
+    .tell_primitives = tell_octree_primitives,
     .is_file = conic_octree_is_file,
     .name = "cot",
-    .tell_file = tell_file,
-    .tell_defects = tell_defects,
-    .take_splats = take_splats,
+    .tell_file = tell_octree_file,
+    .tell_defects = tell_octree_defects,
+    .take_splats = take_octree_splats,
 };

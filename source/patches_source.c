@@ -12,13 +12,13 @@ typedef struct patches_source {
   conic_patch_selection selection;
 } patches_source;
 
-static int takes(const char *path, const conic_source_options *options) {
+static int takes_patches(const char *path, const conic_source_options *options) {
   (void)path;
   return options->as == CONIC_AS_PATCHES;
 }
 
 /* ε goes with the points, and not with their samples. */
-static conic_status lay(patches_source *p, const conic_source_options *options) {
+static conic_status lay_patches(patches_source *p, const conic_source_options *options) {
   const conic_splats *splats = conic_source_chosen(p->points)->drawing.splats;
   conic_patches_options laying;
   double spacing = 1.0;
@@ -35,8 +35,8 @@ static conic_status lay(patches_source *p, const conic_source_options *options) 
   return status == CONIC_OK ? conic_patches_create(p->base.context, splats, &laying, &p->patches) : status;
 }
 
-static conic_status open(conic_source *source, const char *const *paths, size_t n_paths,
-                         const conic_source_options *options) {
+static conic_status open_patches(conic_source *source, const char *const *paths, size_t n_paths,
+                                 const conic_source_options *options) {
   patches_source *p = (patches_source *)source;
   conic_source_options whole = *options;
   whole.as = CONIC_AS_POINTS;
@@ -48,23 +48,23 @@ static conic_status open(conic_source *source, const char *const *paths, size_t 
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
   double start = conic_seconds_now();
-  status = lay(p, options);
+  status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;
   return status;
 }
 
-static void close(conic_source *source) {
+static void close_patches(conic_source *source) {
   patches_source *p = (patches_source *)source;
   conic_patches_destroy(p->patches);
   conic_source_close(p->points);
 }
 
-static conic_status find_spacing(conic_source *source, double *spacing) {
+static conic_status find_patches_spacing(conic_source *source, double *spacing) {
   return conic_source_spacing(((patches_source *)source)->points, spacing);
 }
 
-static conic_status choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
-                           const conic_source_view *view) {
+static conic_status choose_from_patches(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view) {
   patches_source *p = (patches_source *)source;
   (void)view;
   conic_status status = conic_patches_select(p->patches, camera, render, &p->selection);
@@ -73,17 +73,17 @@ static conic_status choose(conic_source *source, const conic_camera *camera, con
   return status;
 }
 
-static void name_image(const conic_source *source, conic_image *image) {
+static void name_patches_image(const conic_source *source, conic_image *image) {
   conic_patch_selection_name(&((const patches_source *)source)->selection, image);
 }
 
-static const char *name_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+static const char *name_patches_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
   *number = ((const patches_source *)source)->selection.points[splat];
   return "point";
 }
 
 /* Of what was handed over to be drawn. */
-static void tell_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
+static void tell_patches_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_patch_selection *selection = &((const patches_source *)source)->selection;
   *n_splats = selection->n_splats;
   CONIC_ADD_FACTS(facts, CONIC_COUNT("patches", selection->n_patches), CONIC_COUNT("samples", selection->n_samples));
@@ -92,12 +92,12 @@ static void tell_primitives(const conic_source *source, conic_facts *facts, uint
 const conic_source_kind conic_source_kind_patches = {
     .size = sizeof(patches_source),
     .company = CONIC_SOURCE_MANY,
-    .takes = takes,
-    .open = open,
-    .close = close,
-    .find_spacing = find_spacing,
-    .choose = choose,
-    .name_image = name_image,
-    .name_splat = name_splat,
-    .tell_primitives = tell_primitives,
+    .takes = takes_patches,
+    .open = open_patches,
+    .close = close_patches,
+    .find_spacing = find_patches_spacing,
+    .choose = choose_from_patches,
+    .name_image = name_patches_image,
+    .name_splat = name_patches_splat,
+    .tell_primitives = tell_patches_primitives,
 };

@@ -32,8 +32,8 @@ void conic_source_view_init(conic_source_view *view) {
 
 /* --- kinds --- */
 
-static int takes(const conic_source_kind *kind, const char *const *paths, size_t n,
-                 const conic_source_options *options) {
+static int takes_any(const conic_source_kind *kind, const char *const *paths, size_t n,
+                     const conic_source_options *options) {
   if (kind->company == CONIC_SOURCE_SINGLE && n != 1)
     return 0;
   for (size_t i = 0; i < n; i++)
@@ -44,7 +44,7 @@ static int takes(const conic_source_kind *kind, const char *const *paths, size_t
 
 static const conic_source_kind *find_kind(const char *const *paths, size_t n, const conic_source_options *options) {
   int i = 0;
-  while (i < N_KINDS - 1 && !takes(kinds[i], paths, n, options))
+  while (i < N_KINDS - 1 && !takes_any(kinds[i], paths, n, options))
     i++;
   return kinds[i];
 }
@@ -174,7 +174,8 @@ static conic_status begin_picture(conic_source *source, const conic_render_optio
   return CONIC_OK;
 }
 
-static conic_status choose(conic_source *source, const conic_camera *camera, const conic_render_options *render) {
+static conic_status choose_settled(conic_source *source, const conic_camera *camera,
+                                   const conic_render_options *render) {
   static const conic_splats no_splats;
   static const conic_triangles no_triangles;
   if (!source->kind->choose)
@@ -189,7 +190,7 @@ conic_status conic_source_choose(conic_source *source, const conic_camera *camer
                                  const conic_source_view *view) {
   conic_render_options settled;
   conic_status status = begin_picture(source, render, view, &settled);
-  return status == CONIC_OK ? choose(source, camera, &settled) : status;
+  return status == CONIC_OK ? choose_settled(source, camera, &settled) : status;
 }
 
 conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
@@ -202,7 +203,7 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
     return status == CONIC_OK ? kind->draw(source, renderer, camera, &settled, &source->view, image, statistics)
                               : status;
   double start = conic_seconds_now();
-  status = choose(source, camera, &settled);
+  status = choose_settled(source, camera, &settled);
   double ms = kind->choose ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (status == CONIC_OK)
     status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
@@ -256,8 +257,8 @@ conic_status conic_source_describe(const conic_source *source, const conic_rende
   return CONIC_OK;
 }
 
-static conic_status inspect(conic_context *context, const conic_source_kind *kind, const char *path, int is_checked,
-                            conic_facts *facts) {
+static conic_status inspect_as(conic_context *context, const conic_source_kind *kind, const char *path, int is_checked,
+                               conic_facts *facts) {
   conic_source *source;
   conic_status status = conic_source_create(context, kind, path, &source);
   if (status != CONIC_OK)
@@ -277,7 +278,7 @@ conic_status conic_source_inspect(conic_context *context, const char *path, int 
   const conic_source_kind *kind = conic_source_kind_of_file(path);
   conic_status status = begin_facts(context, facts);
   if (status == CONIC_OK)
-    status = kind ? inspect(context, kind, path, is_checked, *facts)
+    status = kind ? inspect_as(context, kind, path, is_checked, *facts)
                   : conic_model_inspect(context, path, is_checked, *facts);
   if (status == CONIC_OK)
     return CONIC_OK;

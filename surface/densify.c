@@ -107,13 +107,12 @@ static int reserve(densifying *work) {
   if (n < work->capacity)
     return 1;
   for (int axis = 0; axis < 3; axis++)
-    if (conic_memory_grow(context, (void **)&points->position[axis], n, capacity, sizeof(float)) != CONIC_OK ||
+    if (conic_memory_grow(context, &points->position[axis], n, capacity, sizeof(float)) != CONIC_OK ||
         (points->normal[0] &&
-         conic_memory_grow(context, (void **)&points->normal[axis], n, capacity, sizeof(float)) != CONIC_OK) ||
-        (points->color[0] &&
-         conic_memory_grow(context, (void **)&points->color[axis], n, capacity, sizeof(float)) != CONIC_OK))
+         conic_memory_grow(context, &points->normal[axis], n, capacity, sizeof(float)) != CONIC_OK) ||
+        (points->color[0] && conic_memory_grow(context, &points->color[axis], n, capacity, sizeof(float)) != CONIC_OK))
       return 0;
-  if (conic_memory_grow(context, (void **)&work->sites, n, capacity, sizeof *work->sites) != CONIC_OK)
+  if (conic_memory_grow(context, &work->sites, n, capacity, sizeof *work->sites) != CONIC_OK)
     return 0;
   work->capacity = capacity;
   return 1;
