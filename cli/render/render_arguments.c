@@ -381,7 +381,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
-  o->isa = (conic_isa)raw.isa;
+  o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
