@@ -161,7 +161,7 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
   return &source->choice;
 }
 
-/* Both structs are copied into the source's own, and filled in. */
+/* The view becomes the source's, and the options are filled in. */
 static conic_status begin_picture(conic_source *source, const conic_render_options *render,
                                   const conic_source_view *view, conic_render_options *settled) {
   if (!render || render->size != sizeof *render || (view && view->size != sizeof *view))
