@@ -280,6 +280,7 @@ static int write_statistics(mls_job *job, double total_seconds) {
 
 static int run_job(mls_job *job) {
   double start = cli_seconds();
+  job->session->isa = (conic_isa)job->isa;
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;
