@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
 #include "oracle/oracle_exact.h"
 #include "oracle/oracle_pixel.h"
 #include "oracle/oracle_triangle.h"
@@ -324,14 +325,11 @@ conic_status conic_oracle_allocate(conic_context *context, conic_reference *r) {
   return r->unstable && r->tied_id ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static conic_status check(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                          const conic_render_options *options, conic_oracle_question question) {
-  if (!splats || !camera || !options || (splats->count && !splats->position[0]))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats, a camera and options");
+static conic_status check(conic_context *context, const conic_splats *splats, conic_oracle_question question) {
+  if (!splats || (splats->count && !splats->position[0]))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats");
   if (splats->count && (!splats->tangent_u[0] || !splats->tangent_v[0]))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
-  if (camera->width < 1 || camera->height < 1 || camera->width > 65535 || camera->height > 65535)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the camera's picture has no size");
   if (!conic_oracle_question_name(question))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "no question to the oracle has the number %d", (int)question);
   return CONIC_OK;
@@ -343,19 +341,21 @@ conic_status conic_oracle_draw(conic_context *context, const conic_drawing *draw
   static const conic_splats no_splats;
   const conic_drawing whole = {drawing->splats ? drawing->splats : &no_splats, drawing->triangles};
   memset(reference, 0, sizeof *reference);
-  conic_status status = check(context, whole.splats, camera, options, question);
+  conic_render_options settled;
+  conic_status status = conic_view_arguments_take(context, "the oracle", camera, options, &settled);
+  if (status == CONIC_OK)
+    status = check(context, whole.splats, question);
   if (status == CONIC_OK && whole.triangles)
     status = conic_triangles_check(context, whole.triangles, "the oracle");
   if (status != CONIC_OK)
     return status;
-  conic_render_options settled = *options;
   if (!(settled.near_z > 0.0) && whole.triangles)
     settled.near_z = conic_drawing_near(&whole);
   job j = {.context = context, .options = &settled, .reference = reference};
   reference->width = camera->width;
   reference->height = camera->height;
   reference->question = question;
-  reference->white = conic_oracle_exp(options->exposure * 0.69314718055994530942);
+  reference->white = conic_oracle_exp(settled.exposure * 0.69314718055994530942);
   status = conic_oracle_allocate(context, reference);
   if (status == CONIC_OK)
     status = conic_oracle_scene_create(context, whole.splats, camera, &settled, &j.scene);
@@ -376,8 +376,8 @@ conic_status conic_oracle_render(conic_context *context, const conic_splats *spl
                                  conic_reference *reference) {
   const conic_drawing alone = {splats, NULL};
   memset(reference, 0, sizeof *reference);
-  conic_status status = check(context, splats, camera, options, question);
-  return status == CONIC_OK ? conic_oracle_draw(context, &alone, camera, options, question, reference) : status;
+  return splats ? conic_oracle_draw(context, &alone, camera, options, question, reference)
+                : conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats");
 }
 
 void conic_reference_release(conic_context *context, conic_reference *reference) {

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "surface/cells.h"
 #include "surface/own_points.h"
 #include "surface/store.h"
@@ -392,19 +393,21 @@ static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
   return status;
 }
 
-void conic_clean_options_init(conic_clean_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  conic_surface_options_init(&options->surface);
+void conic_clean_options_init_sized(conic_clean_options *options, size_t size) {
+  conic_clean_options own = {.size = sizeof own};
+  conic_surface_options_init(&own.surface);
+  conic_options_give(options, size, &own);
 }
 
-conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
+conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *given,
                                        conic_points_source *source, void *source_cookie, const conic_points_sink *sink,
                                        conic_surface_report *report) {
+  conic_clean_options options;
   cleaning work = {
-      .context = context, .options = options, .records = {.descriptor = -1}, .results = {.descriptor = -1}};
-  if (options->size != sizeof *options || !(options->surface.h > 0.0 && options->surface.h < 1e30) ||
-      options->surface.cluster != 0.0)
+      .context = context, .options = &options, .records = {.descriptor = -1}, .results = {.descriptor = -1}};
+  conic_clean_options_init(&options);
+  if (!conic_options_take(&options, given) || !(options.surface.h > 0.0 && options.surface.h < 1e30) ||
+      options.surface.cluster != 0.0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: cells need an h for all points, and no clusters");
   conic_status status = clean_all(&work, source, source_cookie);
   if (status == CONIC_OK)

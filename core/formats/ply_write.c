@@ -7,6 +7,7 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
 
@@ -37,17 +38,15 @@ typedef struct row_cursor {
   conic_ply_encoding encoding;
 } row_cursor;
 
-void conic_write_options_init(conic_write_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cutoff = 1.5f;
+void conic_write_options_init_sized(conic_write_options *options, size_t size) {
+  const conic_write_options own = {.size = sizeof own, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 static conic_status check_options(conic_context *context, const char *path, const conic_write_options *options,
                                   unsigned fields) {
   int is_cutoff_usable = options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f;
-  if (options->size != sizeof *options ||
-      (options->encoding != CONIC_PLY_BINARY && options->encoding != CONIC_PLY_ASCII) ||
+  if ((options->encoding != CONIC_PLY_BINARY && options->encoding != CONIC_PLY_ASCII) ||
       (options->circles && !is_cutoff_usable))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options have no meaning", path);
   if (options->circles && !(fields & CONIC_SPLATS_TANGENTS))
@@ -60,8 +59,8 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   conic_write_options settings;
   *writer = NULL;
   conic_write_options_init(&settings);
-  if (options)
-    settings = *options;
+  if (options && !conic_options_take(&settings, options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options were not initialised", path);
   conic_status status = check_options(context, path, &settings, fields);
   if (status != CONIC_OK)
     return status;

@@ -39,7 +39,8 @@ typedef struct conic_hybrid_options {
 } conic_hybrid_options;
 
 /* 0.12, 0.4, by the number of faces, BLUE, 2 surfels, 0.5, cutoff 1.5, all levels. */
-CONIC_API void conic_hybrid_options_init(conic_hybrid_options *options);
+CONIC_API void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size);
+#define conic_hybrid_options_init(options) conic_hybrid_options_init_sized(options, sizeof *(options))
 
 /* What became of the mesh's faces, and how long that took. */
 typedef struct conic_hybrid_report {
@@ -113,7 +114,8 @@ typedef struct conic_hybrid_view {
 } conic_hybrid_view;
 
 /* As built, of either kind. */
-CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
+CONIC_API void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size);
+#define conic_hybrid_view_init(view) conic_hybrid_view_init_sized(view, sizeof *(view))
 
 /* What is drawn in one picture. With an error or a budget, a node of the tree that does not reach the near distance
  * may stand for all of its patches, by a few surfels or by one splat that faces the camera. Zero before the first use;

@@ -23,7 +23,8 @@ typedef struct conic_layers_options {
 } conic_layers_options;
 
 /* Clouds of 2048 samples, 1 GiB, half a sampling distance, cutoff 1.5. */
-CONIC_API void conic_layers_options_init(conic_layers_options *options);
+CONIC_API void conic_layers_options_init_sized(conic_layers_options *options, size_t size);
+#define conic_layers_options_init(options) conic_layers_options_init_sized(options, sizeof *(options))
 
 /* A file that is being built. */
 typedef struct conic_layers_builder conic_layers_builder;

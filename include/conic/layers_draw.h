@@ -33,7 +33,8 @@ typedef struct conic_layers_access {
 } conic_layers_access;
 
 /* 512 MiB; 10 s, 15 s, 4 retries from 0.2 s on, 4 connections. */
-CONIC_API void conic_layers_access_init(conic_layers_access *access);
+CONIC_API void conic_layers_access_init_sized(conic_layers_access *access, size_t size);
+#define conic_layers_access_init(access) conic_layers_access_init_sized(access, sizeof *(access))
 
 /* Whether a name is an http:// or https:// URL. */
 CONIC_API int conic_layers_is_url(const char *name);
@@ -79,7 +80,8 @@ typedef struct conic_layers_draw_options {
 } conic_layers_draw_options;
 
 /* Full resolution, one sample, automatic occlusion. */
-CONIC_API void conic_layers_draw_options_init(conic_layers_draw_options *options);
+CONIC_API void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size);
+#define conic_layers_draw_options_init(options) conic_layers_draw_options_init_sized(options, sizeof *(options))
 
 /* What a picture took. Places are what was chosen: cells of space, each with the samples that all clouds have there. */
 typedef struct conic_layers_drawn {

@@ -42,7 +42,8 @@ typedef struct conic_read_options {
 } conic_read_options;
 
 /* Cutoff 1.5, points alone. */
-CONIC_API void conic_read_options_init(conic_read_options *options);
+CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
+#define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
 /* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/formats.md); "-" is standard input. The format is told by the
  * content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
@@ -88,7 +89,8 @@ typedef struct conic_estimate_options {
 } conic_estimate_options;
 
 /* 20 neighbours, cutoff 1.5, no creases. */
-CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
+CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
+#define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
  * neighbours (Confetti §4.3 with the corrections of docs/errata.md); a set that has axes keeps them, and only
@@ -119,7 +121,8 @@ typedef struct conic_write_options {
 } conic_write_options;
 
 /* Binary, positions as they come, axes, cutoff 1.5. */
-CONIC_API void conic_write_options_init(conic_write_options *options);
+CONIC_API void conic_write_options_init_sized(conic_write_options *options, size_t size);
+#define conic_write_options_init(options) conic_write_options_init_sized(options, sizeof *(options))
 
 /* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. What is written first
  * decides for the whole file: an origin other than zero, that positions are double; colours that are all those of 8-bit

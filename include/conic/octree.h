@@ -25,7 +25,8 @@ typedef struct conic_octree_options {
 } conic_octree_options;
 
 /* Cutoff 1.5, not quantised. */
-CONIC_API void conic_octree_options_init(conic_octree_options *options);
+CONIC_API void conic_octree_options_init_sized(conic_octree_options *options, size_t size);
+#define conic_octree_options_init(options) conic_octree_options_init_sized(options, sizeof *(options))
 
 /* Builds the hierarchy of splats with tangent axes. It takes the arrays over: *splats is empty afterwards, on failure
  * too. Splats that cannot be drawn are kept beside it. The result depends on the splats and the options only, never on
@@ -89,7 +90,8 @@ typedef struct conic_selection_options {
 } conic_selection_options;
 
 /* An error of 1 pixel. */
-CONIC_API void conic_selection_options_init(conic_selection_options *options);
+CONIC_API void conic_selection_options_init_sized(conic_selection_options *options, size_t size);
+#define conic_selection_options_init(options) conic_selection_options_init_sized(options, sizeof *(options))
 
 /* A picture's splats, in the order of the hierarchy. Zero before the first use; the memory is kept from call to call.
  */

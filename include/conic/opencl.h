@@ -46,7 +46,8 @@ typedef struct conic_opencl_options {
 } conic_opencl_options;
 
 /* The first device that will do and rounds correctly, no cache, work as it chooses, projection on the device. */
-CONIC_API void conic_opencl_options_init(conic_opencl_options *options);
+CONIC_API void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size);
+#define conic_opencl_options_init(options) conic_opencl_options_init_sized(options, sizeof *(options))
 
 /* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, which must
  * not outlive the context, and *device (which may be null) says what draws. Errors: ARGUMENT (a name that is none),

@@ -30,7 +30,8 @@ typedef struct conic_patches_options {
 } conic_patches_options;
 
 /* The surface's defaults, cutoff 1.5, steps of 2 px. */
-CONIC_API void conic_patches_options_init(conic_patches_options *options);
+CONIC_API void conic_patches_options_init_sized(conic_patches_options *options, size_t size);
+#define conic_patches_options_init(options) conic_patches_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_patches conic_patches;
 

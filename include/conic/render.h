@@ -92,7 +92,8 @@ typedef struct conic_render_options {
 
 /* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
  * background. */
-CONIC_API void conic_render_options_init(conic_render_options *options);
+CONIC_API void conic_render_options_init_sized(conic_render_options *options, size_t size);
+#define conic_render_options_init(options) conic_render_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_render_milliseconds {
   double lod; /* left at 0: whoever chooses what to draw (conic/octree.h) may add it, to frame too */

@@ -52,7 +52,8 @@ typedef struct conic_surface_options {
 } conic_surface_options;
 
 /* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
-CONIC_API void conic_surface_options_init(conic_surface_options *options);
+CONIC_API void conic_surface_options_init_sized(conic_surface_options *options, size_t size);
+#define conic_surface_options_init(options) conic_surface_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_surface conic_surface;
 
@@ -141,7 +142,8 @@ typedef struct conic_clean_options {
 } conic_clean_options;
 
 /* The surface's defaults, for which h is still to be set. */
-CONIC_API void conic_clean_options_init(conic_clean_options *options);
+CONIC_API void conic_clean_options_init_sized(conic_clean_options *options, size_t size);
+#define conic_clean_options_init(options) conic_clean_options_init_sized(options, sizeof *(options))
 
 /* conic_surface_clean for sets of any size: cell by cell of a lattice with sides of 64 h, each with what lies within
  * (neglect + 1.5) h about it. The memory that there is changes no bit. Normals of algebraic spheres must come with the
@@ -159,7 +161,8 @@ typedef struct conic_thin_options {
 } conic_thin_options;
 
 /* Neither a count nor an error: one of them is still to be set. */
-CONIC_API void conic_thin_options_init(conic_thin_options *options);
+CONIC_API void conic_thin_options_init_sized(conic_thin_options *options, size_t size);
+#define conic_thin_options_init(options) conic_thin_options_init_sized(options, sizeof *(options))
 
 /* Removes the points that mean least, the least first: by the distance of a point from the surface of the others that
  * are left (PSS §5.1). Removing a point makes its neighbours be measured anew before they are. What is left is a subset
@@ -176,7 +179,8 @@ typedef struct conic_densify_options {
 } conic_densify_options;
 
 /* Holes wider than h stay, any number of points; the spacing is still to be set. */
-CONIC_API void conic_densify_options_init(conic_densify_options *options);
+CONIC_API void conic_densify_options_init_sized(conic_densify_options *options, size_t size);
+#define conic_densify_options_init(options) conic_densify_options_init_sized(options, sizeof *(options))
 
 /* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a
  * point's neighbours in their plane (PSS §5.2). Nothing is added outside of its neighbours: borders stay where they

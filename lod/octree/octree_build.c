@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "lod/octree/leaf_code.h"
 #include "lod/octree/octree_fit.h"
@@ -259,8 +260,10 @@ static conic_status build(conic_octree *octree, const conic_octree_options *opti
   return status == CONIC_OK ? conic_octree_fit(octree) : status;
 }
 
-static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *options) {
-  if (options->size != sizeof *options || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
+static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *given,
+                                 conic_octree_options *options) {
+  conic_octree_options_init(options);
+  if (!conic_options_take(options, given) || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
     return "the options have no meaning";
   if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
     return "the splats have no tangent axes";
@@ -269,9 +272,10 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_octree_
   return NULL;
 }
 
-conic_status conic_octree_build(conic_context *context, conic_splats *splats, const conic_octree_options *options,
+conic_status conic_octree_build(conic_context *context, conic_splats *splats, const conic_octree_options *given,
                                 conic_octree **octree) {
-  const char *wrong = what_is_wrong(splats, options);
+  conic_octree_options options;
+  const char *wrong = what_is_wrong(splats, given, &options);
   conic_status status = CONIC_OK;
   *octree = NULL;
   conic_octree *made = wrong ? NULL : conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -293,7 +297,7 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
     conic_memory_release(context, made->owned.normal[axis]);
     made->owned.normal[axis] = NULL;
   }
-  status = build(made, options);
+  status = build(made, &options);
   if (status == CONIC_OK)
     *octree = made;
   else

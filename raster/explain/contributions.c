@@ -1,3 +1,4 @@
+#include "core/image/view_arguments.h"
 #include "raster/explain/pixel_contributions.h"
 
 #include <string.h>
@@ -105,8 +106,7 @@ conic_status conic_contributions_create(conic_context *context, const conic_spla
   const conic_drawing alone = {splats, NULL};
   *contributions = NULL;
   if (!splats)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "contributions: an argument is null, or the options were not initialised");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "contributions: the splats are null");
   return conic_contributions_create_drawing(context, &alone, camera, options, contributions);
 }
 
@@ -114,17 +114,20 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
                                                 const conic_camera *camera, const conic_render_options *options,
                                                 conic_contributions **contributions) {
   *contributions = NULL;
-  if (!drawing || !camera || !options || options->size != sizeof *options)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "contributions: an argument is null, or the options were not initialised");
+  conic_render_options own;
+  conic_status status = conic_view_arguments_take(context, "contributions", camera, options, &own);
+  if (status != CONIC_OK)
+    return status;
+  if (!drawing)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "contributions: the drawing is null");
   conic_contributions *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
   if (!c)
     return CONIC_ERROR_MEMORY;
   c->context = context;
   conic_whole_drawing_of(drawing, &c->drawing);
   c->splats = c->drawing.splats;
-  c->options = *options;
-  conic_status status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
+  c->options = own;
+  status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
   if (status == CONIC_OK)
     status =
         conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);

@@ -1,5 +1,6 @@
 /* Laying patches: a polynomial about every point, and how far it is to be trusted. */
 #include "surface/patches/patch_set.h"
+#include "core/base/options.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,17 +18,15 @@ static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
  * it just covers the cell of the tangent plane that the splat was made for. */
 static const double SHRINKAGE = 0.85, LEAST_SHARE = 0.6;
 
-void conic_patches_options_init(conic_patches_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  conic_surface_options_init(&options->surface);
-  options->cutoff = 1.5f;
-  options->step_px = 2.0;
+void conic_patches_options_init_sized(conic_patches_options *options, size_t size) {
+  conic_patches_options own = {.size = sizeof own, .cutoff = 1.5f, .step_px = 2.0};
+  conic_surface_options_init(&own.surface);
+  conic_options_give(options, size, &own);
 }
 
 static conic_status check_options(conic_context *context, const conic_splats *splats, const conic_patches_options *o) {
-  if (o->size != sizeof *o || o->surface.type != CONIC_SURFACE_MLS)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: options that were not initialised, or no polynomials");
+  if (o->surface.type != CONIC_SURFACE_MLS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: spheres are no polynomials");
   if (!(o->cutoff >= 0.25f && o->cutoff <= 5.0f) || !(o->step_px >= 0.25 && o->step_px <= 16.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: cutoff %g or step %g is out of range", (double)o->cutoff,
                       o->step_px);
@@ -295,13 +294,12 @@ static conic_status lay(conic_patches *patches) {
 }
 
 conic_status conic_patches_create(conic_context *context, const conic_splats *splats,
-                                  const conic_patches_options *options, conic_patches **patches) {
-  conic_patches_options defaults;
+                                  const conic_patches_options *given, conic_patches **patches) {
+  conic_patches_options own, *options = &own;
   *patches = NULL;
-  if (!options) {
-    conic_patches_options_init(&defaults);
-    options = &defaults;
-  }
+  conic_patches_options_init(options);
+  if (given && !conic_options_take(options, given))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the options were not initialised");
   conic_status status = check_options(context, splats, options);
   if (status != CONIC_OK)
     return status;

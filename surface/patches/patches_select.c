@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
 #include "surface/patches/patch_set.h"
 
 enum { CHUNK = 256 };
@@ -249,28 +250,30 @@ static conic_status select_samples(selecting *work, conic_patch_selection *selec
   return CONIC_OK;
 }
 
-conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera,
-                                  const conic_render_options *render, conic_patch_selection *selection) {
+conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera, const conic_render_options *given,
+                                  conic_patch_selection *selection) {
   conic_context *context = patches->context;
   const conic_neighbours *tree = &patches->surface->tree;
   double diagonal2 = 0.0;
   selecting work = {.patches = patches, .n_chunks = (tree->n_points + CHUNK - 1) / CHUNK};
+  conic_render_options render;
   memset(selection, 0, sizeof *selection);
-  if (!(camera->fx > 0.0 && camera->fy > 0.0 && camera->width > 0 && camera->height > 0) ||
-      render->kernel.cutoff != patches->options.cutoff || !(render->prefilter >= 0.0f))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "patches: the camera makes no sense, or the kernel's cutoff is not that of the patches");
+  conic_status status = conic_view_arguments_take(context, "patches", camera, given, &render);
+  if (status != CONIC_OK)
+    return status;
+  if (render.kernel.cutoff != patches->options.cutoff || !(render.prefilter >= 0.0f))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the kernel's cutoff is not that of the patches");
   for (int axis = 0; axis < 3; axis++) {
     double side = (double)tree->boxes[0][3 + axis] - (double)tree->boxes[0][axis];
     diagonal2 += side * side;
   }
-  conic_patches_view_init(&work.view, camera, render, patches->splats->origin,
+  conic_patches_view_init(&work.view, camera, &render, patches->splats->origin,
                           diagonal2 > 0.0 ? 1e-4 * sqrt(diagonal2) : 1e-4, patches->options.step_px);
   work.last = &patches->frames[patches->i_frame];
   work.frame = &patches->frames[patches->i_frame ^= 1];
   work.chunk_starts = conic_memory_allocate(context, work.n_chunks + 1, sizeof *work.chunk_starts);
   work.chunk_kept = conic_memory_allocate(context, work.n_chunks, sizeof *work.chunk_kept);
-  conic_status status = CONIC_ERROR_MEMORY;
+  status = CONIC_ERROR_MEMORY;
   if (work.chunk_starts && work.chunk_kept)
     status = select_samples(&work, selection);
   else
