@@ -9,8 +9,8 @@ double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage) {
   return stages[i_stage];
 }
 
-/* Operations of docs/picture.md's formulas as raster/project/project_splats.c, coverage.h and resolve.c write them, one
- * a sign. */
+/* Operations of docs/reference/picture.md's formulas as raster/project/project_splats.c, coverage.h and resolve.c write
+ * them, one a sign. */
 enum {
   MOVE_CENTER = 18,    /* p and, below, both axes into camera space */
   MOVE_AXES = 36,      /* with the division by p_z */

@@ -1,5 +1,5 @@
 /* Hybrid models: of a mesh, patches that are drawn as triangles where the surface is flat and as surfels where it is
- * not (docs/hybrid.md). */
+ * not (docs/reference/hybrid.md). */
 #ifndef CONIC_HYBRID_H
 #define CONIC_HYBRID_H
 
@@ -64,7 +64,7 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 
-/* Writes a .chy file (docs/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
+/* Writes a .chy (docs/reference/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
 CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid, which

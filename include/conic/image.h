@@ -92,7 +92,7 @@ CONIC_API conic_status conic_image_check_output(conic_context *context, const ch
  * *image. Errors: INPUT, UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
 
-/* How two images differ. See docs/diff.md for the definitions. */
+/* How two images differ. See docs/reference/diff.md for the definitions. */
 typedef struct conic_plane_difference {
   int compared; /* the plane is in both images */
   double max_abs, rmse;

@@ -8,7 +8,8 @@
 #include "lod/hybrid/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
- * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
+ * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline
+ * (docs/notes/hybrid-measured.md). */
 static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 

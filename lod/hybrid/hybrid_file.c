@@ -1,4 +1,4 @@
-/* .chy files: docs/format-chy.md. */
+/* .chy files: docs/reference/format-chy.md. */
 #include <stdio.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "conic/hybrid.h"
 #include "core/files/mapping.h"
 
-/* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
+/* The records of a .chy file (docs/reference/format-chy.md), as they are in memory too. */
 
 /* One way to draw a patch, or a node. */
 typedef struct conic_hybrid_level {

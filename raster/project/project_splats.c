@@ -71,7 +71,7 @@ static void pixel_range(double center, double reach, int size, uint16_t *begin, 
 }
 
 /* The variance of the projected kernel about its centre, and what else the dual conic gives (PAS §4 in dual form,
- * shifted so that p projects to the origin; docs/picture.md has the derivation). */
+ * shifted so that p projects to the origin; docs/reference/picture.md has the derivation). */
 typedef struct projected_kernel {
   float rxx, rxy, ryy;    /* px² */
   float root_determinant; /* √|R'|, not by rxx·ryy - rxy²: that cancels when edge-on */
@@ -201,7 +201,7 @@ static void set_laplace(const conic_view *view, const tangents *t, conic_footpri
 }
 
 /* About the projected p, U, V and iz are made of what shearing to it gave: no cancellation, so that float will do
- * (docs/picture.md). The box is the projected outline's, widened. */
+ * (docs/reference/picture.md). The box is the projected outline's, widened. */
 static conic_outcome project_ray_before_near(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;

@@ -53,7 +53,7 @@ static int covers(const expectation *e, size_t i, int x, int y, conic_fragment *
          conic_fragment_at(&e->view, &e->projected, &e->projected.footprints[i], x, y, fragment);
 }
 
-/* By the definition (docs/picture.md, Visible and Planes), in file order. */
+/* By the definition (docs/reference/picture.md, Visible and Planes), in file order. */
 static void expect_pixel(expectation *e, int x, int y) {
   size_t at = (size_t)y * (size_t)e->view.width + (size_t)x;
   conic_fragment g;

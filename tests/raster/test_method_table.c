@@ -1,6 +1,6 @@
 /* The largest weight error of the methods' bare formulas (no hand-overs) within the footprint, against the exactly
  * projected kernel, numerically convolved with the pixel's Gaussian of 1 px². All in double, apart from the renderer:
- * this is about the methods, not about their implementation. The figures are those of docs/accuracy.md. */
+ * this is about the methods, not about their implementation. The figures are those of docs/reference/accuracy.md. */
 #include "raster/tiles/coverage.h"
 #include "tests/support/fixture.h"
 

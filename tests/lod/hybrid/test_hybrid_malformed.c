@@ -141,7 +141,7 @@ static void check_f32(conic_context *context, const sound_file *sound, size_t at
   check_u32(context, sound, at, bits, wrong);
 }
 
-/* Where things are in the header: format-chy.md. */
+/* Where things are in the header: docs/reference/format-chy.md. */
 enum {
   VERSION = 8,
   FLAGS = 12,
