@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
+#include "core/splats/columns.h"
 #include "oracle/oracle_exact.h"
 #include "oracle/oracle_pixel.h"
 #include "oracle/oracle_triangle.h"
@@ -326,8 +327,6 @@ conic_status conic_oracle_allocate(conic_context *context, conic_reference *r) {
 }
 
 static conic_status check(conic_context *context, const conic_splats *splats, conic_oracle_question question) {
-  if (!splats || (splats->count && !splats->position[0]))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats");
   if (splats->count && (!splats->tangent_u[0] || !splats->tangent_v[0]))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
   if (!conic_oracle_question_name(question))
@@ -335,32 +334,21 @@ static conic_status check(conic_context *context, const conic_splats *splats, co
   return CONIC_OK;
 }
 
-conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
-                               const conic_render_options *options, conic_oracle_question question,
-                               conic_reference *reference) {
-  static const conic_splats no_splats;
-  const conic_drawing whole = {drawing->splats ? drawing->splats : &no_splats, drawing->triangles};
-  memset(reference, 0, sizeof *reference);
-  conic_render_options settled;
-  conic_status status = conic_view_arguments_take(context, "the oracle", camera, options, &settled);
-  if (status == CONIC_OK)
-    status = check(context, whole.splats, question);
-  if (status == CONIC_OK && whole.triangles)
-    status = conic_triangles_check(context, whole.triangles, "the oracle");
-  if (status != CONIC_OK)
-    return status;
-  if (!(settled.near_z > 0.0) && whole.triangles)
-    settled.near_z = conic_drawing_near(&whole);
-  job j = {.context = context, .options = &settled, .reference = reference};
+/* The picture of what was checked; near_z is found where it is 0. */
+static conic_status ask(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                        conic_render_options *settled, conic_oracle_question question, conic_reference *reference) {
+  if (!(settled->near_z > 0.0) && drawing->triangles)
+    settled->near_z = conic_drawing_near(drawing);
+  job j = {.context = context, .options = settled, .reference = reference};
   reference->width = camera->width;
   reference->height = camera->height;
   reference->question = question;
-  reference->white = conic_oracle_exp(settled.exposure * 0.69314718055994530942);
-  status = conic_oracle_allocate(context, reference);
+  reference->white = conic_oracle_exp(settled->exposure * 0.69314718055994530942);
+  conic_status status = conic_oracle_allocate(context, reference);
   if (status == CONIC_OK)
-    status = conic_oracle_scene_create(context, whole.splats, camera, &settled, &j.scene);
+    status = conic_oracle_scene_create(context, drawing->splats, camera, settled, &j.scene);
   if (status == CONIC_OK) {
-    status = conic_oracle_mesh_create(context, &whole, &j.scene, &settled, &j.mesh);
+    status = conic_oracle_mesh_create(context, drawing, &j.scene, settled, &j.mesh);
     if (status == CONIC_OK)
       status = compute(&j);
     conic_oracle_mesh_release(context, &j.mesh);
@@ -371,10 +359,29 @@ conic_status conic_oracle_draw(conic_context *context, const conic_drawing *draw
   return status;
 }
 
+conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                               const conic_render_options *options, conic_oracle_question question,
+                               conic_reference *reference) {
+  conic_entered_drawing entered;
+  const conic_drawing whole = {&entered.splats, drawing->triangles ? &entered.triangles : NULL};
+  conic_render_options settled;
+  memset(reference, 0, sizeof *reference);
+  conic_status status = conic_view_arguments_take(context, "the oracle", camera, options, &settled);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_drawing_enter(context, "the oracle", drawing, &entered);
+  if (status == CONIC_OK)
+    status = check(context, &entered.splats, question);
+  if (status == CONIC_OK)
+    status = ask(context, &whole, camera, &settled, question, reference);
+  conic_drawing_leave(context, &entered);
+  return status;
+}
+
 conic_status conic_oracle_render(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, conic_oracle_question question,
                                  conic_reference *reference) {
-  const conic_drawing alone = {splats, NULL};
+  const conic_drawing alone = {.splats = splats};
   memset(reference, 0, sizeof *reference);
   return splats ? conic_oracle_draw(context, &alone, camera, options, question, reference)
                 : conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats");

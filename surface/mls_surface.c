@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/splats/columns.h"
 #include "surface/clusters.h"
 #include "surface/kernels/weight.h"
 
@@ -213,7 +214,9 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   conic_surface_options_init(options);
   if (given && !conic_options_take(options, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: the options were not initialised");
-  conic_status status = check_options(context, options, conic_splats_fields(points));
+  conic_status status = conic_splats_check(context, "surface", points);
+  if (status == CONIC_OK)
+    status = check_options(context, options, conic_splats_fields(points));
   if (status != CONIC_OK)
     return status;
   const conic_surface_kernels *kernels = conic_surface_kernels_of(options->isa);
@@ -229,7 +232,12 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);
-  status = prepare(made, points);
+  conic_splats close;
+  float *block;
+  status = conic_splats_enter(context, "surface", points, &close, &block);
+  if (status == CONIC_OK)
+    status = prepare(made, &close);
+  conic_memory_release(context, block);
   if (status == CONIC_OK)
     *surface = made;
   else

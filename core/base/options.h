@@ -13,4 +13,7 @@ void conic_options_give(void *theirs, size_t size, const void *own);
  * a member that only the caller knows is not zero: it asks for something that this version cannot do. */
 int conic_options_take(void *own, const void *theirs);
 
+/* Whether so many bytes are all zero, as reserved words of the other structs are. */
+int conic_is_zero(const void *bytes, size_t n);
+
 #endif

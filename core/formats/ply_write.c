@@ -10,6 +10,7 @@
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
+#include "core/splats/columns.h"
 
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {
@@ -258,7 +259,7 @@ static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_sp
     row->next[-1] = '\n';
 }
 
-conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic_splats *batch) {
+static conic_status append(conic_splats_writer *writer, const conic_splats *batch) {
   FILE *to = conic_output_stream(writer->output);
   if (batch->count > writer->count - writer->written)
     return conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: more splats than the %zu announced", writer->path,
@@ -282,6 +283,16 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
   return CONIC_OK;
 }
 
+conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic_splats *batch) {
+  conic_splats close;
+  float *block;
+  conic_status status = conic_splats_enter(writer->context, writer->path, batch, &close, &block);
+  if (status == CONIC_OK)
+    status = append(writer, &close);
+  conic_memory_release(writer->context, block);
+  return status;
+}
+
 conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
   conic_status status;
   if (writer->written < writer->count) {
@@ -301,8 +312,9 @@ conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
 conic_status conic_splats_write(conic_context *context, const char *path, const conic_splats *splats,
                                 const conic_write_options *options) {
   conic_splats_writer *writer;
-  conic_status status =
-      conic_splats_writer_open(context, path, splats->count, conic_splats_fields(splats), options, &writer);
+  conic_status status = conic_splats_check(context, path, splats);
+  if (status == CONIC_OK)
+    status = conic_splats_writer_open(context, path, splats->count, conic_splats_fields(splats), options, &writer);
   if (status != CONIC_OK)
     return status;
   status = conic_splats_writer_append(writer, splats);

@@ -79,6 +79,7 @@ conic_status conic_camera_frame(conic_context *context, const conic_framing *giv
   double tan_sphere = 0.9 * tan_half; /* of the angle under which the sphere's radius is seen */
   double distance = radius * sqrt(1.0 + tan_sphere * tan_sphere) / tan_sphere;
 
+  memset(camera, 0, sizeof *camera);
   int shorter = framing->width < framing->height ? framing->width : framing->height;
   camera->width = framing->width;
   camera->height = framing->height;

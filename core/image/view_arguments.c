@@ -33,6 +33,8 @@ const char *conic_rotation_fault(const double rows[3][4]) {
 }
 
 static conic_status check_camera(conic_context *context, const char *who, const conic_camera *c) {
+  if (!conic_is_zero(c->reserved, sizeof c->reserved))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's reserved words are not zero", who);
   if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's picture is 1 to 65535 pixels wide and high",
                       who);

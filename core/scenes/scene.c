@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
+#include "core/splats/columns.h"
 #include "core/splats/ellipse.h"
 
 static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
@@ -241,6 +242,9 @@ conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, coni
   size_t count = scene->options.count;
   if (first > count || n > count - first)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: samples %zu to %zu of %zu", first, first + n, count);
+  conic_status status = conic_splats_check_own(context, "scene", splats);
+  if (status != CONIC_OK)
+    return status;
   unsigned needed = conic_scene_fields(scene->options.type);
   if ((conic_splats_fields(splats) & needed) != needed)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,

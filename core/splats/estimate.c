@@ -2,6 +2,7 @@
  * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
 #include "core/splats/estimate.h"
 #include "core/base/options.h"
+#include "core/splats/columns.h"
 
 #include <math.h>
 #include <string.h>
@@ -308,6 +309,11 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
                       CONIC_MAX_NEIGHBOURS);
+  if (model->n_triangles && !model->triangles)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: the model has no triangles");
+  conic_status status = conic_splats_check_own(context, "estimate", &model->points);
+  if (status != CONIC_OK)
+    return status;
   double cosine = conic_cos(conic_radians(options->feature_angle_deg));
   if (options->feature_angle_deg == 0.0 || model->points.count == 0)
     return estimate_plain(context, options, model, repairs);

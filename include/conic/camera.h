@@ -5,6 +5,8 @@
 #ifndef CONIC_CAMERA_H
 #define CONIC_CAMERA_H
 
+#include <stdint.h>
+
 #include "conic/context.h"
 
 #ifdef __cplusplus
@@ -16,6 +18,7 @@ typedef struct conic_camera {
   double fx, fy;               /* focal lengths in pixels */
   double cx, cy;               /* principal point in pixels */
   double cam_from_world[3][4]; /* rows of the rotation and the translation; columns act on (x, y, z, 1) */
+  uint64_t reserved[8];
 } conic_camera;
 
 /* How conic_camera_frame looks at a box. */

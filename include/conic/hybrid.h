@@ -52,6 +52,7 @@ typedef struct conic_hybrid_report {
   size_t n_pieces;               /* what hangs together */
   size_t n_first;                /* clusters after the first phase */
   double cluster_seconds, sample_seconds, simplify_seconds; /* the last two: over all threads, but shared */
+  uint64_t reserved[8];
 } conic_hybrid_report;
 
 /* Takes the mesh's arrays and textures over: *mesh is empty afterwards, on failure too. The result depends on the mesh
@@ -86,6 +87,7 @@ typedef struct conic_hybrid_info {
   double splat_length;           /* as conic_splats_length of the surfels as built */
   double near_z;                 /* 1e-4 × the box's diagonal */
   uint64_t n_bytes;              /* of the file that holds it */
+  uint64_t reserved[8];
 } conic_hybrid_info;
 
 CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info);
@@ -97,6 +99,7 @@ typedef struct conic_hybrid_defects {
   size_t cones;   /* patches with a face that faces out of theirs, and nodes with such a patch */
   size_t levels;  /* patches and nodes whose levels' errors do not grow, patches that have none without an error, and
                      points whose error is less than their radius */
+  uint64_t reserved[8];
 } conic_hybrid_defects;
 
 /* Errors: MEMORY. */
@@ -133,6 +136,7 @@ typedef struct conic_hybrid_selection {
   double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
                                 that is not drawn by its own triangles reaches the near distance */
   void *scratch;             /* private */
+  uint64_t reserved[8];
 } conic_hybrid_selection;
 
 /* Chooses what to draw: patches out of sight, and with cull_back those that face away, are left out. Neighbours meet

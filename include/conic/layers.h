@@ -37,6 +37,7 @@ typedef struct conic_layers_statistics {
   int n_levels;
   double spacing, quantum; /* the sampling distance, and the step of the positions */
   double read_seconds, work_seconds, write_seconds;
+  uint64_t reserved[8];
 } conic_layers_statistics;
 
 /* Starts to build PATH, which appears under its name only when it is whole. Temporary files have no name, lie in the
@@ -70,6 +71,7 @@ typedef struct conic_layers_info {
   double near_z;                 /* as conic_default_near of what it was built from */
   /* Bits a sample. */
   double bits_position, bits_normal, bits_color, bits_index;
+  uint64_t reserved[8];
 } conic_layers_info;
 
 /* Reads and checks header and index. Errors: INPUT, MEMORY. */
@@ -81,6 +83,7 @@ typedef struct conic_layers_defects {
   uint64_t coverage; /* a sample of its place is farther from those drawn than its covering radius */
   uint64_t spheres;  /* a sample reaches out of the sphere */
   uint64_t cones;    /* a normal is outside the cone */
+  uint64_t reserved[8];
 } conic_layers_defects;
 
 /* Decodes every cloud and looks at every sample of every node. Errors: INPUT (header or index are damaged), MEMORY,

@@ -57,6 +57,7 @@ typedef struct conic_layers_scale {
   double near_z;                 /* as conic_default_near of what it was built from */
   double splat_length;           /* for conic_render_options: of the samples at full resolution */
   double spacing;                /* median sampling distance */
+  uint64_t reserved[8];
 } conic_layers_scale;
 
 /* `cutoff` is F_g of the kernel that will draw. */
@@ -100,6 +101,7 @@ typedef struct conic_layers_drawn {
   uint64_t n_bytes_received; /* over the network, since the picture before or the opening */
   int n_bands;               /* the picture was drawn in so many */
   int n_levels;              /* of the deepest cloud drawn, plus 1 */
+  uint64_t reserved[8];
 } conic_layers_drawn;
 
 /* Draws into the planes that `image` has, as conic_render does; `id` is the number of the sample in the file (modulo

@@ -29,6 +29,7 @@ typedef struct conic_model {
   uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
   conic_model_kind kind;     /* of the file that was read */
   struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
+  uint64_t reserved[8];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -76,6 +77,7 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
+  uint64_t reserved[8];
 } conic_repairs;
 
 typedef struct conic_estimate_options {

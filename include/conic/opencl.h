@@ -20,6 +20,7 @@ typedef struct conic_opencl_device {
   int rounds_correctly; /* division and square root; else its pictures may be others */
   int n_compute_units;
   uint64_t memory_bytes, greatest_buffer_bytes;
+  uint64_t reserved[8];
 } conic_opencl_device;
 
 /* The devices of this machine, platform by platform; none is no error. On success the caller releases *devices. Errors:

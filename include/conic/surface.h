@@ -49,6 +49,7 @@ typedef struct conic_surface_options {
   int n_local;                 /* of h 0: that neighbour lies at the neglect distance; 6 to 64 */
   double cluster;              /* cells smaller than this times their distance are summed as one; 0 (none) to 1 */
   conic_isa isa;
+  uint64_t reserved[8];
 } conic_surface_options;
 
 /* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
@@ -75,6 +76,7 @@ typedef enum conic_surface_outcome {
 } conic_surface_outcome;
 
 #define CONIC_N_SURFACE_OUTCOMES 5
+#define CONIC_MAX_SURFACE_OUTCOMES 16
 
 /* "done", "not finite" …; null for a number that is none. */
 CONIC_API const char *conic_surface_outcome_name(conic_surface_outcome outcome);
@@ -100,19 +102,21 @@ CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t coun
 typedef struct conic_surface_distance {
   double max, rms;
   size_t n_measured, n_failed; /* points of the first surface; those of them with nothing of the second about them */
+  uint64_t reserved[4];
 } conic_surface_distance;
 
 /* How points were moved, and how many could not be. */
 typedef struct conic_surface_report {
   size_t n_in, n_out;
-  size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points projected */
-  double moved_rms, moved_max;               /* in world units, over the DONE */
+  size_t outcomes[CONIC_MAX_SURFACE_OUTCOMES]; /* of the points projected */
+  double moved_rms, moved_max;                 /* in world units, over the DONE */
   double mean_neighbours;
   double h;     /* the median of the samples' */
   double error; /* thin: the greatest contribution of a point that was removed; densify: the widest gap left */
   conic_surface_distance there,
       back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
   size_t n_evaluations; /* projections that were computed */
+  uint64_t reserved[8];
 } conic_surface_report;
 
 /* Projects the surface's own points. `projected` gets those that are DONE, in their old order, with normals where the
@@ -131,6 +135,7 @@ typedef struct conic_points_sink {
   conic_status (*begin)(void *cookie, const conic_surface_report *report, unsigned fields);
   conic_batch_receiver *receive;
   void *cookie;
+  uint64_t reserved[4];
 } conic_points_sink;
 
 typedef struct conic_clean_options {

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/splats/columns.h"
 #include "lod/hybrid/hybrid_nodes.h"
 #include "lod/hybrid/hybrid_pack.h"
 #include "lod/hybrid/hybrid_tree.h"
@@ -184,7 +185,10 @@ conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, c
   building b = {.context = context, .options = &options, .report = report ? report : &ignored};
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
-  conic_status status = take_options(context, given, &options);
+  conic_status status = conic_triangles_check_own(context, "the mesh", mesh);
+  if (status != CONIC_OK)
+    return status;
+  status = take_options(context, given, &options);
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)

@@ -92,9 +92,6 @@ static conic_status prepare_triangles(conic_contributions *c, const conic_camera
   const conic_triangles *triangles = c->drawing.triangles;
   if (!triangles)
     return CONIC_OK;
-  conic_status status = conic_triangles_check(c->context, triangles, "contributions");
-  if (status != CONIC_OK)
-    return status;
   conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
   c->triangles.first_id = (uint32_t)c->splats->count;
   conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
@@ -103,7 +100,7 @@ static conic_status prepare_triangles(conic_contributions *c, const conic_camera
 
 conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                         const conic_render_options *options, conic_contributions **contributions) {
-  const conic_drawing alone = {splats, NULL};
+  const conic_drawing alone = {.splats = splats};
   *contributions = NULL;
   if (!splats)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "contributions: the splats are null");
@@ -118,16 +115,15 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
   conic_status status = conic_view_arguments_take(context, "contributions", camera, options, &own);
   if (status != CONIC_OK)
     return status;
-  if (!drawing)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "contributions: the drawing is null");
   conic_contributions *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
   if (!c)
     return CONIC_ERROR_MEMORY;
   c->context = context;
-  conic_whole_drawing_of(drawing, &c->drawing);
+  status = conic_whole_drawing_enter(context, "contributions", drawing, &c->drawing);
   c->splats = c->drawing.splats;
   c->options = own;
-  status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
+  if (status == CONIC_OK)
+    status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
   if (status == CONIC_OK)
     status =
         conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
@@ -154,6 +150,7 @@ void conic_contributions_destroy(conic_contributions *c) {
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(c->context, all[i]);
   conic_triangle_frame_release(c->context, &c->triangles);
+  conic_drawing_leave(c->context, &c->drawing.entered);
   conic_memory_release(c->context, c);
 }
 

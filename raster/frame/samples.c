@@ -6,6 +6,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
@@ -260,15 +261,20 @@ static conic_status render(conic_context *context, conic_renderer *renderer, con
   conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
   if (status != CONIC_OK)
     return status;
-  if (!image || image->width != camera->width || image->height != camera->height)
+  if (!image || !conic_is_zero(image->reserved, sizeof image->reserved))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image is null, or its reserved words are not zero");
+  if (image->width != camera->width || image->height != camera->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
   if (samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > CONIC_IMAGE_MAX_SIZE / samples ||
       camera->height > CONIC_IMAGE_MAX_SIZE / samples)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "samples: 1 to %d, and that times the picture's size at most %d",
                       CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
-  conic_whole_drawing_of(drawing, &whole);
-  return samples == 1 ? conic_render_whole(renderer, &whole, camera, &options, image, statistics)
-                      : render_samples(context, renderer, &whole, camera, &options, samples, image, statistics);
+  status = conic_whole_drawing_enter(context, "render", drawing, &whole);
+  if (status == CONIC_OK)
+    status = samples == 1 ? conic_render_whole(renderer, &whole, camera, &options, image, statistics)
+                          : render_samples(context, renderer, &whole, camera, &options, samples, image, statistics);
+  conic_drawing_leave(context, &whole.entered);
+  return status;
 }
 
 conic_status conic_render_samples(conic_context *context, conic_renderer *renderer, const conic_splats *splats,
@@ -283,7 +289,5 @@ conic_status conic_render_samples(conic_context *context, conic_renderer *render
 conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
                                   const conic_camera *camera, const conic_render_options *options, int samples,
                                   conic_image *image, conic_render_statistics *statistics) {
-  if (!drawing)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the drawing is null");
   return render(context, renderer, drawing, camera, options, samples, image, statistics);
 }

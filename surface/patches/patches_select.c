@@ -82,7 +82,7 @@ static void make_grid(const selecting *work, uint32_t slot, size_t at) {
 
 /* The samples of a point's patch, with the point's colour and opacity. */
 static void put_grid(const selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
-  const conic_splats *from = work->patches->splats;
+  const conic_splats *from = &work->patches->splats;
   const conic_splats *to = &work->frame->splats;
   make_grid(work, slot, at);
   for (int axis = 0; axis < 3 && from->color[0]; axis++)
@@ -99,7 +99,7 @@ static void put_fading(const selecting *work, size_t point, uint32_t slot, size_
   put_grid(work, point, slot, at, n - 1);
   for (size_t i = at; i < at + n - 1; i++)
     to->opacity[i] *= (float)share;
-  copy_samples(work->patches->splats, point, to, at + n - 1, 1);
+  copy_samples(&work->patches->splats, point, to, at + n - 1, 1);
   to->opacity[at + n - 1] *= (float)(1.0 - share);
 }
 
@@ -117,7 +117,7 @@ static size_t put_point(const selecting *work, size_t point, size_t at, size_t *
   if (n == 0)
     return 0;
   if (slot == CONIC_NO_SLOT || work->frame->plans[slot] == CONIC_PLAN_SPLAT)
-    copy_samples(work->patches->splats, point, &work->frame->splats, at, 1);
+    copy_samples(&work->patches->splats, point, &work->frame->splats, at, 1);
   else if (work->frame->plans[slot] & CONIC_PLAN_FADING)
     put_fading(work, point, slot, at, n);
   else if (is_kept(work, point, slot)) {
@@ -144,7 +144,7 @@ static void fill_chunk(void *data, size_t i_item, int i_thread) {
 
 /* The clip lines of the splats that are drawn as such. */
 static void put_clips(const selecting *work, size_t n) {
-  const conic_splats *from = work->patches->splats;
+  const conic_splats *from = &work->patches->splats;
   conic_splats *to = &work->frame->splats;
   const uint32_t *points = work->frame->points;
   size_t at = 0;
@@ -184,7 +184,7 @@ void conic_patches_release_frames(conic_patches *patches) {
 static conic_status reserve(const selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
-  unsigned fields = conic_splats_fields(work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
+  unsigned fields = conic_splats_fields(&work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
   if (n <= frame->room && frame->points) /* with nothing in sight, too, the arrays are there */
     return CONIC_OK;
   release_samples(context, frame);
@@ -244,7 +244,7 @@ static conic_status select_samples(selecting *work, conic_patch_selection *selec
   }
   conic_parallel_for(patches->context, work->n_chunks, fill_chunk, work);
   work->frame->splats.count = work->chunk_starts[work->n_chunks];
-  memcpy(work->frame->splats.origin, patches->splats->origin, sizeof work->frame->splats.origin);
+  memcpy(work->frame->splats.origin, patches->splats.origin, sizeof work->frame->splats.origin);
   put_clips(work, work->frame->splats.count);
   describe(work, selection);
   return CONIC_OK;
@@ -267,7 +267,7 @@ conic_status conic_patches_select(conic_patches *patches, const conic_camera *ca
     double side = (double)tree->boxes[0][3 + axis] - (double)tree->boxes[0][axis];
     diagonal2 += side * side;
   }
-  conic_patches_view_init(&work.view, camera, &render, patches->splats->origin,
+  conic_patches_view_init(&work.view, camera, &render, patches->splats.origin,
                           diagonal2 > 0.0 ? 1e-4 * sqrt(diagonal2) : 1e-4, patches->options.step_px);
   work.last = &patches->frames[patches->i_frame];
   work.frame = &patches->frames[patches->i_frame ^= 1];

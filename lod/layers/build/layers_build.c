@@ -9,6 +9,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"
+#include "core/splats/columns.h"
 #include "lod/layers/build/layers_file.h"
 #include "lod/layers/build/layers_intake.h"
 #include "lod/layers/build/layers_normals.h"
@@ -103,7 +104,13 @@ void conic_layers_builder_abandon(conic_layers_builder *builder) {
 }
 
 conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
-  return conic_layers_intake_append(&builder->intake, batch);
+  conic_splats close;
+  float *block;
+  conic_status status = conic_splats_enter(builder->context, "layers", batch, &close, &block);
+  if (status == CONIC_OK)
+    status = conic_layers_intake_append(&builder->intake, &close);
+  conic_memory_release(builder->context, block);
+  return status;
 }
 
 /* The grid: steps of the quantum, as many as the box takes; it lies evenly about the box. Where there would be too
