@@ -99,7 +99,7 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
   n_fragments[t.index] = sum_of_lanes(found);
 }
 
-static void lanes_blend(const conic_view *view, const lanes_splat *splat, __global const conic_surface *surface,
+static void lanes_blend(const conic_view *view, const lanes_splat *splat, __global const conic_projected_surface *surface,
                         const fragments *f, lanes_mask is_visible, lanes_sums *s) {
   lanes weight = weigh(view, splat->footprint.amplitude, f->q, f->scale, is_visible, kind_of(&view->kernel));
   s->values[CONIC_SUM_WEIGHT] += weight;
@@ -112,7 +112,7 @@ static void lanes_blend(const conic_view *view, const lanes_splat *splat, __glob
   s->taken = is_heaviest ? (int16)(int)splat->index : s->taken;
 }
 
-static void lanes_note(__global const conic_surface *surface, const fragments *fragment, int16 is_visible,
+static void lanes_note(__global const conic_projected_surface *surface, const fragments *fragment, int16 is_visible,
                        lanes_sums *s) {
   int16 is_nearest = is_visible & (s->values[CONIC_SUM_NEAREST_IZ] < fragment->iz);
   s->values[CONIC_SUM_COUNT] = as_float16(as_int16(s->values[CONIC_SUM_COUNT]) - is_visible);
@@ -137,7 +137,7 @@ static lanes lanes_plane_z(__global const conic_footprint *footprints, int16 tak
 /* What of each pixel's heaviest splat the picture shows beside the sums. Its normal only where the sum has no
  * direction, unless another part of the splats follows. */
 static void lanes_keep_heaviest(const conic_device_frame *frame, __global const conic_footprint *footprints,
-                                __global const conic_surface *surfaces, int x, int y, lanes_sums *s) {
+                                __global const conic_projected_surface *surfaces, int x, int y, lanes_sums *s) {
   int keeps_all = !frame->is_last || frame->keeps_sums;
   int16 is_taken = s->taken >= 0;
   lanes mean[3];
@@ -172,7 +172,7 @@ static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *
 
 /* Calls for what pass 2 reads of a reference's splat, where it reads any of it. */
 static void lanes_call_for(__global const conic_device_reference *references, __global const ulong *masks, ulong i,
-                           __global const conic_footprint *footprints, __global const conic_surface *surfaces) {
+                           __global const conic_footprint *footprints, __global const conic_projected_surface *surfaces) {
   if (masks[i] == 0)
     return;
   CONIC_FETCH_AHEAD(&footprints[references[i].footprint]);
@@ -204,7 +204,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
     lanes_splat splat;
     splat_rows row;
     uint row_begun = CONIC_DEVICE_TILE_BLOCKS;
-    __global const conic_surface *surface = &surfaces[references[i].footprint];
+    __global const conic_projected_surface *surface = &surfaces[references[i].footprint];
     lanes_fetch(&references[i], footprints, rays, clips, &splat);
     for (; mask; mask &= mask - 1) {
       uint block = 63 - (uint)clz(mask & -mask), i_row = block / CONIC_DEVICE_TILE_BLOCKS;
@@ -229,7 +229,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
 
 /* The nearest splats' own sums, in place of those of what was nearest in the parts before. */
 static void lanes_take_nearest(const conic_view *view, const conic_device_frame *frame,
-                               __global const conic_footprint *footprints, __global const conic_surface *surfaces,
+                               __global const conic_footprint *footprints, __global const conic_projected_surface *surfaces,
                                const lanes *q, const lanes *scale, int x, int y, lanes_sums *s) {
   for (int lane = 0; lane < 16; lane++) {
     int i_nearest = ((const int *)&s->taken)[lane], is_heaviest;

@@ -10,7 +10,7 @@ static void fetch_texels(const conic_texel *texels, index_lanes which, lanes col
   }
 }
 
-#include "raster/triangles/texture_lanes.h"
+#include "raster/triangles/texture_filter_body.h"
 
 /* Each pixel on its own level: nearly always they are all on one. */
 static void lanes_filter_levels(const texture_part *p, int16 levels, int16 mask, lanes color[3]) {

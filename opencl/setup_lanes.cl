@@ -21,7 +21,7 @@ CONIC_INLINE index_lanes batch_index(const batch *from, size_t at) {
   return from->index;
 }
 
-#include "raster/project/setup_lanes.h"
+#include "raster/project/setup_body.h"
 
 static lanes zip_low(lanes a, lanes b) {
   return (lanes)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "core/splats/voronoi_cell.h"
 
 enum { N_NEIGHBOURS = 32 };
@@ -31,8 +32,7 @@ static void make_axes(const double n[3], double u[3], double v[3]) {
   }
   for (int axis = 0; axis < 3; axis++)
     u[axis] /= sqrt(length2);
-  for (int axis = 0; axis < 3; axis++)
-    v[axis] = n[(axis + 1) % 3] * u[(axis + 2) % 3] - n[(axis + 2) % 3] * u[(axis + 1) % 3];
+  conic_cross(n, u, v);
 }
 
 /* Neighbours as they lie in the plane, at their distance in space: those on the other side of a bend or of a thin part
@@ -95,16 +95,16 @@ static int is_surrounded(outlook *around, const double corner[2], double radius2
 void conic_gap_find(const conic_neighbours *tree, uint32_t slot, const double center[3], const double normal[3],
                     double least, double most, conic_gap *gap) {
   outlook around;
-  conic_cell cell;
+  conic_voronoi_cell cell;
   double widest2 = least * least;
   const double *found = NULL;
   gap->radius = 0.0;
   if (!(most > least))
     return;
   look_around(tree, slot, center, normal, 4.0 * most, &around);
-  conic_cell_begin(&cell, 2.0 * most);
+  conic_voronoi_cell_begin(&cell, 2.0 * most);
   for (size_t i = 0; i < around.n; i++)
-    conic_cell_cut(&cell, around.places[i][0], around.places[i][1]);
+    conic_voronoi_cell_cut(&cell, around.places[i][0], around.places[i][1]);
   for (int i = 0; i < cell.n_corners; i++) {
     const double *corner = cell.corners[i];
     double radius2 = corner[0] * corner[0] + corner[1] * corner[1];

@@ -3,6 +3,8 @@
 #ifndef CONIC_LANES_EXPONENTIAL_H
 #define CONIC_LANES_EXPONENTIAL_H
 
+#include "core/lanes/lanes.h"
+
 /* conic_exp_negative */
 CONIC_INLINE lanes lanes_exp_negative(lanes x) {
   x = lanes_max(x, lanes_of(-80.0f));

@@ -77,31 +77,23 @@ conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field 
 
 conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip) {
   conic_splats *points = &builder->model->points;
-  if (points->n_clips == builder->clip_capacity) {
-    void *clips = points->clips;
-    size_t capacity = points->n_clips + points->n_clips / 2 + 256;
-    conic_status status = conic_memory_grow(builder->context, &clips, points->n_clips, capacity, sizeof *points->clips);
-    if (status != CONIC_OK)
-      return status;
-    points->clips = clips;
-    builder->clip_capacity = capacity;
-  }
+  conic_status status = conic_memory_reserve(builder->context, &points->clips, points->n_clips, points->n_clips + 1,
+                                             &builder->clip_capacity, sizeof *points->clips);
+  if (status != CONIC_OK)
+    return status;
   points->clips[points->n_clips++] = *clip;
   return CONIC_OK;
 }
 
 conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count) {
   conic_model *model = builder->model;
-  void *triangles = model->triangles;
   if (count <= builder->triangle_capacity)
     return CONIC_OK;
   conic_status status =
-      conic_memory_grow(builder->context, &triangles, model->n_triangles, count, sizeof *model->triangles);
-  if (status != CONIC_OK)
-    return status;
-  model->triangles = triangles;
-  builder->triangle_capacity = count;
-  return CONIC_OK;
+      conic_memory_grow(builder->context, &model->triangles, model->n_triangles, count, sizeof *model->triangles);
+  if (status == CONIC_OK)
+    builder->triangle_capacity = count;
+  return status;
 }
 
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {

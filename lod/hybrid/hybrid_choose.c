@@ -5,10 +5,11 @@
 #include <string.h>
 
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
- * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline
+ * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
  * (docs/notes/hybrid-measured.md). */
 static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
@@ -27,7 +28,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   memset(view, 0, sizeof *view);
   for (int row = 0; row < 3; row++) {
     const double *m = camera->cam_from_world[row];
-    view->translation[row] = conic_hybrid_dot(m, hybrid->origin) + m[3];
+    view->translation[row] = conic_dot(m, hybrid->origin) + m[3];
     memcpy(view->rotation[row], m, sizeof view->rotation[row]);
   }
   for (int axis = 0; axis < 3; axis++)
@@ -47,7 +48,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
 static void to_camera(const conic_hybrid_camera *view, const float center[3], double at[3]) {
   const double from[3] = {(double)center[0], (double)center[1], (double)center[2]};
   for (int row = 0; row < 3; row++)
-    at[row] = conic_hybrid_dot(view->rotation[row], from) + view->translation[row];
+    at[row] = conic_dot(view->rotation[row], from) + view->translation[row];
 }
 
 /* Away is where the angle between the ray and the axis, half the angle under which the sphere is seen, and half the
@@ -58,13 +59,13 @@ static int faces_away(const conic_hybrid_camera *view, const conic_hybrid_bound 
     ray[k] = (double)bound->center[k] - view->eye[k];
     axis[k] = (double)bound->axis[k];
   }
-  double distance = sqrt(conic_hybrid_dot(ray, ray)), cone = (double)bound->cone;
+  double distance = conic_length(ray), cone = (double)bound->cone;
   if (!(cone > 0.0) || !(radius < distance))
     return 0;
   double sin_a = radius / distance, cos_a = sqrt(1.0 - sin_a * sin_a),
          sin_c = sqrt(cone < 1.0 ? 1.0 - cone * cone : 0.0);
   double cos_both = cos_a * cone - sin_a * sin_c, sin_both = sin_a * cone + cos_a * sin_c;
-  return cos_both > 0.0 && conic_hybrid_dot(ray, axis) > distance * (sin_both + 1e-5);
+  return cos_both > 0.0 && conic_dot(ray, axis) > distance * (sin_both + 1e-5);
 }
 
 int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
@@ -73,12 +74,12 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
   if (at[2] + radius < view->near_z)
     return 1;
   for (int k = 0; k < 4; k++)
-    if (conic_hybrid_dot(view->side[k], at) < -radius)
+    if (conic_dot(view->side[k], at) < -radius)
       return 1;
   return view->cull_back && faces_away(view, bound, radius);
 }
 
-/* A patch as the camera sees it. */
+/* A cluster as the camera sees it. */
 typedef struct sight {
   double z, distance; /* of its sphere's centre */
   double radius;
@@ -88,7 +89,7 @@ typedef struct sight {
 static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
   double at[3];
   to_camera(view, bound->center, at);
-  return (sight){.z = at[2], .distance = sqrt(conic_hybrid_dot(at, at)), .radius = (double)bound->radius};
+  return (sight){.z = at[2], .distance = conic_length(at), .radius = (double)bound->radius};
 }
 
 /* The most pixels that a displacement of one can be, anywhere in the sphere: the greatest factor of the projection's
@@ -121,8 +122,9 @@ static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_boun
   return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
 }
 
-static double cost_of_triangles(const conic_hybrid_patch *patch, const conic_hybrid_level *level, const sight *seen) {
-  double n = (double)level->count, n_pixels = (double)patch->area * seen->scale2 * seen->facing;
+static double cost_of_triangles(const conic_hybrid_cluster *cluster, const conic_hybrid_level *level,
+                                const sight *seen) {
+  double n = (double)level->count, n_pixels = (double)cluster->area * seen->scale2 * seen->facing;
   double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
   return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
 }
@@ -152,9 +154,9 @@ static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bo
 /* Tiles are mostly this wide. */
 static const double tile_px = 64.0;
 
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch) {
-  sight seen = look_well_at(view, &patch->bound);
-  double side = sqrt((double)patch->area * seen.scale2 * seen.facing) + tile_px;
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster) {
+  sight seen = look_well_at(view, &cluster->bound);
+  double side = sqrt((double)cluster->area * seen.scale2 * seen.facing) + tile_px;
   return side * side;
 }
 
@@ -174,23 +176,23 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
   return best;
 }
 
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
-                         double error_px, conic_hybrid_offer offers[2]) {
-  const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  sight seen = look_well_at(view, &patch->bound);
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]) {
+  const conic_hybrid_level *levels = hybrid->levels + cluster->first_level;
+  sight seen = look_well_at(view, &cluster->bound);
   offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
     conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(patch, &levels[k], &seen)
+    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(cluster, &levels[k], &seen)
                                                            : cost_of_surfels(view, &levels[k], &seen);
     if (cost < offer->amount && error_px_of(view, &seen, &levels[k]) <= error_px)
       *offer = (conic_hybrid_offer){k, cost};
   }
 }
 
-uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_patch *patch, int only_kind) {
-  for (uint32_t k = 0; k < patch->n_levels; k++)
-    if (hybrid->levels[patch->first_level + k].kind == (uint32_t)only_kind)
+uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind) {
+  for (uint32_t k = 0; k < cluster->n_levels; k++)
+    if (hybrid->levels[cluster->first_level + k].kind == (uint32_t)only_kind)
       return k;
   return 0;
 }

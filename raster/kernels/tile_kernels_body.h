@@ -97,7 +97,7 @@ typedef struct sources {
   const conic_view *view;
   float support;
   const conic_footprint *footprints;
-  const conic_surface *surfaces;
+  const conic_projected_surface *surfaces;
   const conic_ray *rays;
   const conic_clip_record *clips;
   const uint32_t *indices, *words;
@@ -250,7 +250,7 @@ CONIC_INLINE void keep_better(lanes *kept, index_lanes *whose, lanes_mask better
 
 /* Adds visible fragments: an invisible one adds 0, which changes no bit. Splats come in file order: sums keep it, and
  * the first of equals stays. */
-CONIC_INLINE void blend(const conic_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
+CONIC_INLINE void blend(const conic_projected_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
   to->weight += weight;
   for (int axis = 0; axis < 3; axis++) {
     to->color[axis] += weight * surface->color[axis];
@@ -274,7 +274,7 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
     if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
       scale = lanes_load(kept->scale[i] + at);
-    const conic_surface *surface = &from->surfaces[i_footprint];
+    const conic_projected_surface *surface = &from->surfaces[i_footprint];
     blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
   }
 }

@@ -31,7 +31,7 @@ CONIC_INLINE index_lanes batch_index(const batch *from, size_t at) {
   return lanes_load_indices(from->index + at);
 }
 
-#include "raster/project/setup_lanes.h"
+#include "raster/project/setup_body.h"
 
 /* Appends the rays' records and lets their footprints point to them. */
 static __attribute__((noinline)) void write_rays(records *r, unsigned by_ray, conic_projected *projected,

@@ -31,7 +31,7 @@ CONIC_INLINE void fetch_texels(const conic_texel *texels, index_lanes which, lan
 #endif
 }
 
-#include "raster/triangles/texture_lanes.h"
+#include "raster/triangles/texture_filter_body.h"
 
 /* Each pixel on its own level: nearly always they are all on one. */
 CONIC_INLINE void filter_levels(const texture_part *p, index_lanes levels, unsigned bits, lanes color[3]) {

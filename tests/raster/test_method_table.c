@@ -303,7 +303,7 @@ static void check_choice(fixture *f, const setting *s) {
   conic_chunk chunk;
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected projected = {1, 1, &chunk, &footprint, &box, &surface, &ray, NULL};
   double thinness = smaller_variance(s) / thin_variance - 1.0, error = conic_bound(s) / 4e-3 - 1.0;

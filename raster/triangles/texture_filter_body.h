@@ -1,9 +1,6 @@
 /* Textures a pixel a lane: the operations of core/image/texture_sample.c in the same order, so that each pixel's sums
  * run over its texels as they do there. C and OpenCL C share this text. Who includes it has before it
  * fetch_texels(texels, which, color), which gives the texels that the lanes name. */
-#ifndef CONIC_TEXTURE_LANES_H
-#define CONIC_TEXTURE_LANES_H
-
 #include "core/image/texture_filter.h"
 #include "core/image/texture_levels.h"
 #include "core/lanes/lanes.h"
@@ -230,5 +227,3 @@ CONIC_OUTLINE void filter_level(const texture_part *p, int i_level, lanes_mask m
   for (int channel = 0; channel < 3; channel++)
     color[channel] = lanes_select(mask, sum[channel] / sum[3], color[channel]);
 }
-
-#endif
