@@ -21,7 +21,7 @@ void conic_opencl_devices_release(conic_context *context, conic_opencl_device *d
 }
 
 void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size) {
-  const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
+  static const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
   conic_options_give(options, size, &own);
 }
 

@@ -24,7 +24,7 @@ static const double ROUND_SHARE = 0.7;
 static const double LEAST_CLEARANCE = 0.5;
 
 void conic_densify_options_init_sized(conic_densify_options *options, size_t size) {
-  const conic_densify_options own = {.size = sizeof own};
+  static const conic_densify_options own = {.size = sizeof own};
   conic_options_give(options, size, &own);
 }
 

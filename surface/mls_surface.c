@@ -16,7 +16,7 @@
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
 void conic_surface_options_init_sized(conic_surface_options *options, size_t size) {
-  const conic_surface_options own = {.size = sizeof own, .degree = 3, .neglect = 2.0, .n_local = 32};
+  static const conic_surface_options own = {.size = sizeof own, .degree = 3, .neglect = 2.0, .n_local = 32};
   conic_options_give(options, size, &own);
 }
 
@@ -212,7 +212,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   conic_surface_options own, *options = &own;
   *surface = NULL;
   conic_surface_options_init(options);
-  if (given && !conic_options_take(options, given))
+  if ((given && !conic_options_take(options, given)) || !conic_is_zero(own.reserved, sizeof own.reserved))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: the options were not initialised");
   conic_status status = conic_splats_check(context, "surface", points);
   if (status == CONIC_OK)

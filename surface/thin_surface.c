@@ -24,7 +24,7 @@ static const double FIRST_SHARE = 0.3;
 static const double STAGE_SHARE = 0.6;
 
 void conic_thin_options_init_sized(conic_thin_options *options, size_t size) {
-  const conic_thin_options own = {.size = sizeof own};
+  static const conic_thin_options own = {.size = sizeof own};
   conic_options_give(options, size, &own);
 }
 

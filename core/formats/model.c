@@ -13,7 +13,7 @@
 #include "core/splats/faces.h"
 
 void conic_read_options_init_sized(conic_read_options *options, size_t size) {
-  const conic_read_options own = {.size = sizeof own, .cutoff = 1.5f};
+  static const conic_read_options own = {.size = sizeof own, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 

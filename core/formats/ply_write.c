@@ -41,7 +41,7 @@ typedef struct row_cursor {
 } row_cursor;
 
 void conic_write_options_init_sized(conic_write_options *options, size_t size) {
-  const conic_write_options own = {.size = sizeof own, .cutoff = 1.5f};
+  static const conic_write_options own = {.size = sizeof own, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 

@@ -9,7 +9,7 @@
 #include "core/base/vectors.h"
 
 void conic_framing_init_sized(conic_framing *framing, size_t size) {
-  const conic_framing own = {.size = sizeof own,
+  static const conic_framing own = {.size = sizeof own,
                              .width = 1024,
                              .height = 1024,
                              .azimuth_deg = 30.0,

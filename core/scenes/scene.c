@@ -51,7 +51,7 @@ unsigned conic_scene_fields(conic_scene_type type) {
 }
 
 void conic_scene_options_init_sized(conic_scene_options *options, size_t size) {
-  const conic_scene_options own = {.size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
+  static const conic_scene_options own = {.size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 

@@ -87,6 +87,9 @@ const char *conic_triangles_fault(const conic_triangles *given) {
     return "reserved words are not zero";
   if (given->count && (!given->corners || !given->position[0]))
     return "there are no corners or positions";
+  for (size_t i = 0; given->materials && i < given->n_materials; i++)
+    if (!conic_is_zero(given->materials[i].reserved, sizeof given->materials[i].reserved))
+      return "a material's reserved words are not zero";
   return given->n_materials && !given->materials ? "there are no materials" : fault_of(columns, TRIANGLES_COLUMNS);
 }
 

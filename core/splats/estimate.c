@@ -16,7 +16,7 @@
 #include "core/splats/normals.h"
 
 void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
-  const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};
+  static const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 

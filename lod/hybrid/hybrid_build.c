@@ -12,7 +12,7 @@
 #include "lod/mesh/flat_mesh.h"
 
 void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size) {
-  const conic_hybrid_options own = {
+  static const conic_hybrid_options own = {
       .size = sizeof own, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }

@@ -13,7 +13,7 @@
 #include "lod/hybrid/hybrid_stitch.h"
 
 void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
-  const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1};
+  static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1};
   conic_options_give(view, size, &own);
 }
 

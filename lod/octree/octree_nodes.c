@@ -12,7 +12,7 @@
 static const size_t chunk_nodes = 4096;
 
 void conic_octree_options_init_sized(conic_octree_options *options, size_t size) {
-  const conic_octree_options own = {.size = sizeof own, .cutoff = 1.5f};
+  static const conic_octree_options own = {.size = sizeof own, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 

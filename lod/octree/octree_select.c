@@ -38,7 +38,7 @@ typedef struct octree_selecting {
 } octree_selecting;
 
 void conic_selection_options_init_sized(conic_selection_options *options, size_t size) {
-  const conic_selection_options own = {.size = sizeof own, .error_px = 1.0};
+  static const conic_selection_options own = {.size = sizeof own, .error_px = 1.0};
   conic_options_give(options, size, &own);
 }
 

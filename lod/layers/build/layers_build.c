@@ -30,7 +30,7 @@ struct conic_layers_builder {
 enum { LEAST_CLOUD = 64, MOST_CLOUD = 32768 };
 
 void conic_layers_options_init_sized(conic_layers_options *options, size_t size) {
-  const conic_layers_options own = {.size = sizeof own,
+  static const conic_layers_options own = {.size = sizeof own,
                                     .cloud_size = 2048,
                                     .memory_bytes = UINT64_C(1) << 30,
                                     .quantum = 0.5,

@@ -30,7 +30,7 @@ typedef struct layers_drawing {
 } layers_drawing;
 
 void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
-  const conic_layers_draw_options own = {.size = sizeof own, .samples = 1};
+  static const conic_layers_draw_options own = {.size = sizeof own, .samples = 1};
   conic_options_give(options, size, &own);
 }
 

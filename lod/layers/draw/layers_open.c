@@ -13,13 +13,15 @@ enum { PIECE_BYTES = 1 << 22 };
 void conic_layers_access_init_sized(conic_layers_access *access, size_t size) {
   conic_ranges_options ranges;
   conic_ranges_options_init(&ranges);
-  const conic_layers_access own = {.size = sizeof own,
-                                   .memory_bytes = (uint64_t)512 << 20,
-                                   .connect_seconds = ranges.connect_seconds,
-                                   .stall_seconds = ranges.stall_seconds,
-                                   .n_retries = ranges.n_retries,
-                                   .pause_seconds = ranges.pause_seconds,
-                                   .n_connections = ranges.n_connections};
+  conic_layers_access own;
+  memset(&own, 0, sizeof own);
+  own.size = sizeof own;
+  own.memory_bytes = (uint64_t)512 << 20;
+  own.connect_seconds = ranges.connect_seconds;
+  own.stall_seconds = ranges.stall_seconds;
+  own.n_retries = ranges.n_retries;
+  own.pause_seconds = ranges.pause_seconds;
+  own.n_connections = ranges.n_connections;
   conic_options_give(access, size, &own);
 }
 
