@@ -335,8 +335,9 @@ static conic_status check(conic_context *context, const conic_splats *splats, co
 }
 
 /* The picture of what was checked; near_z is found where it is 0. */
-static conic_status ask(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
-                        conic_render_options *settled, conic_oracle_question question, conic_reference *reference) {
+static conic_status answer_drawing(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                                   conic_render_options *settled, conic_oracle_question question,
+                                   conic_reference *reference) {
   if (!(settled->near_z > 0.0) && drawing->triangles)
     settled->near_z = conic_drawing_near(drawing);
   job j = {.context = context, .options = settled, .reference = reference};
@@ -373,7 +374,7 @@ conic_status conic_oracle_draw(conic_context *context, const conic_drawing *draw
   if (status == CONIC_OK)
     status = check(context, &entered.splats, question);
   if (status == CONIC_OK)
-    status = ask(context, &whole, camera, &settled, question, reference);
+    status = answer_drawing(context, &whole, camera, &settled, question, reference);
   conic_drawing_leave(context, &entered);
   return status;
 }

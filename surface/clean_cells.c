@@ -75,7 +75,7 @@ static unsigned fields_of(const conic_splats *batch) {
          (fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS) ? (unsigned)CONIC_SPLATS_NORMALS : 0u);
 }
 
-static conic_status count(cleaning *work, const conic_splats *batch) {
+static conic_status count_points(cleaning *work, const conic_splats *batch) {
   work->fields = fields_of(batch);
   memcpy(work->origin, batch->origin, sizeof work->origin);
   for (size_t i = 0; i < batch->count; i++) {
@@ -96,7 +96,7 @@ static conic_status count(cleaning *work, const conic_splats *batch) {
 }
 
 static conic_status count_batch(void *cookie, const conic_splats *batch) {
-  return enter_batch(cookie, batch, count);
+  return enter_batch(cookie, batch, count_points);
 }
 
 static void fill_record(const conic_splats *batch, size_t i, uint64_t index, unsigned fields, record *r) {
@@ -153,7 +153,7 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
   return status;
 }
 
-static conic_status place(cleaning *work, const conic_splats *batch) {
+static conic_status place_all(cleaning *work, const conic_splats *batch) {
   conic_status status = CONIC_OK;
   if (work->n_placed + batch->count > work->n_points || fields_of(batch) != work->fields)
     return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
@@ -164,7 +164,7 @@ static conic_status place(cleaning *work, const conic_splats *batch) {
 }
 
 static conic_status place_batch(void *cookie, const conic_splats *batch) {
-  return enter_batch(cookie, batch, place);
+  return enter_batch(cookie, batch, place_all);
 }
 
 /* --- a cell --- */

@@ -257,7 +257,7 @@ static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_sp
     row->next[-1] = '\n';
 }
 
-static conic_status append(conic_splats_writer *writer, const conic_splats *batch) {
+static conic_status append_rows(conic_splats_writer *writer, const conic_splats *batch) {
   FILE *to = conic_output_stream(writer->output);
   if (batch->count > writer->count - writer->written)
     return conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: more splats than the %zu announced", writer->path,
@@ -286,7 +286,7 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
   float *block;
   conic_status status = conic_splats_enter(writer->context, writer->path, batch, &close, &block);
   if (status == CONIC_OK)
-    status = append(writer, &close);
+    status = append_rows(writer, &close);
   conic_memory_release(writer->context, block);
   return status;
 }

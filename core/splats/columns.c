@@ -8,27 +8,29 @@
 
 enum { TRIANGLES_COLUMNS = 11 };
 
-static int list(conic_column *columns, float **components, int n, size_t *stride, size_t count, unsigned field) {
+static int list_components(conic_column *columns, float **components, int n, size_t *stride, size_t count,
+                           unsigned field) {
   for (int i = 0; i < n; i++)
     columns[i] = (conic_column){&components[i], stride, count, field};
   return n;
 }
 
 void conic_splats_list_columns(conic_splats *s, conic_column columns[CONIC_SPLATS_COLUMNS]) {
-  columns += list(columns, s->position, 3, &s->strides.position, s->count, 0);
-  columns += list(columns, s->tangent_u, 3, &s->strides.tangent_u, s->count, CONIC_SPLATS_TANGENTS);
-  columns += list(columns, s->tangent_v, 3, &s->strides.tangent_v, s->count, CONIC_SPLATS_TANGENTS);
-  columns += list(columns, s->normal, 3, &s->strides.normal, s->count, CONIC_SPLATS_NORMALS);
-  columns += list(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
-  list(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  columns += list_components(columns, s->position, 3, &s->strides.position, s->count, 0);
+  columns += list_components(columns, s->tangent_u, 3, &s->strides.tangent_u, s->count, CONIC_SPLATS_TANGENTS);
+  columns += list_components(columns, s->tangent_v, 3, &s->strides.tangent_v, s->count, CONIC_SPLATS_TANGENTS);
+  columns += list_components(columns, s->normal, 3, &s->strides.normal, s->count, CONIC_SPLATS_NORMALS);
+  columns += list_components(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
+  list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
 }
 
 static void list_triangles_columns(conic_triangles *t, conic_column columns[TRIANGLES_COLUMNS]) {
   size_t n_coordinates = t->texture_corners ? t->n_texture_coordinates : t->n_vertices;
-  columns += list(columns, t->position, 3, &t->strides.position, t->n_vertices, 0);
-  columns += list(columns, t->color, 3, &t->strides.color, t->n_vertices, 0);
-  columns += list(columns, t->normal, 3, &t->strides.normal, t->normal_corners ? t->n_normals : t->n_vertices, 0);
-  list(columns, t->texture_coordinate, 2, &t->strides.texture_coordinate, n_coordinates, 0);
+  columns += list_components(columns, t->position, 3, &t->strides.position, t->n_vertices, 0);
+  columns += list_components(columns, t->color, 3, &t->strides.color, t->n_vertices, 0);
+  columns +=
+      list_components(columns, t->normal, 3, &t->strides.normal, t->normal_corners ? t->n_normals : t->n_vertices, 0);
+  list_components(columns, t->texture_coordinate, 2, &t->strides.texture_coordinate, n_coordinates, 0);
 }
 
 /* Components of an array are there together, and so are both axes. */
@@ -56,7 +58,7 @@ static int has_strides(const conic_column *columns, int n) {
   return 0;
 }
 
-static conic_status fail(conic_context *context, const char *who, const char *what, const char *fault) {
+static conic_status fault_status(conic_context *context, const char *who, const char *what, const char *fault) {
   return fault ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the %s: %s", who, what, fault) : CONIC_OK;
 }
 
@@ -74,7 +76,7 @@ const char *conic_splats_fault(const conic_splats *given) {
 }
 
 conic_status conic_splats_check(conic_context *context, const char *who, const conic_splats *splats) {
-  return fail(context, who, "splats", conic_splats_fault(splats));
+  return fault_status(context, who, "splats", conic_splats_fault(splats));
 }
 
 const char *conic_triangles_fault(const conic_triangles *given) {
@@ -102,21 +104,21 @@ conic_status conic_splats_check_own(conic_context *context, const char *who, con
     return status;
   conic_splats copy = *splats;
   conic_splats_list_columns(&copy, columns);
-  return fail(context, who, "splats", has_strides(columns, CONIC_SPLATS_COLUMNS) ? strides_fault : NULL);
+  return fault_status(context, who, "splats", has_strides(columns, CONIC_SPLATS_COLUMNS) ? strides_fault : NULL);
 }
 
 conic_status conic_triangles_check_own(conic_context *context, const char *who, const conic_triangles *triangles) {
   conic_column columns[TRIANGLES_COLUMNS];
-  conic_status status = fail(context, who, "triangles", conic_triangles_fault(triangles));
+  conic_status status = fault_status(context, who, "triangles", conic_triangles_fault(triangles));
   if (status != CONIC_OK)
     return status;
   conic_triangles copy = *triangles;
   list_triangles_columns(&copy, columns);
-  return fail(context, who, "triangles", has_strides(columns, TRIANGLES_COLUMNS) ? strides_fault : NULL);
+  return fault_status(context, who, "triangles", has_strides(columns, TRIANGLES_COLUMNS) ? strides_fault : NULL);
 }
 
 /* Replaces strided columns by copies, all in one block. */
-static conic_status gather(conic_context *context, const conic_column *columns, int n, float **block) {
+static conic_status gather_columns(conic_context *context, const conic_column *columns, int n, float **block) {
   size_t n_floats = 0;
   for (int i = 0; i < n; i++)
     n_floats += is_strided(&columns[i]) ? columns[i].count : 0;
@@ -145,7 +147,7 @@ conic_status conic_splats_enter(conic_context *context, const char *who, const c
     return status;
   *close = *given;
   conic_splats_list_columns(close, columns);
-  status = gather(context, columns, CONIC_SPLATS_COLUMNS, block);
+  status = gather_columns(context, columns, CONIC_SPLATS_COLUMNS, block);
   memset(&close->strides, 0, sizeof close->strides);
   return status;
 }
@@ -159,7 +161,7 @@ conic_status conic_triangles_enter(conic_context *context, const char *who, cons
     return status;
   *close = *given;
   list_triangles_columns(close, columns);
-  status = gather(context, columns, TRIANGLES_COLUMNS, block);
+  status = gather_columns(context, columns, TRIANGLES_COLUMNS, block);
   memset(&close->strides, 0, sizeof close->strides);
   return status;
 }

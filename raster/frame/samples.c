@@ -253,9 +253,9 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
 }
 
 /* What every drawing of a whole picture starts with. */
-static conic_status render(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
-                           const conic_camera *camera, const conic_render_options *given, int samples,
-                           conic_image *image, conic_render_statistics *statistics) {
+static conic_status render_checked(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
+                                   const conic_camera *camera, const conic_render_options *given, int samples,
+                                   conic_image *image, conic_render_statistics *statistics) {
   conic_render_options options;
   conic_whole_drawing whole;
   conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
@@ -283,11 +283,11 @@ conic_status conic_render_samples(conic_context *context, conic_renderer *render
   const conic_drawing alone = {.splats = splats};
   if (!splats)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the splats are null");
-  return render(context, renderer, &alone, camera, options, samples, image, statistics);
+  return render_checked(context, renderer, &alone, camera, options, samples, image, statistics);
 }
 
 conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
                                   const conic_camera *camera, const conic_render_options *options, int samples,
                                   conic_image *image, conic_render_statistics *statistics) {
-  return render(context, renderer, drawing, camera, options, samples, image, statistics);
+  return render_checked(context, renderer, drawing, camera, options, samples, image, statistics);
 }
