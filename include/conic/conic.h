@@ -13,7 +13,7 @@
  * this version does not know is not zero. The init functions are macros for functions that are told the size; programs
  * in other languages call these. All other structs keep their size: later members take the place of `reserved`, and of
  * elements of arrays from CONIC_N_… up to CONIC_MAX_…. Whoever fills such a struct leaves zeros there, as initialisers
- * do, else the call is an ARGUMENT error. Structs without reserved words never change. */
+ * do; what draws refuses other values. Structs without reserved words never change. */
 #ifndef CONIC_CONIC_H
 #define CONIC_CONIC_H
 
