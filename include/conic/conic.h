@@ -13,7 +13,7 @@
  * this version does not know is not zero. The init functions are macros for functions that are told the size; programs
  * in other languages call these. All other structs keep their size: later members take the place of `reserved`, and of
  * elements of arrays from CONIC_N_… up to CONIC_MAX_…. Whoever fills such a struct leaves zeros there, as initialisers
- * do; what draws refuses other values. Structs without reserved words never change. */
+ * do; what draws refuses other values. Structs without reserved words never change, unless the library owns them. */
 #ifndef CONIC_CONIC_H
 #define CONIC_CONIC_H
 
@@ -23,6 +23,7 @@
 #include "conic/export.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
+#include "conic/isa.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
 #include "conic/model.h"
@@ -32,6 +33,7 @@
 #include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/scene.h"
+#include "conic/source.h"
 #include "conic/splats.h"
 #include "conic/status.h"
 #include "conic/surface.h"

@@ -281,8 +281,12 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options.error_px};
-  s.put = conic_octree_kernels_choose().put;
-  status = conic_octree_decode_all(octree);
+  conic_octree_kernels kernels;
+  status = conic_isa_choose(octree->context, render.isa, &render.isa);
+  conic_octree_kernels_init(&kernels, render.isa);
+  s.put = kernels.put;
+  if (status == CONIC_OK)
+    status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)
     status = keep_scratch(octree, selection);
   if (status != CONIC_OK)

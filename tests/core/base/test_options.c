@@ -78,6 +78,12 @@ static void init_thin(void *o, size_t size) {
 static void init_densify(void *o, size_t size) {
   conic_densify_options_init_sized(o, size);
 }
+static void init_source(void *o, size_t size) {
+  conic_source_options_init_sized(o, size);
+}
+static void init_view(void *o, size_t size) {
+  conic_source_view_init_sized(o, size);
+}
 static void init_patches(void *o, size_t size) {
   conic_patches_options_init_sized(o, size);
 }
@@ -94,7 +100,8 @@ static const struct {
            {init_access, sizeof(conic_layers_access)},        {init_draw, sizeof(conic_layers_draw_options)},
            {init_opencl, sizeof(conic_opencl_options)},       {init_surface, sizeof(conic_surface_options)},
            {init_clean, sizeof(conic_clean_options)},         {init_thin, sizeof(conic_thin_options)},
-           {init_densify, sizeof(conic_densify_options)},     {init_patches, sizeof(conic_patches_options)}};
+           {init_densify, sizeof(conic_densify_options)},     {init_patches, sizeof(conic_patches_options)},
+           {init_source, sizeof(conic_source_options)},       {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
   unsigned char whole[1024], other[1024];
