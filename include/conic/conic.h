@@ -25,6 +25,7 @@
 #include "conic/patches.h"
 #include "conic/render.h"
 #include "conic/scene.h"
+#include "conic/source.h"
 #include "conic/splats.h"
 #include "conic/status.h"
 #include "conic/surface.h"
