@@ -236,6 +236,7 @@ void cli_bench_scene_release(cli_bench_scene *scene) {
 }
 
 static void build_in(conic_camera *camera) {
+  memset(camera, 0, sizeof *camera);
   camera->width = camera->height = 1024;
   camera->fx = camera->fy = focal_px;
   camera->cx = camera->cy = 512.0;
