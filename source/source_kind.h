@@ -19,8 +19,8 @@ typedef struct conic_source_kind {
 
   /* Whether an input becomes this kind; never null. Of the list's kinds the first that says so has it. */
   int (*takes)(const char *path, const conic_source_options *options);
-  /* Fills in a zeroed source and its scale, all but the times unless reading is not all of the work: read_seconds is
-   * when it began. What is there after a failure is closed like any other. Never null. */
+  /* Fills in a zeroed source and its scale; of the times only what was not reading. What is there after a failure is
+   * closed like any other. Never null. */
   conic_status (*open)(conic_source *source, const char *const *paths, size_t n_paths,
                        const conic_source_options *options);
   void (*close)(conic_source *source); /* never null */
