@@ -60,7 +60,7 @@ static void note_difference(const conic_image *reference, const conic_image *dra
     line->i_wrong_plane = plane;
 }
 
-static conic_render_options options_of(const cli_bench_scene *scene, const cli_bench_line *line) {
+static conic_render_options options_of_frame(const cli_bench_scene *scene, const cli_bench_line *line) {
   conic_render_options options;
   conic_render_options_init(&options);
   options.method = cli_bench_methods[line->i_method].method;
@@ -126,8 +126,8 @@ static void take_medians(bench *b, cli_bench_line *line) {
 
 /* The pictures of the first and of the last timed frame are compared, and one with all planes; nothing is compared
  * between the warm ones, which would take the caches from them. */
-static conic_status draw_all(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
-                             cli_bench_line *line) {
+static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
+                                cli_bench_line *line) {
   spoil(&pictures->drawn);
   conic_status status = draw_timed(b, &line->statistics);
   if (status != CONIC_OK)
@@ -150,7 +150,7 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
                              conic_image *reference) {
   conic_renderer *renderer = NULL;
   conic_camera camera;
-  conic_render_options options = options_of(scene, line);
+  conic_render_options options = options_of_frame(scene, line);
   options.isa = CONIC_ISA_SCALAR;
   conic_status status = cli_bench_scene_camera(session, scene, line->width, line->height, &camera);
   if (status == CONIC_OK)
@@ -164,7 +164,7 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
 conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
                                int counter, cli_bench_pictures *pictures, cli_bench_line *line) {
   size_t most = (size_t)patience->most + 1;
-  bench b = {.scene = scene, .counter = counter, .options = options_of(scene, line)};
+  bench b = {.scene = scene, .counter = counter, .options = options_of_frame(scene, line)};
   line->i_wrong_plane = -1;
   b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
   b.cycles = calloc(most * (CLI_BENCH_N_STAGES + 2), sizeof *b.cycles);
@@ -177,7 +177,7 @@ conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene
     status = line->device ? cli_device_open(worker, line->device, &b.renderer)
                           : conic_renderer_create(worker->context, &b.renderer);
   if (status == CONIC_OK)
-    status = draw_all(&b, patience, pictures, line);
+    status = draw_frames(&b, patience, pictures, line);
   if (status == CONIC_OK) {
     cli_bench_work_of(&line->statistics, &scene->splats, &b.timed, b.options.passes, line->work);
     for (int plane = 0; plane < CONIC_N_PLANES; plane++)

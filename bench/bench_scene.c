@@ -187,8 +187,8 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
   return status;
 }
 
-static conic_status read_file(cli_session *session, const char *path, const cli_bench_look *look,
-                              cli_bench_scene *scene) {
+static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
+                                    cli_bench_scene *scene) {
   cli_render_job job;
   cli_scene_defaults(&job);
   const char *slash = strrchr(path, '/');
@@ -208,7 +208,7 @@ static conic_status read_file(cli_session *session, const char *path, const cli_
   return status == CONIC_OK ? cli_scene_read(session, &job, &scene->splats) : status;
 }
 
-static conic_status measure(cli_session *session, cli_bench_scene *scene) {
+static conic_status measure_model(cli_session *session, cli_bench_scene *scene) {
   conic_splats_bounds(&scene->splats, scene->low, scene->high);
   scene->near_z = conic_default_near(&scene->splats);
   return conic_splats_length(session->context, &scene->splats, &scene->splat_length);
@@ -227,9 +227,9 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
   int exit_code = look ? CLI_DONE : understand(name, &w);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = look ? read_file(session, name, look, scene) : make(session, &w, name, scene);
+  conic_status status = look ? read_bench_file(session, name, look, scene) : make(session, &w, name, scene);
   if (status == CONIC_OK)
-    status = measure(session, scene);
+    status = measure_model(session, scene);
   return cli_exit_of(status);
 }
 

@@ -27,7 +27,7 @@ const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
   return (unsigned)outcome < CONIC_N_SURFACE_OUTCOMES ? names[outcome] : NULL;
 }
 
-static conic_status check_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
+static conic_status check_surface_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
   if (o->size != sizeof *o || (unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
       (unsigned)o->weight > CONIC_WEIGHT_FLAT)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: options that were not initialised");
@@ -187,7 +187,7 @@ static conic_status find_scales(conic_surface *surface) {
   return status;
 }
 
-static conic_status prepare(conic_surface *surface, const conic_splats *points) {
+static conic_status prepare_surface(conic_surface *surface, const conic_splats *points) {
   conic_context *context = surface->context;
   conic_status status = copy_points(context, points, &surface->points);
   if (status == CONIC_OK)
@@ -216,7 +216,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
     conic_surface_options_init(&defaults);
     options = &defaults;
   }
-  conic_status status = check_options(context, options, conic_splats_fields(points));
+  conic_status status = check_surface_options(context, options, conic_splats_fields(points));
   if (status != CONIC_OK)
     return status;
   const conic_surface_kernels *kernels = conic_surface_kernels_of(options->isa);
@@ -232,7 +232,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);
-  status = prepare(made, points);
+  status = prepare_surface(made, points);
   if (status == CONIC_OK)
     *surface = made;
   else

@@ -34,7 +34,7 @@ static int count_stages(const cli_build *build) {
   return n;
 }
 
-static int report(cli_build *build, const cli_build_steps *steps) {
+static int write_report(cli_build *build, const cli_build_steps *steps) {
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(build->session, &file, &exit_code);
@@ -57,7 +57,7 @@ int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
   if (exit_code == CLI_DONE) {
     steps->tell(job);
     cli_tell_run(build->session, build->stages, count_stages(build), build->total_seconds);
-    exit_code = report(build, steps);
+    exit_code = write_report(build, steps);
   }
   if (steps->release)
     steps->release(job);

@@ -175,7 +175,7 @@ static int run_job(diff_job *job) {
   return exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_diff(cli_session *session, int argc, char **argv) {
   static const char *const heatmap_words[] = {"samples", "flip", NULL};
   diff_job job = {.session = session};
   const char *positional[argc];
@@ -209,5 +209,5 @@ const cli_command cli_diff = {
     .name = "diff",
     .summary = "compares two images",
     .usage = "conic diff A B [--heatmap H.png] [--heatmap-of samples|flip] [--max-abs X] [--min-psnr DB]",
-    .run = run,
+    .run = run_diff,
 };

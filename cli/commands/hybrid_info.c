@@ -6,7 +6,7 @@
 
 enum { N_DEFECTS = 4 };
 
-static void list_defects(const conic_hybrid_defects *broken, cli_defect list[N_DEFECTS]) {
+static void list_hybrid_defects(const conic_hybrid_defects *broken, cli_defect list[N_DEFECTS]) {
   list[0] = (cli_defect){broken->values, "values", "numbers that are not finite"};
   list[1] = (cli_defect){broken->spheres, "spheres", "spheres that do not hold their patch"};
   list[2] = (cli_defect){broken->cones, "cones", "cones that do not hold their patch's normals"};
@@ -28,7 +28,7 @@ void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects 
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_hybrid_defects(broken, list);
   cli_defects_print(list, N_DEFECTS);
 }
 
@@ -51,6 +51,6 @@ void cli_hybrid_report(cli_json *json, const conic_hybrid_info *info, const coni
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_hybrid_defects(broken, list);
   cli_defects_report(json, list, N_DEFECTS);
 }

@@ -29,7 +29,7 @@ typedef struct layer_job {
 static const double estimate_bytes_a_point = 250.0;
 
 /* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
-static conic_status append(layer_job *job, const conic_splats *batch) {
+static conic_status append_batch(layer_job *job, const conic_splats *batch) {
   conic_context *context = job->base.session->context;
   if (!job->has_points)
     job->has_colors = batch->color[0] != NULL;
@@ -65,10 +65,10 @@ static conic_status take_batch(void *cookie, const conic_splats *batch) {
     return CONIC_ERROR_CANCELLED;
   }
   job->has_begun = 1;
-  return append(job, batch);
+  return append_batch(job, batch);
 }
 
-static conic_status read_whole(layer_job *job, const conic_read_options *options) {
+static conic_status read_whole_file(layer_job *job, const conic_read_options *options) {
   conic_context *context = job->base.session->context;
   conic_repairs repairs;
   conic_model model;
@@ -79,7 +79,7 @@ static conic_status read_whole(layer_job *job, const conic_read_options *options
   if (status == CONIC_OK)
     cli_tell_repairs(job->base.session, job->base.input, &repairs);
   if (status == CONIC_OK)
-    status = append(job, &model.points);
+    status = append_batch(job, &model.points);
   conic_model_release(context, &model);
   return status;
 }
@@ -93,7 +93,7 @@ static conic_status read_raw(layer_job *job, const conic_read_options *options) 
   if (status != CONIC_OK)
     return status;
   if ((double)job->n_points * estimate_bytes_a_point <= (double)job->options.memory_bytes)
-    return read_whole(job, options);
+    return read_whole_file(job, options);
   return conic_model_stream(context, job->base.input, options, take_batch, job);
 }
 
@@ -165,7 +165,7 @@ static int make_layers(void *cookie) {
   return cli_exit_of(status);
 }
 
-static int check_arguments(layer_job *job) {
+static int check_layer_arguments(layer_job *job) {
   if (job->n_inputs == 0)
     return cli_usage("layer: no input given; see conic help layer");
   if (!job->base.output)
@@ -206,7 +206,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);
   job.inputs = positional;
-  return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_arguments(&job) : exit_code);
+  return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_layer_arguments(&job) : exit_code);
 }
 
 const cli_command cli_layer = {

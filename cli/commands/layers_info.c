@@ -7,7 +7,7 @@
 
 enum { N_DEFECTS = 4 };
 
-static void list_defects(const conic_layers_defects *broken, cli_defect list[N_DEFECTS]) {
+static void list_layers_defects(const conic_layers_defects *broken, cli_defect list[N_DEFECTS]) {
   list[0] = (cli_defect){broken->clouds, "clouds", "clouds that are damaged"};
   list[1] = (cli_defect){broken->coverage, "coverage", "clouds that do not cover their place as they say"};
   list[2] = (cli_defect){broken->spheres, "spheres", "clouds whose sphere does not hold their place"};
@@ -33,7 +33,7 @@ void cli_layers_print(const conic_layers_info *info, const conic_layers_defects 
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_layers_defects(broken, list);
   cli_defects_print(list, N_DEFECTS);
 }
 
@@ -62,6 +62,6 @@ void cli_layers_report(cli_json *json, const conic_layers_info *info, const coni
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_layers_defects(broken, list);
   cli_defects_report(json, list, N_DEFECTS);
 }

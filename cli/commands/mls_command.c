@@ -97,7 +97,7 @@ static conic_status densify(mls_job *job) {
   return conic_surface_densify(job->surface, &options, &job->result, &job->report);
 }
 
-static conic_status project(mls_job *job) {
+static conic_status project_all_points(mls_job *job) {
   return conic_surface_clean(job->surface, &job->result, &job->report);
 }
 
@@ -129,7 +129,7 @@ static conic_status act(mls_job *job) {
   case MLS_DENSIFY:
     return densify(job);
   default:
-    return project(job);
+    return project_all_points(job);
   }
 }
 

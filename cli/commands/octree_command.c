@@ -20,7 +20,7 @@ typedef struct octree_job {
 
 enum { READ, ESTIMATE, WORK, WRITE };
 
-static conic_status build(octree_job *job) {
+static conic_status build_from_model(octree_job *job) {
   conic_context *context = job->base.session->context;
   cli_stage *stages = job->base.stages;
   conic_read_options read_options;
@@ -50,7 +50,7 @@ static conic_status build(octree_job *job) {
 
 static int make_octree(void *cookie) {
   octree_job *job = cookie;
-  conic_status status = build(job);
+  conic_status status = build_from_model(job);
   double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_octree_describe(job->octree, &job->info);

@@ -12,7 +12,7 @@ static double cone_degrees(double cosine) {
 
 enum { N_DEFECTS = 5 };
 
-static void list_defects(const conic_octree_defects *broken, cli_defect list[N_DEFECTS]) {
+static void list_octree_defects(const conic_octree_defects *broken, cli_defect list[N_DEFECTS]) {
   list[0] = (cli_defect){broken->ellipses, "ellipses", "nodes whose ellipse does not hold its leaves"};
   list[1] = (cli_defect){broken->spheres, "spheres", "nodes whose sphere does not hold its leaves"};
   list[2] = (cli_defect){broken->cones, "cones", "nodes whose cone does not hold its leaves' normals"};
@@ -37,7 +37,7 @@ void cli_octree_print(const conic_octree_info *info, const conic_octree_defects 
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_octree_defects(broken, list);
   cli_defects_print(list, N_DEFECTS);
 }
 
@@ -67,6 +67,6 @@ void cli_octree_report(cli_json *json, const conic_octree_info *info, const coni
   if (!broken)
     return;
   cli_defect list[N_DEFECTS];
-  list_defects(broken, list);
+  list_octree_defects(broken, list);
   cli_defects_report(json, list, N_DEFECTS);
 }

@@ -270,7 +270,7 @@ size_t conic_number_parse(const char *text, size_t length, double *value) {
 }
 
 /* `n` digits, the first worth 10^exponent, as text: plainly where that is short, else with an exponent. */
-static size_t lay_out(char *text, int is_negative, const char *digits, int n, int exponent) {
+static size_t lay_out_digits(char *text, int is_negative, const char *digits, int n, int exponent) {
   char *c = text;
   while (n > 1 && digits[n - 1] == '0')
     n--;
@@ -313,7 +313,7 @@ static size_t print_digits(char text[CONIC_NUMBER_ROOM], double value, int preci
     if (is_digit(*c))
       exponent = exponent * 10 + (*c - '0');
   }
-  return lay_out(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);
+  return lay_out_digits(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);
 }
 
 /* Zero, infinity and NaN, which have no leading digit; 0 for other numbers. */
@@ -358,7 +358,7 @@ static size_t print_float_fast(char text[CONIC_NUMBER_ROOM], float value) {
     if ((float)again != (float)size)
       continue;
     int n = snprintf(digits, sizeof digits, "%u", number); /* one digit more where rounding carried */
-    return lay_out(text, value < 0.0f, digits, n, exponent + n - precision);
+    return lay_out_digits(text, value < 0.0f, digits, n, exponent + n - precision);
   }
   return 0;
 }

@@ -29,7 +29,7 @@ static float pixel_difference(const conic_image *a, const conic_image *b, unsign
   return (float)largest;
 }
 
-static uint32_t bits_of(float value) {
+static uint32_t bits_of_sample(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
   return bits;
@@ -49,7 +49,7 @@ double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned p
   for (int shift = 2 * CLASS_BITS; shift >= 0; shift -= CLASS_BITS) { /* 33 bits, the first of them 0 */
     size_t counts[N_CLASSES] = {0};
     for (size_t i = 0; i < n; i++) {
-      uint64_t bits = bits_of(pixel_difference(a, b, planes, i));
+      uint64_t bits = bits_of_sample(pixel_difference(a, b, planes, i));
       if (bits >> shift >> CLASS_BITS == known)
         counts[bits >> shift & (N_CLASSES - 1)]++;
     }

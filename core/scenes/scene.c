@@ -60,7 +60,7 @@ static int is_finite(double value) {
   return value * 0.0 == 0.0;
 }
 
-static conic_status check_options(conic_context *context, const conic_scene_options *options) {
+static conic_status check_scene_options(conic_context *context, const conic_scene_options *options) {
   if (!options || options->size != sizeof *options || !kind_of(options->type))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: options that are none");
   if (options->count < 1 || options->count > MAX_COUNT)
@@ -80,7 +80,7 @@ static conic_status check_options(conic_context *context, const conic_scene_opti
 
 conic_status conic_scene_create(conic_context *context, const conic_scene_options *options, conic_scene **scene) {
   *scene = NULL;
-  conic_status status = check_options(context, options);
+  conic_status status = check_scene_options(context, options);
   if (status != CONIC_OK)
     return status;
   conic_scene *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -137,8 +137,8 @@ void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color
 }
 
 /* Moves the place by jitter and noise, and makes it splat `at` of the set. */
-static void finish(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
-                   size_t at) {
+static void finish_splat(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
+                         size_t at) {
   const conic_scene_options *options = &scene->options;
   double sigma = 1.5 * scene->spacing / (double)options->cutoff;
   double u[3], v[3], along_u = 0.0, along_v = 0.0, along_normal = 0.0;
@@ -175,7 +175,7 @@ static void place_chunk(void *data, size_t i_item, int i_thread) {
   for (uint64_t k = begin; k < end; k++) {
     conic_scene_point point;
     work->scene->kind->place(work->scene, work->first + k, &point);
-    finish(work->scene, work->first + k, &point, work->splats, (size_t)k);
+    finish_splat(work->scene, work->first + k, &point, work->splats, (size_t)k);
   }
 }
 
@@ -193,7 +193,7 @@ static void sample_lattice_point(void *cookie, const double start[3]) {
     return;
   conic_scene_point point;
   work->scene->kind->project(work->scene->surface, start, &point);
-  finish(work->scene, i, &point, work->splats, (size_t)(i - work->first));
+  finish_splat(work->scene, i, &point, work->splats, (size_t)(i - work->first));
 }
 
 static void sample_slab(void *data, size_t i_item, int i_thread) {

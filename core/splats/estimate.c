@@ -189,7 +189,7 @@ static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
 
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
  */
-static void hand_over(conic_estimate *estimate, conic_model *model) {
+static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
   for (int axis = 0; axis < 3; axis++)
     for (int i_tangent = 0; i_tangent < 2; i_tangent++) {
       float **own = i_tangent ? &model->points.tangent_v[axis] : &model->points.tangent_u[axis];
@@ -247,7 +247,7 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
   if (status == CONIC_OK) {
     count_repairs(&estimate, &counted);
     counted.clip = drop_clips(&estimate, &model->points);
-    hand_over(&estimate, model);
+    hand_over_axes(&estimate, model);
     if (repairs)
       *repairs = counted;
   }

@@ -24,7 +24,7 @@ static double spacing_at(const conic_neighbours *tree, size_t slot) {
 }
 
 /* The lower median over at most MAX_SAMPLES slots, evenly taken. */
-static conic_status median_spacing(conic_context *context, const conic_neighbours *tree, double *spacing) {
+static conic_status median_of_slots(conic_context *context, const conic_neighbours *tree, double *spacing) {
   size_t n = tree->n_slots < MAX_SAMPLES ? tree->n_slots : MAX_SAMPLES;
   double *sampled = conic_memory_allocate(context, n, sizeof *sampled);
   if (!sampled)
@@ -43,7 +43,7 @@ conic_status conic_splats_spacing(conic_context *context, const conic_splats *sp
   conic_status status = conic_neighbours_build(context, (const float *const *)splats->position, splats->count, &tree);
   if (status != CONIC_OK)
     return status;
-  status = median_spacing(context, &tree, spacing);
+  status = median_of_slots(context, &tree, spacing);
   conic_neighbours_release(context, &tree);
   return status;
 }

@@ -108,7 +108,7 @@ static conic_status find_largest_error(conic_sampler *s, double *known) {
   return status;
 }
 
-static conic_status find_errors(conic_sampler *s, conic_surfels *surfels) {
+static conic_status find_site_errors(conic_sampler *s, conic_surfels *surfels) {
   conic_status status = find_largest_error(s, &surfels->error);
   surfels->refined_error = surfels->error;
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
@@ -213,6 +213,6 @@ conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *jo
     status = emit(s, &s->sites[i], surfels);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
   if (status == CONIC_OK && surfels->n <= job->useful)
-    status = find_errors(s, surfels);
+    status = find_site_errors(s, surfels);
   return status;
 }

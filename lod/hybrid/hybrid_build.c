@@ -32,7 +32,7 @@ typedef struct building {
   conic_hybrid_report *report;
 } building;
 
-static void release(building *b) {
+static void release_building(building *b) {
   for (size_t i = 0; b->ways && i < b->clusters.n_clusters; i++)
     conic_cluster_ways_release(b->context, &b->ways[i]);
   conic_memory_release(b->context, b->ways);
@@ -145,7 +145,7 @@ static void report_oddities(building *b, const conic_triangles *mesh) {
   r->n_first = b->clusters.n_first;
 }
 
-static conic_status check_options(conic_context *context, const conic_hybrid_options *o) {
+static conic_status check_hybrid_options(conic_context *context, const conic_hybrid_options *o) {
   int is_good = o->size == sizeof *o && o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 &&
                 o->most_area >= 0.0 && o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 &&
                 o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
@@ -154,7 +154,7 @@ static conic_status check_options(conic_context *context, const conic_hybrid_opt
                  : conic_fail(context, CONIC_ERROR_ARGUMENT, "an option of the hybrid model is out of range");
 }
 
-static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
+static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
   double start = conic_seconds_now();
   conic_status status = conic_flat_mesh(b->context, mesh, &b->flat);
   if (status != CONIC_OK)
@@ -185,12 +185,12 @@ conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, c
   building b = {.context = context, .options = options, .report = report ? report : &ignored};
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
-  conic_status status = check_options(context, options);
+  conic_status status = check_hybrid_options(context, options);
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)
-    status = build(&b, mesh, hybrid);
-  release(&b);
+    status = build_hybrid(&b, mesh, hybrid);
+  release_building(&b);
   conic_triangles_release(context, mesh);
   if (status != CONIC_OK) {
     conic_hybrid_destroy(*hybrid);

@@ -82,7 +82,7 @@ static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, c
 }
 
 /* All that is drawn of a node's clusters lies in its sphere, and their cones in its cone. */
-static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
+static void check_hybrid_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   int is_out = 0, is_turned = 0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_cluster *cluster = &h->clusters[i];
@@ -126,7 +126,7 @@ conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *def
   for (size_t i = 0; i < h->n_clusters; i++)
     check_cluster(h, &h->clusters[i], defects);
   for (size_t i = 0; i < h->n_nodes; i++) {
-    check_node(h, &h->nodes[i], defects);
+    check_hybrid_node(h, &h->nodes[i], defects);
     check_joined(h, &h->nodes[i], defects);
   }
   return CONIC_OK;

@@ -136,7 +136,7 @@ static const char *check_header(const conic_chy_header *h) {
   return NULL;
 }
 
-static conic_status read_header(conic_hybrid *hybrid, const char *path, conic_chy_header *h) {
+static conic_status read_hybrid_header(conic_hybrid *hybrid, const char *path, conic_chy_header *h) {
   const conic_mapping *file = &hybrid->mapping;
   conic_status status = conic_file_read_header(hybrid->context, path, &kind, file->bytes, file->n_bytes, h);
   const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
@@ -164,13 +164,13 @@ static conic_status check_body(const conic_hybrid *hybrid, const char *path, con
   return CONIC_OK;
 }
 
-static conic_status read_file(conic_hybrid *hybrid, const char *path) {
+static conic_status read_hybrid_file(conic_hybrid *hybrid, const char *path) {
   conic_chy_header h;
   conic_status status = conic_file_refuse_order(hybrid->context, path, &kind);
   if (status == CONIC_OK)
     status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
   if (status == CONIC_OK)
-    status = read_header(hybrid, path, &h);
+    status = read_hybrid_header(hybrid, path, &h);
   if (status == CONIC_OK)
     status = check_body(hybrid, path, &h);
   if (status != CONIC_OK)
@@ -189,7 +189,7 @@ conic_status conic_hybrid_read(conic_context *context, const char *path, conic_h
   if (!read)
     return CONIC_ERROR_MEMORY;
   read->context = context;
-  conic_status status = read_file(read, path);
+  conic_status status = read_hybrid_file(read, path);
   if (status == CONIC_OK)
     *hybrid = read;
   else

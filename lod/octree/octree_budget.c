@@ -18,7 +18,7 @@ typedef struct budget_node {
   size_t i_opening;
 } budget_node;
 
-static uint32_t bits_of(float value) {
+static uint32_t bits_of_pixels(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
   return bits;
@@ -41,7 +41,7 @@ static size_t list_openings(const conic_octree *octree, const conic_octree_view 
     float above = depth > 0 ? path[depth - 1].pixels : pixels, least = pixels < above ? pixels : above;
     if (depth > 0)
       openings[path[depth - 1].i_opening].change++;
-    openings[n] = (opening){bits_of(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
+    openings[n] = (opening){bits_of_pixels(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
     path[depth++] = (budget_node){octree->end[i], least, n++};
     i++;
   }

@@ -28,7 +28,7 @@ enum { OCTAVE_STEPS = 1024 };
 enum { FIRST_GUESS = 0x3880, LAST_GUESS = 0x3f80, GUESSES = LAST_GUESS - FIRST_GUESS };
 
 /* 2^exponent, which is within those of normal doubles. */
-static double power_of_two(int exponent) {
+static double power_of_two_scale(int exponent) {
   uint64_t bits = (uint64_t)(1023 + exponent) << 52;
   double power;
   memcpy(&power, &bits, sizeof power);
@@ -39,7 +39,7 @@ static double power_of_two(int exponent) {
 static double power(const conic_code_scale *scale, int steps, int per_octave) {
   int octaves = steps >= 0 ? steps / per_octave : -((per_octave - 1 - steps) / per_octave);
   int rest = steps - octaves * per_octave;
-  return power_of_two(octaves) * scale->octave[(ptrdiff_t)rest * (OCTAVE_STEPS / per_octave)];
+  return power_of_two_scale(octaves) * scale->octave[(ptrdiff_t)rest * (OCTAVE_STEPS / per_octave)];
 }
 
 void conic_code_scale_init(double length, double cutoff, float color, conic_code_scale *scale) {
@@ -174,9 +174,9 @@ void conic_code_place(const conic_code_scale *scale, const double mean[3], const
   int exponent = 0;
   for (int axis = 0; axis < 3; axis++)
     longest = fabs(mean[axis] - first[axis]) > longest ? fabs(mean[axis] - first[axis]) : longest;
-  while (exponent < 31 && scale->length * power_of_two(-exponent - 1) * (255.0 / 256.0) >= longest)
+  while (exponent < 31 && scale->length * power_of_two_scale(-exponent - 1) * (255.0 / 256.0) >= longest)
     exponent++;
-  double unit = scale->length * power_of_two(-exponent - 8);
+  double unit = scale->length * power_of_two_scale(-exponent - 8);
   for (int axis = 0; axis < 3; axis++) {
     int steps = round_to_int((mean[axis] - first[axis]) / unit);
     steps = steps < -255 ? -255 : steps > 255 ? 255 : steps;
@@ -192,7 +192,7 @@ static void decode_place(const conic_code_scale *scale, const double first[3], c
   uint32_t bits = 0;
   for (int i = 0; i < 4; i++)
     bits |= (uint32_t)code[AT_PLACE + i] << 8 * i;
-  double unit = scale->length * power_of_two(-(int)(bits >> 27) - 8);
+  double unit = scale->length * power_of_two_scale(-(int)(bits >> 27) - 8);
   for (int axis = 0; axis < 3; axis++) /* as a float, as it will be drawn */
     position[axis] = (double)(float)(first[axis] + unit * (double)((int)(bits >> 9 * axis & 511) - 256));
 }
@@ -288,7 +288,7 @@ int conic_code_n_inner(const uint8_t *code) {
   return code[AT_CHILDREN] >> 4;
 }
 
-static double reach_of(const conic_code_scale *scale, const uint8_t *code) {
+static double reach_of_code(const conic_code_scale *scale, const uint8_t *code) {
   return conic_code_length_of(scale, scale->length * scale->cutoff,
                               (uint16_t)(code[AT_REACH] | code[AT_REACH + 1] << 8));
 }
@@ -299,13 +299,13 @@ void conic_code_sphere(const conic_code_scale *scale, const double first[3], con
   decode_place(scale, first, code, position);
   for (int axis = 0; axis < 3; axis++)
     center[axis] = (float)position[axis];
-  *radius = (float)(reach_of(scale, code) * scale->widening[code[AT_RADIUS]]);
+  *radius = (float)(reach_of_code(scale, code) * scale->widening[code[AT_RADIUS]]);
 }
 
 void conic_code_decode(const conic_code_scale *scale, const double first[3], const uint8_t *code, conic_node *node) {
   conic_node_frame frame;
   conic_code_frame(scale, first, code, &frame);
-  double reach = reach_of(scale, code), radius = reach * scale->widening[code[AT_RADIUS]];
+  double reach = reach_of_code(scale, code), radius = reach * scale->widening[code[AT_RADIUS]];
   double major = reach / scale->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     node->position[axis] = (float)frame.position[axis];

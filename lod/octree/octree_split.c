@@ -177,7 +177,7 @@ static void split_task(void *data, size_t i_item, int i_thread) {
 }
 
 /* Brings the bytes of the top and of all subtrees into one preorder. */
-static void join(splitter *s) {
+static void join_tasks(splitter *s) {
   conic_split *split = s->split;
   split->n_nodes = 0;
   for (size_t i = 0; i < s->n_top; i++) {
@@ -207,7 +207,7 @@ conic_status conic_octree_split(conic_context *context, conic_split *split) {
     status = split_top(context, &s, 0, split->n, 0);
   if (status == CONIC_OK) {
     conic_parallel_for(context, s.n_top, split_task, &s);
-    join(&s);
+    join_tasks(&s);
   }
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, s.scratch[axis]);

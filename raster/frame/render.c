@@ -362,7 +362,7 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
   return CONIC_OK;
 }
 
-static conic_status draw(frame *f, conic_render_milliseconds *ms) {
+static conic_status draw_frame(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = conic_seconds_now();
   conic_status status = project_and_sort(f);
@@ -405,7 +405,7 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   if (status == CONIC_OK)
     status = plan_bins(f);
   if (status == CONIC_OK)
-    status = draw(f, &statistics->ms);
+    status = draw_frame(f, &statistics->ms);
   if (status == CONIC_OK)
     count_up(f, options, statistics);
   return status;
@@ -445,9 +445,9 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   return CONIC_OK;
 }
 
-static conic_status check_arguments(const conic_renderer *renderer, const conic_splats *splats,
-                                    const conic_camera *camera, const conic_render_options *options,
-                                    const conic_image *image) {
+static conic_status check_render_arguments(const conic_renderer *renderer, const conic_splats *splats,
+                                           const conic_camera *camera, const conic_render_options *options,
+                                           const conic_image *image) {
   if (!splats || !camera || !options || options->size != sizeof *options)
     return conic_fail(renderer->context, CONIC_ERROR_ARGUMENT,
                       "render: an argument is null, or the options were not initialised");
@@ -463,7 +463,7 @@ static conic_window whole_of(const conic_camera *camera) {
 conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,
                                 const conic_camera *camera, const conic_render_options *options, conic_image *image,
                                 conic_render_statistics *statistics) {
-  conic_status status = check_arguments(renderer, image ? drawing->splats : NULL, camera, options, image);
+  conic_status status = check_render_arguments(renderer, image ? drawing->splats : NULL, camera, options, image);
   if (status != CONIC_OK)
     return status;
   frame f = {.renderer = renderer, .splats = drawing->splats, .image = image, .window = whole_of(camera)};
@@ -492,7 +492,7 @@ conic_status conic_render_window(conic_renderer *renderer, const conic_splats *s
                                  const conic_render_options *options, const conic_window *window, conic_image *image,
                                  conic_render_statistics *statistics) {
   const conic_whole_drawing alone = {.splats = splats};
-  conic_status status = check_arguments(renderer, image ? splats : NULL, camera, options, image);
+  conic_status status = check_render_arguments(renderer, image ? splats : NULL, camera, options, image);
   if (status == CONIC_OK)
     status = check_part(renderer);
   if (status != CONIC_OK)
@@ -504,7 +504,7 @@ conic_status conic_render_window(conic_renderer *renderer, const conic_splats *s
 conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, float *hiding) {
   const conic_whole_drawing alone = {.splats = splats};
-  conic_status status = check_arguments(renderer, hiding ? splats : NULL, camera, options, NULL);
+  conic_status status = check_render_arguments(renderer, hiding ? splats : NULL, camera, options, NULL);
   if (status == CONIC_OK)
     status = check_part(renderer);
   if (status != CONIC_OK)
