@@ -5,16 +5,12 @@
 #include <string.h>
 
 #include "bench/bench.h"
+#include "core/base/real.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
     {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},
     {"point", CONIC_METHOD_POINT, 3},  {"disc", CONIC_METHOD_DISC, 3}, {"auto", CONIC_METHOD_AUTO, 3},
     {"nearest", CONIC_METHOD_CONIC, 1}};
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 /* The value that a share of the sorted ones is below, straight between neighbours. */
 static double quantile(const double *sorted, size_t n, double share) {
@@ -25,7 +21,7 @@ static double quantile(const double *sorted, size_t n, double share) {
 }
 
 double cli_bench_median(double *values, size_t n, double quartiles[2]) {
-  qsort(values, n, sizeof *values, compare_doubles);
+  qsort(values, n, sizeof *values, conic_compare_doubles);
   if (quartiles) {
     quartiles[0] = quantile(values, n, 0.25);
     quartiles[1] = quantile(values, n, 0.75);

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "surface/clusters.h"
@@ -130,18 +131,13 @@ static void find_local_h(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static int compare_floats(const void *a, const void *b) {
-  float first = *(const float *)a, second = *(const float *)b;
-  return (first > second) - (first < second);
-}
-
 static conic_status find_median_h(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
   float *sorted = conic_memory_allocate(surface->context, n, sizeof *sorted);
   if (!sorted)
     return CONIC_ERROR_MEMORY;
   memcpy(sorted, surface->h, n * sizeof *sorted);
-  qsort(sorted, n, sizeof *sorted, compare_floats);
+  qsort(sorted, n, sizeof *sorted, conic_compare_floats);
   surface->median_h = (double)sorted[(n - 1) / 2];
   conic_memory_release(surface->context, sorted);
   return CONIC_OK;

@@ -13,6 +13,7 @@
 #include "cli/commands/reach.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
+#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/splats/clip.h"
 
@@ -84,12 +85,8 @@ static void find_size(info_job *job) {
   job->bytes = (uint64_t)found.st_size;
 }
 
-static int is_finite(float value) {
-  return value - value == 0.0f;
-}
-
 static int is_finite_vector(float *const vector[3], size_t i) {
-  return is_finite(vector[0][i]) && is_finite(vector[1][i]) && is_finite(vector[2][i]);
+  return conic_is_finite(vector[0][i]) && conic_is_finite(vector[1][i]) && conic_is_finite(vector[2][i]);
 }
 
 static int is_zero_vector(float *const vector[3], size_t i) {
@@ -112,7 +109,7 @@ static void check_model(info_job *job) {
     if (points->color[0])
       found->colors += !is_finite_vector(points->color, i);
     if (points->opacity)
-      found->opacities += !(is_finite(points->opacity[i]) && points->opacity[i] >= 0.0f);
+      found->opacities += !(conic_is_finite(points->opacity[i]) && points->opacity[i] >= 0.0f);
   }
   for (size_t i = 0; i < points->n_clips; i++)
     for (int k = 0; k < points->clips[i].n_lines; k++)
@@ -130,7 +127,7 @@ static void check_image(info_job *job) {
     if (!samples || description->is_uint)
       continue;
     for (size_t i = 0; i < n_pixels * (size_t)description->n_channels; i++)
-      job->n_wrong_samples += !is_finite(samples[i]);
+      job->n_wrong_samples += !conic_is_finite(samples[i]);
   }
   job->is_sound = job->n_wrong_samples == 0;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/formats/ply_source.h"
 #include "core/formats/raw_colors.h"
 #include "core/splats/builder.h"
@@ -64,10 +65,7 @@ static uint64_t unsigned_at(const las_reader *reader, int at, int n_bytes) {
 }
 
 static double double_at(const las_reader *reader, int at) {
-  uint64_t bits = unsigned_at(reader, at, 8);
-  double value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
+  return conic_double_of_bits(unsigned_at(reader, at, 8));
 }
 
 /* Copies what there is of the public header, of the size that its version has. */

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
@@ -107,8 +108,7 @@ static int parse_scale_sign(const char *word) {
 }
 
 static float swap_bytes(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
+  uint32_t bits = conic_bits_of_float(value);
   bits = bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
   memcpy(&value, &bits, sizeof value);
   return value;

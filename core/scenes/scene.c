@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/random.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/splats/ellipse.h"
@@ -56,10 +57,6 @@ void conic_scene_options_init(conic_scene_options *options) {
   options->cutoff = 1.5f;
 }
 
-static int is_finite(double value) {
-  return value * 0.0 == 0.0;
-}
-
 static conic_status check_scene_options(conic_context *context, const conic_scene_options *options) {
   if (!options || options->size != sizeof *options || !kind_of(options->type))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: options that are none");
@@ -70,10 +67,10 @@ static conic_status check_scene_options(conic_context *context, const conic_scen
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the jitter must be from 0 to %g spacings", MAX_SPACINGS);
   if (!(options->noise >= 0.0 && options->noise <= MAX_SPACINGS))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the noise must be from 0 to %g spacings", MAX_SPACINGS);
-  if (!(options->cutoff > 0.0f && is_finite((double)options->cutoff)))
+  if (!(options->cutoff > 0.0f && conic_is_finite((double)options->cutoff)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the cutoff must be finite and above 0");
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(options->offset[axis]))
+    if (!conic_is_finite(options->offset[axis]))
       return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the offset must be finite");
   return CONIC_OK;
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/splats/clip.h"
@@ -24,10 +25,6 @@ int conic_unit_vector(float x, float y, float z, double unit[3]) {
   const double v[3] = {(double)x, (double)y, (double)z};
   memcpy(unit, v, sizeof v);
   return conic_normalize(unit);
-}
-
-static int is_finite(float value) {
-  return value * 0.0f == 0.0f;
 }
 
 /* The unit normal of tangent axes; 0 where they span no ellipse. */
@@ -51,16 +48,16 @@ static int has_good_axes(const conic_splats *points, size_t point) {
 }
 
 static int has_bad_color(const conic_splats *points, size_t point) {
-  return points->color[0] && !(is_finite(points->color[0][point]) && is_finite(points->color[1][point]) &&
-                               is_finite(points->color[2][point]));
+  return points->color[0] && !(conic_is_finite(points->color[0][point]) && conic_is_finite(points->color[1][point]) &&
+                               conic_is_finite(points->color[2][point]));
 }
 
 static void classify_points(void *data, size_t begin, size_t end) {
   conic_estimate *estimate = data;
   const conic_splats *points = &estimate->model->points;
   for (size_t i = begin; i < end; i++) {
-    int is_somewhere =
-        is_finite(points->position[0][i]) && is_finite(points->position[1][i]) && is_finite(points->position[2][i]);
+    int is_somewhere = conic_is_finite(points->position[0][i]) && conic_is_finite(points->position[1][i]) &&
+                       conic_is_finite(points->position[2][i]);
     estimate->states[i] = (uint8_t)(!is_somewhere              ? CONIC_POINT_NOWHERE
                                     : has_good_axes(points, i) ? CONIC_POINT_KEPT
                                                                : CONIC_POINT_RAW);
@@ -296,7 +293,7 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
 conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
   if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
-      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
+      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !conic_is_finite(options->cutoff) ||
       !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",

@@ -3,14 +3,10 @@
 
 #include "conic/splats.h"
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/splats/neighbours.h"
 
 enum { N_NEAREST = 8, MAX_SAMPLES = 20000 };
-
-static int compare_doubles(const void *a, const void *b) {
-  double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
 
 /* The spacing about a slot: √(area a point), its nearest neighbours' share of the disc that holds them. 0 where it
  * stands alone. */
@@ -31,7 +27,7 @@ static conic_status median_of_slots(conic_context *context, const conic_neighbou
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n; i++)
     sampled[i] = spacing_at(tree, (size_t)((uint64_t)i * (uint64_t)tree->n_slots / (uint64_t)n));
-  qsort(sampled, n, sizeof *sampled, compare_doubles);
+  qsort(sampled, n, sizeof *sampled, conic_compare_doubles);
   *spacing = n ? sampled[(n - 1) / 2] : 0.0;
   conic_memory_release(context, sampled);
   return CONIC_OK;

@@ -4,6 +4,7 @@
 #include "conic/splats.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 
 /* The longer axis as the bits of a float, which order like the lengths themselves; 0 for a splat that is not usable. */
 static uint32_t length_bits(const conic_splats *splats, size_t i) {
@@ -19,9 +20,7 @@ static uint32_t length_bits(const conic_splats *splats, size_t i) {
   float length = sqrtf(uu > vv ? uu : vv);
   if (!(length * 0.0f == 0.0f))
     return 0;
-  uint32_t bits;
-  memcpy(&bits, &length, sizeof bits);
-  return bits;
+  return conic_bits_of_float(length);
 }
 
 /* The bucket that holds the element of that rank; *rank becomes its rank within the bucket. */
@@ -59,8 +58,7 @@ conic_status conic_splats_length(conic_context *context, const conic_splats *spl
         histogram[bits & 0xffff]++;
     }
     uint32_t bits = upper << 16 | find_bucket(histogram, &rank);
-    float median;
-    memcpy(&median, &bits, sizeof median);
+    float median = conic_float_of_bits(bits);
     *length = (double)median;
   }
   conic_memory_release(context, histogram);

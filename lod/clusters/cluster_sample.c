@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/cluster_reuse.h"
 #include "lod/clusters/cluster_shape.h"
@@ -81,8 +82,7 @@ static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
   *n = 0;
   for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
     float bound = (float)s->sites[i].error_bound;
-    uint32_t bits;
-    memcpy(&bits, &bound, sizeof bits); /* of positive numbers these are in the numbers' order */
+    uint32_t bits = conic_bits_of_float(bound); /* of positive numbers these are in the numbers' order */
     if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
       s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
   }

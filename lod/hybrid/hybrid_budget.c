@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
@@ -174,32 +175,20 @@ static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
   return CONIC_OK;
 }
 
-static double error_of_bits(uint64_t bits) {
-  double error;
-  memcpy(&error, &bits, sizeof error);
-  return error;
-}
-
-static uint64_t bits_of_error(double error) {
-  uint64_t bits;
-  memcpy(&bits, &error, sizeof bits);
-  return bits;
-}
-
 /* Halves the errors, which order like their bits as none is negative, down to the least at which the levels alone are
  * no more than the budget. */
 static double least_error(fitting *f, uint64_t budget) {
   double error_px, next_px;
   choose_all(f, HUGE_VAL, &error_px, &next_px);
-  uint64_t low = 0, high = bits_of_error(error_px);
+  uint64_t low = 0, high = conic_bits_of_double(error_px);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
-    if (choose_all(f, error_of_bits(middle), &error_px, &next_px) > budget)
+    if (choose_all(f, conic_double_of_bits(middle), &error_px, &next_px) > budget)
       low = middle;
     else /* what was chosen may be better than what was asked for */
-      high = error_px < error_of_bits(middle) ? bits_of_error(error_px) : middle;
+      high = error_px < conic_double_of_bits(middle) ? conic_bits_of_double(error_px) : middle;
   }
-  return error_of_bits(high);
+  return conic_double_of_bits(high);
 }
 
 /* With what fits them to each other the number may go up and down with the error; so from there on each is tried.

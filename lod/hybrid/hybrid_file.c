@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
 #include "core/files/file_header.h"
@@ -110,10 +111,6 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
 
 /* --- reading --- */
 
-static int is_finite(double value) {
-  return value - value == 0.0;
-}
-
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const conic_chy_header *h) {
   const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_clusters,
@@ -130,8 +127,8 @@ static const char *check_header(const conic_chy_header *h) {
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
     return "a cutoff or length out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
-        !is_finite((double)h->high[axis]))
+    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
       return "a box that is none";
   return NULL;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/splats/ellipse.h"
 
@@ -32,8 +33,7 @@ typedef struct leaf_box {
 } leaf_box;
 
 static void put_float(unsigned char *to, float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
+  uint32_t bits = conic_bits_of_float(value);
   for (int i = 0; i < 4; i++)
     to[i] = (unsigned char)(bits >> 8 * i);
 }

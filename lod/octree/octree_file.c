@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
 #include "core/files/file_header.h"
@@ -219,10 +220,6 @@ conic_status conic_octree_write(conic_octree *octree, const char *path) {
   return status;
 }
 
-static int is_finite(double value) {
-  return value - value == 0.0;
-}
-
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const header *h) {
   if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
@@ -239,8 +236,8 @@ static const char *check_header(const header *h) {
       !(h->position_error >= 0.0 && h->position_error < 1e30))
     return "a length out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
-        !is_finite((double)h->high[axis]))
+    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
       return "a box that is none";
   return NULL;
 }

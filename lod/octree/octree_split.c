@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "lod/octree/octree_code.h"
 
@@ -55,8 +56,7 @@ static void find_mean(const splitter *s, size_t begin, size_t end, double mean[3
 static float round_down(double value) {
   float rounded = (float)value;
   if ((double)rounded > value) { /* the next one down */
-    uint32_t bits;
-    memcpy(&bits, &rounded, sizeof bits);
+    uint32_t bits = conic_bits_of_float(rounded);
     bits = rounded > 0.0f ? bits - 1 : rounded < 0.0f ? bits + 1 : UINT32_C(0x80000001);
     memcpy(&rounded, &bits, sizeof rounded);
   }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 #include "lod/layers/build/layers_branch.h"
 #include "lod/layers/format/layers_key.h"
@@ -19,8 +20,7 @@ static const double most_over_median = 4.0;
 
 static double size_of(uint16_t code) {
   uint32_t bits = (uint32_t)code << 16;
-  float size;
-  memcpy(&size, &bits, sizeof size);
+  float size = conic_float_of_bits(bits);
   return (double)size;
 }
 

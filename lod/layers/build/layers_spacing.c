@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "lod/layers/build/layers_intake.h"
 
 enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };
@@ -30,11 +31,6 @@ typedef struct spacing_search {
   mark marks[27 * N_PLACES];
   uint32_t first[N_CELLS];
 } spacing_search;
-
-static int compare_doubles(const void *a, const void *b) {
-  double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
 
 static int64_t cell_on(const spacing_search *s, int axis, double position) {
   return (int64_t)floor((position - s->low[axis]) / s->edge);
@@ -122,7 +118,7 @@ static double median_of_places(const spacing_search *s) {
       spacings[n++] = sqrt(3.14159265358979323846 * s->places[i].nearest2[N_NEAREST] / (double)N_NEAREST);
   if (2 * n < s->n_places)
     return 0.0;
-  qsort(spacings, n, sizeof *spacings, compare_doubles);
+  qsort(spacings, n, sizeof *spacings, conic_compare_doubles);
   return spacings[(n - 1) / 2];
 }
 

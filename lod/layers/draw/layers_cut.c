@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
 typedef struct tree_walk {
@@ -98,12 +99,6 @@ static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *v
   return n;
 }
 
-static double error_of_node(uint64_t bits) {
-  double error;
-  memcpy(&error, &bits, sizeof error);
-  return error;
-}
-
 /* Doubles that are not negative order like their bits. */
 conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
                                      uint64_t budget, double *error_px) {
@@ -120,13 +115,13 @@ conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_lay
                       layers->entries[0].n_drawn);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
-    wish.error_px = error_of_node(middle);
+    wish.error_px = conic_double_of_bits(middle);
     if (count_cut(layers, view, &wish, budget) <= budget)
       high = middle;
     else
       low = middle;
   }
-  *error_px = error_of_node(high);
+  *error_px = conic_double_of_bits(high);
   return CONIC_OK;
 }
 
