@@ -1,5 +1,4 @@
 /* One line of a benchmark: frames drawn, timed, and compared with what plain C draws. */
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* The chart of representations: its table, what is printed, and gnuplot's script. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "bench/chart_mesh.h"
 #include "core/files/file.h"

@@ -7,7 +7,6 @@
 #include "core/base/message.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
-#include "opencl/program.h"
 #include "raster/kernels/tile_kernels.h"
 #include "raster/triangles/triangle_frame.h"
 

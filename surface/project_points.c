@@ -1,8 +1,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "surface/mls_surface.h"
 

@@ -1,8 +1,6 @@
 #include "core/base/gaussian.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "core/base/color.h"
 #include "core/base/real.h"

@@ -1,6 +1,5 @@
 #include "core/formats/ply_columns.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"

@@ -1,5 +1,4 @@
 /* The largest hole: what the first image covers and the second does not. */
-#include <string.h>
 
 #include "core/base/memory.h"
 #include "core/image/compare.h"

@@ -1,7 +1,5 @@
 #include "core/image/texture_levels.h"
 
-#include <string.h>
-
 #include "core/base/memory.h"
 #include "core/base/message.h"
 

@@ -1,7 +1,5 @@
 #include <math.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/scenes/scene_kind.h"
 

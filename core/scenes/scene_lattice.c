@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 
 /* found · n_wanted / n_found, rounded: found minus its share of the surplus. The surplus is small where the numbers are

@@ -1,6 +1,5 @@
 /* Scenes of flat faces that meet in sharp edges: a cube, and a cube that lacks an octant. All faces are across an axis.
  */
-#include <math.h>
 
 #include "core/scenes/scene_kind.h"
 

@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/scenes/noise.h"

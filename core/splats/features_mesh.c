@@ -1,7 +1,6 @@
 /* Creases of a mesh. The faces around a vertex fall into wedges, each smooth in itself; the vertex becomes one vertex a
  * wedge, so that each gets an ellipse from its own side alone. What of it reaches over the crease is clipped where its
  * plane meets its mate's: both are clipped at the same line in space, whatever the surface does around it. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 
 /* Slots that one call of a task does, and calls between two reports of progress. */
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };

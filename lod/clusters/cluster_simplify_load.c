@@ -1,5 +1,4 @@
 /* The region as simplifying has it. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"

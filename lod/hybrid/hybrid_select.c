@@ -1,5 +1,4 @@
 /* What of a hybrid model is drawn in one picture. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

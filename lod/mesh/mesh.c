@@ -1,7 +1,6 @@
 /* Who lies beside whom in a mesh. */
 #include "lod/mesh/mesh.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

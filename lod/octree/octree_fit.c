@@ -1,6 +1,5 @@
 #include "lod/octree/octree_fit.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/eigen.h"

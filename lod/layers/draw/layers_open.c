@@ -1,5 +1,4 @@
 /* Opening layered point clouds: header and index, from wherever they lie. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

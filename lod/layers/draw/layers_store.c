@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_store.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/clock.h"

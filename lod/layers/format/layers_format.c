@@ -1,6 +1,5 @@
 #include "lod/layers/format/layers_format.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "conic/layers.h"
