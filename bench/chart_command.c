@@ -118,7 +118,7 @@ static conic_status time_frames(const chart_job *job, const chart_view *view, co
 
 /* Error of b against a where `is_inside` (null: everywhere), outside of which both are cleared. */
 static conic_status measure_error(conic_context *context, conic_image *a, conic_image *b,
-                                   const unsigned char *is_inside, cli_chart_error *error) {
+                                  const unsigned char *is_inside, cli_chart_error *error) {
   conic_difference difference;
   float *a_pixel = a->planes[CONIC_PLANE_RGBA], *b_pixel = b->planes[CONIC_PLANE_RGBA];
   size_t n = (size_t)a->width * (size_t)a->height, n_inside = 0;

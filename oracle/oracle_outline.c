@@ -3,7 +3,7 @@
 
 /* Adds the place that a point of camera space projects to. */
 static void add_extreme(const oracle_view *view, const double point[3], const double e[2], oracle_extreme extremes[2],
-                       int *n_found) {
+                        int *n_found) {
   const conic_camera *c = &view->camera;
   oracle_extreme found;
   found.inverse_depth = 1.0 / point[2];

@@ -343,6 +343,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
+  session->isa = (conic_isa)job.isa;
   return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_job(&job, positional, n_positional) : exit_code);
 }
 

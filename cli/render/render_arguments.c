@@ -381,7 +381,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
-  o->isa = (conic_isa)raw.isa;
+  o->isa = session->isa = (conic_isa)raw.isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];

@@ -15,6 +15,7 @@
 #include "conic/export.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
+#include "conic/isa.h"
 #include "conic/layers.h"
 #include "conic/layers_draw.h"
 #include "conic/model.h"

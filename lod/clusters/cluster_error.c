@@ -97,7 +97,7 @@ static uint32_t face_near(const conic_sampler *s, const conic_site *site, const 
 /* As conic_face_tree_bound. Most places are near enough to the face that is tried first, many others to that of the
  * support that is nearest. */
 static double measure_place(const conic_sampler *s, const conic_site *site, const double at[3], uint32_t *near,
-                           double enough) {
+                            double enough) {
   double distance = conic_face_distance(&s->job->mesh->mesh, *near, at);
   if (distance <= enough)
     return distance;

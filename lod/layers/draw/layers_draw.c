@@ -21,8 +21,7 @@ typedef struct layers_drawing {
   conic_layers_cut cut;
   conic_layers_set *set; /* the layers', so that its memory is kept from picture to picture */
   unsigned char *needed; /* a cloud */
-  size_t n_needed;
-  uint32_t *held; /* clouds that are kept until the picture is drawn */
+  uint32_t *held;        /* clouds that are kept until the picture is drawn */
   conic_layers_loading holding;
   conic_layers_drawn drawn;
 } layers_drawing;

@@ -1,4 +1,4 @@
-/* The slot `texture` in lanes. Included by tile_kernels_body.h. */
+/* The slot `texture` in lanes. Included by raster_kernels_body.h. */
 #include "core/image/texture_levels.h"
 #include "core/lanes/lanes_store.h"
 #include "raster/tiles/texture_places.h"

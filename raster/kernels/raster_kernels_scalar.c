@@ -2,7 +2,8 @@
 #include <string.h>
 
 #include "core/lanes/stream.h"
-#include "raster/kernels/tile_kernels.h"
+#include "raster/kernels/raster_kernels.h"
+#include "raster/kernels/resolve.h"
 #include "raster/tiles/coverage.h"
 #include "raster/triangles/triangle_tile.h"
 
@@ -33,7 +34,7 @@ static inline void stream_record(void *to, const void *from, size_t bytes) {
   conic_stream_copy(to, from, bytes);
 }
 
-#include "raster/tiles/sort_body.h"
+#include "raster/kernels/sort_body.h"
 
 static size_t select_references(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints,
                                 uint32_t *words) {
@@ -209,21 +210,13 @@ static void take_nearest(conic_band *band) {
   }
 }
 
-const conic_tile_kernels conic_tile_kernels_scalar = {
-    .name = "scalar",
-    .n_lanes = 1,
-    .project = conic_project_range,
-    .keys = keys,
-    .sort = sort,
-    .select = select_references,
-    .visibility = visibility,
-    .accumulate = accumulate,
-    .nearest = nearest,
-    .take_nearest = take_nearest,
-    .resolve = conic_band_resolve,
-    .triangle_vertices = conic_triangle_vertices,
-    .triangles_draw = conic_triangles_draw,
-    .triangles_hide = conic_triangles_hide,
-    .triangles_add = conic_triangles_add,
-    .texture = conic_texture_at_places,
-};
+void conic_raster_kernels_scalar(conic_raster_kernels *kernels) {
+  *kernels = (conic_raster_kernels){
+      .project = {.project = conic_project_range},
+      .bins = {.keys = keys, .sort = sort, .select = select_references},
+      .passes = {1, visibility, accumulate, nearest, take_nearest},
+      .resolve = {.resolve = conic_band_resolve},
+      .triangles = {conic_triangle_vertices, conic_triangles_draw, conic_triangles_hide, conic_triangles_add},
+      .texture = {.at_places = conic_texture_at_places},
+  };
+}

@@ -1,6 +1,6 @@
 /* Projection in lanes: conic_project_one (raster/project/project_splats.c) for a group of splats at once, with the same
  * operations in the same order. What is not usual (near the camera, drawn by ray, not finite) is left to
- * conic_project_one itself. Included by tile_kernels_body.h. */
+ * conic_project_one itself. Included by raster_kernels_body.h. */
 #include <math.h>
 
 #include "core/lanes/lanes_double.h"

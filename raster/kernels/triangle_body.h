@@ -1,63 +1,53 @@
 /* The triangles' slots in lanes: the operations of triangle_vertices.c and triangle_tile.c in the same order. Included
- * by tile_kernels_body.h. */
+ * by raster_kernels_body.h. */
 #include "core/lanes/lanes_double.h"
+#include "raster/kernels/texture_body.h"
 #include "raster/triangles/draw_lanes.h"
 #include "raster/triangles/look_lanes.h"
-#include "raster/triangles/texture_body.h"
 #include "raster/triangles/triangle_look.h"
 #include "raster/triangles/triangle_pixel.h"
 #include "raster/triangles/triangle_tile.h"
 
-/* half_of_value's vectors of integers as they are compared. */
-CONIC_INLINE half_masks flag_where(half_masks mask, int64_t bits) {
-  return mask & (bits - (half_masks){0});
+/* The bits where the mask holds. */
+CONIC_INLINE wide_mask flag_where(wide_mask mask, int64_t bits) {
+  return mask & (bits - (wide_mask){0});
 }
 
-CONIC_INLINE half_doubles select_half(half_masks mask, half_doubles yes, half_doubles no) {
-  return (half_doubles)((mask & (half_masks)yes) | (~mask & (half_masks)no));
-}
-
-CONIC_INLINE half_ints snap_half(half_doubles px) {
+CONIC_INLINE wide_ints snap_half(wide px) {
   const double guard = (double)CONIC_GUARD_PX, shift = 67108864.0;
-  px = half_min(half_max(px, half_of_value(-guard)), half_of_value(guard));
-  return __builtin_convertvector(px * (double)CONIC_SUBPIXELS + (shift + 0.5), half_ints) - (int32_t)shift;
-}
-
-CONIC_INLINE half_doubles load_positions(const float *from) {
-  half_floats values;
-  memcpy(&values, from, sizeof values);
-  return __builtin_convertvector(values, half_doubles);
+  px = wide_min(wide_max(px, wide_of(-guard)), wide_of(guard));
+  return __builtin_convertvector(px * (double)CONIC_SUBPIXELS + (shift + 0.5), wide_ints) - (int32_t)shift;
 }
 
 /* conic_triangle_place of as many vertices as half a vector has lanes. */
 CONIC_INLINE void place_half(const conic_triangle_frame *frame, size_t i, conic_screen_vertex *to) {
   const conic_view *view = frame->view;
   const double guard = (double)CONIC_GUARD_PX;
-  half_doubles p[3], from[3];
+  wide p[3], from[3];
   for (int axis = 0; axis < 3; axis++)
-    from[axis] = load_positions(frame->triangles->position[axis] + i);
+    from[axis] = wide_load_floats(frame->triangles->position[axis] + i);
   for (int row = 0; row < 3; row++) {
     const double *m = view->rotation[row];
     p[row] = ((m[0] * from[0] + m[1] * from[1]) + m[2] * from[2]) + frame->translation[row];
   }
-  half_doubles iz = 1.0 / p[2], x = view->fx * p[0] * iz + view->cx, y = view->fy * p[1] * iz + view->cy;
-  half_masks is_finite = (p[0] * 0.0 == 0.0) & (p[1] * 0.0 == 0.0) & (p[2] * 0.0 == 0.0);
-  half_masks is_before = p[2] - view->near_z >= 0.0;
-  half_masks outside = flag_where(~(view->fx * p[0] + (guard + view->cx) * p[2] >= 0.0), CONIC_VERTEX_LEFT) |
-                       flag_where(~((guard - view->cx) * p[2] - view->fx * p[0] >= 0.0), CONIC_VERTEX_RIGHT) |
-                       flag_where(~(view->fy * p[1] + (guard + view->cy) * p[2] >= 0.0), CONIC_VERTEX_ABOVE) |
-                       flag_where(~((guard - view->cy) * p[2] - view->fy * p[1] >= 0.0), CONIC_VERTEX_BELOW);
-  half_masks is_held = (iz >= CONIC_LEAST_IZ) & (iz <= CONIC_GREATEST_IZ), has_place = is_finite & is_before & is_held;
+  wide iz = 1.0 / p[2], x = view->fx * p[0] * iz + view->cx, y = view->fy * p[1] * iz + view->cy;
+  wide_mask is_finite = (p[0] * 0.0 == 0.0) & (p[1] * 0.0 == 0.0) & (p[2] * 0.0 == 0.0);
+  wide_mask is_before = p[2] - view->near_z >= 0.0;
+  wide_mask outside = flag_where(~(view->fx * p[0] + (guard + view->cx) * p[2] >= 0.0), CONIC_VERTEX_LEFT) |
+                      flag_where(~((guard - view->cx) * p[2] - view->fx * p[0] >= 0.0), CONIC_VERTEX_RIGHT) |
+                      flag_where(~(view->fy * p[1] + (guard + view->cy) * p[2] >= 0.0), CONIC_VERTEX_ABOVE) |
+                      flag_where(~((guard - view->cy) * p[2] - view->fy * p[1] >= 0.0), CONIC_VERTEX_BELOW);
+  wide_mask is_held = (iz >= CONIC_LEAST_IZ) & (iz <= CONIC_GREATEST_IZ), has_place = is_finite & is_before & is_held;
   outside = (outside & is_held) | flag_where(~is_held, CONIC_VERTEX_BAD);
   outside = (outside & is_before) | flag_where(~is_before, CONIC_VERTEX_NEAR);
   outside = (outside & is_finite) | flag_where(~is_finite, CONIC_VERTEX_BAD);
-  half_doubles zero = half_of_value(0.0);
-  half_masks has_snapped = is_finite & is_before;
-  half_ints snapped_x = snap_half(x), snapped_y = snap_half(y);
-  half_ints snaps = __builtin_convertvector(has_snapped, half_ints);
-  half_ints bits = __builtin_convertvector(outside, half_ints);
-  half_floats iz_float = __builtin_convertvector(select_half(has_place, iz, zero), half_floats);
-  for (int lane = 0; lane < CONIC_HALF_LANES; lane++)
+  wide zero = wide_of(0.0);
+  wide_mask has_snapped = is_finite & is_before;
+  wide_ints snapped_x = snap_half(x), snapped_y = snap_half(y);
+  wide_ints snaps = __builtin_convertvector(has_snapped, wide_ints);
+  wide_ints bits = __builtin_convertvector(outside, wide_ints);
+  wide_floats iz_float = __builtin_convertvector(wide_select(has_place, iz, zero), wide_floats);
+  for (int lane = 0; lane < CONIC_WIDE_LANES; lane++)
     to[lane] = (conic_screen_vertex){snapped_x[lane] & snaps[lane], snapped_y[lane] & snaps[lane], iz_float[lane],
                                      (uint32_t)bits[lane]};
 }
@@ -65,7 +55,7 @@ CONIC_INLINE void place_half(const conic_triangle_frame *frame, size_t i, conic_
 static void triangle_vertices(const conic_triangle_frame *frame, size_t begin, size_t end,
                               conic_screen_vertex *vertices) {
   size_t i = begin;
-  for (; i + CONIC_HALF_LANES <= end; i += CONIC_HALF_LANES)
+  for (; i + CONIC_WIDE_LANES <= end; i += CONIC_WIDE_LANES)
     place_half(frame, i, vertices + i);
   conic_triangle_vertices(frame, i, end, vertices);
 }

@@ -1,4 +1,4 @@
-/* raster/project/laplace.h lane by lane, with the same operations in the same order. Included by tile_kernels_body.h.
+/* raster/project/laplace.h lane by lane, with the same operations in the same order. Included by raster_kernels_body.h.
  */
 #include "raster/project/laplace.h"
 
