@@ -1,9 +1,9 @@
 /* conic hybrid: a mesh in, clusters of triangles and of surfels out. */
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/hybrid_mesh.h"
-#include "cli/commands/reach.h"
 #include "core/base/message.h"
+#include "source/mesh_input.h"
+#include "source/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
 
@@ -24,7 +24,7 @@ static int make_hybrid(void *cookie) {
   cli_stage *stages = job->base.stages;
   conic_triangles mesh;
   double start = cli_seconds();
-  conic_status status = cli_mesh_read(job->base.session, job->base.input, job->texture, &mesh);
+  conic_status status = conic_mesh_read(job->base.session->context, job->base.input, job->texture, &mesh);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return cli_exit_of(status);
@@ -35,7 +35,7 @@ static int make_hybrid(void *cookie) {
   stages[SIMPLIFY].seconds = job->report.simplify_seconds;
   if (status == CONIC_OK)
     status = conic_hybrid_describe(job->hybrid, &job->info);
-  if (status == CONIC_OK && !cli_is_in_reach(job->info.minimum, job->info.maximum))
+  if (status == CONIC_OK && !conic_is_in_reach(job->info.minimum, job->info.maximum))
     return cli_error(CLI_INPUT, "%s: a point is farther out than 1e20", job->base.input);
   if (status == CONIC_OK)
     status = conic_hybrid_write(job->hybrid, job->base.output);

@@ -7,6 +7,7 @@
 #include "conic/layers.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
 
 typedef struct layer_job {
   cli_build base; /* its input is the one that is being read */
@@ -77,7 +78,7 @@ static conic_status read_whole_file(layer_job *job, const conic_read_options *op
     return status;
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
   if (status == CONIC_OK)
-    cli_tell_repairs(job->base.session, job->base.input, &repairs);
+    conic_repairs_log(job->base.session->context, job->base.input, &repairs);
   if (status == CONIC_OK)
     status = append_batch(job, &model.points);
   conic_model_release(context, &model);

@@ -6,6 +6,7 @@
 #include "cli/commands/mls_cells.h"
 #include "cli/device_option.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
 
@@ -171,7 +172,7 @@ static void tell_points(const void *cookie) {
   warn(job);
   conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->base.input, job->n_in,
             job->n_out, r->h);
-  cli_tell_repairs(job->base.session, job->base.input, &job->repairs);
+  conic_repairs_log(job->base.session->context, job->base.input, &job->repairs);
   if (job->action == MLS_PROJECT)
     conic_log(context, CONIC_LOG_INFO,
               "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "

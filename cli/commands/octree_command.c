@@ -3,8 +3,9 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/commands/reach.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
+#include "source/reach.h"
 
 typedef struct octree_job {
   cli_build base;
@@ -33,7 +34,7 @@ static conic_status build_from_model(octree_job *job) {
   if (status != CONIC_OK)
     return status;
   job->n_in = model.points.count;
-  const char *why = cli_why_out_of_reach(&model.points);
+  const char *why = conic_why_out_of_reach(&model.points);
   if (why) {
     cli_error(CLI_INPUT, "%s: cannot be drawn: %s", job->base.input, why);
     conic_model_release(context, &model);
@@ -79,7 +80,7 @@ static void tell_octree(const void *cookie) {
   conic_log(job->base.session->context, CONIC_LOG_INFO,
             "%s: %zu points in; %zu leaves and %zu inner nodes in %d levels out, %.1f MiB", job->base.input, job->n_in,
             info->n_leaves, info->n_nodes, info->n_levels, (double)info->n_bytes / 1048576.0);
-  cli_tell_repairs(job->base.session, job->base.input, &job->repairs);
+  conic_repairs_log(job->base.session->context, job->base.input, &job->repairs);
 }
 
 static void release_octree(void *cookie) {

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "core/splats/repairs_log.h"
 
 typedef struct prepare_job {
   cli_build base;
@@ -107,7 +108,7 @@ static void tell_prepared(const void *cookie) {
   if (points->n_clips)
     conic_log(job->base.session->context, CONIC_LOG_INFO, "%s: %zu splats have clip lines", job->base.input,
               points->n_clips);
-  cli_tell_repairs(job->base.session, job->base.input, &job->repairs);
+  conic_repairs_log(job->base.session->context, job->base.input, &job->repairs);
 }
 
 static int make_prepared(void *cookie) {

@@ -41,6 +41,7 @@ typedef struct conic_projection {
   /* A variance's only: the centre, the variance with the prefilter in it (xx, xy, yy in px²), and the conic, its
    * inverse: a pixel at (x, y) from the centre is covered where a·x² + 2b·xy + c·y² is below the support. */
   double center_px[2], variance_px[3], conic[3];
+  uint64_t reserved[8];
 } conic_projection;
 
 /* What a splat does to a pixel in its reach. */
@@ -81,7 +82,7 @@ typedef struct conic_contributions conic_contributions;
 
 /* Projects the splats, with tangent axes, for a frame; `options` as for conic_render. The splats must outlive
  * *contributions, which the caller owns on success and which must not outlive the context; on failure it is null.
- * Errors: ARGUMENT, MEMORY. */
+ * Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not here). */
 CONIC_API conic_status conic_contributions_create(conic_context *context, const conic_splats *splats,
                                                   const conic_camera *camera, const conic_render_options *options,
                                                   conic_contributions **contributions);

@@ -31,7 +31,7 @@ compiles_cpp() { # FILE; true where there is no compiler for it
     "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude "$1"
 }
 
-for header in $(find include core raster oracle lod surface opencl bench cli -name '*.h' | sort); do
+for header in $(find include core raster oracle lod surface source opencl bench cli -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
@@ -53,7 +53,7 @@ printf '#include "%s"\n' first.h second.h > "$work/together.c"
 
 perl -0777 -ne 's{/\*.*?\*/}{}gs; s{^\s*#.*$}{}gm; print "$1\n" while /\bCONIC_API\b[^;(]*?(\w+)\s*\(/g' \
   include/conic/*.h | sort -u > "$work/declared"
-nm -D --defined-only "$library_folder/libconic.so" | awk '{print $3}' | sort -u > "$work/exported"
+nm -D --defined-only "$library_folder/libconic.so" | awk '$2 != "A" {sub("@.*", "", $3); print $3}' | sort -u > "$work/exported"
 [[ $(wc -l < "$work/declared") -gt 10 ]] || fail "the headers' declarations were not found"
 while read -r name; do
   fail "$name is declared in a public header and not exported"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs into an empty folder, moves that, and builds examples/minimal.c against it: by find_package (shared and
+# Installs into an empty folder, moves that, and builds the examples against it: by find_package (shared and
 # static) and by pkg-config. Each program must draw a picture that is not black, and all the same one.
 set -euo pipefail
 
@@ -22,6 +22,13 @@ mv "$work/first" "$work/prefix"
 library_folder=$(dirname "$(find "$work/prefix" -name libconic.so)")
 export LD_LIBRARY_PATH=$library_folder
 
+# A program asks for a library that the package's version file takes for as good: of the same major and minor version.
+interface_version=$(sed -nE 's/^#define CONIC_VERSION_(MAJOR|MINOR) //p' "$source_folder/include/conic/version.h" | paste -sd.)
+readelf -d "$library_folder/libconic.so" | grep -q "SONAME.*\[libconic\.so\.$interface_version\]" ||
+  { echo "the SONAME is not of version $interface_version"; exit 1; }
+symbols=$(nm -D --defined-only --with-symbol-versions "$library_folder/libconic.so" | awk '$2 != "A" {print $3}')
+[[ -n $symbols ]] && ! grep -vq "@@CONIC_$interface_version\$" <<< "$symbols" || { echo "symbols without a version"; exit 1; }
+
 module=$library_folder/conic/conic-openimageio.so # where OpenImageIO was there to build it
 
 not_black() { # PFM: some byte behind the header is not zero
@@ -42,6 +49,8 @@ project(minimal LANGUAGES C)
 find_package(conic 0.1 REQUIRED)
 add_executable(shared "$source_folder/examples/minimal.c")
 target_link_libraries(shared conic::conic m)
+add_executable(any_file "$source_folder/examples/any_file.c")
+target_link_libraries(any_file conic::conic)
 option(STATIC "" OFF)
 if(STATIC)
   find_package(conic 0.1 REQUIRED COMPONENTS static)
@@ -67,6 +76,14 @@ draw() { # PROGRAM
 
 build_package by_package
 draw "$work/by_package/shared"
+
+# Whatever file there is, the other example draws.
+"$work/prefix/bin/conic" make plane -n 100 -o "$work/plane.ply"
+"$work/prefix/bin/conic" octree "$work/plane.ply" -o "$work/plane.cot"
+for file in "$work/plane.ply" "$work/plane.cot"; do
+  "$work/by_package/any_file" "$file" "$file.pfm" || { echo "any_file does not draw $file"; exit 1; }
+  not_black "$file.pfm" || { echo "any_file draws $file black"; exit 1; }
+done
 
 build_package by_package_static -DSTATIC=ON
 draw "$work/by_package_static/static"
@@ -98,7 +115,6 @@ if [[ -e $module ]]; then
     echo "code $code: $(cat "$work/message")"
     exit 1
   }
-  "$program" make plane -n 100 -o "$work/plane.ply"
   has_module
   draw_png
   echo "no library" > "$module"

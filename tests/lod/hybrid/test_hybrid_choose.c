@@ -1,7 +1,8 @@
-/* What is called hidden is: of a cluster that a back side hides, no face within its cone, anywhere in its sphere, is
- * turned to the eye. */
+/* What is chosen by: of a cluster that is called hidden no face within its cone, anywhere in its sphere, is turned to
+ * the eye; and a point that stands for a node is off by its error, and by what its disc sticks out of the sphere. */
 #include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/hybrid_point.h"
 #include "tests/support/fixture.h"
 
 static const double pi = 3.14159265358979323846;
@@ -38,17 +39,9 @@ static int has_front(const conic_hybrid_bound *bound, uint64_t *state) {
   return 0;
 }
 
-int main(void) {
-  fixture f = fixture_open(1);
-  conic_hybrid hybrid;
-  conic_hybrid_camera view;
+static void test_hidden(const conic_hybrid_camera *view) {
   uint64_t state = 12;
   int n_hidden = 0, n_front = 0, n_neither = 0;
-  memset(&hybrid, 0, sizeof hybrid);
-  fixture_camera(&f, 1000, 1000, 300.0);
-  f.options.cull_back = 1;
-  f.options.near_z = 0.01;
-  conic_hybrid_camera_init(&hybrid, &f.camera, &f.options, &view);
   for (int i = 0; i < 1000; i++) {
     conic_hybrid_bound bound;
     double axis[3];
@@ -60,7 +53,7 @@ int main(void) {
     }
     bound.radius = (float)fixture_random(&state);
     bound.cone = (float)(0.3 + 0.7 * fixture_random(&state));
-    int is_hidden = conic_hybrid_is_hidden(&view, &bound, 0.0), is_front = has_front(&bound, &state);
+    int is_hidden = conic_hybrid_is_hidden(view, &bound, 0.0), is_front = has_front(&bound, &state);
     CHECK(!is_hidden || !is_front);
     n_hidden += is_hidden;
     n_front += is_front;
@@ -68,6 +61,36 @@ int main(void) {
   }
   printf("%d hidden, %d turned to the eye, %d neither\n", n_hidden, n_front, n_neither);
   CHECK(n_hidden > 50 && n_front > 300 && n_neither < 60);
+}
+
+static void test_point(const conic_hybrid_camera *view) {
+  const double radius = 0.25, error = 0.3;
+  for (double distance = 0.3; distance < 5.0; distance *= 1.7) {
+    conic_hybrid_node node;
+    memset(&node, 0, sizeof node);
+    node.bound.center[2] = (float)distance;
+    node.bound.radius = node.point.radius = (float)radius;
+    node.point.error = (float)error;
+    /* Rays that touch the sphere leave its middle by this angle. */
+    double disc = distance * tan(asin(radius / distance)), off = error + (disc - radius);
+    double unit = conic_hybrid_pixels_a_unit(view, &node.bound, disc - radius);
+    double found = conic_hybrid_point_error_px(view, &node);
+    CHECK(unit == HUGE_VAL ? found == HUGE_VAL : fabs(found / (off * unit) - 1.0) < 1e-5);
+    CHECK((unit == HUGE_VAL) == (distance < 0.4));
+  }
+}
+
+int main(void) {
+  fixture f = fixture_open(1);
+  conic_hybrid hybrid;
+  conic_hybrid_camera view;
+  memset(&hybrid, 0, sizeof hybrid);
+  fixture_camera(&f, 1000, 1000, 300.0);
+  f.options.cull_back = 1;
+  f.options.near_z = 0.01;
+  conic_hybrid_camera_init(&hybrid, &f.camera, &f.options, &view);
+  test_hidden(&view);
+  test_point(&view);
   fixture_close(&f);
   return check_result();
 }
