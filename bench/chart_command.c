@@ -117,8 +117,8 @@ static conic_status time_frames(const chart_job *job, const chart_view *view, co
 }
 
 /* Error of b against a where `is_inside` (null: everywhere), outside of which both are cleared. */
-static conic_status measure(conic_context *context, conic_image *a, conic_image *b, const unsigned char *is_inside,
-                            cli_chart_error *error) {
+static conic_status measure_error(conic_context *context, conic_image *a, conic_image *b,
+                                  const unsigned char *is_inside, cli_chart_error *error) {
   conic_difference difference;
   float *a_pixel = a->planes[CONIC_PLANE_RGBA], *b_pixel = b->planes[CONIC_PLANE_RGBA];
   size_t n = (size_t)a->width * (size_t)a->height, n_inside = 0;
@@ -169,7 +169,7 @@ static conic_status compare_truth(conic_context *context, const chart_view *view
   point->largest_hole = difference.largest_hole;
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
     point->holes += seen[4 * i + 3] > 0.0f && drawn[4 * i + 3] == 0.0f;
-  status = measure(context, &truth, image, view->is_inside, &point->truth);
+  status = measure_error(context, &truth, image, view->is_inside, &point->truth);
   conic_image_release(context, &truth);
   return status;
 }
@@ -192,7 +192,7 @@ static conic_status compare_reference(conic_context *context, const conic_refere
     return status;
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height * 4; i++)
     ((float *)exact.planes[CONIC_PLANE_RGBA])[i] = (float)reference->planes[CONIC_PLANE_RGBA][i];
-  status = measure(context, &exact, image, NULL, &point->oracle);
+  status = measure_error(context, &exact, image, NULL, &point->oracle);
   point->weight_max = reference->weight_error.max_abs;
   conic_image_release(context, &exact);
   return status;
@@ -425,7 +425,7 @@ static int chart(chart_job *job) {
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_chart(cli_session *session, int argc, char **argv) {
   chart_job *job = calloc(1, sizeof *job);
   const char *positional[argc];
   int n_positional;
@@ -434,19 +434,10 @@ static int run(cli_session *session, int argc, char **argv) {
   job->session = session;
   job->only = -1;
   const cli_option options[] = {
-      {.name = "o", .type = CLI_TEXT, .value = &job->folder, .argument = "DIR", .help = "the folder of the chart"},
-      {.name = "quick", .type = CLI_FLAG, .value = &job->is_quick, .help = "a small chart in seconds, to try it"},
-      {.name = "only",
-       .type = CLI_CHOICE,
-       .value = &job->only,
-       .argument = "CHART",
-       .help = "methods or representations [both]",
-       .choices = only_words},
-      {.name = "mesh",
-       .type = CLI_TEXT,
-       .value = &job->mesh.path,
-       .argument = "MESH",
-       .help = "whose representations are charted [a generated terrain]"},
+      {"o", CLI_TEXT, &job->folder, "DIR", "the folder of the chart"},
+      {"quick", CLI_FLAG, &job->is_quick, NULL, "a small chart in seconds, to try it"},
+      {"only", CLI_CHOICE, &job->only, "CHART", "methods or representations [both]", .choices = only_words},
+      {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
@@ -469,5 +460,5 @@ const cli_command cli_chart = {
     .name = "chart",
     .summary = "charts error over time: of every method and kernel, and of every representation of a mesh",
     .usage = "conic chart -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
-    .run = run,
+    .run = run_chart,
 };

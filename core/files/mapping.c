@@ -78,7 +78,7 @@ static uint64_t word_at(const unsigned char *bytes) { /* little endian */
   return word;
 }
 
-static uint64_t mix(uint64_t sum, uint64_t word) {
+static uint64_t mix_word(uint64_t sum, uint64_t word) {
   sum = (sum ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* both steps can be undone, so no word's change is lost */
   return sum << 29 | sum >> 35;
 }
@@ -88,10 +88,10 @@ unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes) {
   size_t i = 0;
   for (; i + 32 <= n_bytes; i += 32)
     for (int lane = 0; lane < 4; lane++)
-      lanes[lane] = mix(lanes[lane], word_at(bytes + i + (size_t)lane * 8));
+      lanes[lane] = mix_word(lanes[lane], word_at(bytes + i + (size_t)lane * 8));
   for (int lane = 0; lane < 4; lane++)
-    sum = mix(sum, lanes[lane]);
+    sum = mix_word(sum, lanes[lane]);
   for (; i < n_bytes; i++)
-    sum = mix(sum, bytes[i]);
-  return mix(sum ^ sum >> 32, 0);
+    sum = mix_word(sum, bytes[i]);
+  return mix_word(sum ^ sum >> 32, 0);
 }

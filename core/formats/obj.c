@@ -45,7 +45,7 @@ typedef struct obj_reader {
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
 typedef uint32_t face_corner[3];
 
-static conic_status wrong(const obj_reader *reader, const char *what) {
+static conic_status wrong_obj(const obj_reader *reader, const char *what) {
   return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
                     (unsigned long long)reader->input->line);
 }
@@ -62,9 +62,9 @@ static conic_status read_numbers(const obj_reader *reader, double *numbers, int 
     if (length == 0 || word[0] == '#')
       return CONIC_OK;
     if (conic_number_parse(word, length, &value) != length)
-      return wrong(reader, "a value is not a number");
+      return wrong_obj(reader, "a value is not a number");
     if (*n == room)
-      return wrong(reader, "too many values");
+      return wrong_obj(reader, "too many values");
     numbers[(*n)++] = value;
   }
 }
@@ -90,9 +90,9 @@ static conic_status read_vertex(obj_reader *reader) {
   if (status != CONIC_OK)
     return status;
   if (n < 3 || n == 5)
-    return wrong(reader, "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
+    return wrong_obj(reader, "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
   if (points->count >= CONIC_MAX_POINTS)
-    return wrong(reader, "too many vertices");
+    return wrong_obj(reader, "too many vertices");
   status = conic_builder_reserve_points(&reader->builder, points->count + 1);
   if (status == CONIC_OK && n >= 6)
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
@@ -111,9 +111,9 @@ static conic_status read_normal(obj_reader *reader) {
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n != 3)
-    status = wrong(reader, "a normal has 3 values");
+    status = wrong_obj(reader, "a normal has 3 values");
   if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
-    status = wrong(reader, "too many normals");
+    status = wrong_obj(reader, "too many normals");
   if (status == CONIC_OK)
     status = conic_memory_reserve(reader->input->context, &reader->normals, reader->counts[NORMAL],
                                   reader->counts[NORMAL] + 1, &reader->normal_capacity, sizeof *reader->normals);
@@ -130,9 +130,9 @@ static conic_status read_texture(obj_reader *reader) {
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n < 1)
-    return wrong(reader, "a texture coordinate has 1 to 3 values");
+    return wrong_obj(reader, "a texture coordinate has 1 to 3 values");
   if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)
-    return wrong(reader, "too many texture coordinates");
+    return wrong_obj(reader, "too many texture coordinates");
   if (status == CONIC_OK && reader->faces)
     status = conic_faces_add_coordinate(reader->input->context, reader->faces, values);
   reader->counts[TEXTURE]++;
@@ -163,11 +163,11 @@ static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, u
   if (index < 0 && (uint64_t)-index > count) {
     snprintf(what, sizeof what, "index %lld, but there are only %llu %s so far", (long long)index,
              (unsigned long long)count, kind_names[kind]);
-    return wrong(reader, what);
+    return wrong_obj(reader, what);
   }
   uint64_t found = index < 0 ? count - (uint64_t)-index : (uint64_t)index - 1;
   if (found >= CONIC_MAX_POINTS)
-    return wrong(reader, "an index is out of range");
+    return wrong_obj(reader, "an index is out of range");
   if (found >= count && found + 1 > reader->used[kind].index) {
     reader->used[kind].index = found + 1;
     reader->used[kind].line = reader->input->line;
@@ -186,7 +186,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
       if (c == end)
         break;
       if (*c++ != '/')
-        return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+        return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
       if (kind == TEXTURE && c < end && *c == '/')
         continue;
       if (kind == NORMAL && c == end) /* v/t/ is written, too */
@@ -194,13 +194,13 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     }
     c = parse_index(c, end, &index);
     if (!c)
-      return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+      return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
     conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
     if (status != CONIC_OK)
       return status;
   }
   if (c != end)
-    return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+    return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
   conic_status status = conic_memory_reserve(reader->input->context, &reader->corners, reader->n_corners,
@@ -210,7 +210,8 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
   return status;
 }
 
-static conic_status add_triangle(obj_reader *reader, const face_corner a, const face_corner b, const face_corner c) {
+static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, const face_corner b,
+                                     const face_corner c) {
   const uint32_t normals[3] = {a[NORMAL], b[NORMAL], c[NORMAL]};
   const uint32_t coordinates[3] = {a[TEXTURE], b[TEXTURE], c[TEXTURE]};
   conic_status status = conic_builder_add_triangle(&reader->builder, a[VERTEX], b[VERTEX], c[VERTEX]);
@@ -228,10 +229,10 @@ static conic_status read_face(obj_reader *reader) {
     if (status != CONIC_OK)
       return status;
     if (length == 0 || word[0] == '#')
-      return n < 3 ? wrong(reader, "a face has at least 3 corners") : CONIC_OK;
+      return n < 3 ? wrong_obj(reader, "a face has at least 3 corners") : CONIC_OK;
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
-      status = add_triangle(reader, first, previous, current);
+      status = add_obj_triangle(reader, first, previous, current);
     if (status != CONIC_OK)
       return status;
     if (n == 0)
@@ -248,7 +249,7 @@ static conic_status read_material(obj_reader *reader) {
   if (status != CONIC_OK || !reader->faces)
     return status;
   if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
-    return wrong(reader, "too many materials");
+    return wrong_obj(reader, "too many materials");
   return conic_faces_use_material(reader->input->context, reader->faces, word, length);
 }
 
@@ -263,7 +264,7 @@ static conic_status read_libraries(obj_reader *reader) {
       return status;
     size_t folder = slash && word[0] != '/' ? (size_t)(slash + 1 - name) : 0;
     if (folder + length > sizeof path || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
-      return wrong(reader, "a material file's name is too long, or there are too many");
+      return wrong_obj(reader, "a material file's name is too long, or there are too many");
     memcpy(path, name, folder);
     memcpy(path + folder, word, length);
     status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, folder + length);
@@ -298,7 +299,7 @@ static conic_status check_indices(const obj_reader *reader) {
                         (unsigned long long)reader->used[kind].index, (unsigned long long)reader->counts[kind],
                         kind_names[kind], (unsigned long long)reader->used[kind].line);
   if (reader->counts[VERTEX] == 0)
-    return wrong(reader, "the file ends without a vertex");
+    return wrong_obj(reader, "the file ends without a vertex");
   return CONIC_OK;
 }
 

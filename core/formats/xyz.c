@@ -20,7 +20,7 @@ typedef struct xyz_reader {
   double block[BLOCK][MAX_VALUES];
 } xyz_reader;
 
-static conic_status wrong(const xyz_reader *reader, const char *what) {
+static conic_status wrong_row(const xyz_reader *reader, const char *what) {
   return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
                     (unsigned long long)reader->input->line);
 }
@@ -41,9 +41,9 @@ static conic_status read_values(xyz_reader *reader, double *values, int *n) {
     if (length == 0 || (*n == 0 && is_comment(word, length)))
       return CONIC_OK;
     if (conic_number_parse(word, length, &value) != length)
-      return wrong(reader, "a value is not a number");
+      return wrong_row(reader, "a value is not a number");
     if (*n == MAX_VALUES)
-      return wrong(reader, "a line has more than 9 values");
+      return wrong_row(reader, "a line has more than 9 values");
     values[*n] = value;
   }
 }
@@ -52,7 +52,7 @@ static conic_status read_values(xyz_reader *reader, double *values, int *n) {
 static conic_status take_count(xyz_reader *reader, double value) {
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
   if (!(value >= 0.0 && value <= (double)CONIC_MAX_POINTS) || value != (double)(uint64_t)value)
-    return wrong(reader, "the number of points is no whole number in range");
+    return wrong_row(reader, "the number of points is no whole number in range");
   reader->has_count = 1;
   reader->n_declared = (uint64_t)value;
   reader->count_line = reader->input->line;
@@ -151,7 +151,7 @@ static conic_status append_block(xyz_reader *reader, size_t n_rows) {
   conic_splats *points = &reader->builder.model->points;
   conic_status status = CONIC_OK;
   if (conic_builder_points(&reader->builder) + n_rows > CONIC_MAX_POINTS)
-    return wrong(reader, "too many points");
+    return wrong_row(reader, "too many points");
   if (conic_builder_points(&reader->builder) == 0)
     status = choose_columns(reader, n_rows);
   if (status == CONIC_OK)
@@ -173,7 +173,7 @@ static conic_status check_count(const xyz_reader *reader) {
                       (unsigned long long)count, (unsigned long long)reader->count_line,
                       (unsigned long long)reader->n_declared, (unsigned long long)reader->input->line);
   if (count == 0 && !reader->has_count)
-    return wrong(reader, "the file ends without a point");
+    return wrong_row(reader, "the file ends without a point");
   return CONIC_OK;
 }
 

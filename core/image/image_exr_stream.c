@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "conic/image.h"
 #include "core/base/message.h"
 #include "core/image/image_common.h"
 

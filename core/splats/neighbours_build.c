@@ -20,7 +20,7 @@ static int is_finite(const point_record *r) {
   return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
 }
 
-static uint64_t mix(uint64_t x) {
+static uint64_t mix_bits(uint64_t x) {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
   return x ^ (x >> 31);
@@ -33,7 +33,7 @@ static uint64_t hash_position(const float position[3]) {
     float value = position[axis] + 0.0f;
     memcpy(&bits[axis], &value, sizeof value);
   }
-  return mix(mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
+  return mix_bits(mix_bits((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
 }
 
 static int same_position(const float a[3], const float b[3]) {
@@ -42,8 +42,8 @@ static int same_position(const float a[3], const float b[3]) {
 
 /* Gathers the finite positions into `records`, coincident ones once; slot_of_point becomes the number of the point's
  * record, for the time being. */
-static conic_status gather(conic_context *context, const float *const positions[3], conic_neighbours *tree,
-                           point_record *records) {
+static conic_status gather_points(conic_context *context, const float *const positions[3], conic_neighbours *tree,
+                                  point_record *records) {
   size_t n_buckets = 16;
   while (n_buckets < tree->n_points + tree->n_points / 2)
     n_buckets *= 2;
@@ -100,7 +100,8 @@ static point_record median_of_three(const point_record *a, const point_record *b
 static void partition(point_record *records, size_t n, size_t n_left, int axis) {
   ptrdiff_t begin = 0, last = (ptrdiff_t)n - 1, wanted = (ptrdiff_t)n_left;
   while (begin < last) {
-    uint64_t draw = mix((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last), span = (uint64_t)(last - begin) + 1;
+    uint64_t draw = mix_bits((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last),
+             span = (uint64_t)(last - begin) + 1;
     const point_record *from = records + begin;
     point_record pivot =
         median_of_three(&from[(draw & 0xFFFFF) * span >> 20], &from[(draw >> 20 & 0xFFFFF) * span >> 20],
@@ -193,7 +194,8 @@ static conic_status make_tree(conic_context *context, build *b) {
     b->n_level_nodes *= 2;
   }
   if (is_reported)
-    return conic_parallel_runs(context, "neighbours", b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree, b);
+    return conic_parallel_runs(context, "neighbours", 0.0, 1.0, b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree,
+                               b);
   conic_parallel_for(context, b->n_level_nodes, make_level_subtree, b);
   return CONIC_OK;
 }
@@ -225,7 +227,7 @@ static conic_status allocate_tree(conic_context *context, conic_neighbours *tree
 
 static conic_status build_with(conic_context *context, const float *const positions[3], conic_neighbours *tree,
                                point_record *records) {
-  conic_status status = gather(context, positions, tree, records);
+  conic_status status = gather_points(context, positions, tree, records);
   if (status == CONIC_OK)
     status = allocate_tree(context, tree);
   if (status != CONIC_OK || tree->n_slots == 0)

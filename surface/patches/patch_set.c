@@ -25,7 +25,8 @@ void conic_patches_options_init_sized(conic_patches_options *options, size_t siz
   conic_options_give(options, size, &own);
 }
 
-static conic_status check_options(conic_context *context, const conic_splats *splats, const conic_patches_options *o) {
+static conic_status check_patch_options(conic_context *context, const conic_splats *splats,
+                                        const conic_patches_options *o) {
   if (o->surface.type != CONIC_SURFACE_MLS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: spheres are no polynomials");
   if (!(o->cutoff >= 0.25f && o->cutoff <= 5.0f) || !(o->step_px >= 0.25 && o->step_px <= 16.0))
@@ -38,7 +39,6 @@ static conic_status check_options(conic_context *context, const conic_splats *sp
 
 typedef struct laying {
   conic_patches *patches;
-  size_t first;
   conic_workspace *workspaces;
 
   uint8_t *outcomes; /* by slot */
@@ -63,14 +63,14 @@ static double radius_of(const conic_workspace *workspace, double ball) {
   return sqrt(radius2);
 }
 
-static double length_of(float *const axes[3], size_t i) {
+static double length_of_axis(float *const axes[3], size_t i) {
   double x = (double)axes[0][i], y = (double)axes[1][i], z = (double)axes[2][i];
   return sqrt((x * x + y * y) + z * z);
 }
 
 /* How far a point's own splat reaches; 0 where that is no number. */
 static double outline_of(const conic_patches *patches, size_t point) {
-  double u = length_of(patches->splats.tangent_u, point), v = length_of(patches->splats.tangent_v, point);
+  double u = length_of_axis(patches->splats.tangent_u, point), v = length_of_axis(patches->splats.tangent_v, point);
   double outline = (double)patches->options.cutoff * (u > v ? u : v);
   return outline < 1e30 ? outline : 0.0;
 }
@@ -175,7 +175,7 @@ static void lay_chunk(void *data, size_t i_item, int i_thread) {
   laying *work = data;
   const conic_surface *surface = work->patches->surface;
   conic_workspace *workspace = &work->workspaces[i_thread];
-  size_t begin = work->first + i_item * CHUNK;
+  size_t begin = i_item * CHUNK;
   for (size_t i = begin; i < begin + CHUNK && i < surface->tree.n_leaves; i++) {
     conic_surface_share_leaf(surface, i, workspace);
     for (size_t slot = conic_neighbours_leaf_begin(&surface->tree, i);
@@ -186,16 +186,13 @@ static void lay_chunk(void *data, size_t i_item, int i_thread) {
 
 static conic_status lay_all(laying *work) {
   conic_context *context = work->patches->context;
-  size_t n_chunks = (work->patches->surface->tree.n_leaves + CHUNK - 1) / CHUNK;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
-  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
-    work->first = i * CHUNK;
-    status = conic_progress(context, "patches", (double)i / (double)n_chunks);
-    if (status == CONIC_OK)
-      conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, lay_chunk, work);
-    if (status == CONIC_OK)
-      status = conic_workspaces_check(context, work->workspaces);
-  }
+  if (status == CONIC_OK)
+    status =
+        conic_parallel_runs(context, "patches", 0.0, 1.0, (work->patches->surface->tree.n_leaves + CHUNK - 1) / CHUNK,
+                            CHUNKS_A_REPORT, lay_chunk, work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work->workspaces);
   conic_workspaces_release(context, work->workspaces);
   return status;
 }
@@ -258,7 +255,7 @@ static void report_patches(conic_patches *patches, const uint8_t *outcomes) {
       tree->n_slots * (sizeof(conic_patch) + 2 + 3 * sizeof(uint32_t)) + 4 * tree->n_leaves * sizeof(float);
 }
 
-static conic_status allocate(conic_patches *patches) {
+static conic_status allocate_patches(conic_patches *patches) {
   conic_context *context = patches->context;
   size_t n = patches->surface->tree.n_slots, n_nodes = 2 * patches->surface->tree.n_leaves;
   patches->patches = conic_memory_allocate_zeroed(context, n, sizeof *patches->patches);
@@ -275,10 +272,10 @@ static conic_status allocate(conic_patches *patches) {
 
 static conic_status lay(conic_patches *patches) {
   conic_context *context = patches->context;
-  laying work = {patches, 0, NULL, NULL};
+  laying work = {patches, NULL, NULL};
   conic_status status = conic_surface_create(context, &patches->splats, &patches->options.surface, &patches->surface);
   if (status == CONIC_OK)
-    status = allocate(patches);
+    status = allocate_patches(patches);
   if (status != CONIC_OK)
     return status;
   work.outcomes = conic_memory_allocate(context, patches->surface->tree.n_slots, sizeof *work.outcomes);
@@ -303,7 +300,7 @@ conic_status conic_patches_create(conic_context *context, const conic_splats *sp
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the options were not initialised");
   conic_status status = conic_splats_check(context, "patches", splats);
   if (status == CONIC_OK)
-    status = check_options(context, splats, options);
+    status = check_patch_options(context, splats, options);
   if (status != CONIC_OK)
     return status;
   conic_patches *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
