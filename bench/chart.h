@@ -27,9 +27,6 @@ typedef struct cli_chart_point {
   int is_front[2];               /* no other of its scene is faster and nearer to the oracle, the surface */
 } cli_chart_point;
 
-/* "gauss", "confetti" … */
-const char *cli_kernel_name(conic_kernel_type type);
-
 /* Runs gnuplot on FOLDER/SCRIPT, which draws the tables there: SVG and PNG. Returns 0 where there is no gnuplot or it
  * failed. */
 int cli_chart_plot(const char *folder, const char *script);

@@ -54,11 +54,6 @@ typedef struct chart_view {
   unsigned char *is_inside;
 } chart_view;
 
-const char *cli_kernel_name(conic_kernel_type type) {
-  static const char *const names[] = {"gauss", "confetti", "hat", "box"};
-  return (unsigned)type < 4 ? names[type] : NULL;
-}
-
 static conic_status make_splats(conic_context *context, const cli_chart_scene *scene, float cutoff, conic_splats *to) {
   conic_scene_options options;
   conic_scene *made;
@@ -308,7 +303,7 @@ static conic_status write_table(const chart_job *job) {
   for (int i = 0; i < job->n_points; i++) {
     const cli_chart_point *p = &job->points[i];
     fprintf(to, "\"%s\",%zu,%d,%d,%s,%s,%g,%.4f,%.4f,%zu", p->scene->name, p->scene->n_splats, job->size, job->size,
-            conic_method_name(p->method), cli_kernel_name(p->kernel.type), (double)p->kernel.cutoff, p->ms,
+            conic_method_name(p->method), conic_kernel_type_name(p->kernel.type), (double)p->kernel.cutoff, p->ms,
             p->ms > 0.0 ? (double)p->scene->n_splats / p->ms * 1e-3 : 0.0, p->fragments);
     write_error(to, &p->oracle);
     if (p->oracle.is_measured)
@@ -330,7 +325,7 @@ static void print_fronts(const chart_job *job) {
       const cli_chart_point *p = &job->points[i];
       if (p->is_front[which])
         printf("  %-26s %-8s %-8s %-4g %8.2f ms  rmse %.3g\n", p->scene->name, conic_method_name(p->method),
-               cli_kernel_name(p->kernel.type), (double)p->kernel.cutoff, p->ms, cli_chart_error_of(p, which)->rmse);
+               conic_kernel_type_name(p->kernel.type), (double)p->kernel.cutoff, p->ms, cli_chart_error_of(p, which)->rmse);
     }
   }
 }

@@ -32,7 +32,7 @@ static void write_style(FILE *to) {
   for (int i = 0; i < CONIC_N_METHODS; i++)
     fprintf(to, "color_%s = '%s'\n", conic_method_name((conic_method)i), colors[i % 6]);
   for (int i = 0; i < 4; i++)
-    fprintf(to, "symbol_%s = %d\n", cli_kernel_name((conic_kernel_type)i), symbols[i]);
+    fprintf(to, "symbol_%s = %d\n", conic_kernel_type_name((conic_kernel_type)i), symbols[i]);
 }
 
 static int by_time(const void *a, const void *b) {
@@ -85,7 +85,7 @@ static void write_panel(FILE *to, int i_figure, int i_scene) {
           i_scene);
   for (int method = 0; method < CONIC_N_METHODS; method++)
     for (int kernel = 0; kernel < 4; kernel++) {
-      const char *m = conic_method_name((conic_method)method), *k = cli_kernel_name((conic_kernel_type)kernel);
+      const char *m = conic_method_name((conic_method)method), *k = conic_kernel_type_name((conic_kernel_type)kernel);
       fprintf(to,
               ", \\\n  'chart.csv' using (strcol('scene') eq '%s' && strcol('method') eq '%s' && strcol('kernel') eq "
               "'%s' ? column('ms') : NaN):(column('%s')):(0.5 + 0.4 * column('cutoff')) with points pt symbol_%s "

@@ -7,13 +7,26 @@
 #include "cli/outputs.h"
 #include "cli/render/render_job.h"
 
-static const char *const method_words[] = {"conic", "ray", "affine", "point", "disc", "auto", "patch", NULL};
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 static const char *const cull_words[] = {"none", "back", NULL};
-static const char *const shade_words[] = {"none", "lambert", "phong", NULL};
 static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
 static const char *const only_words[] = {"triangles", "surfels", NULL};
-static const char *const isa_words[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
+
+/* The words of choices that the library names, in the order of its numbers. */
+typedef struct library_words {
+  const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 1], *isas[CONIC_N_ISAS + 1];
+} library_words;
+
+static library_words find_words(void) {
+  library_words words = {.methods[CONIC_N_METHODS] = "patch"};
+  for (int i = 0; i < CONIC_N_METHODS; i++)
+    words.methods[i] = conic_method_name((conic_method)i);
+  for (int i = 0; i < CONIC_N_SHADINGS; i++)
+    words.shadings[i] = conic_shading_name((conic_shading)i);
+  for (int i = 0; i < CONIC_N_ISAS; i++)
+    words.isas[i] = conic_isa_name((conic_isa)i);
+  return words;
+}
 
 /* Options whose words are checked after all have been read. */
 typedef struct raw_options {
@@ -45,25 +58,22 @@ static int parse_turntable(const char *text, void *value) {
 }
 
 /* gauss, hat, box, or confetti:A,B,N. */
+/* A name, and for Confetti its numbers: confetti:A,B,N. */
 static int parse_kernel(const char *text, void *value) {
   conic_kernel *kernel = value;
   double abn[3];
-  if (strcmp(text, "gauss") == 0)
-    kernel->type = CONIC_KERNEL_GAUSS;
-  else if (strcmp(text, "hat") == 0)
-    kernel->type = CONIC_KERNEL_HAT;
-  else if (strcmp(text, "box") == 0)
-    kernel->type = CONIC_KERNEL_BOX;
-  else if (strcmp(text, "confetti") == 0)
-    kernel->type = CONIC_KERNEL_CONFETTI;
-  else if (strncmp(text, "confetti:", 9) == 0 && cli_parse_vector(text + 9, abn) && abn[0] > 0.0 && abn[1] > 0.0 &&
-           abn[2] >= 1.0 && abn[2] <= 16.0 && abn[2] == (double)(int)abn[2]) {
-    kernel->type = CONIC_KERNEL_CONFETTI;
-    kernel->a = (float)abn[0];
-    kernel->b = (float)abn[1];
-    kernel->n = (int)abn[2];
-  } else
+  for (int i = 0; i < CONIC_N_KERNELS; i++)
+    if (strcmp(text, conic_kernel_type_name((conic_kernel_type)i)) == 0) {
+      kernel->type = (conic_kernel_type)i;
+      return 1;
+    }
+  if (strncmp(text, "confetti:", 9) != 0 || !cli_parse_vector(text + 9, abn) || !(abn[0] > 0.0) || !(abn[1] > 0.0) ||
+      !(abn[2] >= 1.0 && abn[2] <= 16.0) || abn[2] != (double)(int)abn[2])
     return 0;
+  kernel->type = CONIC_KERNEL_CONFETTI;
+  kernel->a = (float)abn[0];
+  kernel->b = (float)abn[1];
+  kernel->n = (int)abn[2];
   return 1;
 }
 
@@ -308,6 +318,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading;
+  const library_words words = find_words();
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
@@ -336,7 +347,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
        "surface [conic]",
-       .choices = method_words},
+       .choices = words.methods},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]", .parse = parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
       {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
@@ -350,7 +361,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
        .parse = parse_near},
-      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = shade_words},
+      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
       {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
        .parse = parse_light},
       {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
@@ -370,7 +381,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
        "also an OpenCL device whose rounding makes the picture another one"},
       {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
-       .choices = isa_words},
+       .choices = words.isas},
   };
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)

@@ -41,6 +41,11 @@ typedef enum conic_kernel_type {
   CONIC_KERNEL_BOX = 3       /* 1 */
 } conic_kernel_type;
 
+#define CONIC_N_KERNELS 4
+
+/* "gauss", "confetti" …; null for a number that is no kernel. */
+CONIC_API const char *conic_kernel_type_name(conic_kernel_type type);
+
 typedef struct conic_kernel {
   conic_kernel_type type;
   float cutoff; /* F_g, in standard deviations; 0.25 to 5 */
@@ -53,6 +58,11 @@ typedef enum conic_shading {
   CONIC_SHADE_LAMBERT = 1, /* ambient and diffuse */
   CONIC_SHADE_PHONG = 2    /* ambient, diffuse and a highlight */
 } conic_shading;
+
+#define CONIC_N_SHADINGS 3
+
+/* "none", "lambert" …; null for a number that is no shading. */
+CONIC_API const char *conic_shading_name(conic_shading shading);
 
 typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */

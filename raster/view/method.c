@@ -1,4 +1,4 @@
-/* The methods' names, and what of a frame was drawn by which. */
+/* The names of methods, kernels and shadings, and what of a frame was drawn by which method. */
 #include "raster/view/method.h"
 
 const char *conic_method_name(conic_method method) {
@@ -6,12 +6,22 @@ const char *conic_method_name(conic_method method) {
   return (unsigned)method < CONIC_N_METHODS ? names[method] : NULL;
 }
 
+const char *conic_kernel_type_name(conic_kernel_type type) {
+  static const char *const names[CONIC_N_KERNELS] = {"gauss", "confetti", "hat", "box"};
+  return (unsigned)type < CONIC_N_KERNELS ? names[type] : NULL;
+}
+
+const char *conic_shading_name(conic_shading shading) {
+  static const char *const names[CONIC_N_SHADINGS] = {"none", "lambert", "phong"};
+  return (unsigned)shading < CONIC_N_SHADINGS ? names[shading] : NULL;
+}
+
 /* Rays are counted one by one. What else is not by the method's own formula is drawn by a variance of the dual conic,
  * or is a segment, which has one of the same kind. */
 void conic_method_count(conic_method method, uint64_t n_rays, conic_render_statistics *statistics) {
   uint64_t *counts = statistics->splats_by_method, others = statistics->splats_drawn - n_rays;
   counts[CONIC_METHOD_RAY] = n_rays;
-  if (method == CONIC_METHOD_AFFINE || method == CONIC_METHOD_POINT || method == CONIC_METHOD_DISC) {
+  if (!conic_method_has_exact_outline(method)) {
     counts[method] = statistics->splats_drawn - statistics->splats_fallback;
     others -= counts[method];
   }

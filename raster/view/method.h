@@ -19,6 +19,11 @@ static inline int conic_method_has_ellipses(conic_method method) {
   return method != CONIC_METHOD_RAY;
 }
 
+/* And whether a splat ends where its outline is projected to, by dual conic or ray. */
+static inline int conic_method_has_exact_outline(conic_method method) {
+  return method != CONIC_METHOD_AFFINE && !conic_method_is_dot(method);
+}
+
 /* The error in a weight (of a kernel of peak 1) at which `auto` hands over from conic to ray, and the bound of conic's,
  * 0.68·A·√q for a centre that is √q standard deviations from where it should be (docs/reference/picture.md, Auto). */
 #define CONIC_AUTO_ERROR 4e-3f

@@ -1,5 +1,7 @@
 #include "lod/layers/draw/layers_view.h"
 
+#include "raster/view/method.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -54,14 +56,13 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   set_layers_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->near_z = near_z;
   view->cull_back = render->cull_back;
-  view->is_exact_outline =
-      render->method == CONIC_METHOD_CONIC || render->method == CONIC_METHOD_RAY || render->method == CONIC_METHOD_AUTO;
+  view->is_exact_outline = conic_method_has_exact_outline(render->method);
   /* Within the outline that is widened by the prefilter, a plane is no farther from its disc than that, on the screen.
    * Laplace's splats are bounded by the box of the outline only: by its diagonal, that is. Points and discs have no
    * plane but the one across the line of sight. */
   view->grows_with_size = render->method == CONIC_METHOD_AUTO;
   view->beyond_px = view->grows_with_size ? 1.5 * widening : widening;
-  view->is_flat = render->method == CONIC_METHOD_POINT || render->method == CONIC_METHOD_DISC;
+  view->is_flat = conic_method_is_dot(render->method);
 }
 
 static void move_center(const conic_layers_view *view, const conic_layers_entry *entry, double p[3]) {
