@@ -14,10 +14,6 @@ conic_status conic_output_open(conic_context *context, const char *path, conic_o
 /* Where to write; never null. */
 FILE *conic_output_stream(conic_output *output);
 
-/* The name of the file that is being written, for libraries that want a name and not a stream; null for standard
- * output. It has the ending of PATH. */
-const char *conic_output_temporary_path(const conic_output *output);
-
 /* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
 conic_status conic_output_commit(conic_output *output);
 

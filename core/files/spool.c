@@ -79,7 +79,8 @@ static conic_status write_all(conic_spool *spool, const unsigned char *bytes, si
   return CONIC_OK;
 }
 
-conic_status conic_spool_flush(conic_spool *spool) {
+/* Writes to the file what is held and gives its memory back. */
+static conic_status flush(conic_spool *spool) {
   conic_status status = CONIC_OK;
   for (size_t i = 0, left = spool->n_held; left > 0 && status == CONIC_OK; i++) {
     size_t n = left < CONIC_SPOOL_SLAB ? left : CONIC_SPOOL_SLAB;
@@ -126,7 +127,7 @@ conic_status conic_spool_append(conic_spool *spool, const void *bytes, size_t n_
     return CONIC_OK;
   if (spool->file_bytes == 0 && n_bytes <= spool->most_held && spool->n_held <= spool->most_held - n_bytes)
     return hold(spool, bytes, n_bytes);
-  conic_status status = spool->n_held ? conic_spool_flush(spool) : CONIC_OK;
+  conic_status status = spool->n_held ? flush(spool) : CONIC_OK;
   return status == CONIC_OK ? write_all(spool, bytes, n_bytes) : status;
 }
 

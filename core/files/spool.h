@@ -29,9 +29,6 @@ conic_status conic_spool_append(conic_spool *spool, const void *bytes, size_t n_
 /* Copies bytes that are there. Several threads may read while none appends. Errors: IO. */
 conic_status conic_spool_read(const conic_spool *spool, uint64_t offset, void *bytes, size_t n_bytes);
 
-/* Writes to the file what is held and gives its memory back. Errors: MEMORY, IO. */
-conic_status conic_spool_flush(conic_spool *spool);
-
 static inline uint64_t conic_spool_bytes(const conic_spool *spool) {
   return spool->file_bytes + spool->n_held;
 }

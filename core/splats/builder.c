@@ -90,30 +90,17 @@ conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *cl
   return CONIC_OK;
 }
 
-conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count) {
-  conic_model *model = builder->model;
-  void *triangles = model->triangles;
-  if (count <= builder->triangle_capacity)
-    return CONIC_OK;
-  conic_status status =
-      conic_memory_grow(builder->context, &triangles, model->n_triangles, count, sizeof *model->triangles);
-  if (status != CONIC_OK)
-    return status;
-  model->triangles = triangles;
-  builder->triangle_capacity = count;
-  return CONIC_OK;
-}
-
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
   conic_model *model = builder->model;
   if (model->n_triangles == builder->triangle_capacity) {
-    conic_status status = conic_builder_reserve_triangles(builder, model->n_triangles + model->n_triangles / 2 + 1024);
+    size_t capacity = model->n_triangles + model->n_triangles / 2 + 1024;
+    conic_status status = conic_memory_grow(builder->context, (void **)&model->triangles, model->n_triangles, capacity,
+                                            sizeof *model->triangles);
     if (status != CONIC_OK)
       return status;
+    builder->triangle_capacity = capacity;
   }
-  uint32_t *triangle = model->triangles[model->n_triangles++];
-  triangle[0] = a;
-  triangle[1] = b;
-  triangle[2] = c;
+  const uint32_t triangle[3] = {a, b, c};
+  memcpy(model->triangles[model->n_triangles++], triangle, sizeof triangle);
   return CONIC_OK;
 }
