@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "surface/own_points.h"
 
@@ -12,7 +11,7 @@ enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 typedef struct cleaning {
   const conic_surface *surface;
   conic_own_points *own;
-  size_t n_wanted, first;
+  size_t n_wanted;
   conic_workspace *workspaces;
 } cleaning;
 
@@ -55,8 +54,7 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
 
 static void clean_chunk(void *data, size_t i_item, int i_thread) {
   cleaning *work = data;
-  size_t begin = work->first + i_item * CHUNK;
-  for (size_t i = begin; i < begin + CHUNK && i < work->surface->tree.n_leaves; i++)
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->surface->tree.n_leaves; i++)
     clean_leaf(work, i, &work->workspaces[i_thread]);
 }
 
@@ -80,20 +78,16 @@ static int allocate_own(const conic_surface *surface, conic_own_points *own) {
 conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
                                       conic_own_points *own) {
   conic_context *context = surface->context;
-  cleaning work = {surface, own, n_wanted, 0, NULL};
+  cleaning work = {surface, own, n_wanted, NULL};
   memset(own, 0, sizeof *own);
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK && !allocate_own(surface, own))
     status = CONIC_ERROR_MEMORY;
-  size_t n_chunks = (surface->tree.n_leaves + CHUNK - 1) / CHUNK;
-  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
-    work.first = i * CHUNK;
-    status = conic_progress(context, "project", begin + (end - begin) * (double)i / (double)n_chunks);
-    if (status == CONIC_OK)
-      conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, clean_chunk, &work);
-    if (status == CONIC_OK)
-      status = conic_workspaces_check(context, work.workspaces);
-  }
+  if (status == CONIC_OK)
+    status = conic_parallel_runs(context, "project", begin, end, (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
+                                 CHUNKS_A_REPORT, clean_chunk, &work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work.workspaces);
   for (int i = 0; work.workspaces && i < conic_context_threads(context); i++)
     own->n_evaluations += work.workspaces[i].n_evaluations;
   conic_workspaces_release(context, work.workspaces);

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "surface/own_points.h"
 
@@ -16,7 +15,6 @@ typedef struct measuring {
   const conic_surface *from, *to;
   const conic_own_points *own;
   double *distances2; /* by slot; NOWHERE, or LOST */
-  size_t first;
   conic_workspace *workspaces;
 } measuring;
 
@@ -36,25 +34,20 @@ static double distance2_to(const measuring *work, size_t slot, conic_workspace *
 
 static void measure_chunk(void *data, size_t i_item, int i_thread) {
   measuring *work = data;
-  size_t begin = work->first + i_item * CHUNK;
-  for (size_t slot = begin; slot < begin + CHUNK && slot < work->from->tree.n_slots; slot++)
+  for (size_t slot = i_item * CHUNK; slot < (i_item + 1) * CHUNK && slot < work->from->tree.n_slots; slot++)
     work->distances2[slot] = distance2_to(work, slot, &work->workspaces[i_thread]);
 }
 
 static conic_status measure(measuring *work) {
   conic_context *context = work->from->context;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
-  size_t n_chunks = (work->from->tree.n_slots + CHUNK - 1) / CHUNK;
   for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
     work->workspaces[i].is_trusting = 1;
-  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
-    work->first = i * CHUNK;
-    status = conic_progress(context, "measure", (double)i / (double)n_chunks);
-    if (status == CONIC_OK)
-      conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, measure_chunk, work);
-    if (status == CONIC_OK)
-      status = conic_workspaces_check(context, work->workspaces);
-  }
+  if (status == CONIC_OK)
+    status = conic_parallel_runs(context, "measure", 0.0, 1.0, (work->from->tree.n_slots + CHUNK - 1) / CHUNK,
+                                 CHUNKS_A_REPORT, measure_chunk, work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work->workspaces);
   conic_workspaces_release(context, work->workspaces);
   return status;
 }
@@ -77,7 +70,7 @@ static void sum_up(const measuring *work, conic_surface_distance *distance) {
 conic_status conic_surface_deviation(conic_surface *from, conic_surface *to, conic_surface_distance *distance) {
   conic_context *context = from->context;
   conic_own_points own;
-  measuring work = {from, to, &own, NULL, 0, NULL};
+  measuring work = {from, to, &own, NULL, NULL};
   memset(distance, 0, sizeof *distance);
   conic_status status = conic_own_points_project(from, SIZE_MAX, 0.0, 1.0, &own);
   if (status != CONIC_OK)

@@ -179,8 +179,8 @@ static conic_status find_scales(conic_surface *surface) {
     for (size_t slot = 0; slot < n; slot++)
       surface->h[slot] = (float)surface->options.h;
   else
-    status = conic_parallel_runs(surface->context, "scales", (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT, find_local_h,
-                                 surface);
+    status = conic_parallel_runs(surface->context, "scales", 0.0, 1.0, (n + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT,
+                                 find_local_h, surface);
   if (status == CONIC_OK)
     status = find_median_h(surface);
   find_node_reach(surface);

@@ -1,8 +1,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 #include "surface/mls_surface.h"
 
@@ -165,7 +163,7 @@ typedef struct projecting {
   conic_surface *surface;
   const double (*positions)[3];
   conic_surface_point *points;
-  size_t first, end;
+  size_t count;
   conic_workspace *workspaces;
 } projecting;
 
@@ -204,26 +202,20 @@ static void project_position(const conic_surface *surface, const double position
 
 static void project_chunk(void *data, size_t i_item, int i_thread) {
   projecting *work = data;
-  size_t begin = work->first + i_item * CHUNK, end = begin + CHUNK < work->end ? begin + CHUNK : work->end;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->count; i++)
     project_position(work->surface, work->positions[i], &work->workspaces[i_thread], &work->points[i]);
 }
 
 conic_status conic_surface_project(conic_surface *surface, size_t count, const double (*positions)[3],
                                    conic_surface_point *points) {
   conic_context *context = surface->context;
-  projecting work = {surface, positions, points, 0, count, NULL};
+  projecting work = {surface, positions, points, count, NULL};
   conic_status status = conic_workspaces_create(context, &work.workspaces);
-  size_t n_chunks = (count + CHUNK - 1) / CHUNK;
-  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
-    size_t n = n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT;
-    work.first = i * CHUNK;
-    status = conic_progress(context, "project", (double)i / (double)n_chunks);
-    if (status == CONIC_OK)
-      conic_parallel_for(context, n, project_chunk, &work);
-    if (status == CONIC_OK)
-      status = conic_workspaces_check(context, work.workspaces);
-  }
+  if (status == CONIC_OK)
+    status = conic_parallel_runs(context, "project", 0.0, 1.0, (count + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT,
+                                 project_chunk, &work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work.workspaces);
   conic_workspaces_release(context, work.workspaces);
   return status;
 }

@@ -111,7 +111,7 @@ static conic_status remove_slots(thinning *work, size_t n_wanted, double max_err
   conic_context *context = work->surface->context;
   size_t n = work->surface->tree.n_slots;
   conic_status status =
-      conic_parallel_runs(context, "measure", (n + BATCH - 1) / BATCH, BATCHES_A_REPORT, measure_chunk, work);
+      conic_parallel_runs(context, "measure", 0.0, 1.0, (n + BATCH - 1) / BATCH, BATCHES_A_REPORT, measure_chunk, work);
   if (status != CONIC_OK)
     return status;
   for (size_t slot = 0; slot < n; slot++)

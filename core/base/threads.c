@@ -130,12 +130,12 @@ static void do_item_of_run(void *data, size_t i_item, int i_thread) {
   now->task(now->data, now->first + i_item, i_thread);
 }
 
-conic_status conic_parallel_runs(conic_context *context, const char *name, size_t n_items, size_t n_a_run,
-                                 conic_task *task, void *data) {
+conic_status conic_parallel_runs(conic_context *context, const char *name, double from, double to, size_t n_items,
+                                 size_t n_a_run, conic_task *task, void *data) {
   run now = {task, data, 0};
   for (; now.first < n_items; now.first += n_a_run) {
     size_t n_left = n_items - now.first;
-    conic_status status = conic_progress(context, name, (double)now.first / (double)n_items);
+    conic_status status = conic_progress(context, name, from + (to - from) * ((double)now.first / (double)n_items));
     if (status != CONIC_OK)
       return status;
     conic_parallel_for(context, n_left < n_a_run ? n_left : n_a_run, do_item_of_run, &now);

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/threads.h"
 
 /* found · n_wanted / n_found, rounded: found minus its share of the surplus. The surplus is small where the numbers are
@@ -36,7 +35,6 @@ typedef struct counting {
   const conic_lattice *lattice;
   conic_lattice_walk *walk;
   const void *surface;
-  size_t first_slab;
 } counting;
 
 static void count_point(void *cookie, const double point[3]) {
@@ -44,9 +42,8 @@ static void count_point(void *cookie, const double point[3]) {
   ++*(uint64_t *)cookie;
 }
 
-static void count_slab(void *data, size_t i_item, int i_thread) {
+static void count_slab(void *data, size_t i_slab, int i_thread) {
   const counting *work = data;
-  size_t i_slab = work->first_slab + i_item;
   uint64_t n = 0;
   (void)i_thread;
   work->walk(work->surface, work->lattice, i_slab, count_point, &n);
@@ -56,17 +53,13 @@ static void count_slab(void *data, size_t i_item, int i_thread) {
 /* Fills found_before and n_found for the lattice's n_cells. */
 static conic_status count(conic_context *context, conic_lattice_walk *walk, const void *surface,
                           conic_lattice *lattice) {
-  counting work = {lattice, walk, surface, 0};
-  size_t slabs_a_step = 8 * (size_t)conic_context_threads(context);
+  counting work = {lattice, walk, surface};
+  size_t slabs_a_run = 8 * (size_t)conic_context_threads(context);
   lattice->found_before[0] = 0;
-  for (size_t done = 0; done < lattice->n_cells; done += slabs_a_step) {
-    size_t n = lattice->n_cells - done < slabs_a_step ? lattice->n_cells - done : slabs_a_step;
-    conic_status status = conic_progress(context, "survey", (double)done / (double)lattice->n_cells);
-    if (status != CONIC_OK)
-      return status;
-    work.first_slab = done;
-    conic_parallel_for(context, n, count_slab, &work);
-  }
+  conic_status status =
+      conic_parallel_runs(context, "survey", 0.0, 1.0, lattice->n_cells, slabs_a_run, count_slab, &work);
+  if (status != CONIC_OK)
+    return status;
   for (size_t i = 0; i < lattice->n_cells; i++)
     lattice->found_before[i + 1] += lattice->found_before[i];
   lattice->n_found = lattice->found_before[lattice->n_cells];

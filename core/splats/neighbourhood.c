@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 
 /* Slots that one call of a task does, and calls between two reports of progress. */
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
@@ -12,30 +11,21 @@ enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
 typedef struct slots_work {
   conic_slots_task *task;
   void *data;
-  size_t first, end;
+  size_t n_slots;
 } slots_work;
 
 static void do_chunk(void *data, size_t i_item, int i_thread) {
-  slots_work *work = data;
-  size_t begin = work->first + i_item * CHUNK;
+  const slots_work *work = data;
+  size_t begin = i_item * CHUNK;
   (void)i_thread;
-  work->task(work->data, begin, begin + CHUNK < work->end ? begin + CHUNK : work->end);
+  work->task(work->data, begin, begin + CHUNK < work->n_slots ? begin + CHUNK : work->n_slots);
 }
 
 conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,
                              double to) {
-  slots_work work = {task, data, 0, n_slots};
-  size_t n_chunks = (n_slots + CHUNK - 1) / CHUNK;
-  for (size_t i_chunk = 0; i_chunk < n_chunks; i_chunk += CHUNKS_A_REPORT) {
-    conic_status status =
-        conic_progress(context, "estimate", from + (to - from) * ((double)i_chunk / (double)n_chunks));
-    if (status != CONIC_OK)
-      return status;
-    work.first = i_chunk * CHUNK;
-    conic_parallel_for(context, n_chunks - i_chunk < CHUNKS_A_REPORT ? n_chunks - i_chunk : CHUNKS_A_REPORT, do_chunk,
-                       &work);
-  }
-  return CONIC_OK;
+  slots_work work = {task, data, n_slots};
+  return conic_parallel_runs(context, "estimate", from, to, (n_slots + CHUNK - 1) / CHUNK, CHUNKS_A_REPORT, do_chunk,
+                             &work);
 }
 
 conic_status conic_neighbourhood_create(conic_context *context, const float *const positions[3], size_t count,

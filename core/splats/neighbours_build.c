@@ -192,7 +192,8 @@ static conic_status make_tree(conic_context *context, build *b) {
     b->n_level_nodes *= 2;
   }
   if (is_reported)
-    return conic_parallel_runs(context, "neighbours", b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree, b);
+    return conic_parallel_runs(context, "neighbours", 0.0, 1.0, b->n_level_nodes, SUBTREES_A_REPORT, make_level_subtree,
+                               b);
   conic_parallel_for(context, b->n_level_nodes, make_level_subtree, b);
   return CONIC_OK;
 }

@@ -38,9 +38,7 @@ static conic_status check_options(conic_context *context, const conic_splats *sp
 
 typedef struct laying {
   conic_patches *patches;
-  size_t first;
   conic_workspace *workspaces;
-
   uint8_t *outcomes; /* by slot */
 } laying;
 
@@ -175,8 +173,7 @@ static void lay_chunk(void *data, size_t i_item, int i_thread) {
   laying *work = data;
   const conic_surface *surface = work->patches->surface;
   conic_workspace *workspace = &work->workspaces[i_thread];
-  size_t begin = work->first + i_item * CHUNK;
-  for (size_t i = begin; i < begin + CHUNK && i < surface->tree.n_leaves; i++) {
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < surface->tree.n_leaves; i++) {
     conic_surface_share_leaf(surface, i, workspace);
     for (size_t slot = conic_neighbours_leaf_begin(&surface->tree, i);
          slot < conic_neighbours_leaf_begin(&surface->tree, i + 1); slot++)
@@ -188,14 +185,10 @@ static conic_status lay_all(laying *work) {
   conic_context *context = work->patches->context;
   size_t n_chunks = (work->patches->surface->tree.n_leaves + CHUNK - 1) / CHUNK;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
-  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i += CHUNKS_A_REPORT) {
-    work->first = i * CHUNK;
-    status = conic_progress(context, "patches", (double)i / (double)n_chunks);
-    if (status == CONIC_OK)
-      conic_parallel_for(context, n_chunks - i < CHUNKS_A_REPORT ? n_chunks - i : CHUNKS_A_REPORT, lay_chunk, work);
-    if (status == CONIC_OK)
-      status = conic_workspaces_check(context, work->workspaces);
-  }
+  if (status == CONIC_OK)
+    status = conic_parallel_runs(context, "patches", 0.0, 1.0, n_chunks, CHUNKS_A_REPORT, lay_chunk, work);
+  if (status == CONIC_OK)
+    status = conic_workspaces_check(context, work->workspaces);
   conic_workspaces_release(context, work->workspaces);
   return status;
 }
@@ -275,7 +268,7 @@ static conic_status allocate(conic_patches *patches) {
 
 static conic_status lay(conic_patches *patches) {
   conic_context *context = patches->context;
-  laying work = {patches, 0, NULL, NULL};
+  laying work = {patches, NULL, NULL};
   conic_status status = conic_surface_create(context, patches->splats, &patches->options.surface, &patches->surface);
   if (status == CONIC_OK)
     status = allocate(patches);
