@@ -24,8 +24,8 @@ static double distance2_to(const measuring *work, size_t slot, conic_workspace *
   if (work->own->outcomes[slot] != CONIC_SURFACE_DONE)
     return NOWHERE;
   for (int axis = 0; axis < 3; axis++)
-    r[axis] =
-        (double)work->own->position[axis][slot] + (work->from->points.origin[axis] - work->to->points.origin[axis]);
+    r[axis] = (double)work->own->points.position[axis][slot] +
+              (work->from->points.origin[axis] - work->to->points.origin[axis]);
   conic_surface_project_one(work->to, r, conic_surface_scale(work->to, r), CONIC_NO_SLOT, 0, workspace, &projection);
   for (int axis = 0; axis < 3; axis++)
     sum += projection.offset[axis] * projection.offset[axis];

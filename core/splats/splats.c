@@ -139,6 +139,27 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
   return CONIC_OK;
 }
 
+conic_status conic_splats_resize(conic_context *context, conic_splats *splats, size_t capacity, unsigned fields) {
+  conic_splats larger;
+  float **to[N_ARRAYS], **from[N_ARRAYS];
+  conic_status status = conic_splats_allocate(context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
+  if (status != CONIC_OK)
+    return status;
+  list_arrays(&larger, to);
+  list_arrays(splats, from);
+  for (int i = 0; i < N_ARRAYS; i++)
+    if (*to[i])
+      copy_or_fill(*to[i], *from[i], splats->count, absent_value(i));
+  memcpy(larger.origin, splats->origin, sizeof larger.origin);
+  larger.count = splats->count;
+  larger.n_clips = splats->n_clips;
+  larger.clips = splats->clips;
+  splats->clips = NULL;
+  conic_splats_release(context, splats);
+  *splats = larger;
+  return CONIC_OK;
+}
+
 conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
                                  size_t count, conic_splats *gathered) {
   conic_splats listed = *from;
