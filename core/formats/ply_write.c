@@ -151,9 +151,9 @@ static void begin(conic_splats_writer *writer, const conic_splats *first) {
   writer->has_header = 1;
 }
 
-static void put_bytes(row_cursor *row, uint64_t bits, int n_bytes) {
-  for (int i = 0; i < n_bytes; i++)
-    *row->next++ = (char)(unsigned char)(bits >> 8 * i);
+static void put_bytes(row_cursor *row, const void *value, size_t n_bytes) {
+  memcpy(row->next, value, n_bytes);
+  row->next += n_bytes;
 }
 
 static void put_text_end(row_cursor *row, size_t length) {
@@ -162,30 +162,24 @@ static void put_text_end(row_cursor *row, size_t length) {
 }
 
 static void put_float(row_cursor *row, float value) {
-  uint32_t bits;
-  if (row->encoding == CONIC_PLY_ASCII) {
+  if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print_float(row->next, value));
-    return;
-  }
-  memcpy(&bits, &value, sizeof bits);
-  put_bytes(row, bits, 4);
+  else
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_double(row_cursor *row, double value) {
-  uint64_t bits;
-  if (row->encoding == CONIC_PLY_ASCII) {
+  if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print(row->next, value));
-    return;
-  }
-  memcpy(&bits, &value, sizeof bits);
-  put_bytes(row, bits, 8);
+  else
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_byte(row_cursor *row, uint8_t value) {
   if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print_float(row->next, (float)value));
   else
-    put_bytes(row, value, 1);
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_vector(row_cursor *row, float *const vector[3], size_t i) {
