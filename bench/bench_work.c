@@ -9,8 +9,8 @@ double cli_bench_stage_ms(const conic_render_milliseconds *ms, int i_stage) {
   return stages[i_stage];
 }
 
-/* Operations of docs/picture.md's formulas as raster/project/project_splats.c, coverage.h and resolve.c write them, one
- * a sign. */
+/* Operations of docs/reference/picture.md's formulas as raster/project/project_splats.c, coverage.h and resolve.c write
+ * them, one a sign. */
 enum {
   MOVE_CENTER = 18,    /* p and, below, both axes into camera space */
   MOVE_AXES = 36,      /* with the division by p_z */
@@ -54,12 +54,13 @@ void cli_bench_work_of(const conic_render_statistics *s, const conic_splats *spl
                        FACE * n + (MOVE_CENTER + MOVE_AXES + DEPTH + BOX + SURFACE) * drawn +
                            DUAL_CONIC * (drawn - rays) + RAY_SET_UP * rays};
   /* Bins: the records in the order of their tiles; at least one entry a splat. */
-  work[1] = (cli_bench_work){0.0, (sizeof(conic_footprint) + sizeof(conic_surface) + sizeof(conic_tile_entry)) * drawn,
-                             2.0 * 8.0 * drawn};
+  work[1] = (cli_bench_work){
+      0.0, (sizeof(conic_footprint) + sizeof(conic_projected_surface) + sizeof(conic_tile_entry)) * drawn,
+      2.0 * 8.0 * drawn};
   /* The passes: each record once, what was evaluated for the first is kept for the second, and sums stay at hand. */
   work[2] = (cli_bench_work){sizeof(conic_tile_entry) * drawn + footprints, 0.0,
                              (coverage + (passes == 1 ? KEEP_NEAREST : RAISE_THRESHOLD)) * fragments};
-  work[3] = (cli_bench_work){sizeof(conic_surface) * drawn, 0.0, (SEE + WEIGH + SUM) * fragments};
+  work[3] = (cli_bench_work){sizeof(conic_projected_surface) * drawn, 0.0, (SEE + WEIGH + SUM) * fragments};
   if (passes == 1) /* the colours of those that are nearest somewhere */
     work[3] = (cli_bench_work){0.0, 0.0, (WEIGH + SUM) * (double)s->pixels_covered};
   work[4] = (cli_bench_work){0.0, image_bytes_a_pixel(image) * pixels, FINISH * (double)s->pixels_covered};

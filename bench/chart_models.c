@@ -142,7 +142,7 @@ conic_status cli_chart_models_build(cli_session *session, const char *path, size
 
 void cli_chart_models_release(conic_context *context, cli_chart_models *models) {
   conic_hybrid_selection_release(context, &models->chosen_surfels);
-  conic_hybrid_selection_release(context, &models->patches);
+  conic_hybrid_selection_release(context, &models->mixed);
   conic_selection_release(context, &models->leaves);
   conic_hybrid_destroy(models->hybrid);
   conic_hybrid_destroy(models->surfels);
@@ -153,9 +153,9 @@ void cli_chart_models_release(conic_context *context, cli_chart_models *models) 
 }
 
 /* Error 0: as built. */
-static conic_status choose_patches(const conic_hybrid *hybrid, const conic_camera *camera, double error_px,
-                                   const conic_render_options *options, conic_hybrid_selection *selection,
-                                   conic_drawing *drawing) {
+static conic_status choose_hybrid(const conic_hybrid *hybrid, const conic_camera *camera, double error_px,
+                                  const conic_render_options *options, conic_hybrid_selection *selection,
+                                  conic_drawing *drawing) {
   conic_hybrid_view view;
   conic_hybrid_view_init(&view);
   view.error_px = error_px;
@@ -182,9 +182,9 @@ conic_status cli_chart_models_choose(cli_chart_models *models, cli_chart_model r
   options->splat_length = models->splat_length[representation];
   switch (representation) {
   case CLI_CHART_SURFELS:
-    return choose_patches(models->surfels, camera, 0.0, options, &models->chosen_surfels, drawing);
+    return choose_hybrid(models->surfels, camera, 0.0, options, &models->chosen_surfels, drawing);
   case CLI_CHART_HYBRID:
-    return choose_patches(models->hybrid, camera, error_px, options, &models->patches, drawing);
+    return choose_hybrid(models->hybrid, camera, error_px, options, &models->mixed, drawing);
   case CLI_CHART_OCTREE:
     return choose_leaves(models, camera, error_px, options, drawing);
   case CLI_CHART_POINTS:

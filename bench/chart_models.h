@@ -7,7 +7,7 @@
 typedef enum cli_chart_model {
   CLI_CHART_TRIANGLES, /* the mesh itself */
   CLI_CHART_SURFELS,   /* a hybrid without triangles, as built */
-  CLI_CHART_HYBRID,    /* of each patch the cheapest level within the error */
+  CLI_CHART_HYBRID,    /* of each cluster the cheapest level within the error */
   CLI_CHART_OCTREE,    /* the vertices as splats, no more of them than the error needs */
   CLI_CHART_POINTS     /* the vertices, a pixel each */
 } cli_chart_model;
@@ -23,7 +23,7 @@ typedef struct cli_chart_models {
   conic_hybrid *hybrid, *surfels;
   conic_octree *octree;
   conic_splats points;
-  conic_hybrid_selection chosen_surfels, patches;
+  conic_hybrid_selection chosen_surfels, mixed;
   conic_selection leaves;
   double near_z, splat_length[CLI_N_CHART_MODELS];
 } cli_chart_models;

@@ -5,12 +5,12 @@
 #include "core/base/message.h"
 
 /* A line that is put together piece by piece; what is too long is cut. */
-typedef struct line {
+typedef struct text_line {
   char text[768];
   size_t length;
-} line;
+} text_line;
 
-static void append(line *to, const char *piece) {
+static void append(text_line *to, const char *piece) {
   int n = snprintf(to->text + to->length, sizeof to->text - to->length, "%s%s", to->length ? ", " : "", piece);
   to->length += n > 0 ? (size_t)n : 0;
   if (to->length >= sizeof to->text)
@@ -26,7 +26,7 @@ static void print_seconds(char *text, size_t room, double seconds) {
 
 void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages, const char *whole,
                      double whole_seconds) {
-  line told = {"", 0};
+  text_line told = {"", 0};
   char seconds[32], piece[64];
   for (int i = 0; i < n_stages; i++) {
     if (stages[i].seconds < 0.0)
@@ -55,7 +55,7 @@ void cli_tell_repairs(cli_session *session, const char *path, const conic_repair
                  {repairs->duplicate, "at the place of another"},
                  {repairs->isolated, "far from all others, kept small"},
                  {repairs->clip, "clip lines dropped"}};
-  line told = {"", 0};
+  text_line told = {"", 0};
   char piece[96];
   for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
     if (reasons[i].n) {

@@ -178,8 +178,8 @@ conic_status conic_frame_close(conic_frame *f) {
 static size_t part_of(const conic_frame *f) {
   const conic_opencl *opencl = f->opencl;
   double pixel_bytes = 4.0 * (1 + CONIC_N_SUMS) + 64.0, image = (double)f->view->width * (double)f->view->height;
-  size_t splat_bytes = sizeof(conic_footprint) + sizeof(conic_box) + sizeof(conic_surface) + sizeof(conic_ray) +
-                       (f->splats->n_clips ? sizeof(conic_clip_record) : 0) + 4 +
+  size_t splat_bytes = sizeof(conic_footprint) + sizeof(conic_box) + sizeof(conic_projected_surface) +
+                       sizeof(conic_ray) + (f->splats->n_clips ? sizeof(conic_clip_record) : 0) + 4 +
                        4 * (sizeof(conic_device_reference) + sizeof(uint64_t)) +
                        (opencl->device.is_cpu ? 0 : 13 * sizeof(float));
   double memory = CONIC_SHARE_OF_MEMORY * (double)opencl->device.memory_bytes - f->triangle_bytes;

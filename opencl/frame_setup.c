@@ -62,7 +62,7 @@ static conic_status make_room_for_records(const conic_frame *f) {
     size_t count, size;
   } needed[] = {{CONIC_BUFFER_FOOTPRINTS, f->n, sizeof(conic_footprint)},
                 {CONIC_BUFFER_BOXES, f->n, sizeof(conic_box)},
-                {CONIC_BUFFER_SURFACES, f->n, sizeof(conic_surface)},
+                {CONIC_BUFFER_SURFACES, f->n, sizeof(conic_projected_surface)},
                 {CONIC_BUFFER_RAYS, f->n, sizeof(conic_ray)},
                 {CONIC_BUFFER_ORDER, f->n, sizeof(uint32_t)},
                 {CONIC_BUFFER_N_DRAWN, f->n_items, sizeof(uint32_t)},

@@ -43,7 +43,7 @@ static float offset_iz_of(const conic_footprint *footprint, const conic_fragment
 #define GATHER_RECORDS                                                                                                 \
   __constant conic_view *frame_view, __constant conic_device_frame *frame_constants, __global const ulong *tile_begin, \
       __global const conic_device_reference *references, __global const conic_footprint *footprints,                   \
-      __global const conic_surface *surfaces, __global const conic_ray *rays, __global const conic_clip_record *clips
+      __global const conic_projected_surface *surfaces, __global const conic_ray *rays, __global const conic_clip_record *clips
 
 /* Pass 1: every pixel's threshold, and how many fragments there are. */
 __kernel void gather_visibility(GATHER_RECORDS, __global float *thresholds, __global uint *n_fragments) {
@@ -73,7 +73,7 @@ __kernel void gather_visibility(GATHER_RECORDS, __global float *thresholds, __gl
 
 /* The surface of a record, without what else of it there is in memory. */
 static void gather_blend(const conic_view *view, const conic_footprint *footprint,
-                         __global const conic_surface *surface, const conic_fragment *fragment, gather_sums *s,
+                         __global const conic_projected_surface *surface, const conic_fragment *fragment, gather_sums *s,
                          int *is_heaviest) {
   float weight = conic_final_weight(view, footprint, fragment->q, fragment->scale);
   s->weight += weight;
@@ -95,7 +95,7 @@ static float gather_plane_z(const conic_footprint *footprint, const gather_pixel
 
 /* What of the heaviest splat the picture shows beside the sums. */
 static void gather_keep_heaviest(uint i_heaviest, __global const conic_footprint *footprints,
-                                 __global const conic_surface *surfaces, const gather_pixel *p, gather_sums *s) {
+                                 __global const conic_projected_surface *surfaces, const gather_pixel *p, gather_sums *s) {
   conic_footprint footprint = footprints[i_heaviest];
   s->z = gather_plane_z(&footprint, p);
   for (int axis = 0; axis < 3; axis++)

@@ -1,9 +1,7 @@
 /* The splats' passes a tile a work-item, a block's 16 pixels a vector: for CPUs. */
 #include "opencl/lanes_tile.cl"
 
-#include "opencl/lanes_exponential.cl"
-
-#include "opencl/lanes_coverage.cl"
+#include "raster/kernels/coverage_lanes.h"
 
 /* So many references ahead records are called for. */
 #define LANES_AHEAD 12
@@ -11,9 +9,10 @@
 /* A reference's splat. */
 typedef struct lanes_splat {
   uint index;
-  __global const conic_footprint *footprint;
-  __global const conic_ray *ray;                       /* of a ray */
-  __global const conic_clip_record *clip;              /* of one with clip lines */
+  int is_special;
+  conic_footprint footprint;
+  conic_ray ray;                                       /* of a ray */
+  conic_clip_record clip;                              /* of one with clip lines */
   uint column_begin, column_last, row_begin, row_last; /* of the tile's blocks */
 } lanes_splat;
 
@@ -21,9 +20,12 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
                         __global const conic_ray *rays, __global const conic_clip_record *clips, lanes_splat *splat) {
   uint blocks = reference->blocks;
   splat->index = reference->footprint;
-  splat->footprint = &footprints[splat->index];
-  splat->ray = splat->footprint->s3 == 0.0f ? &rays[splat->footprint->i_ray] : 0;
-  splat->clip = &clips[splat->index];
+  splat->footprint = footprints[splat->index];
+  splat->is_special = !(splat->footprint.s3 > 0.0f);
+  if (splat->footprint.s3 == 0.0f)
+    splat->ray = rays[splat->footprint.i_ray];
+  if (conic_is_clipped(&splat->footprint))
+    splat->clip = clips[splat->index];
   splat->column_begin = blocks & 15;
   splat->column_last = blocks >> 4 & 15;
   splat->row_begin = blocks >> 8 & 15;
@@ -31,13 +33,14 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
 }
 
 /* Its fragments in block (column, row) of the tile; 0 where it covers none of its pixels. */
-static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const lanes_row *row,
-                       uint column, uint i_row, lanes_fragment *fragment) {
+static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const splat_rows *rows,
+                       uint column, uint i_row, fragments *f) {
   int x = t->x + 4 * (int)column;
-  lanes_fragment_at(view, splat->footprint, splat->ray, splat->clip, row, x, fragment);
+  fragments_at(view, view->support, &splat->footprint, &splat->ray, &splat->clip, rows, columns_from(x),
+               splat->is_special, f);
   if (t->is_at_border)
-    fragment->is_covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);
-  return lanes_any(fragment->is_covered);
+    f->covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);
+  return lanes_any(f->covered);
 }
 
 /* Goes through the tile's splats in order and, of each, through the blocks that it covers: `body` sees `splat`,
@@ -48,10 +51,10 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
     CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);           \
     before lanes_fetch(&references[i], footprints, rays, clips, &splat);                                               \
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
-      lanes_row row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);                                          \
+      splat_rows row = begin_rows(&splat.footprint, rows_from(t.y + 4 * (int)i_row));                                  \
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
         uint block = CONIC_DEVICE_TILE_BLOCKS * i_row + column;                                                        \
-        lanes_fragment fragment;                                                                                       \
+        fragments fragment;                                                                                       \
         if (lanes_cover(&view, &t, &splat, &row, column, i_row, &fragment)) {                                          \
           body                                                                                                         \
         }                                                                                                              \
@@ -76,31 +79,29 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes threshold[N_TILE_BLOCKS];
-  int16 found = 0;
+  index_lanes found = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     threshold[block] =
         frame.is_first && !frame.has_triangles ? (lanes)0.0f : thresholds[lanes_block(&t, &frame, block)];
   LANES_FOR_FRAGMENTS(
       ulong mask = 0;,
                      {
-                       lanes offset_iz = lanes_offset_iz(splat.footprint, &fragment);
+                       lanes offset_iz = splat.footprint.nearness * lanes_min(fragment.plane_iz, fragment.iz);
                        threshold[block] =
-                           (fragment.is_covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
-                       found -= fragment.is_covered;
-                       int16 may_be_seen = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
+                           (fragment.covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
+                       found = lanes_increment(fragment.covered, found);
+                       int16 may_be_seen = fragment.covered & (lanes_max(fragment.plane_iz, fragment.iz) >= threshold[block]);
                        mask |= lanes_any(may_be_seen) ? (ulong)1 << block : 0;
                      },
                      masks[i] = mask;)
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     thresholds[lanes_block(&t, &frame, block)] = threshold[block];
-  n_fragments[t.index] = lanes_sum(found);
+  n_fragments[t.index] = sum_of_lanes(found);
 }
 
-static void lanes_blend(const conic_view *view, __global const conic_footprint *footprint,
-                        __global const conic_surface *surface, uint i_footprint, const lanes_fragment *fragment,
-                        int16 is_visible, lanes_sums *s) {
-  lanes weight = lanes_final_weight(view, footprint, fragment->q, fragment->scale);
-  weight = is_visible ? weight : 0.0f; /* what a finite colour makes of that adds nothing, not even a sign */
+static void lanes_blend(const conic_view *view, const lanes_splat *splat, __global const conic_projected_surface *surface,
+                        const fragments *f, lanes_mask is_visible, lanes_sums *s) {
+  lanes weight = weigh(view, splat->footprint.amplitude, f->q, f->scale, is_visible, kind_of(&view->kernel));
   s->values[CONIC_SUM_WEIGHT] += weight;
   for (int axis = 0; axis < 3; axis++) {
     s->values[CONIC_SUM_COLOR + axis] += weight * surface->color[axis];
@@ -108,11 +109,11 @@ static void lanes_blend(const conic_view *view, __global const conic_footprint *
   }
   int16 is_heaviest = s->values[CONIC_SUM_HEAVIEST_WEIGHT] < weight;
   s->values[CONIC_SUM_HEAVIEST_WEIGHT] = is_heaviest ? weight : s->values[CONIC_SUM_HEAVIEST_WEIGHT];
-  s->taken = is_heaviest ? (int16)(int)i_footprint : s->taken;
+  s->taken = is_heaviest ? (int16)(int)splat->index : s->taken;
 }
 
-static void lanes_count(__global const conic_surface *surface, const lanes_fragment *fragment, int16 is_visible,
-                        lanes_sums *s) {
+static void lanes_note(__global const conic_projected_surface *surface, const fragments *fragment, int16 is_visible,
+                       lanes_sums *s) {
   int16 is_nearest = is_visible & (s->values[CONIC_SUM_NEAREST_IZ] < fragment->iz);
   s->values[CONIC_SUM_COUNT] = as_float16(as_int16(s->values[CONIC_SUM_COUNT]) - is_visible);
   s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment->iz : s->values[CONIC_SUM_NEAREST_IZ];
@@ -128,17 +129,15 @@ static lanes lanes_plane_z(__global const conic_footprint *footprints, int16 tak
     for (int field = 0; field < 16; field++)
       ((float *)&fields[field])[lane] = from[field];
   }
-  lanes dx = (((float)x + LANE_COLUMNS) - fields[0]) + fields[2], dy = (((float)y + LANE_ROWS) - fields[1]) + fields[3];
+  lanes dx = (columns_from(x) - fields[0]) + fields[2], dy = (rows_from(y) - fields[1]) + fields[3];
   lanes iz = (fields[7] + fields[11] * dy) + fields[10] * dx;
-  iz = iz > fields[12] ? iz : fields[12];
-  iz = iz < fields[13] ? iz : fields[13];
-  return 1.0f / iz;
+  return 1.0f / lanes_min(lanes_max(iz, fields[12]), fields[13]);
 }
 
 /* What of each pixel's heaviest splat the picture shows beside the sums. Its normal only where the sum has no
  * direction, unless another part of the splats follows. */
 static void lanes_keep_heaviest(const conic_device_frame *frame, __global const conic_footprint *footprints,
-                                __global const conic_surface *surfaces, int x, int y, lanes_sums *s) {
+                                __global const conic_projected_surface *surfaces, int x, int y, lanes_sums *s) {
   int keeps_all = !frame->is_last || frame->keeps_sums;
   int16 is_taken = s->taken >= 0;
   lanes mean[3];
@@ -173,7 +172,7 @@ static void lanes_begin_sums(const conic_device_frame *frame, const lanes_tile *
 
 /* Calls for what pass 2 reads of a reference's splat, where it reads any of it. */
 static void lanes_call_for(__global const conic_device_reference *references, __global const ulong *masks, ulong i,
-                           __global const conic_footprint *footprints, __global const conic_surface *surfaces) {
+                           __global const conic_footprint *footprints, __global const conic_projected_surface *surfaces) {
   if (masks[i] == 0)
     return;
   CONIC_FETCH_AHEAD(&footprints[references[i].footprint]);
@@ -203,23 +202,23 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
     if (mask == 0)
       continue;
     lanes_splat splat;
-    lanes_row row;
+    splat_rows row;
     uint row_begun = CONIC_DEVICE_TILE_BLOCKS;
-    __global const conic_surface *surface = &surfaces[references[i].footprint];
+    __global const conic_projected_surface *surface = &surfaces[references[i].footprint];
     lanes_fetch(&references[i], footprints, rays, clips, &splat);
     for (; mask; mask &= mask - 1) {
       uint block = 63 - (uint)clz(mask & -mask), i_row = block / CONIC_DEVICE_TILE_BLOCKS;
-      lanes_fragment fragment;
+      fragments fragment;
       if (i_row != row_begun)
-        row = lanes_row_begin(splat.footprint, t.y + 4 * (int)i_row);
+        row = begin_rows(&splat.footprint, rows_from(t.y + 4 * (int)i_row));
       row_begun = i_row;
       lanes_cover(&view, &t, &splat, &row, block % CONIC_DEVICE_TILE_BLOCKS, i_row, &fragment);
-      int16 is_visible = fragment.is_covered & (lanes_seen_iz(&fragment) >= threshold[block]);
+      int16 is_visible = fragment.covered & (lanes_max(fragment.plane_iz, fragment.iz) >= threshold[block]);
       if (!lanes_any(is_visible))
         continue;
-      lanes_blend(&view, splat.footprint, surface, splat.index, &fragment, is_visible, &of_blocks[block]);
+      lanes_blend(&view, &splat, surface, &fragment, is_visible, &of_blocks[block]);
       if (keeps_indices)
-        lanes_count(surface, &fragment, is_visible, &of_blocks[block]);
+        lanes_note(surface, &fragment, is_visible, &of_blocks[block]);
     }
   }
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
@@ -230,7 +229,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
 
 /* The nearest splats' own sums, in place of those of what was nearest in the parts before. */
 static void lanes_take_nearest(const conic_view *view, const conic_device_frame *frame,
-                               __global const conic_footprint *footprints, __global const conic_surface *surfaces,
+                               __global const conic_footprint *footprints, __global const conic_projected_surface *surfaces,
                                const lanes *q, const lanes *scale, int x, int y, lanes_sums *s) {
   for (int lane = 0; lane < 16; lane++) {
     int i_nearest = ((const int *)&s->taken)[lane], is_heaviest;
@@ -260,19 +259,19 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_nearest(GATHE
   lanes_tile t = lanes_tile_of(&frame);
   lanes q[N_TILE_BLOCKS], scale[N_TILE_BLOCKS];
   lanes_sums of_blocks[N_TILE_BLOCKS];
-  int16 found = 0;
+  index_lanes found = 0;
   lanes_begin_sums(&frame, &t, sums, of_blocks);
   LANES_FOR_FRAGMENTS(
       , {
         lanes_sums *s = &of_blocks[block];
-        int16 is_nearest = fragment.is_covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
+        int16 is_nearest = fragment.covered & (s->values[CONIC_SUM_NEAREST_IZ] < fragment.iz);
         s->values[CONIC_SUM_NEAREST_IZ] = is_nearest ? fragment.iz : s->values[CONIC_SUM_NEAREST_IZ];
         q[block] = is_nearest ? fragment.q : q[block];
         scale[block] = is_nearest ? fragment.scale : scale[block];
         s->taken = is_nearest ? (int16)(int)splat.index : s->taken;
-        found -= fragment.is_covered;
+        found = lanes_increment(fragment.covered, found);
       }, )
-  n_fragments[t.index] = lanes_sum(found);
+  n_fragments[t.index] = sum_of_lanes(found);
   for (uint block = 0; block < N_TILE_BLOCKS; block++)
     lanes_take_nearest(&view, &frame, footprints, surfaces, &q[block], &scale[block], lanes_block_x(&t, block),
                        lanes_block_y(&t, block), &of_blocks[block]);

@@ -1,51 +1,17 @@
 /* Pass 3 in lanes, a block at a time: raster/tiles/resolve.c and raster/tiles/shade.c in their order of arithmetic. */
 
+#include "raster/kernels/shade_lanes.h"
+
 /* A block's finished pixels. */
 typedef struct lanes_pixels {
   lanes rgba[4], normal[3], albedo[3];
 } lanes_pixels;
 
-static lanes lanes_dot(const lanes a[3], const lanes b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-static lanes lanes_at_least_zero(lanes x) {
-  return x > 0.0f ? x : 0.0f;
-}
-
-static lanes lanes_gloss(lanes x) {
-  for (int i = 0; i < 5; i++)
-    x *= x;
-  return x;
-}
-
-/* conic_shade */
-static void lanes_shade(const conic_device_frame *frame, const lanes albedo[3], const lanes normal[3],
-                        const lanes mean_normal[3], const lanes viewer[3], lanes shaded[3]) {
-  lanes light[3], glossy = 0.0f;
-  for (int i = 0; i < 3; i++)
-    shaded[i] = albedo[i];
-  if (frame->shading == CONIC_SHADE_NONE)
-    return;
-  for (int i = 0; i < 3; i++)
-    light[i] = frame->has_light ? (lanes)frame->light[i] : viewer[i];
-  lanes towards_light = lanes_dot(normal, light);
-  lanes lit = CONIC_AMBIENT + CONIC_DIFFUSE * lanes_at_least_zero(lanes_dot(mean_normal, light));
-  if (frame->shading == CONIC_SHADE_PHONG) {
-    lanes reflected[3];
-    for (int i = 0; i < 3; i++)
-      reflected[i] = 2.0f * towards_light * normal[i] - light[i];
-    glossy = CONIC_SPECULAR * lanes_gloss(lanes_at_least_zero(lanes_dot(reflected, viewer))) *
-             lanes_dot(mean_normal, mean_normal);
-    glossy = towards_light > 0.0f ? glossy : 0.0f;
-  }
-  for (int i = 0; i < 3; i++)
-    shaded[i] = albedo[i] * lit + glossy;
-}
-
 /* finish_covered and finish_uncovered; dx and dy are the pixels' directions. */
 static void lanes_finish_pixels(const conic_device_frame *frame, const lanes_sums *s, lanes dx, lanes dy,
                                 lanes_pixels *p) {
+  conic_render_options options;
+  conic_finish finish;
   lanes weight = s->values[CONIC_SUM_WEIGHT], part = 1.0f / weight, mean[3], viewer[3], shaded[3];
   int16 is_covered = weight > 0.0f;
   for (int axis = 0; axis < 3; axis++)
@@ -53,12 +19,12 @@ static void lanes_finish_pixels(const conic_device_frame *frame, const lanes_sum
   lanes norm = lanes_mean_normal(s, mean), scale = 1.0f / norm;
   for (int axis = 0; axis < 3; axis++)
     p->normal[axis] = norm > 0.0f ? mean[axis] * scale : s->values[CONIC_SUM_HEAVIEST_NORMAL + axis];
-  lanes towards = -1.0f / sqrt((dx * dx + dy * dy) + 1.0f);
-  for (int i = 0; i < 3; i++) {
-    const float *m = frame->world_from_cam[i];
-    viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * towards;
-  }
-  lanes_shade(frame, p->albedo, p->normal, mean, viewer, shaded);
+  finish_of(frame, &options, &finish);
+  look_back(frame->world_from_cam, dx, dy, viewer);
+  for (int axis = 0; axis < 3; axis++)
+    shaded[axis] = p->albedo[axis];
+  if (options.shading != CONIC_SHADE_NONE)
+    shade_lanes(&finish, p->albedo, p->normal, mean, viewer, shaded);
   for (int axis = 0; axis < 3; axis++) {
     p->rgba[axis] = is_covered ? shaded[axis] * frame->exposure : frame->background[axis];
     p->albedo[axis] = is_covered ? p->albedo[axis] : 0.0f;
@@ -102,7 +68,7 @@ static void lanes_store_row(const lanes *channels, int n_channels, int row, __gl
 }
 
 /* A block's channels to a plane that the image has. */
-static void lanes_store(const conic_device_frame *frame, int plane, const lanes *channels, int n_channels, int x, int y,
+static void lanes_store_plane(const conic_device_frame *frame, int plane, const lanes *channels, int n_channels, int x, int y,
                         __global float *to) {
   if (!(frame->planes & 1 << plane))
     return;
@@ -135,14 +101,14 @@ static uint lanes_resolve(const conic_device_frame *frame, const lanes_sums *s, 
   lanes z = is_covered ? s->values[CONIC_SUM_Z] : 0.0f;
   lanes count = as_float16(is_covered ? as_int16(s->values[CONIC_SUM_COUNT]) : 0);
   lanes id = as_float16(is_covered ? as_int16(s->values[CONIC_SUM_ID]) : -1); /* CONIC_NO_ID */
-  lanes_store(frame, CONIC_PLANE_RGBA, p.rgba, 4, x, y, rgba);
-  lanes_store(frame, CONIC_PLANE_NORMAL, p.normal, 3, x, y, normal_plane);
-  lanes_store(frame, CONIC_PLANE_ALBEDO, p.albedo, 3, x, y, albedo_plane);
-  lanes_store(frame, CONIC_PLANE_WEIGHT, &weight, 1, x, y, weight_plane);
-  lanes_store(frame, CONIC_PLANE_Z, &z, 1, x, y, z_plane);
-  lanes_store(frame, CONIC_PLANE_COUNT, &count, 1, x, y, (__global float *)count_plane);
-  lanes_store(frame, CONIC_PLANE_ID, &id, 1, x, y, (__global float *)id_plane);
-  return lanes_sum(-is_covered);
+  lanes_store_plane(frame, CONIC_PLANE_RGBA, p.rgba, 4, x, y, rgba);
+  lanes_store_plane(frame, CONIC_PLANE_NORMAL, p.normal, 3, x, y, normal_plane);
+  lanes_store_plane(frame, CONIC_PLANE_ALBEDO, p.albedo, 3, x, y, albedo_plane);
+  lanes_store_plane(frame, CONIC_PLANE_WEIGHT, &weight, 1, x, y, weight_plane);
+  lanes_store_plane(frame, CONIC_PLANE_Z, &z, 1, x, y, z_plane);
+  lanes_store_plane(frame, CONIC_PLANE_COUNT, &count, 1, x, y, (__global float *)count_plane);
+  lanes_store_plane(frame, CONIC_PLANE_ID, &id, 1, x, y, (__global float *)id_plane);
+  return lanes_count(is_covered);
 }
 
 /* Of a part of the splats: on with the sums, or the picture where it is the last and no triangles follow. */

@@ -1,10 +1,15 @@
 /* Where a tile is a work-item: its blocks of 16 pixels, each a vector, and what they add up. */
 
-typedef float16 lanes;
+#include "opencl/lanes_words.cl"
 
-/* A lane's column and row in its block. */
-#define LANE_COLUMNS ((lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
-#define LANE_ROWS ((lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+/* The columns and rows of the pixels of the block whose first is at (x, y). */
+static lanes columns_from(int x) {
+  return (float)x + lanes_of_ints(lanes_columns());
+}
+
+static lanes rows_from(int y) {
+  return (float)y + lanes_of_ints(lanes_rows());
+}
 
 #define CONIC_DEVICE_TILE_BLOCKS (CONIC_DEVICE_TILE / 4)
 #define N_TILE_BLOCKS (CONIC_DEVICE_TILE_BLOCKS * CONIC_DEVICE_TILE_BLOCKS)
@@ -45,22 +50,14 @@ static int lanes_block_y(const lanes_tile *t, uint block) {
 }
 
 static int16 lanes_inside(const lanes_tile *t, int x, int y) {
-  return ((float)x + LANE_COLUMNS < (float)t->width) & ((float)y + LANE_ROWS < (float)t->height);
+  return (columns_from(x) < (float)t->width) & (rows_from(y) < (float)t->height);
 }
 
-static uint lanes_sum(int16 ones) {
-  int8 a = ones.lo + ones.hi;
-  int4 b = a.lo + a.hi;
-  int2 c = b.lo + b.hi;
-  return (uint)(c.x + c.y);
-}
-
-/* Whether any lane is -1. */
-static int lanes_any(int16 mask) {
-  int8 a = mask.lo | mask.hi;
-  int4 b = a.lo | a.hi;
-  long2 c = as_long2(b);
-  return (c.x | c.y) != 0;
+static uint sum_of_lanes(index_lanes values) {
+  uint8 a = values.lo + values.hi;
+  uint4 b = a.lo + a.hi;
+  uint2 c = b.lo + b.hi;
+  return c.x + c.y;
 }
 
 /* The sums of a block, by CONIC_SUM_WEIGHT …; and whose fragment was the heaviest or nearest of this part. */

@@ -1,110 +1,7 @@
 /* Triangles a tile a work-item: raster/triangles/triangle_body.h in its order of arithmetic. */
 
-/* The nearest triangles of a block: their depth, 0 where there is none, and their records. */
-typedef struct lanes_nearest_triangles {
-  lanes iz;
-  int16 record;
-} lanes_nearest_triangles;
-
-/* A record, and what of it is the same in all blocks. */
-typedef struct lanes_drawing {
-  conic_triangle_record record;
-  conic_triangle_edges edges;
-  int16 within[3]; /* how far each edge's value is from that at the block's first pixel, in steps */
-  int most[3];     /* the most that it gains */
-  float iz_far, iz_near;
-} lanes_drawing;
-
-#define LANE_INT_COLUMNS ((int16)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
-#define LANE_INT_ROWS ((int16)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
-
-static void lanes_begin_drawing(lanes_drawing *d) {
-  conic_triangle_edges_of(&d->record, &d->edges);
-  for (int k = 0; k < 3; k++) {
-    int a = (int)d->edges.a[k], b = (int)d->edges.b[k];
-    d->most[k] = (CONIC_BLOCK_EDGE - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0));
-    d->within[k] = LANE_INT_COLUMNS * a + LANE_INT_ROWS * b;
-  }
-  d->iz_far = conic_triangle_far(&d->record);
-  d->iz_near = conic_triangle_near(&d->record);
-}
-
-/* The pixels of a block from the values of the edges at its first; returns those covered as ones. */
-static int16 lanes_draw_block(const lanes_drawing *d, uint i_record, const lanes_tile *t, const long e[3], int x, int y,
-                              lanes_nearest_triangles *nearest) {
-  int steps[3];
-  for (int k = 0; k < 3; k++) {
-    steps[k] = conic_triangle_steps(e[k] + d->edges.bias[k]);
-    if (steps[k] + d->most[k] < 0)
-      return 0;
-  }
-  conic_affine depth = conic_triangle_depth(&d->record, &d->edges, e[1], e[2]);
-  int16 covered = ((steps[0] + d->within[0]) | (steps[1] + d->within[1]) | (steps[2] + d->within[2])) >= 0;
-  if (t->is_at_border)
-    covered &= lanes_inside(t, x, y);
-  lanes iz = (depth.at + depth.by_y * LANE_ROWS) + depth.by_x * LANE_COLUMNS;
-  iz = iz > d->iz_far ? iz : d->iz_far;
-  iz = iz < d->iz_near ? iz : d->iz_near;
-  int16 is_nearer = covered & (nearest->iz < iz);
-  nearest->iz = is_nearer ? iz : nearest->iz;
-  nearest->record = is_nearer ? (int16)(int)i_record : nearest->record;
-  return -covered;
-}
-
-/* The blocks of the tile that the record's box meets. */
-static int16 lanes_draw_blocks(const lanes_drawing *d, uint i_record, const lanes_tile *t,
-                               lanes_nearest_triangles *of_blocks) {
-  const conic_box *box = &d->record.box;
-  uint column_begin = box->x_begin > t->x ? (uint)(box->x_begin - t->x) / 4 : 0;
-  uint row_begin = box->y_begin > t->y ? (uint)(box->y_begin - t->y) / 4 : 0;
-  uint column_last = min((uint)(box->x_end - 1 - t->x) / 4, (uint)CONIC_DEVICE_TILE_BLOCKS - 1);
-  uint row_last = min((uint)(box->y_end - 1 - t->y) / 4, (uint)CONIC_DEVICE_TILE_BLOCKS - 1);
-  const long block_step = CONIC_BLOCK_EDGE * CONIC_SUBPIXELS;
-  int16 found = 0;
-  long of_row[3];
-  for (int k = 0; k < 3; k++)
-    of_row[k] = conic_triangle_edge_at(&d->edges, k, t->x + 4 * (int)column_begin, t->y + 4 * (int)row_begin);
-  for (uint row = row_begin; row <= row_last; row++) {
-    long e[3] = {of_row[0], of_row[1], of_row[2]};
-    for (uint column = column_begin; column <= column_last; column++) {
-      found += lanes_draw_block(d, i_record, t, e, t->x + 4 * (int)column, t->y + 4 * (int)row,
-                                &of_blocks[CONIC_DEVICE_TILE_BLOCKS * row + column]);
-      for (int k = 0; k < 3; k++)
-        e[k] += d->edges.a[k] * block_step;
-    }
-    for (int k = 0; k < 3; k++)
-      of_row[k] += d->edges.b[k] * block_step;
-  }
-  return found;
-}
-
-/* A record of few samples, one by one; returns how many it covers. */
-static uint lanes_draw_samples(const lanes_drawing *d, uint i_record, const lanes_tile *t,
-                               lanes_nearest_triangles *of_blocks) {
-  const conic_box *box = &d->record.box;
-  int x_end = min((int)box->x_end, t->x + CONIC_DEVICE_TILE), y_end = min((int)box->y_end, t->y + CONIC_DEVICE_TILE);
-  conic_triangle_edges edges;
-  uint n_covered = 0;
-  conic_triangle_edges_of(&d->record, &edges);
-  for (int y = max((int)box->y_begin, t->y); y < y_end; y++)
-    for (int x = max((int)box->x_begin, t->x); x < x_end; x++) {
-      lanes_nearest_triangles *nearest = &of_blocks[(y - t->y) / 4 * CONIC_DEVICE_TILE_BLOCKS + (x - t->x) / 4];
-      int lane = x % 4 * 4 + y % 4;
-      float iz;
-      if (!conic_triangle_sample(&d->record, &edges, x, y, &iz))
-        continue;
-      n_covered++;
-      if (!(((const float *)&nearest->iz)[lane] < iz))
-        continue;
-      ((float *)&nearest->iz)[lane] = iz;
-      ((int *)&nearest->record)[lane] = (int)i_record;
-    }
-  return n_covered;
-}
-
-static int lanes_has_few_samples(const conic_box *box) {
-  return (box->x_end - box->x_begin) * (box->y_end - box->y_begin) <= 3;
-}
+#include "raster/triangles/draw_lanes.h"
+#include "raster/triangles/look_lanes.h"
 
 /* The directions of a block's pixels. */
 static void lanes_directions(__global const float *columns, __global const float *rows, int x, int y, lanes *dx,
@@ -122,11 +19,13 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_triangles(TRI
                                                                              __global uint *n_fragments) {
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
-  lanes_nearest_triangles of_blocks[N_TILE_BLOCKS];
+  conic_triangle_block of_blocks[N_TILE_BLOCKS];
+  const conic_triangle_canvas canvas = {of_blocks, CONIC_DEVICE_TILE_BLOCKS, t.x,     t.y,
+                                        CONIC_DEVICE_TILE,                   t.width, t.height};
   ulong n_covered = 0;
   for (uint block = 0; block < N_TILE_BLOCKS; block++) {
-    of_blocks[block].iz = 0.0f;
-    of_blocks[block].record = 0;
+    lanes_store(of_blocks[block].iz, (lanes)0.0f);
+    vstore16((index_lanes)0, 0, of_blocks[block].record);
   }
   for (uint i_chunk = 0; i_chunk < frame.n_triangle_chunks; i_chunk++) {
     ulong begin, end;
@@ -134,22 +33,17 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_triangles(TRI
     uint first_record = (uint)chunks[i_chunk].first_record;
     for (ulong i = begin; i < end; i++) {
       uint i_record = first_record + entries[i];
-      lanes_drawing d;
       CONIC_FETCH_AHEAD(&records[first_record + entries[min(i + 8, end - 1)]]);
-      d.record = records[i_record];
-      if (lanes_has_few_samples(&d.record.box)) {
-        n_covered += lanes_draw_samples(&d, i_record, &t, of_blocks);
-        continue;
-      }
-      lanes_begin_drawing(&d);
-      n_covered += lanes_sum(lanes_draw_blocks(&d, i_record, &t, of_blocks));
+      const conic_triangle_record record = records[i_record];
+      n_covered += has_few_samples(&record.box) ? conic_triangle_draw_samples(&record, i_record, &canvas)
+                                                : draw_blocks(&record, i_record, &canvas);
     }
   }
   for (uint block = 0; block < N_TILE_BLOCKS; block++) {
     ulong at = lanes_block(&t, &frame, block);
-    lanes iz = of_blocks[block].iz, dx, dy;
+    lanes iz = lanes_load(of_blocks[block].iz), dx, dy;
     nearest_iz[at] = iz;
-    nearest[at] = of_blocks[block].record;
+    nearest[at] = as_int16(vload16(0, of_blocks[block].record));
     if (frame.is_single_pass || !frame.has_splats)
       continue;
     lanes_directions(columns, rows, lanes_block_x(&t, block), lanes_block_y(&t, block), &dx, &dy);
@@ -158,59 +52,6 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_triangles(TRI
   }
   n_fragments[2 * t.index] = (uint)n_covered;
   n_fragments[2 * t.index + 1] = (uint)(n_covered >> 32);
-}
-
-/* The weights of a triangle's second and third corner at a block's pixels: conic_triangle_weights. */
-typedef struct lanes_weights {
-  lanes at[2], by_x[2], by_y[2];
-} lanes_weights;
-
-static lanes lanes_affine_at(const conic_affine *f) {
-  return (f->at + f->by_y * LANE_ROWS) + f->by_x * LANE_COLUMNS;
-}
-
-static void lanes_weights_at(const conic_triangle_look *look, lanes_weights *w) {
-  lanes iz = lanes_affine_at(&look->iz);
-  iz = iz > look->iz_far ? iz : look->iz_far;
-  iz = iz < look->iz_near ? iz : look->iz_near;
-  lanes z = 1.0f / iz;
-  const conic_affine *weights[2] = {&look->first, &look->second};
-  for (int i = 0; i < 2; i++) {
-    lanes at = lanes_at_least_zero(lanes_affine_at(weights[i]) * z);
-    w->at[i] = at < 1.0f ? at : 1.0f;
-    w->by_x[i] = (weights[i]->by_x - w->at[i] * look->iz.by_x) * z;
-    w->by_y[i] = (weights[i]->by_y - w->at[i] * look->iz.by_y) * z;
-  }
-  if (!look->is_piece)
-    return;
-  const lanes_weights of_piece = *w;
-  for (int i = 0; i < 2; i++) {
-    w->at[i] = look->at[0][i] + (of_piece.at[0] * look->at[1][i] + of_piece.at[1] * look->at[2][i]);
-    w->by_x[i] = of_piece.by_x[0] * look->at[1][i] + of_piece.by_x[1] * look->at[2][i];
-    w->by_y[i] = of_piece.by_y[0] * look->at[1][i] + of_piece.by_y[1] * look->at[2][i];
-  }
-}
-
-static void lanes_normals(const conic_triangle_look *look, const lanes_weights *w, const conic_device_frame *frame,
-                          lanes dx, lanes dy, lanes normal[3]) {
-  lanes away = 0.0f;
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = look->face[axis];
-  if (look->has_normals) {
-    lanes mean[3];
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] = look->normal[0][axis] + (w->at[0] * look->normal[1][axis] + w->at[1] * look->normal[2][axis]);
-    lanes squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2], scale = 1.0f / sqrt(squared);
-    int16 is_usable = (squared > 1e-30f) & (squared < 1e30f);
-    for (int axis = 0; axis < 3; axis++)
-      normal[axis] = is_usable ? mean[axis] * scale : normal[axis];
-  }
-  for (int i = 0; i < 3; i++) {
-    const float *m = frame->world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
 }
 
 /* What the triangles look like at a block's pixels. */
@@ -234,15 +75,14 @@ static void lanes_lay_texture(lanes_look *to) {
 }
 
 /* Notes down where a triangle's texture is seen. */
-static void lanes_note_texture(const conic_triangle_look *look, const lanes_weights *w, int16 mask, lanes_look *to) {
+static void lanes_note_texture(const conic_triangle_look *look, const look_places *p, int16 mask, lanes_look *to) {
   if (to->texture != look->texture)
     lanes_lay_texture(to);
   to->texture = look->texture;
   to->textured |= mask;
   for (int i = 0; i < 2; i++) {
-    lanes uv = look->uv[0][i] + (w->at[0] * look->uv[1][i] + w->at[1] * look->uv[2][i]);
-    lanes along = w->by_x[0] * look->uv[1][i] + w->by_x[1] * look->uv[2][i];
-    lanes across = w->by_y[0] * look->uv[1][i] + w->by_y[1] * look->uv[2][i];
+    lanes uv, along, across;
+    find_texture_places(look, p, i, &uv, &along, &across);
     to->uv[i] = mask ? uv : to->uv[i];
     to->along[i] = mask ? along : to->along[i];
     to->across[i] = mask ? across : to->across[i];
@@ -252,14 +92,13 @@ static void lanes_note_texture(const conic_triangle_look *look, const lanes_weig
 /* Takes one triangle's looks where the mask holds. */
 static void lanes_take_look(const conic_device_frame *frame, const conic_triangle_look *look, int16 mask, lanes dx,
                             lanes dy, lanes_look *to) {
-  lanes_weights w;
+  look_places p;
   lanes color[3], normal[3];
-  lanes_weights_at(look, &w);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = look->color[0][channel] + (w.at[0] * look->color[1][channel] + w.at[1] * look->color[2][channel]);
+  find_places(look, lanes_of_ints(lanes_columns()), lanes_of_ints(lanes_rows()), &p);
+  find_colors(look, &p, color);
   if (look->texture)
-    lanes_note_texture(look, &w, mask, to);
-  lanes_normals(look, &w, frame, dx, dy, normal);
+    lanes_note_texture(look, &p, mask, to);
+  find_normals(look, &p, frame->world_from_cam, dx, dy, normal);
   for (int axis = 0; axis < 3; axis++) {
     to->color[axis] = mask ? color[axis] : to->color[axis];
     to->normal[axis] = mask ? normal[axis] : to->normal[axis];

@@ -34,7 +34,7 @@ typedef struct splat_columns {
 typedef struct record_places {
   __global conic_footprint *footprints;
   __global conic_box *boxes;
-  __global conic_surface *surfaces;
+  __global conic_projected_surface *surfaces;
   __global conic_ray *rays;
   __global conic_clip_record *clips;
   uint at;
@@ -114,7 +114,7 @@ static void project_one(const conic_view *view, splat_columns *columns, uint i, 
   conic_splats splats;
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   splat_setup s = {.view = view, .splats = &splats, .i = 0};
   load_splat(columns, i, &one);
@@ -145,7 +145,7 @@ static void project_one(const conic_view *view, splat_columns *columns, uint i, 
       __global const float *tuz, __global const float *tvx, __global const float *tvy, __global const float *tvz,      \
       __global const float *red, __global const float *green, __global const float *blue,                              \
       __global const float *opacity, uint n_clips, __global const conic_clip *clips,                                   \
-      __global conic_footprint *footprints, __global conic_box *boxes, __global conic_surface *surfaces,               \
+      __global conic_footprint *footprints, __global conic_box *boxes, __global conic_projected_surface *surfaces,               \
       __global conic_ray *rays, __global conic_clip_record *records, __global uint *n_drawn, __global uint *counts
 
 #define SETUP_COLUMNS                                                                                                  \

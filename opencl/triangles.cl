@@ -50,7 +50,6 @@ static void triangles_of_tile(const conic_device_frame *frame, uint i_chunk, uin
 #include "opencl/lanes_tile.cl"
 
 #include "opencl/lanes_resolve.cl"
-#include "opencl/lanes_exponential.cl"
 
 #include "opencl/lanes_texture.cl"
 #include "opencl/lanes_triangles.cl"

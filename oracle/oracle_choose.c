@@ -1,4 +1,4 @@
-/* Which formula draws a splat: "Which splats" and "Which formula, in this order" of docs/picture.md. */
+/* Which formula draws a splat: "Which splats" and "Which formula, in this order" of docs/reference/picture.md. */
 #include "oracle/oracle_splat.h"
 
 oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_options *options, double near_z) {

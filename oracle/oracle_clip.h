@@ -1,4 +1,5 @@
-/* Clip lines, for the oracle: docs/picture.md, Clip lines, from points of the line instead of from matrices. */
+/* Clip lines, for the oracle: docs/reference/picture.md, Clip lines, from points of the line instead of from matrices.
+ */
 #ifndef CONIC_ORACLE_CLIP_H
 #define CONIC_ORACLE_CLIP_H
 

@@ -5,7 +5,7 @@
 #include "conic/oracle.h"
 #include "oracle/oracle_scene.h"
 
-/* What a stable pixel may be off by: see docs/oracle.md. */
+/* What a stable pixel may be off by: see docs/reference/oracle.md. */
 #define ORACLE_COLOR_BOUND 1e-4
 #define ORACLE_NORMAL_BOUND 1e-4
 #define ORACLE_WEIGHT_BOUND 1e-4

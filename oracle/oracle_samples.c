@@ -1,4 +1,4 @@
-/* The oracle's pixel of N × N samples: docs/picture.md, "Samples". */
+/* The oracle's pixel of N × N samples: docs/reference/picture.md, "Samples". */
 #include "conic/oracle.h"
 
 #include <string.h>

@@ -36,7 +36,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene);
 
 /* The splat with one of its inputs as far off as single precision may put it: the components of the axes, that is. The
- * centre is projected in double precision (docs/picture.md, Numbers). */
+ * centre is projected in double precision (docs/reference/picture.md, Numbers). */
 oracle_placed conic_oracle_disturb(const oracle_placed *placed, int i);
 
 #endif

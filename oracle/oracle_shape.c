@@ -58,7 +58,8 @@ static void widen(const oracle_view *view, oracle_shape *shape) {
 }
 
 /* What conic and affine have in common once the variance R′ and the offset of the centre from p's place are known.
- * R′g is taken literally where the plane has a good gradient; else from the centre's offset: see docs/oracle.md. */
+ * R′g is taken literally where the plane has a good gradient; else from the centre's offset: see
+ * docs/reference/oracle.md. */
 static void set_ellipse(const oracle_view *view, const oracle_placed *s, double root, const double r_g[2],
                         const double offset[2], oracle_shape *shape) {
   const conic_camera *c = &view->camera;

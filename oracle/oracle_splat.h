@@ -27,7 +27,7 @@ typedef struct oracle_view {
   int cull_back;
 } oracle_view;
 
-/* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/picture.md, Auto. */
+/* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/reference/picture.md, Auto. */
 #define ORACLE_AUTO_ERROR 4e-3
 #define ORACLE_AUTO_STEEPNESS 0.68
 /* And the relative change of inverse depth over the filter's standard deviation from which on it draws by laplace. */
@@ -92,7 +92,7 @@ typedef struct oracle_shape {
 /* Sets up `formula` for the splat; 0 where it cannot be (not finite). */
 int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_formula formula, oracle_shape *shape);
 
-/* By how much of itself the ray formula's range of inverse depth is widened: docs/picture.md, Ray. */
+/* By how much of itself the ray formula's range of inverse depth is widened: docs/reference/picture.md, Ray. */
 #define ORACLE_RANGE_SLACK 0x1p-20
 
 /* Whether the disc's nearer end is beyond near. */

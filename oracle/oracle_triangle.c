@@ -1,4 +1,4 @@
-/* A triangle at a pixel: docs/picture.md, Triangles. */
+/* A triangle at a pixel: docs/reference/picture.md, Triangles. */
 #include "oracle/oracle_triangle.h"
 
 #include <string.h>

@@ -9,14 +9,14 @@
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
 
-typedef struct cleaning {
+typedef struct points_cleaning {
   const conic_surface *surface;
   conic_own_points *own;
   size_t n_wanted;
   conic_workspace *workspaces;
-} cleaning;
+} points_cleaning;
 
-static void keep(cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
+static void keep(points_cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
                  const conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   conic_own_points *own = work->own;
@@ -37,7 +37,7 @@ static void keep(cleaning *work, size_t slot, const double r[3], const conic_lan
   own->moved2[slot] = moved2;
 }
 
-static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace) {
+static void clean_leaf(points_cleaning *work, size_t i_leaf, conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   const conic_neighbours *tree = &surface->tree;
   size_t begin = conic_neighbours_leaf_begin(tree, i_leaf), end = conic_neighbours_leaf_begin(tree, i_leaf + 1);
@@ -54,7 +54,7 @@ static void clean_leaf(cleaning *work, size_t i_leaf, conic_workspace *workspace
 }
 
 static void clean_chunk(void *data, size_t i_item, int i_thread) {
-  cleaning *work = data;
+  points_cleaning *work = data;
   for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->surface->tree.n_leaves; i++)
     clean_leaf(work, i, &work->workspaces[i_thread]);
 }
@@ -73,7 +73,7 @@ static conic_status allocate_own(const conic_surface *surface, conic_own_points 
 conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
                                       conic_own_points *own) {
   conic_context *context = surface->context;
-  cleaning work = {surface, own, n_wanted, NULL};
+  points_cleaning work = {surface, own, n_wanted, NULL};
   memset(own, 0, sizeof *own);
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK)

@@ -23,18 +23,18 @@ enum { BYTES_A_POINT = 192, OTHER_BYTES = 12 << 20 };
 /* Records that are handled at a time. */
 enum { BATCH = 1 << 16, PAGE = 4096 };
 
-typedef struct sample {
+typedef struct cell_sample {
   float position[3], normal[3], color[3];
-} sample;
+} cell_sample;
 
 typedef struct record {
-  sample point;
+  cell_sample point;
   uint32_t unused;
   uint64_t index; /* in the set */
 } record;
 
 typedef struct result {
-  sample point;
+  cell_sample point;
   uint32_t outcome;
 } result;
 
@@ -58,7 +58,7 @@ static const char *name_of(const cleaning *work) {
   return work->options->name ? work->options->name : "surface";
 }
 
-static void put_sample(const sample *from, conic_splats *to, size_t i) {
+static void put_sample(const cell_sample *from, conic_splats *to, size_t i) {
   for (int axis = 0; axis < 3; axis++) {
     to->position[axis][i] = from->position[axis];
     if (to->normal[0])

@@ -169,20 +169,20 @@ static conic_status fill(densifying *work, size_t i) {
   return CONIC_OK;
 }
 
-typedef struct candidate {
+typedef struct densify_candidate {
   double radius;
   size_t point;
-} candidate;
+} densify_candidate;
 
 static int compare_candidates(const void *a, const void *b) {
-  const candidate *first = a, *second = b;
+  const densify_candidate *first = a, *second = b;
   if (first->radius != second->radius)
     return first->radius < second->radius ? 1 : -1;
   return (first->point > second->point) - (first->point < second->point);
 }
 
 /* The gaps of this round, the widest first. */
-static conic_status list_candidates(densifying *work, candidate **list, size_t *n) {
+static conic_status list_candidates(densifying *work, densify_candidate **list, size_t *n) {
   double widest = 0.0;
   *n = 0;
   for (size_t i = 0; i < work->points->count; i++)
@@ -201,7 +201,7 @@ static conic_status list_candidates(densifying *work, candidate **list, size_t *
 }
 
 static conic_status fill_gaps(densifying *work, size_t *n_tried) {
-  candidate *list;
+  densify_candidate *list;
   size_t n, limit = work->options->max_count ? work->options->max_count : (size_t)CONIC_MAX_POINTS;
   conic_status status = list_candidates(work, &list, &n);
   *n_tried = n;

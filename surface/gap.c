@@ -95,16 +95,16 @@ static int is_surrounded(outlook *around, const double corner[2], double radius2
 void conic_gap_find(const conic_neighbours *tree, uint32_t slot, const double center[3], const double normal[3],
                     double least, double most, conic_gap *gap) {
   outlook around;
-  conic_cell cell;
+  conic_voronoi_cell cell;
   double widest2 = least * least;
   const double *found = NULL;
   gap->radius = 0.0;
   if (!(most > least))
     return;
   look_around(tree, slot, center, normal, 4.0 * most, &around);
-  conic_cell_begin(&cell, 2.0 * most);
+  conic_voronoi_cell_begin(&cell, 2.0 * most);
   for (size_t i = 0; i < around.n; i++)
-    conic_cell_cut(&cell, around.places[i][0], around.places[i][1]);
+    conic_voronoi_cell_cut(&cell, around.places[i][0], around.places[i][1]);
   for (int i = 0; i < cell.n_corners; i++) {
     const double *corner = cell.corners[i];
     double radius2 = corner[0] * corner[0] + corner[1] * corner[1];

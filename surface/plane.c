@@ -2,8 +2,8 @@
  *   - among all planes through q, with weights about q, that across n has the least energy, and
  *   - along n, q is at a local minimum of the energy.
  * Eq. 2 as printed, minimised over n and t together, lets q swing about r: its minimum depends on r and not on q alone,
- * and projecting twice moves a point again (docs/surfaces.md has how far). The two conditions are Levin's; they know
- * nothing of r but that it lies on the line through q along n, so what they define is a projection.
+ * and projecting twice moves a point again (docs/notes/surfaces-measured.md has how far). The two conditions are
+ * Levin's; they know nothing of r but that it lies on the line through q along n, so what they define is a projection.
  *
  * Newton steps in all three unknowns reach the last digits in a few sums. Where they can't be trusted, the paper's
  * turns are taken: a safeguarded search along n by Eq. 6 (corrected), then a new normal by the covariance about q. */

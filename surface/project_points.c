@@ -67,15 +67,16 @@ static conic_surface_outcome find_plane(const conic_surface *surface, double h, 
 }
 
 /* A point that is to be projected. */
-typedef struct place {
+typedef struct projection_start {
   double r[3], h;
   uint32_t except;
   const conic_candidates *candidates; /* null: gathered for it alone */
-} place;
+} projection_start;
 
 /* The plane (or sphere) for a place: among what is near first, then among all within LAST_MARGIN. */
-static conic_surface_outcome find_foot(const conic_surface *surface, const place *at, conic_workspace *workspace,
-                                       double frame[3][3], double *t, conic_landing *sphere) {
+static conic_surface_outcome find_foot(const conic_surface *surface, const projection_start *at,
+                                       conic_workspace *workspace, double frame[3][3], double *t,
+                                       conic_landing *sphere) {
   const double box[6] = {at->r[0], at->r[1], at->r[2], at->r[0], at->r[1], at->r[2]};
   const conic_candidates *candidates = surface->clusters.mass ? NULL : at->candidates;
   double margin = conic_surface_margin(surface, at->h);
@@ -104,9 +105,9 @@ static void swap_near(conic_workspace *workspace) {
 
 /* Whether the point found is found again from itself. Where the samples lie in several layers there are several minima,
  * and it may be another one: such a point is not of the surface. */
-static int is_found_again(const conic_surface *surface, const place *at, conic_workspace *workspace,
+static int is_found_again(const conic_surface *surface, const projection_start *at, conic_workspace *workspace,
                           const conic_landing *projection) {
-  place again = *at;
+  projection_start again = *at;
   double frame[3][3], t, apart2 = 0.0, moved2 = 0.0, margin = conic_surface_margin(surface, at->h);
   for (int axis = 0; axis < 3; axis++) {
     again.r[axis] += projection->offset[axis];
@@ -126,8 +127,8 @@ static int is_found_again(const conic_surface *surface, const place *at, conic_w
   return apart2 <= (SAME_FOOT * at->h) * (SAME_FOOT * at->h);
 }
 
-static conic_surface_outcome project_place(const conic_surface *surface, const place *at, conic_workspace *workspace,
-                                           conic_landing *projection) {
+static conic_surface_outcome project_place(const conic_surface *surface, const projection_start *at,
+                                           conic_workspace *workspace, conic_landing *projection) {
   double frame[3][3], t;
   conic_surface_outcome outcome = find_foot(surface, at, workspace, frame, &t, projection);
   if (outcome != CONIC_SURFACE_DONE || surface->options.type == CONIC_SURFACE_APSS)
@@ -148,7 +149,7 @@ void conic_surface_project_one(const conic_surface *surface, const double r[3], 
   conic_surface_outcome outcome = is_finite(r) ? CONIC_SURFACE_TOO_FEW : CONIC_SURFACE_NOT_FINITE;
   memset(projection, 0, sizeof *projection);
   if (is_finite(r) && h > 0.0) {
-    const place at = {{r[0], r[1], r[2]}, h, except, has_shared ? &workspace->shared : NULL};
+    const projection_start at = {{r[0], r[1], r[2]}, h, except, has_shared ? &workspace->shared : NULL};
     outcome = project_place(surface, &at, workspace, projection);
   }
   if (outcome != CONIC_SURFACE_DONE)

@@ -10,16 +10,16 @@ enum { MAX_ROUNDS = 100, LEAST_SAMPLES = 4 };
  * and the sphere there is led by what it was not told. */
 static const double SETTLED = 1e-10, FARTHEST_MEAN = 0.75;
 
-typedef struct sphere {
+typedef struct fitted_sphere {
   double constant, linear[3], square; /* about the place of its weights */
-} sphere;
+} fitted_sphere;
 
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* The sphere whose gradient is nearest to the normals, through the samples' mean. 0 where the normals cancel. */
-static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], sphere *s) {
+static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], fitted_sphere *s) {
   double w = sums[0], inverse = 1.0 / w;
   const double *places = sums + 1, *normals = sums + 4;
   double spread = sums[7] - dot(places, places) * inverse;
@@ -32,7 +32,7 @@ static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], sphere *s) {
 }
 
 /* From `from` along the sphere's gradient to its surface; 0 where there is none. */
-static int drop(const sphere *s, const double from[3], double foot[3], double normal[3]) {
+static int drop(const fitted_sphere *s, const double from[3], double foot[3], double normal[3]) {
   double gradient[3], value = s->constant + dot(s->linear, from) + s->square * dot(from, from);
   for (int axis = 0; axis < 3; axis++)
     gradient[axis] = s->linear[axis] + 2.0 * s->square * from[axis];
@@ -54,7 +54,7 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
                                                 conic_workspace *workspace, conic_landing *projection) {
   double foot[3] = {0.0, 0.0, 0.0}, normal[3], sums[CONIC_N_SPHERE_SUMS];
   for (int i = 0; i < MAX_ROUNDS; i++) {
-    sphere s;
+    fitted_sphere s;
     double from[3], step[3];
     surface->kernels->sphere(&workspace->near, &surface->weighing, foot, sums);
     if (!(sums[9] >= (double)LEAST_SAMPLES))

@@ -26,7 +26,7 @@ static void run_project(const conic_tile_kernels *kernels, desk *d) {
 
 /* Lanes may scribble behind the last record: that is room for the next. */
 static void check_projected(desk *d) {
-  const size_t record_bytes[] = {sizeof(conic_footprint), sizeof(conic_box), sizeof(conic_surface)};
+  const size_t record_bytes[] = {sizeof(conic_footprint), sizeof(conic_box), sizeof(conic_projected_surface)};
   for (int i = 0; i < 3; i++)
     d->arenas[FOOTPRINTS + i].compared = d->chunk.n_drawn * record_bytes[i];
   d->arenas[RAYS].compared = d->chunk.n_rays * sizeof(conic_ray);

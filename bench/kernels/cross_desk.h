@@ -60,7 +60,7 @@ typedef struct desk {
   uint32_t *list, *words, *selected, *selected_words;
   uint32_t *tiles, *keys, *beyond, *order; /* of records */
   conic_footprint *moved_footprints;
-  conic_surface *moved_surfaces;
+  conic_projected_surface *moved_surfaces;
   conic_bins bins;
   conic_sorter sorter;
   uint32_t *next_record, *next_entry, *tile_begin;

@@ -1,4 +1,4 @@
-/* conic hybrid: a mesh in, patches of triangles and of surfels out. */
+/* conic hybrid: a mesh in, clusters of triangles and of surfels out. */
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/commands/hybrid_mesh.h"
@@ -49,8 +49,8 @@ static void write_counts(cli_json *json, const hybrid_job *job) {
   cli_json_count(json, "triangles_in", r->n_faces);
   cli_json_count(json, "triangles", job->info.n_triangles);
   cli_json_count(json, "surfels", job->info.n_surfels);
-  cli_json_count(json, "clusters", job->info.n_patches);
-  cli_json_count(json, "surfel_clusters", job->info.n_surfel_patches);
+  cli_json_count(json, "clusters", job->info.n_clusters);
+  cli_json_count(json, "surfel_clusters", job->info.n_surfel_clusters);
   cli_json_count(json, "clusters_phase1", r->n_first);
   cli_json_count(json, "levels", job->info.n_levels);
   cli_json_count(json, "node_levels", job->info.n_node_levels);
@@ -108,8 +108,8 @@ static void tell(const hybrid_job *job, double total_seconds) {
       {"simplify", r->simplify_seconds}, {"all of the work", job->work_seconds}, {"write", job->write_seconds}};
   conic_log(context, CONIC_LOG_INFO,
             "%s: %zu faces in; %zu patches of %zu triangles and %zu of %zu surfels out, with %zu levels, %.1f MiB",
-            job->input, r->n_faces, info->n_patches - info->n_surfel_patches, info->n_triangles, info->n_surfel_patches,
-            info->n_surfels, info->n_levels, (double)info->n_bytes / 1048576.0);
+            job->input, r->n_faces, info->n_clusters - info->n_surfel_clusters, info->n_triangles,
+            info->n_surfel_clusters, info->n_surfels, info->n_levels, (double)info->n_bytes / 1048576.0);
   if (r->nan || r->zero)
     conic_log(context, CONIC_LOG_INFO, "%s: left out %zu faces that are not finite, %zu that are not three places",
               job->input, r->nan, r->zero);

@@ -14,11 +14,11 @@ static void list_defects(const conic_hybrid_defects *broken, cli_defect list[N_D
 }
 
 void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects *broken) {
-  printf("patches    %zu: %zu of triangles, %zu of surfels\n", info->n_patches,
-         info->n_patches - info->n_surfel_patches, info->n_surfel_patches);
+  printf("patches    %zu: %zu of triangles, %zu of surfels\n", info->n_clusters,
+         info->n_clusters - info->n_surfel_clusters, info->n_surfel_clusters);
   printf("triangles  %zu, %zu in all levels\n", info->n_triangles, info->n_all_triangles);
   printf("surfels    %zu, %zu in all levels\n", info->n_surfels, info->n_all_surfels);
-  printf("levels     %zu, %.1f a patch\n", info->n_levels, (double)info->n_levels / (double)info->n_patches);
+  printf("levels     %zu, %.1f a patch\n", info->n_levels, (double)info->n_levels / (double)info->n_clusters);
   printf("nodes      %zu with %zu levels\n", info->n_nodes, info->n_node_levels);
   printf("vertices   %zu\n", info->n_vertices);
   if (info->n_textures)
@@ -35,8 +35,8 @@ void cli_hybrid_print(const conic_hybrid_info *info, const conic_hybrid_defects 
 void cli_hybrid_report(cli_json *json, const conic_hybrid_info *info, const conic_hybrid_defects *broken) {
   cli_json_count(json, "triangles", info->n_triangles);
   cli_json_count(json, "surfels", info->n_surfels);
-  cli_json_count(json, "clusters", info->n_patches);
-  cli_json_count(json, "surfel_clusters", info->n_surfel_patches);
+  cli_json_count(json, "clusters", info->n_clusters);
+  cli_json_count(json, "surfel_clusters", info->n_surfel_clusters);
   cli_json_count(json, "nodes", info->n_nodes);
   cli_json_count(json, "levels", info->n_levels);
   cli_json_count(json, "node_levels", info->n_node_levels);

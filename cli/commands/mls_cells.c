@@ -1,21 +1,21 @@
 #include "cli/commands/mls_cells.h"
 
-typedef struct cleaning {
+typedef struct cells_cleaning {
   cli_session *session;
   const conic_splats *points;
   const char *input, *output;
   conic_splats_writer *writer;
   double work_end; /* when the last point was projected */
-} cleaning;
+} cells_cleaning;
 
 static conic_status feed(void *cookie, conic_batch_receiver *receive, void *to) {
-  cleaning *job = cookie;
+  cells_cleaning *job = cookie;
   return job->points ? receive(to, job->points)
                      : conic_model_stream(job->session->context, job->input, NULL, receive, to);
 }
 
 static conic_status begin(void *cookie, const conic_surface_report *report, unsigned fields) {
-  cleaning *job = cookie;
+  cells_cleaning *job = cookie;
   job->work_end = cli_seconds();
   if (report->n_out == 0)
     return CONIC_OK;
@@ -23,13 +23,13 @@ static conic_status begin(void *cookie, const conic_surface_report *report, unsi
 }
 
 static conic_status append(void *cookie, const conic_splats *batch) {
-  cleaning *job = cookie;
+  cells_cleaning *job = cookie;
   return conic_splats_writer_append(job->writer, batch);
 }
 
 conic_status cli_mls_clean(cli_session *session, const conic_clean_options *options, const conic_splats *points,
                            const char *input, const char *output, conic_surface_report *report, double *work_seconds) {
-  cleaning job = {session, points, input, output, NULL, 0.0};
+  cells_cleaning job = {session, points, input, output, NULL, 0.0};
   const conic_points_sink sink = {begin, append, &job};
   double start = cli_seconds();
   conic_status status = conic_surface_clean_cells(session->context, options, feed, &job, &sink, report);

@@ -127,7 +127,7 @@ static int run(cli_session *session, int argc, char **argv) {
       {.name = "quantize",
        .type = CLI_FLAG,
        .value = &job.options.quantize,
-       .help = "round the splats: under half the size; the error is stated"},
+       .help = "round the splats: about half the size; the error is stated"},
       {.name = "cutoff",
        .type = CLI_NUMBER,
        .value = &job.cutoff,

@@ -114,7 +114,7 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   return status;
 }
 
-/* --clusters: the patches of a hybrid in false colours. */
+/* --clusters: the clusters of a hybrid in false colours. */
 static conic_status write_clusters(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   double start = cli_seconds();
   if (!job->clusters_path)

@@ -127,7 +127,7 @@ int cli_hybrid_is_wanted(const cli_render_job *job);
 conic_status cli_hybrid_open(cli_session *session, cli_render_job *job);
 /* Chooses for a frame; *ms is what it took. */
 conic_status cli_hybrid_select(cli_render_job *job, const conic_camera *camera, double *ms);
-/* --clusters: the patches in colours of their own, as they are shaded in `image`. */
+/* --clusters: the clusters in colours of their own, as they are shaded in `image`. */
 conic_status cli_hybrid_write_clusters(cli_session *session, const char *path, const conic_image *image);
 /* Ends it; fine where it never was. */
 void cli_hybrid_close(cli_session *session, cli_render_job *job);

@@ -41,8 +41,8 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     cli_json_count(json, "inner_nodes", job->selection.n_inner);
   }
   if (job->hybrid) {
-    cli_json_count(json, "triangle_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_TRIANGLES]);
-    cli_json_count(json, "surfel_patches", job->hybrid_selection.n_patches[CONIC_HYBRID_SURFELS]);
+    cli_json_count(json, "triangle_patches", job->hybrid_selection.n_clusters[CONIC_HYBRID_TRIANGLES]);
+    cli_json_count(json, "surfel_patches", job->hybrid_selection.n_clusters[CONIC_HYBRID_SURFELS]);
     cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
     cli_json_count(json, "joined_patches", job->hybrid_selection.n_joined);
     cli_json_count(json, "nodes", job->hybrid_selection.n_nodes);

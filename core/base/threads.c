@@ -7,11 +7,11 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
-typedef struct worker {
+typedef struct pool_worker {
   conic_pool *pool;
   int i_thread;
   pthread_t thread;
-} worker;
+} pool_worker;
 
 struct conic_pool {
   pthread_mutex_t mutex;
@@ -26,7 +26,7 @@ struct conic_pool {
   size_t n_items;
   atomic_size_t next_item;
 
-  worker workers[];
+  pool_worker workers[];
 };
 
 static void do_items(conic_pool *pool, int i_thread) {
@@ -39,7 +39,7 @@ static void do_items(conic_pool *pool, int i_thread) {
 }
 
 static void *run_worker(void *argument) {
-  worker *self = argument;
+  pool_worker *self = argument;
   conic_pool *pool = self->pool;
   unsigned long seen = 0;
   pthread_mutex_lock(&pool->mutex);
@@ -62,14 +62,14 @@ static void *run_worker(void *argument) {
 conic_status conic_pool_create(conic_context *context, conic_pool **pool) {
   int n_wanted = context->options.threads - 1;
   *pool = NULL;
-  conic_pool *made = conic_memory_allocate_zeroed(context, 1, sizeof *made + (size_t)n_wanted * sizeof(worker));
+  conic_pool *made = conic_memory_allocate_zeroed(context, 1, sizeof *made + (size_t)n_wanted * sizeof(pool_worker));
   if (!made)
     return CONIC_ERROR_MEMORY;
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->work_ready, NULL);
   pthread_cond_init(&made->work_done, NULL);
   while (made->n_workers < n_wanted) {
-    worker *next = &made->workers[made->n_workers];
+    pool_worker *next = &made->workers[made->n_workers];
     next->pool = made;
     next->i_thread = made->n_workers + 1;
     if (pthread_create(&next->thread, NULL, run_worker, next) != 0)

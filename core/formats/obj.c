@@ -16,9 +16,9 @@
 static const double far_out = 65536.0;
 
 /* A corner of a face that names a normal. Which normal it is may be read later. */
-typedef struct corner {
+typedef struct obj_corner {
   uint32_t i_vertex, i_normal;
-} corner;
+} obj_corner;
 
 /* The largest index that faces use, and the first line that does: whether there is such a line is known at the end. */
 typedef struct largest_index {
@@ -35,7 +35,7 @@ typedef struct obj_reader {
   largest_index used[N_KINDS];
   double (*normals)[3];
   size_t normal_capacity;
-  corner *corners;
+  obj_corner *corners;
   size_t n_corners, corner_capacity;
   conic_faces *faces; /* the model's, where the reader keeps what faces have besides vertices */
   int is_origin_set;
@@ -219,7 +219,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
       make_room(reader, &corners, reader->n_corners, &reader->corner_capacity, sizeof *reader->corners);
   reader->corners = corners;
   if (status == CONIC_OK)
-    reader->corners[reader->n_corners++] = (corner){resolved[VERTEX], resolved[NORMAL]};
+    reader->corners[reader->n_corners++] = (obj_corner){resolved[VERTEX], resolved[NORMAL]};
   return status;
 }
 

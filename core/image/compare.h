@@ -1,4 +1,4 @@
-/* The parts of a comparison; docs/diff.md has the definitions. */
+/* The parts of a comparison; docs/reference/diff.md has the definitions. */
 #ifndef CONIC_COMPARE_H
 #define CONIC_COMPARE_H
 

@@ -1,7 +1,7 @@
 /* ꟻLIP for pictures of low dynamic range (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020): how
- * much of a difference someone sees who flips between two pictures on a screen at arm's length. docs/diff.md tells it
- * in words. All filters are sums of products of two one-dimensional ones; a tile is filtered across row by row as the
- * rows come, and down over the last rows. */
+ * much of a difference someone sees who flips between two pictures on a screen at arm's length. docs/reference/diff.md
+ * tells it in words. All filters are sums of products of two one-dimensional ones; a tile is filtered across row by row
+ * as the rows come, and down over the last rows. */
 #include <math.h>
 #include <string.h>
 

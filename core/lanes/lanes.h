@@ -23,8 +23,11 @@
 #endif
 
 #define CONIC_BLOCK_ROWS 4
+/* A block of 4 × 4 pixels is so many vectors. */
+#define CONIC_PARTS (CONIC_BLOCK_ROWS * 4 / CONIC_LANES)
 
 #define CONIC_INLINE static inline __attribute__((always_inline))
+#define CONIC_OUTLINE static __attribute__((noinline))
 
 typedef float lanes __attribute__((vector_size(4 * CONIC_LANES)));
 typedef int32_t int_lanes __attribute__((vector_size(4 * CONIC_LANES)));
@@ -60,6 +63,32 @@ CONIC_INLINE index_lanes lanes_of_index(uint32_t value) {
 
 CONIC_INLINE int_lanes lanes_of_int(int32_t value) {
   return value - (int_lanes){0};
+}
+
+/* Conversions of value, rounded or truncated (the values are within int32_t). */
+CONIC_INLINE lanes lanes_of_ints(int_lanes value) {
+  return __builtin_convertvector(value, lanes);
+}
+
+CONIC_INLINE int_lanes lanes_to_ints(lanes value) {
+  return __builtin_convertvector(value, int_lanes);
+}
+
+/* The same bits as another type. */
+CONIC_INLINE lanes lanes_of_bits(index_lanes bits) {
+  return (lanes)bits;
+}
+
+CONIC_INLINE index_lanes lanes_to_bits(lanes value) {
+  return (index_lanes)value;
+}
+
+CONIC_INLINE int_lanes ints_of_indices(index_lanes value) {
+  return (int_lanes)value;
+}
+
+CONIC_INLINE index_lanes indices_of_ints(int_lanes value) {
+  return (index_lanes)value;
 }
 
 #if defined(__AVX512F__)
@@ -297,6 +326,10 @@ CONIC_INLINE lanes lanes_sqrt(lanes a) {
 #endif
 #endif
 
+CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {
+  return (int_lanes)lanes_select_indices(mask, (index_lanes)yes, (index_lanes)no);
+}
+
 CONIC_INLINE lanes lanes_absolute(lanes value) {
   return (lanes)((int_lanes)value & 0x7fffffff);
 }
@@ -368,27 +401,6 @@ CONIC_INLINE int_lanes lanes_alternating(int n) {
   return alternating;
 }
 
-/* conic_exp_negative (core/splats/kernel.h) in every lane: the same operations in the same order. */
-CONIC_INLINE lanes lanes_exp_negative(lanes x) {
-  x = lanes_max(x, lanes_of(-80.0f));
-  int_lanes k = __builtin_convertvector(x * 0x1.715476p+0f - 0.5f, int_lanes);
-  lanes k_float = __builtin_convertvector(k, lanes);
-  lanes r = (x - k_float * 0x1.63p-1f) + k_float * 0x1.bd0106p-13f;
-  lanes p = lanes_of(0x1.6a23cap-10f);
-  p = p * r + 0x1.123a20p-7f;
-  p = p * r + 0x1.5558f2p-5f;
-  p = p * r + 0x1.555492p-3f;
-  p = p * r + 0x1.fffffcp-2f;
-  p = (p * (r * r) + r) + 1.0f;
-  return (lanes)((int_lanes)p + k * (1 << 23));
-}
-
-/* conic_gauss_narrow, likewise. */
-CONIC_INLINE lanes lanes_gauss_narrow(lanes q) {
-  lanes t = q - 1.125f, t2 = t * t, t4 = t2 * t2;
-  lanes a = 0x1.23ba94p-1f + -0x1.23ba94p-2f * t, b = 0x1.23ba98p-4f + -0x1.84f89ap-7f * t;
-  lanes c = 0x1.84f19cp-10f + -0x1.373c6ep-13f * t, d = 0x1.a3885cp-17f + -0x1.d6063cp-21f * t;
-  return (a + t2 * b) + t4 * (c + t2 * d);
-}
+#include "core/lanes/lanes_exponential.h"
 
 #endif

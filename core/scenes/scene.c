@@ -137,7 +137,7 @@ void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color
 }
 
 /* Moves the place by jitter and noise, and makes it splat `at` of the set. */
-static void finish(const conic_scene *scene, uint64_t i, const conic_surface_point *point, conic_splats *splats,
+static void finish(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
                    size_t at) {
   const conic_scene_options *options = &scene->options;
   double sigma = 1.5 * scene->spacing / (double)options->cutoff;
@@ -173,7 +173,7 @@ static void place_chunk(void *data, size_t i_item, int i_thread) {
   uint64_t begin = (uint64_t)i_item * CHUNK, end = begin + CHUNK < work->n ? begin + CHUNK : work->n;
   (void)i_thread;
   for (uint64_t k = begin; k < end; k++) {
-    conic_surface_point point;
+    conic_scene_point point;
     work->scene->kind->place(work->scene, work->first + k, &point);
     finish(work->scene, work->first + k, &point, work->splats, (size_t)k);
   }
@@ -191,7 +191,7 @@ static void sample_lattice_point(void *cookie, const double start[3]) {
   slab->n_kept = conic_lattice_kept(&work->scene->lattice, ++slab->n_found);
   if (slab->n_kept == i || i < work->first || i - work->first >= work->n)
     return;
-  conic_surface_point point;
+  conic_scene_point point;
   work->scene->kind->project(work->scene->surface, start, &point);
   finish(work->scene, i, &point, work->splats, (size_t)(i - work->first));
 }

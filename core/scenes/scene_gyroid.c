@@ -101,7 +101,7 @@ static double evaluate(const double phase[3], double gradient[3]) {
 }
 
 /* Newton's iteration along the gradient; it starts less than a radian away. */
-static void project(const void *surface, const double start[3], conic_surface_point *point) {
+static void project(const void *surface, const double start[3], conic_scene_point *point) {
   double phase[3], gradient[3], squared = 1.0;
   (void)surface;
   for (int axis = 0; axis < 3; axis++)

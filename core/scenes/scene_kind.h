@@ -13,7 +13,7 @@
 #include "core/scenes/scene_lattice.h"
 
 /* A place on a surface. */
-struct conic_surface_point {
+struct conic_scene_point {
   double position[3];
   double normal[3]; /* unit, outward */
   uint8_t color[3]; /* sRGB codes, so that files keep colours exactly */
@@ -37,7 +37,7 @@ typedef struct conic_scene_kind {
   conic_status (*prepare)(conic_scene *scene);
 
   /* Sample i of scene->options.count; null: by the lattice. */
-  void (*place)(const conic_scene *scene, uint64_t i, conic_surface_point *point);
+  void (*place)(const conic_scene *scene, uint64_t i, conic_scene_point *point);
 
   /* The edges near a place on the face of sample i, whose outline has that radius; null: a surface without edges. */
   void (*edges)(const conic_scene *scene, uint64_t i, const double position[3], double radius,

@@ -98,7 +98,7 @@ static void frame_at(double parameter, curve_frame *frame) {
   frame->curvature = turning / (pace * pace * pace);
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
+static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   double along, around;
   curve_frame frame;
   conic_scene_golden(i, scene->options.count, &along, &around);

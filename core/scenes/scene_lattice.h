@@ -12,7 +12,7 @@
 
 #include "conic/context.h"
 
-typedef struct conic_surface_point conic_surface_point;
+typedef struct conic_scene_point conic_scene_point;
 
 typedef struct conic_lattice {
   size_t n_cells;         /* along an edge of the cube; the points are the cells' centres */
@@ -31,7 +31,7 @@ typedef void conic_lattice_walk(const void *surface, const conic_lattice *lattic
                                 conic_lattice_visit *visit, void *cookie);
 
 /* Carries a place that the walk gave onto the surface. Thread-safe. */
-typedef void conic_lattice_project(const void *surface, const double start[3], conic_surface_point *point);
+typedef void conic_lattice_project(const void *surface, const double start[3], conic_scene_point *point);
 
 /* The coordinate of the i-th cells' centres, along any axis. */
 static inline double conic_lattice_coordinate(const conic_lattice *lattice, size_t i) {

@@ -11,7 +11,7 @@ static uint64_t exact_root(uint64_t count) {
   return root * root == count ? root : 0;
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
+static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   uint64_t count = scene->options.count, edge = exact_root(count);
   double u, v;
   if (edge) {
@@ -22,7 +22,7 @@ static void place(const conic_scene *scene, uint64_t i, conic_surface_point *poi
     conic_scene_golden(i, count, &v, &u);
   }
   int is_white = ((int)(u * SQUARES) + (int)(v * SQUARES)) % 2;
-  *point = (conic_surface_point){.position = {u - 0.5, v - 0.5, 0.0}, .normal = {0.0, 0.0, 1.0}};
+  *point = (conic_scene_point){.position = {u - 0.5, v - 0.5, 0.0}, .normal = {0.0, 0.0, 1.0}};
   for (int c = 0; c < 3; c++)
     point->color[c] = is_white ? WHITE : DARK;
 }

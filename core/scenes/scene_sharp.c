@@ -20,17 +20,17 @@ typedef struct box_piece {
 
 enum { MAX_PIECES = 12, WHOLE = 24, CHECKERS = 8 };
 
-typedef struct box {
+typedef struct sharp_box {
   int n_pieces;
   const box_face *faces;
   box_piece pieces[MAX_PIECES];
-} box;
+} sharp_box;
 
 static const box_face cube_faces[] = {{0, 0, -1.0, -0.5, -0.5, 0.5}, {1, 0, -1.0, -0.5, -0.5, 0.5},
                                       {2, 0, -1.0, -0.5, -0.5, 0.5}, {0, 0, 1.0, 0.5, -0.5, 0.5},
                                       {1, 0, 1.0, 0.5, -0.5, 0.5},   {2, 0, 1.0, 0.5, -0.5, 0.5}};
 
-static const box cube = {
+static const sharp_box cube = {
     6,
     cube_faces,
     {{0, {-0.5, -0.5}, {0.5, 0.5}, 4},
@@ -46,7 +46,7 @@ static const box_face corner_faces[] = {
     {0, 1, 1.0, 0.5, -0.5, 0.5},   {1, 1, 1.0, 0.5, -0.5, 0.5},   {2, 1, 1.0, 0.5, -0.5, 0.5},
     {0, 0, 1.0, 0.0, 0.0, 0.5},    {1, 0, 1.0, 0.0, 0.0, 0.5},    {2, 0, 1.0, 0.0, 0.0, 0.5}};
 
-static const box corner = {
+static const sharp_box corner = {
     12,
     corner_faces,
     {{0, {-0.5, -0.5}, {0.5, 0.5}, 4},
@@ -71,7 +71,7 @@ static const uint8_t palette[][2][3] = {
     {{0xd9, 0x8c, 0x5f}, {0xbd, 0x72, 0x47}}, {{0x8f, 0xb3, 0x5a}, {0x76, 0x98, 0x43}},
     {{0x6f, 0x7f, 0x92}, {0x59, 0x68, 0x7a}}};
 
-static const box *box_of(const conic_scene *scene) {
+static const sharp_box *box_of(const conic_scene *scene) {
   return scene->options.type == CONIC_SCENE_CUBE ? &cube : &corner;
 }
 
@@ -82,7 +82,7 @@ static conic_status prepare(conic_scene *scene) {
 
 /* The piece of sample i, and which of its n samples that is. */
 static const box_piece *piece_at(const conic_scene *scene, uint64_t i, uint64_t *i_in_piece, uint64_t *n) {
-  const box *b = box_of(scene);
+  const sharp_box *b = box_of(scene);
   uint64_t count = scene->options.count, area = 0, first = 0;
   for (int k = 0;; k++) {
     area += b->pieces[k].area;
@@ -96,13 +96,13 @@ static const box_piece *piece_at(const conic_scene *scene, uint64_t i, uint64_t 
   }
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
+static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   uint64_t i_in_piece, n;
   double at[2];
   const box_piece *piece = piece_at(scene, i, &i_in_piece, &n);
   const box_face *face = &box_of(scene)->faces[piece->i_face];
   conic_scene_golden(i_in_piece, n, &at[0], &at[1]);
-  *point = (conic_surface_point){.position = {0.0, 0.0, 0.0}};
+  *point = (conic_scene_point){.position = {0.0, 0.0, 0.0}};
   point->position[face->axis] = face->level;
   point->normal[face->axis] = face->side;
   int parity = 0;

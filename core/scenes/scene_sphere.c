@@ -9,13 +9,13 @@ enum { MERIDIANS = 24, PARALLELS = 12 };
 static const uint8_t ivory[3] = {0xf4, 0xe9, 0xd3}, teal[3] = {0x1c, 0x5d, 0x6b};
 
 /* The heights of the parallels, from the north pole's side; height 1 itself left out. */
-typedef struct sphere {
+typedef struct scene_sphere {
   double parallels[PARALLELS - 1];
-} sphere;
+} scene_sphere;
 
 static conic_status prepare(conic_scene *scene) {
   scene->area = 4.0 * CONIC_PI;
-  sphere *made = conic_scene_surface(scene, sizeof *made);
+  scene_sphere *made = conic_scene_surface(scene, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < PARALLELS - 1; i++)
@@ -25,8 +25,8 @@ static conic_status prepare(conic_scene *scene) {
 
 /* The Fibonacci lattice: heights in even steps (a zone's area is its height's), longitudes turning by the golden ratio.
  */
-static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
-  const sphere *surface = scene->surface;
+static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+  const scene_sphere *surface = scene->surface;
   uint64_t n = scene->options.count;
   double from_pole, turns;
   conic_scene_golden(i, n, &from_pole, &turns);

@@ -107,17 +107,17 @@ typedef struct terrain {
 /* Cells along each edge of the grid that the area is measured on. */
 enum { AREA_CELLS = 512 };
 
-typedef struct measuring {
+typedef struct area_measuring {
   uint64_t seed;
   double rows[AREA_CELLS];
-} measuring;
+} area_measuring;
 
 static double stretch(const conic_terrain_place *place) {
   return sqrt(1.0 + place->slope[0] * place->slope[0] + place->slope[1] * place->slope[1]);
 }
 
 static void measure_row(void *data, size_t i_row, int i_thread) {
-  measuring *work = data;
+  area_measuring *work = data;
   const double step = 2.0 / AREA_CELLS;
   double sum = 0.0;
   (void)i_thread;
@@ -134,7 +134,7 @@ static conic_status prepare(conic_scene *scene) {
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->seed = scene->options.seed;
-  measuring work = {.seed = made->seed};
+  area_measuring work = {.seed = made->seed};
   conic_parallel_for(scene->context, AREA_CELLS, measure_row, &work);
   for (int i = 0; i < AREA_CELLS; i++)
     scene->area += work.rows[i];
@@ -167,13 +167,13 @@ static void walk(const void *surface, const conic_lattice *lattice, size_t i_sla
 }
 
 /* Up onto the surface. */
-static void project(const void *surface, const double start[3], conic_surface_point *point) {
+static void project(const void *surface, const double start[3], conic_scene_point *point) {
   const terrain *self = surface;
   conic_terrain_place place;
   conic_terrain_at(self->seed, start[0], start[2], &place);
   double length = stretch(&place);
-  *point = (conic_surface_point){.position = {start[0], place.height, start[2]},
-                                 .normal = {-place.slope[0] / length, 1.0 / length, -place.slope[1] / length}};
+  *point = (conic_scene_point){.position = {start[0], place.height, start[2]},
+                               .normal = {-place.slope[0] / length, 1.0 / length, -place.slope[1] / length}};
   paint(self->seed, start[0], start[2], &place, point->color);
 }
 

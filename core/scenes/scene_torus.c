@@ -14,7 +14,7 @@ static conic_status prepare(conic_scene *scene) {
   return CONIC_OK;
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_surface_point *point) {
+static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   double around_axis, around_tube;
   conic_scene_golden(i, scene->options.count, &around_axis, &around_tube);
   double longitude = 2.0 * CONIC_PI * around_axis;
@@ -23,8 +23,8 @@ static void place(const conic_scene *scene, uint64_t i, conic_surface_point *poi
   double east = conic_sin(longitude), south = conic_cos(longitude);
   double outward = conic_cos(angle), upward = conic_sin(angle);
   double radius = RING_RADIUS + TUBE_RADIUS * outward;
-  *point = (conic_surface_point){.position = {radius * east, TUBE_RADIUS * upward, radius * south},
-                                 .normal = {outward * east, upward, outward * south}};
+  *point = (conic_scene_point){.position = {radius * east, TUBE_RADIUS * upward, radius * south},
+                               .normal = {outward * east, upward, outward * south}};
   int sector = (int)(around_axis * SECTORS);
   int band = (int)(angle * (BANDS / (2.0 * CONIC_PI))); /* the angle is in [0, 2π] */
   int is_cream = (sector + band) % 2;

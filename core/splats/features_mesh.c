@@ -2,6 +2,7 @@
  * wedge, so that each gets an ellipse from its own side alone. What of it reaches over the crease is clipped where its
  * plane meets its mate's: both are clipped at the same line in space, whatever the surface does around it. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -69,30 +70,10 @@ static void join(uint32_t *parents, uint32_t a, uint32_t b) {
     parents[a] = b;
 }
 
-static int comes_before(const spoke *a, const spoke *b) {
-  return a->other != b->other ? a->other < b->other : a->member < b->member;
-}
-
-/* Heapsort: bounded for any fan of triangles. */
-static void sort_spokes(spoke *spokes, size_t n) {
-  for (size_t begin = n / 2, end = n; end > 1;) {
-    spoke moved;
-    if (begin > 0)
-      moved = spokes[--begin];
-    else {
-      moved = spokes[--end];
-      spokes[end] = spokes[0];
-    }
-    size_t at = begin;
-    for (size_t child = 2 * at + 1; child < end; child = 2 * at + 1) {
-      child += child + 1 < end && comes_before(&spokes[child], &spokes[child + 1]);
-      if (!comes_before(&moved, &spokes[child]))
-        break;
-      spokes[at] = spokes[child];
-      at = child;
-    }
-    spokes[at] = moved;
-  }
+static int compare_spokes(const void *first, const void *second) {
+  const spoke *a = first, *b = second;
+  return a->other != b->other ? (a->other > b->other) - (a->other < b->other)
+                              : (a->member > b->member) - (a->member < b->member);
 }
 
 /* The edges at a vertex, those to the same other end side by side. */
@@ -105,7 +86,7 @@ static size_t list_spokes(const splitting *s, size_t vertex) {
     s->spokes[n++] = (spoke){next, after, s->ring.triangles[i], member, 1};
     s->spokes[n++] = (spoke){after, next, s->ring.triangles[i], member, 0};
   }
-  sort_spokes(s->spokes, n);
+  qsort(s->spokes, n, sizeof *s->spokes, compare_spokes);
   return n;
 }
 

@@ -32,13 +32,13 @@ typedef struct slot_plane {
   uint8_t is_turned; /* taken over from a neighbour */
 } slot_plane;
 
-typedef struct search {
+typedef struct feature_search {
   const conic_splats *splats;
   const conic_neighbourhood *neighbourhood;
   double cosine, cutoff;
   slot_plane *small, *final;
   conic_clip *clips; /* by slot, those of its point; n_lines 0: none */
-} search;
+} feature_search;
 
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -49,7 +49,7 @@ static void normal_of(const slot_plane *plane, double normal[3]) {
     normal[axis] = (double)plane->normal[axis];
 }
 
-static void from_to(const search *s, size_t from, size_t to, double d[3]) {
+static void from_to(const feature_search *s, size_t from, size_t to, double d[3]) {
   double start[3];
   conic_neighbourhood_position(s->neighbourhood, from, start);
   conic_neighbourhood_position(s->neighbourhood, to, d);
@@ -57,12 +57,12 @@ static void from_to(const search *s, size_t from, size_t to, double d[3]) {
     d[axis] -= start[axis];
 }
 
-static size_t n_few(const search *s) {
+static size_t n_few(const feature_search *s) {
   return s->neighbourhood->n_neighbours < FEW ? s->neighbourhood->n_neighbours : FEW;
 }
 
 /* The plane of the nearest few: the direction in which they and the slot spread least about their mean. */
-static void fit_small(const search *s, size_t slot, slot_plane *plane) {
+static void fit_small(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   size_t n = n_few(s);
   double mean[3] = {0.0, 0.0, 0.0}, d[FEW][3], matrix[6] = {0.0}, values[3], vectors[3][3];
@@ -89,7 +89,7 @@ static void fit_small(const search *s, size_t slot, slot_plane *plane) {
 }
 
 static void fit_slots(void *data, size_t begin, size_t end) {
-  const search *s = data;
+  const feature_search *s = data;
   for (size_t slot = begin; slot < end; slot++)
     fit_small(s, slot, &s->small[slot]);
 }
@@ -110,7 +110,7 @@ static int is_in_plane(const slot_plane *plane, const double d[3]) {
 }
 
 /* How rough the splat's own plane is, among all the neighbours. */
-static double wide_roughness(const search *s, size_t slot, const double normal[3]) {
+static double wide_roughness(const feature_search *s, size_t slot, const double normal[3]) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   double across = 0.0, all = 0.0;
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
@@ -123,7 +123,7 @@ static double wide_roughness(const search *s, size_t slot, const double normal[3
 }
 
 /* The plane that a slot's splat is to lie in: that of its axes, where it is flat; else the flattest about. */
-static void choose_plane(const search *s, size_t slot, slot_plane *plane) {
+static void choose_plane(const feature_search *s, size_t slot, slot_plane *plane) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, slot);
   const slot_plane *flattest = &s->small[slot];
   const float *outward = s->neighbourhood->normals[slot]; /* where it is flat, the splat's own normal is sure */
@@ -156,20 +156,20 @@ static void choose_plane(const search *s, size_t slot, slot_plane *plane) {
 }
 
 static void choose_planes(void *data, size_t begin, size_t end) {
-  const search *s = data;
+  const feature_search *s = data;
   for (size_t slot = begin; slot < end; slot++)
     choose_plane(s, slot, &s->final[slot]);
 }
 
 /* A slot's splat in hand. */
-typedef struct place {
+typedef struct slot_splat {
   size_t slot, point;
   double normal[3], u[3], v[3]; /* u and v: of length 1 */
   double spacing, radius;       /* of the outline */
   size_t n_places;              /* the neighbours in the same plane, half way to them */
   double places[CONIC_MAX_NEIGHBOURS][2];
   double middle[2]; /* of these: says which side is the splat's own, if it lies on a crease */
-} place;
+} slot_splat;
 
 static double axis_length(float *const axes[3], size_t i) {
   double squared = 0.0;
@@ -178,8 +178,8 @@ static double axis_length(float *const axes[3], size_t i) {
   return sqrt(squared);
 }
 
-static place place_of(const search *s, size_t slot) {
-  place p = {.slot = slot, .point = s->neighbourhood->tree.point_of_slot[slot]};
+static slot_splat place_of(const feature_search *s, size_t slot) {
+  slot_splat p = {.slot = slot, .point = s->neighbourhood->tree.point_of_slot[slot]};
   double greater = axis_length(s->splats->tangent_u, p.point), lesser = axis_length(s->splats->tangent_v, p.point);
   normal_of(&s->final[slot], p.normal);
   conic_tangent_basis(p.normal, p.u, p.v);
@@ -190,7 +190,7 @@ static place place_of(const search *s, size_t slot) {
 
 /* Where the neighbour's plane meets the slot's: the line keeps the slot's own side, on which its like are. In units of
  * the unit axes. */
-static int meet(const search *s, const place *p, size_t mate, double line[3]) {
+static int meet(const feature_search *s, const slot_splat *p, size_t mate, double line[3]) {
   double normal[3], d[3];
   normal_of(&s->final[mate], normal);
   from_to(s, mate, p->slot, d);
@@ -212,7 +212,7 @@ static int meet(const search *s, const place *p, size_t mate, double line[3]) {
 
 /* Notes the creases with the neighbours' planes; returns the distance of the nearest, or infinity. Only flat planes
  * count: what is still blunt says nothing. */
-static double find_lines(const search *s, const place *p, double reach, conic_clip_choice *choice) {
+static double find_lines(const feature_search *s, const slot_splat *p, double reach, conic_clip_choice *choice) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, p->slot);
   double nearest = HUGE_VAL;
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
@@ -227,7 +227,7 @@ static double find_lines(const search *s, const place *p, double reach, conic_cl
 }
 
 /* The neighbours in the same plane: a crease leaves them whole. */
-static void find_places(const search *s, place *p) {
+static void find_places(const feature_search *s, slot_splat *p) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, p->slot);
   p->n_places = 0;
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
@@ -246,7 +246,7 @@ static void find_places(const search *s, place *p) {
 }
 
 /* Writes the splat anew as a circle in its plane, and its lines in units of that. */
-static void write_circle(const search *s, const place *p, double radius) {
+static void write_circle(const feature_search *s, const slot_splat *p, double radius) {
   double sigma = radius / s->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     s->splats->tangent_u[axis][p->point] = (float)(sigma * p->u[axis]);
@@ -255,7 +255,7 @@ static void write_circle(const search *s, const place *p, double radius) {
 }
 
 /* Lines in units of unit axes become lines in units of the splat's. */
-static void scale_lines(const search *s, const place *p, conic_clip *clip) {
+static void scale_lines(const feature_search *s, const slot_splat *p, conic_clip *clip) {
   for (int i = 0; i < clip->n_lines; i++) {
     double a = (double)clip->lines[i][0], b = (double)clip->lines[i][1], scaled[2] = {0.0, 0.0};
     for (int axis = 0; axis < 3; axis++) {
@@ -268,8 +268,8 @@ static void scale_lines(const search *s, const place *p, conic_clip *clip) {
   }
 }
 
-static void clip_slot(const search *s, size_t slot) {
-  place p = place_of(s, slot);
+static void clip_slot(const feature_search *s, size_t slot) {
+  slot_splat p = place_of(s, slot);
   conic_clip_choice choice = {.n = 0};
   conic_clip *clip = &s->clips[slot];
   *clip = (conic_clip){.splat = (uint32_t)p.point};
@@ -293,7 +293,7 @@ static void clip_slot(const search *s, size_t slot) {
 }
 
 static void clip_slots(void *data, size_t begin, size_t end) {
-  const search *s = data;
+  const feature_search *s = data;
   for (size_t slot = begin; slot < end; slot++)
     clip_slot(s, slot);
 }
@@ -317,7 +317,7 @@ static void set_normals(const conic_splats *splats, conic_neighbourhood *neighbo
 
 /* A point that coincides with an earlier one becomes like it where that has become sharp. Returns its slot, or
  * CONIC_NO_SLOT where it has no clip lines. */
-static size_t follow_slot(const search *s, size_t point) {
+static size_t follow_slot(const feature_search *s, size_t point) {
   const conic_neighbours *tree = &s->neighbourhood->tree;
   size_t slot = tree->slot_of_point[point];
   if (slot == CONIC_NO_SLOT || (!s->clips[slot].n_lines && !s->final[slot].is_turned))
@@ -330,7 +330,7 @@ static size_t follow_slot(const search *s, size_t point) {
 }
 
 /* Slots are in the tree's order, records in that of the splats. */
-static conic_status hand_over(conic_context *context, const search *s, conic_splats *splats) {
+static conic_status hand_over(conic_context *context, const feature_search *s, conic_splats *splats) {
   size_t n = 0;
   for (size_t i = 0; i < splats->count; i++)
     n += follow_slot(s, i) != CONIC_NO_SLOT;
@@ -353,7 +353,8 @@ static conic_status hand_over(conic_context *context, const search *s, conic_spl
   return CONIC_OK;
 }
 
-static conic_status run(conic_context *context, search *s, conic_neighbourhood *neighbourhood, conic_splats *splats) {
+static conic_status run(conic_context *context, feature_search *s, conic_neighbourhood *neighbourhood,
+                        conic_splats *splats) {
   size_t n = neighbourhood->tree.n_slots;
   s->neighbourhood = neighbourhood;
   s->small = conic_memory_allocate(context, n, sizeof *s->small);
@@ -385,7 +386,7 @@ conic_status conic_features_in_points(conic_context *context, double cosine, con
                                       conic_splats *splats) {
   const float *const positions[3] = {splats->position[0], splats->position[1], splats->position[2]};
   conic_neighbourhood neighbourhood;
-  search s = {.splats = splats, .cosine = cosine, .cutoff = (double)options->cutoff};
+  feature_search s = {.splats = splats, .cosine = cosine, .cutoff = (double)options->cutoff};
   conic_status status =
       conic_neighbourhood_create(context, positions, splats->count, (size_t)options->n_neighbours, &neighbourhood);
   if (status != CONIC_OK)

@@ -19,15 +19,15 @@ typedef struct spreading {
 } spreading;
 
 /* A triangle as seen from one of its vertices. */
-typedef struct corner {
+typedef struct vertex_triangle {
   size_t vertices[3]; /* this one, the next, the one after it */
   double edges[2][3]; /* to the next vertex and to the one after it */
   double cross[3];    /* of the edges: along the normal, twice the area long */
   double cross2;
-} corner;
+} vertex_triangle;
 
 /* Returns 0 for a triangle without area. */
-static int view_corner(const conic_model *model, const uint32_t triangle[3], size_t vertex, corner *c) {
+static int view_corner(const conic_model *model, const uint32_t triangle[3], size_t vertex, vertex_triangle *c) {
   int at = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
   for (int i = 0; i < 3; i++)
     c->vertices[i] = triangle[(at + i) % 3];
@@ -53,7 +53,7 @@ static double square(const double v[3]) {
 static int face_normal(const spreading *in, size_t vertex, double normal[3]) {
   const conic_model *model = in->estimate->model;
   double sum[3] = {0.0, 0.0, 0.0};
-  corner c;
+  vertex_triangle c;
   for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
     if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
       double weight = 1.0 / (square(c.edges[0]) * square(c.edges[1]));
@@ -72,8 +72,8 @@ static double dot(const double a[3], const double b[3]) {
 
 /* Where the tip of `d` comes to lie in the tangent plane (u, v). Along the face's normal, so that what is seen straight
  * on the face is covered; from a face steeper than 60° as if it had 60°; or else straight down. */
-static void meet_plane(const corner *c, const double d[3], const double normal[3], const double u[3], const double v[3],
-                       int is_straight, double met[2]) {
+static void meet_plane(const vertex_triangle *c, const double d[3], const double normal[3], const double u[3],
+                       const double v[3], int is_straight, double met[2]) {
   double length = sqrt(c->cross2), cosine = dot(c->cross, normal) / length, way = 0.0;
   double sign = cosine < 0.0 ? -1.0 : 1.0;
   if (!is_straight)
@@ -82,7 +82,7 @@ static void meet_plane(const corner *c, const double d[3], const double normal[3
   met[1] = dot(d, v) - way * dot(c->cross, v);
 }
 
-static int is_steep(const spreading *in, const corner *c, int i) {
+static int is_steep(const spreading *in, const vertex_triangle *c, int i) {
   return fabs(dot(c->cross, in->normals[c->vertices[i]])) < STEEP * sqrt(c->cross2);
 }
 
@@ -90,7 +90,7 @@ enum { MAX_SUPPORT = 5 };
 
 /* What the vertex's ellipse must cover for this triangle, in its tangent plane. Where the triangle is steep for a
  * vertex (the tip of a horn), the share of that vertex goes to the others, and its own ellipse only closes the end. */
-static int view_support(const spreading *in, const corner *c, const double u[3], const double v[3],
+static int view_support(const spreading *in, const vertex_triangle *c, const double u[3], const double v[3],
                         double support[MAX_SUPPORT][2]) {
   const double *normal = in->normals[c->vertices[0]];
   int steep[3] = {is_steep(in, c, 0), is_steep(in, c, 1), is_steep(in, c, 2)}, n = 3;
@@ -115,7 +115,7 @@ static void spread_vertex(const spreading *in, size_t vertex) {
   double u[3], v[3], support[MAX_SUPPORT][2], covariance[3] = {0.0, 0.0, 0.0}, area = 0.0, greatest2 = 0.0;
   double flatness = 1.0; /* the least cosine to a face */
   float tangent_u[3], tangent_v[3];
-  corner c;
+  vertex_triangle c;
   conic_tangent_basis(in->normals[vertex], u, v);
   for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
     if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
@@ -164,7 +164,7 @@ static void find_normals(void *data, size_t begin, size_t end) {
       in->normals[vertex][0] = NAN;
       continue;
     }
-    if (given[0] && conic_unit_vector(given[0][vertex], given[1][vertex], given[2][vertex], of_file))
+    if (given[0] && conic_unit_vector(given, vertex, of_file))
       memcpy(in->normals[vertex], of_file, sizeof of_file);
   }
 }

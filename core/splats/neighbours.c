@@ -25,7 +25,7 @@ static int lies_before(const conic_neighbours *tree, size_t a, size_t b) {
   return 0;
 }
 
-typedef struct search {
+typedef struct neighbour_search {
   const conic_neighbours *tree;
   double query[3];
   uint32_t except;
@@ -33,9 +33,9 @@ typedef struct search {
   double limit2; /* what is farther is not wanted: the limit, later the k-th distance */
   uint32_t *slots;
   double *distances2;
-} search;
+} neighbour_search;
 
-static void insert(search *s, uint32_t slot, double distance2) {
+static void insert(neighbour_search *s, uint32_t slot, double distance2) {
   size_t i = s->n_found;
   if (i == s->k) {
     i--;
@@ -56,7 +56,7 @@ static void insert(search *s, uint32_t slot, double distance2) {
     s->limit2 = s->distances2[s->k - 1];
 }
 
-static void search_leaf(search *s, size_t i_leaf) {
+static void search_leaf(neighbour_search *s, size_t i_leaf) {
   double distances2[CONIC_LEAF_SLOTS];
   size_t begin = conic_neighbours_leaf_begin(s->tree, i_leaf);
   size_t n = conic_neighbours_leaf_begin(s->tree, i_leaf + 1) - begin;
@@ -69,7 +69,7 @@ static void search_leaf(search *s, size_t i_leaf) {
 
 size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query[3], uint32_t except, size_t k,
                                 double limit2, uint32_t *slots, double *distances2) {
-  search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, NULL, NULL};
+  neighbour_search s = {tree, {query[0], query[1], query[2]}, except, k, 0, limit2, NULL, NULL};
   s.slots = slots;
   s.distances2 = distances2;
   struct {

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/splats/neighbours.h"
 
@@ -11,19 +12,13 @@ enum { SHARED_LEVELS = 6 };
 /* Building the tree of so many takes long enough to be reported. */
 enum { MANY_SLOTS = 1 << 18, SUBTREES_A_REPORT = 4 };
 
-typedef struct record {
+typedef struct point_record {
   float position[3];
   uint32_t point;
-} record;
+} point_record;
 
-static int is_finite(const record *r) {
+static int is_finite(const point_record *r) {
   return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
-}
-
-static uint64_t mix(uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
 }
 
 /* Positions that are equal as numbers have equal hashes: adding zero makes -0 to 0. */
@@ -33,7 +28,7 @@ static uint64_t hash_position(const float position[3]) {
     float value = position[axis] + 0.0f;
     memcpy(&bits[axis], &value, sizeof value);
   }
-  return mix(mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
+  return conic_random_mix(conic_random_mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
 }
 
 static int same_position(const float a[3], const float b[3]) {
@@ -43,7 +38,7 @@ static int same_position(const float a[3], const float b[3]) {
 /* Gathers the finite positions into `records`, coincident ones once; slot_of_point becomes the number of the point's
  * record, for the time being. */
 static conic_status gather(conic_context *context, const float *const positions[3], conic_neighbours *tree,
-                           record *records) {
+                           point_record *records) {
   size_t n_buckets = 16;
   while (n_buckets < tree->n_points + tree->n_points / 2)
     n_buckets *= 2;
@@ -53,7 +48,7 @@ static conic_status gather(conic_context *context, const float *const positions[
   memset(buckets, 0xFF, n_buckets * sizeof *buckets);
   size_t n_records = 0;
   for (size_t i = 0; i < tree->n_points; i++) {
-    record r = {{positions[0][i], positions[1][i], positions[2][i]}, (uint32_t)i};
+    point_record r = {{positions[0][i], positions[1][i], positions[2][i]}, (uint32_t)i};
     tree->slot_of_point[i] = CONIC_NO_SLOT;
     if (!is_finite(&r)) {
       tree->n_not_finite++;
@@ -75,7 +70,7 @@ static conic_status gather(conic_context *context, const float *const positions[
 }
 
 /* A strict order of the records: by the axis, then the next ones, so that what goes left of a split is settled. */
-static int comes_before(const record *a, const record *b, int axis) {
+static int comes_before(const point_record *a, const point_record *b, int axis) {
   if (a->position[axis] != b->position[axis])
     return a->position[axis] < b->position[axis];
   for (int step = 1; step < 3; step++) {
@@ -86,9 +81,9 @@ static int comes_before(const record *a, const record *b, int axis) {
   return 0;
 }
 
-static record median_of_three(const record *a, const record *b, const record *c, int axis) {
+static point_record median_of_three(const point_record *a, const point_record *b, const point_record *c, int axis) {
   if (comes_before(b, a, axis)) {
-    const record *swap = a;
+    const point_record *swap = a;
     a = b;
     b = swap;
   }
@@ -97,13 +92,15 @@ static record median_of_three(const record *a, const record *b, const record *c,
 
 /* Reorders so that the first n_left records come before all others along the axis (Hoare's FIND). Pivots are drawn
  * from places that no common arrangement of points conspires against. */
-static void partition(record *records, size_t n, size_t n_left, int axis) {
+static void partition(point_record *records, size_t n, size_t n_left, int axis) {
   ptrdiff_t begin = 0, last = (ptrdiff_t)n - 1, wanted = (ptrdiff_t)n_left;
   while (begin < last) {
-    uint64_t draw = mix((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last), span = (uint64_t)(last - begin) + 1;
-    const record *from = records + begin;
-    record pivot = median_of_three(&from[(draw & 0xFFFFF) * span >> 20], &from[(draw >> 20 & 0xFFFFF) * span >> 20],
-                                   &from[(draw >> 40 & 0xFFFFF) * span >> 20], axis);
+    uint64_t draw = conic_random_mix((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last),
+             span = (uint64_t)(last - begin) + 1;
+    const point_record *from = records + begin;
+    point_record pivot =
+        median_of_three(&from[(draw & 0xFFFFF) * span >> 20], &from[(draw >> 20 & 0xFFFFF) * span >> 20],
+                        &from[(draw >> 40 & 0xFFFFF) * span >> 20], axis);
     ptrdiff_t low = begin, high = last;
     while (low <= high) {
       while (comes_before(&records[low], &pivot, axis))
@@ -111,7 +108,7 @@ static void partition(record *records, size_t n, size_t n_left, int axis) {
       while (comes_before(&pivot, &records[high], axis))
         high--;
       if (low <= high) {
-        record swap = records[low];
+        point_record swap = records[low];
         records[low++] = records[high];
         records[high--] = swap;
       }
@@ -125,11 +122,11 @@ static void partition(record *records, size_t n, size_t n_left, int axis) {
 
 typedef struct build {
   conic_neighbours *tree;
-  record *records;
+  point_record *records;
   size_t n_level_nodes; /* nodes of the level at work */
 } build;
 
-static void bound_box(const record *records, size_t n, float box[6]) {
+static void bound_box(const point_record *records, size_t n, float box[6]) {
   for (int axis = 0; axis < 3; axis++)
     box[axis] = box[3 + axis] = records[0].position[axis];
   for (size_t i = 1; i < n; i++)
@@ -199,7 +196,7 @@ static conic_status make_tree(conic_context *context, build *b) {
 }
 
 /* Takes the positions in their final order, and turns record numbers into slots by way of `slot_of_record`. */
-static void settle(conic_neighbours *tree, const record *records, uint32_t *slot_of_record) {
+static void settle(conic_neighbours *tree, const point_record *records, uint32_t *slot_of_record) {
   for (size_t slot = 0; slot < tree->n_slots; slot++) {
     for (int axis = 0; axis < 3; axis++)
       tree->position[axis][slot] = records[slot].position[axis];
@@ -224,7 +221,7 @@ static conic_status allocate_tree(conic_context *context, conic_neighbours *tree
 }
 
 static conic_status build_with(conic_context *context, const float *const positions[3], conic_neighbours *tree,
-                               record *records) {
+                               point_record *records) {
   conic_status status = gather(context, positions, tree, records);
   if (status == CONIC_OK)
     status = allocate_tree(context, tree);
@@ -248,7 +245,7 @@ conic_status conic_neighbours_build(conic_context *context, const float *const p
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu points are too many to find neighbours for", count);
   tree->n_points = count;
   tree->slot_of_point = conic_memory_allocate(context, count, sizeof *tree->slot_of_point);
-  record *records = conic_memory_allocate(context, count, sizeof *records);
+  point_record *records = conic_memory_allocate(context, count, sizeof *records);
   conic_status status = CONIC_ERROR_MEMORY;
   if (records && tree->slot_of_point)
     status = build_with(context, positions, tree, records);

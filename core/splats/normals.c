@@ -163,19 +163,19 @@ static void turn(conic_neighbourhood *neighbourhood, size_t slot) {
 }
 
 /* What hangs together, at its root: the middle, and how much its normals point away from there. */
-typedef struct part {
+typedef struct connected_part {
   double middle[3];
   double count, outwards;
-} part;
+} connected_part;
 
 /* Turns every guessed normal to its root's sign, and then whole parts that point inwards: the sum of n · (p - middle)
  * is three times the volume of a closed surface, so its sign is safe from single points and their noise. */
-static void settle_signs(linking *l, part *parts) {
+static void settle_signs(linking *l, connected_part *parts) {
   conic_neighbourhood *neighbourhood = l->neighbourhood;
   size_t n_slots = neighbourhood->tree.n_slots;
   for (size_t slot = 0; slot < n_slots; slot++) {
     unsigned flip;
-    part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
+    connected_part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
     if (flip)
       turn(neighbourhood, slot);
     for (int axis = 0; axis < 3; axis++)
@@ -184,7 +184,7 @@ static void settle_signs(linking *l, part *parts) {
   }
   for (size_t slot = 0; slot < n_slots; slot++) {
     unsigned flip;
-    part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
+    connected_part *p = &parts[find_root(l, (uint32_t)slot, &flip)];
     for (int axis = 0; axis < 3; axis++)
       p->outwards += (double)neighbourhood->normals[slot][axis] *
                      ((double)neighbourhood->tree.position[axis][slot] - p->middle[axis] / p->count);
@@ -197,7 +197,8 @@ static void settle_signs(linking *l, part *parts) {
   }
 }
 
-static conic_status orient_with(conic_context *context, linking *l, part *parts, size_t *starts, uint64_t *order) {
+static conic_status orient_with(conic_context *context, linking *l, connected_part *parts, size_t *starts,
+                                uint64_t *order) {
   conic_status status = conic_slots_for(context, l->neighbourhood->tree.n_slots, doubt_slots, l, 0.5, 0.55);
   if (status == CONIC_OK)
     status = join_links(context, l, order, sort_links(l, starts, order));
@@ -213,7 +214,7 @@ conic_status conic_normals_orient(conic_context *context, conic_neighbourhood *n
   l.doubt = conic_memory_allocate(context, n_slots, LINKS * sizeof *l.doubt);
   l.parent = conic_memory_allocate(context, n_slots + 1, sizeof *l.parent);
   l.flip = conic_memory_allocate(context, n_slots + 1, sizeof *l.flip);
-  part *parts = conic_memory_allocate_zeroed(context, n_slots + 1, sizeof *parts);
+  connected_part *parts = conic_memory_allocate_zeroed(context, n_slots + 1, sizeof *parts);
   size_t *starts = conic_memory_allocate_zeroed(context, STEPS + 2, sizeof *starts);
   uint64_t *order = conic_memory_allocate(context, n_slots, LINKS * sizeof *order);
   conic_status status = CONIC_ERROR_MEMORY;

@@ -32,14 +32,14 @@
 #define PI 3.14159265358979323846
 
 /* A slot as the origin of its tangent plane. */
-typedef struct place {
+typedef struct tangent_origin {
   const conic_neighbourhood *neighbourhood;
   const uint32_t *list;
   double position[3], normal[3];
-} place;
+} tangent_origin;
 
 /* The vector to a neighbour, and whether it is on the same surface. */
-static int view_neighbour(const place *p, uint32_t slot, double d[3], double *distance2) {
+static int view_neighbour(const tangent_origin *p, uint32_t slot, double d[3], double *distance2) {
   const float *normal = p->neighbourhood->normals[slot];
   double cosine = 0.0, height = 0.0;
   conic_neighbourhood_position(p->neighbourhood, slot, d);
@@ -53,8 +53,8 @@ static int view_neighbour(const place *p, uint32_t slot, double d[3], double *di
   return cosine >= LEAST_COSINE && height * height <= GREATEST_SLOPE * GREATEST_SLOPE * *distance2;
 }
 
-static place place_at(const conic_neighbourhood *neighbourhood, size_t slot) {
-  place p = {neighbourhood, conic_neighbourhood_of(neighbourhood, slot), {0.0}, {0.0}};
+static tangent_origin place_at(const conic_neighbourhood *neighbourhood, size_t slot) {
+  tangent_origin p = {neighbourhood, conic_neighbourhood_of(neighbourhood, slot), {0.0}, {0.0}};
   conic_neighbourhood_position(neighbourhood, slot, p.position);
   for (int axis = 0; axis < 3; axis++)
     p.normal[axis] = (double)neighbourhood->normals[slot][axis];
@@ -64,7 +64,7 @@ static place place_at(const conic_neighbourhood *neighbourhood, size_t slot) {
 /* The side of a square whose area is one sample's: n samples lie in a disc that reaches to the n-th neighbour. Of the
  * nearest few and of all, the denser estimate: a cluster's edge must not make it sparse. */
 static double spacing_of(const conic_neighbourhood *neighbourhood, size_t slot) {
-  place p = place_at(neighbourhood, slot);
+  tangent_origin p = place_at(neighbourhood, slot);
   double d[3], distance2 = 0.0, few = HUGE_VAL, all = HUGE_VAL;
   size_t n = 0;
   for (size_t i = 0; i < neighbourhood->n_neighbours; i++)
@@ -94,14 +94,12 @@ static void space_slots(void *data, size_t begin, size_t end) {
 
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings) {
-  spacing_work work;
-  work.neighbourhood = neighbourhood;
-  work.spacings = spacings;
+  spacing_work work = {neighbourhood, spacings};
   return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
 }
 
 /* The upper median of the neighbours' spacings. */
-static double median_spacing(const place *p, const double *spacings) {
+static double median_spacing(const tangent_origin *p, const double *spacings) {
   double sorted[CONIC_MAX_NEIGHBOURS];
   size_t n = p->neighbourhood->n_neighbours;
   for (size_t i = 0; i < n; i++) {
@@ -116,8 +114,9 @@ static double median_spacing(const place *p, const double *spacings) {
 
 /* The cell among the neighbours on the same surface. They are turned into the tangent plane, at their true distance:
  * where the surface bends away, a projection would shorten them and the cell with them. */
-static void cut_cell(const place *p, const double u[3], const double v[3], double radius, conic_cell *cell) {
-  conic_cell_begin(cell, radius);
+static void cut_cell(const tangent_origin *p, const double u[3], const double v[3], double radius,
+                     conic_voronoi_cell *cell) {
+  conic_voronoi_cell_begin(cell, radius);
   for (size_t i = 0; i < p->neighbourhood->n_neighbours; i++) {
     double d[3], distance2, x = 0.0, y = 0.0;
     int is_same_surface = view_neighbour(p, p->list[i], d, &distance2);
@@ -130,12 +129,12 @@ static void cut_cell(const place *p, const double u[3], const double v[3], doubl
       y += d[axis] * v[axis];
     }
     double stretch = sqrt(distance2 / (x * x + y * y));
-    conic_cell_cut(cell, x * stretch, y * stretch);
+    conic_voronoi_cell_cut(cell, x * stretch, y * stretch);
   }
 }
 
 /* Whether the cell is open on two opposite sides: then nothing tells how wide the surface is here, as on a cable. */
-static int is_open_across(const conic_cell *cell, double radius) {
+static int is_open_across(const conic_voronoi_cell *cell, double radius) {
   for (int i = 0; i < cell->n_corners; i++)
     for (int j = 0; j < i; j++)
       if (cell->corners[i][0] * cell->corners[j][0] + cell->corners[i][1] * cell->corners[j][1] <
@@ -150,9 +149,9 @@ static conic_ellipse circle(double radius) {
 }
 
 /* The outline at a place, and what it means for the point. */
-static conic_point_state outline(const place *p, size_t slot, const double *spacings, const double u[3],
+static conic_point_state outline(const tangent_origin *p, size_t slot, const double *spacings, const double u[3],
                                  const double v[3], conic_ellipse *ellipse) {
-  conic_cell cell;
+  conic_voronoi_cell cell;
   double d[3], nearest2;
   *ellipse = circle(LONE_OUTLINE);
   if (p->neighbourhood->n_neighbours == 0)
@@ -175,7 +174,7 @@ static conic_point_state outline(const place *p, size_t slot, const double *spac
   }
   *ellipse = conic_ellipse_bound((const double(*)[2])cell.corners, cell.n_corners, CONIC_OUTLINE_RATIO);
   conic_ellipse_retract(ellipse, (const double(*)[2])cell.corners, cell.n_corners, GREATEST_REACH * radius);
-  conic_ellipse_overlap(ellipse, conic_cell_area(&cell), CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND,
+  conic_ellipse_overlap(ellipse, conic_voronoi_cell_area(&cell), CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND,
                         CONIC_OUTLINE_COVER * radius);
   return CONIC_POINT_SPREAD;
 }
@@ -189,11 +188,11 @@ typedef struct spread_work {
 static void spread_point(const spread_work *work, size_t point, size_t slot) {
   conic_estimate *estimate = work->estimate;
   float *const *given = estimate->model->points.normal;
-  place p = place_at(work->neighbourhood, slot);
+  tangent_origin p = place_at(work->neighbourhood, slot);
   double own[3], u[3], v[3];
   float tangent_u[3], tangent_v[3];
   conic_ellipse ellipse;
-  if (given[0] && conic_unit_vector(given[0][point], given[1][point], given[2][point], own))
+  if (given[0] && conic_unit_vector(given, point, own))
     for (int axis = 0; axis < 3; axis++)
       p.normal[axis] = own[axis];
   conic_tangent_basis(p.normal, u, v);

@@ -13,17 +13,17 @@ typedef struct attribute {
 } attribute;
 
 /* The attribute that is joined from two. A set without it gives one value that means none. */
-typedef struct joining {
+typedef struct attribute_joining {
   conic_context *context;
   const conic_triangles *first, *next;
   attribute of_first, of_next;
-} joining;
+} attribute_joining;
 
 static size_t values_of(const attribute *a) {
   return a->values[0] ? a->n : 1;
 }
 
-static conic_status join_values(const joining *j, float **to) {
+static conic_status join_values(const attribute_joining *j, float **to) {
   size_t n_first = values_of(&j->of_first), n_next = values_of(&j->of_next);
   for (int c = 0; c < j->of_first.n_components; c++) {
     to[c] = conic_memory_allocate(j->context, n_first + n_next, sizeof(float));
@@ -45,7 +45,7 @@ static void join_corners(const conic_triangles *set, const attribute *a, size_t 
       to[i][k] = (uint32_t)(shift + (a->values[0] ? from[i][k] : 0));
 }
 
-static conic_status join(const joining *j, size_t *n, float **values, uint32_t (**corners)[3]) {
+static conic_status join(const attribute_joining *j, size_t *n, float **values, uint32_t (**corners)[3]) {
   if (!j->of_first.values[0] && !j->of_next.values[0])
     return CONIC_OK;
   *corners = conic_memory_allocate(j->context, j->first->count + j->next->count, sizeof **corners);
@@ -57,13 +57,15 @@ static conic_status join(const joining *j, size_t *n, float **values, uint32_t (
   return CONIC_OK;
 }
 
-static conic_status join_normals(joining *j, conic_triangles *a, conic_triangles *b, conic_triangles *joined) {
+static conic_status join_normals(attribute_joining *j, conic_triangles *a, conic_triangles *b,
+                                 conic_triangles *joined) {
   j->of_first = (attribute){a->normal_corners ? a->n_normals : a->n_vertices, a->normal, 3, a->normal_corners};
   j->of_next = (attribute){b->normal_corners ? b->n_normals : b->n_vertices, b->normal, 3, b->normal_corners};
   return join(j, &joined->n_normals, joined->normal, &joined->normal_corners);
 }
 
-static conic_status join_coordinates(joining *j, conic_triangles *a, conic_triangles *b, conic_triangles *joined) {
+static conic_status join_coordinates(attribute_joining *j, conic_triangles *a, conic_triangles *b,
+                                     conic_triangles *joined) {
   j->of_first = (attribute){a->texture_corners ? a->n_texture_coordinates : a->n_vertices, a->texture_coordinate, 2,
                             a->texture_corners};
   j->of_next = (attribute){b->texture_corners ? b->n_texture_coordinates : b->n_vertices, b->texture_coordinate, 2,
@@ -125,7 +127,7 @@ static void join_vertices(const conic_triangles *a, const conic_triangles *b, co
 
 conic_status conic_triangles_append(conic_context *context, conic_triangles *triangles, conic_triangles *more) {
   conic_triangles joined;
-  joining j = {.context = context, .first = triangles, .next = more};
+  attribute_joining j = {.context = context, .first = triangles, .next = more};
   unsigned fields = (triangles->color[0] || more->color[0] ? (unsigned)CONIC_TRIANGLES_COLORS : 0u) |
                     (triangles->cluster || more->cluster ? (unsigned)CONIC_TRIANGLES_CLUSTERS : 0u);
   if (triangles->count == 0) {

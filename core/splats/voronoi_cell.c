@@ -5,7 +5,7 @@
 /* Cosines of 0°, 22.5°, 45°, 67.5° and 90°. */
 static const double COSINES[5] = {1.0, 0.92387953251128674, 0.70710678118654752, 0.38268343236508977, 0.0};
 
-static void measure(conic_cell *cell) {
+static void measure(conic_voronoi_cell *cell) {
   cell->greatest2 = 0.0;
   for (int i = 0; i < cell->n_corners; i++) {
     double x = cell->corners[i][0], y = cell->corners[i][1], distance2 = x * x + y * y;
@@ -13,7 +13,7 @@ static void measure(conic_cell *cell) {
   }
 }
 
-void conic_cell_begin(conic_cell *cell, double radius) {
+void conic_voronoi_cell_begin(conic_voronoi_cell *cell, double radius) {
   cell->n_corners = CONIC_CELL_SIDES;
   for (int i = 0; i < 4; i++) {
     double x = radius * COSINES[i], y = radius * COSINES[4 - i];
@@ -24,7 +24,7 @@ void conic_cell_begin(conic_cell *cell, double radius) {
   cell->greatest2 = radius * radius;
 }
 
-void conic_cell_cut(conic_cell *cell, double x, double y) {
+void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y) {
   double corners[CONIC_CELL_CORNERS][2], half2 = 0.5 * (x * x + y * y);
   /* Corners no farther than half way can't lie beyond the bisector. */
   if (0.5 * half2 >= cell->greatest2)
@@ -49,7 +49,7 @@ void conic_cell_cut(conic_cell *cell, double x, double y) {
   measure(cell);
 }
 
-double conic_cell_area(const conic_cell *cell) {
+double conic_voronoi_cell_area(const conic_voronoi_cell *cell) {
   double twice = 0.0;
   for (int i = 0; i < cell->n_corners; i++) {
     const double *p = cell->corners[i], *q = cell->corners[i + 1 < cell->n_corners ? i + 1 : 0];

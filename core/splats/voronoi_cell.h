@@ -5,18 +5,18 @@
 enum { CONIC_CELL_SIDES = 16, CONIC_CELL_CORNERS = CONIC_CELL_SIDES + 64 };
 
 /* A convex polygon around the origin, counter-clockwise. Each cut adds at most one corner, so there is room for 64. */
-typedef struct conic_cell {
+typedef struct conic_voronoi_cell {
   int n_corners;
   double corners[CONIC_CELL_CORNERS][2];
   double greatest2; /* squared distance of the farthest corner */
-} conic_cell;
+} conic_voronoi_cell;
 
 /* The regular polygon with corners at `radius`. */
-void conic_cell_begin(conic_cell *cell, double radius);
+void conic_voronoi_cell_begin(conic_voronoi_cell *cell, double radius);
 
 /* Cuts away what is nearer to (x, y) than to the origin. (x, y) must not be the origin. */
-void conic_cell_cut(conic_cell *cell, double x, double y);
+void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y);
 
-double conic_cell_area(const conic_cell *cell);
+double conic_voronoi_cell_area(const conic_voronoi_cell *cell);
 
 #endif

@@ -63,7 +63,7 @@ typedef struct conic_contribution {
   float q;                                  /* squared distance in standard deviations */
   float weight;                             /* what it adds to the sums, if visible */
   float depth;                              /* camera-space z, as in the plane Z if it were the heaviest */
-  float inverse_depth, plane_inverse_depth; /* iz and iz_plane of docs/picture.md, by which visibility goes */
+  float inverse_depth, plane_inverse_depth; /* iz and iz_plane of docs/reference/picture.md, by which visibility goes */
   float hides;                              /* s·min(iz, iz_plane): what lies below is hidden */
 } conic_contribution;
 

@@ -1,5 +1,5 @@
-/* Hybrid models: of a mesh, patches that are drawn as triangles where the surface is flat and as surfels where it is
- * not (docs/hybrid.md). */
+/* Hybrid models: of a mesh, clusters that are drawn as triangles where the surface is flat and as surfels where it is
+ * not (docs/reference/hybrid.md). */
 #ifndef CONIC_HYBRID_H
 #define CONIC_HYBRID_H
 
@@ -19,9 +19,9 @@ extern "C" {
 
 typedef struct conic_hybrid conic_hybrid;
 
-/* How surfels are put on patches. */
+/* How surfels are put on clusters. */
 typedef enum conic_sampling {
-  CONIC_SAMPLING_BLUE = 0, /* blue noise, ellipses that cover the patch */
+  CONIC_SAMPLING_BLUE = 0, /* blue noise, ellipses that cover the cluster */
   CONIC_SAMPLING_BOX = 1   /* where lines along the three axes meet it (HQP §3.3.2), for comparison */
 } conic_sampling;
 
@@ -31,11 +31,11 @@ typedef struct conic_hybrid_options {
   double phase2;    /* what is small is gathered up to this cost; what is, becomes surfels */
   double most_area; /* no cluster of the first phase has a larger share of the whole area; 0: by the number of faces */
   conic_sampling sampling;
-  double density;        /* surfels along the mean edge of a patch */
-  double most_error;     /* of the surfels of a patch, in distances between them, as built: else it stays triangles; 0:
-                            none does. Not for BOX */
-  float cutoff;          /* F_g of the kernel that will draw */
-  int has_single_levels; /* leave out what only --error needs: simpler levels, and the other kind of each patch */
+  double density;    /* surfels along the mean edge of a cluster */
+  double most_error; /* of the surfels of a cluster, in distances between them, as built: else it stays triangles; 0:
+                        none does. Not for BOX */
+  float cutoff;      /* F_g of the kernel that will draw */
+  int has_single_levels; /* leave out what only --error needs: simpler levels, and the other kind of each cluster */
 } conic_hybrid_options;
 
 /* 0.12, 0.4, by the number of faces, BLUE, 2 surfels, 0.5, cutoff 1.5, all levels. */
@@ -63,7 +63,7 @@ CONIC_API conic_status conic_hybrid_build(conic_context *context, conic_triangle
 /* Null is allowed. */
 CONIC_API void conic_hybrid_destroy(conic_hybrid *hybrid);
 
-/* Writes a .chy file (docs/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
+/* Writes a .chy (docs/reference/format-chy.md). Errors: MEMORY, IO, UNSUPPORTED (a big-endian machine), CANCELLED. */
 CONIC_API conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *hybrid, which
@@ -75,9 +75,9 @@ CONIC_API conic_status conic_hybrid_read(conic_context *context, const char *pat
 CONIC_API int conic_hybrid_is_file(const char *path);
 
 typedef struct conic_hybrid_info {
-  size_t n_patches, n_surfel_patches; /* all, and those that are surfels as built */
-  size_t n_triangles, n_surfels;      /* drawn as built, if all is in sight */
-  size_t n_levels, n_node_levels;     /* ways to draw, of all patches and of all nodes of their tree, but for points */
+  size_t n_clusters, n_surfel_clusters; /* all, and those that are surfels as built */
+  size_t n_triangles, n_surfels;        /* drawn as built, if all is in sight */
+  size_t n_levels, n_node_levels; /* ways to draw, of all clusters and of all nodes of their tree, but for points */
   size_t n_all_triangles, n_all_surfels;
   size_t n_vertices, n_textures, n_nodes;
   float cutoff;
@@ -92,9 +92,9 @@ CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_h
 /* What of a hybrid model is not as it must be. */
 typedef struct conic_hybrid_defects {
   size_t values;  /* numbers that are not finite */
-  size_t spheres; /* patches and nodes that reach out of theirs, and points that do not hide all of their node */
-  size_t cones;   /* patches with a face that faces out of theirs, and nodes with such a patch */
-  size_t levels;  /* patches and nodes whose levels' errors do not grow, patches that have none without an error, and
+  size_t spheres; /* clusters and nodes that reach out of theirs, and points that do not hide all of their node */
+  size_t cones;   /* clusters with a face that faces out of theirs, and nodes with such a cluster */
+  size_t levels;  /* clusters and nodes whose levels' errors do not grow, clusters that have none without an error, and
                      points whose error is less than their radius */
 } conic_hybrid_defects;
 
@@ -106,8 +106,8 @@ typedef enum conic_hybrid_kind { CONIC_HYBRID_TRIANGLES = 0, CONIC_HYBRID_SURFEL
 typedef struct conic_hybrid_view {
   size_t size; /* sizeof(conic_hybrid_view), set by the init function */
   double
-      error_px;  /* above 0: of each patch the cheapest level whose error on the screen is at most this; 0: as built */
-  int only_kind; /* -1: either; else the conic_hybrid_kind that all patches are drawn as, the finest that there is, or
+      error_px; /* above 0: of each cluster the cheapest level whose error on the screen is at most this; 0: as built */
+  int only_kind; /* -1: either; else the conic_hybrid_kind that all clusters are drawn as, the finest that there is, or
                     with error_px the cheapest that is good enough */
   uint64_t budget; /* or, where not 0: the least error that so many triangles and surfels in sight can give */
 } conic_hybrid_view;
@@ -116,24 +116,24 @@ typedef struct conic_hybrid_view {
 CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
 
 /* What is drawn in one picture. With an error or a budget, a node of the tree that does not reach the near distance
- * may stand for all of its patches, by a few surfels or by one splat that faces the camera. Zero before the first use;
+ * may stand for all of its clusters, by a few surfels or by one splat that faces the camera. Zero before the first use;
  * the memory is kept from call to call.
  */
 typedef struct conic_hybrid_selection {
   conic_splats splats;
-  conic_triangles triangles; /* the textures are the hybrid's; the clusters are patches */
-  uint32_t *splat_cluster;   /* the patch of each splat; of a node's, the node's number after those of all patches */
-  size_t n_patches[2];       /* drawn as triangles, as surfels, each by itself */
-  size_t n_joined;           /* patches in sight for which nodes stand, */
+  conic_triangles triangles; /* the textures are the hybrid's; the clusters are the hybrid's, too */
+  uint32_t *splat_cluster;   /* the cluster of each splat; of a node's, the node's number after those of all clusters */
+  size_t n_clusters[2];      /* drawn as triangles, as surfels, each by itself */
+  size_t n_joined;           /* clusters in sight for which nodes stand, */
   size_t n_nodes, n_points;  /* by so many levels of surfels, and points */
-  size_t n_culled;           /* patches that are out of sight */
+  size_t n_culled;           /* clusters that are out of sight */
   size_t n_simpler;          /* drawn by another level than as built */
-  double error_px;           /* no place of these is drawn farther, in pixels, from where it is; infinite where a patch
-                                that is not drawn by its own triangles reaches the near distance */
-  void *scratch;             /* private */
+  double error_px; /* no place of these is drawn farther, in pixels, from where it is; infinite where a cluster
+                      that is not drawn by its own triangles reaches the near distance */
+  void *scratch;   /* private */
 } conic_hybrid_selection;
 
-/* Chooses what to draw: patches out of sight, and with cull_back those that face away, are left out. Neighbours meet
+/* Chooses what to draw: clusters out of sight, and with cull_back those that face away, are left out. Neighbours meet
  * without a gap whatever their levels. Errors: ARGUMENT (a budget below the coarsest of all levels, too), MEMORY. */
 CONIC_API conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
                                            const conic_render_options *render, const conic_hybrid_view *view,

@@ -22,7 +22,7 @@ typedef enum conic_plane {
   CONIC_PLANE_WEIGHT = 4,  /* 1 float: sum of the weights */
   CONIC_PLANE_COUNT = 5,   /* 1 uint32: splats blended */
   CONIC_PLANE_ID = 6,      /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
-  CONIC_PLANE_CLUSTER = 7, /* 1 uint32: patch of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
+  CONIC_PLANE_CLUSTER = 7, /* 1 uint32: cluster of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
   CONIC_N_PLANES = 8
 } conic_plane;
 
@@ -92,7 +92,7 @@ CONIC_API conic_status conic_image_check_output(conic_context *context, const ch
  * *image. Errors: INPUT, UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
 
-/* How two images differ. See docs/diff.md for the definitions. */
+/* How two images differ. See docs/reference/diff.md for the definitions. */
 typedef struct conic_plane_difference {
   int compared; /* the plane is in both images */
   double max_abs, rmse;

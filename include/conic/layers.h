@@ -1,5 +1,5 @@
 /* Layered point clouds: samples of any number in a file (.lpc) that is built once in bounded memory, and of which a
- * picture needs only the clouds that it can show (docs/layers.md, docs/format-lpc.md). */
+ * picture needs only the clouds that it can show (docs/reference/layers.md, docs/reference/format-lpc.md). */
 #ifndef CONIC_LAYERS_H
 #define CONIC_LAYERS_H
 

@@ -1,5 +1,5 @@
 /* Drawing layered point clouds: of a file or a URL, a picture reads and draws no more clouds than it shows, in bounded
- * memory (docs/layers-drawing.md). */
+ * memory (docs/reference/layers.md). */
 #ifndef CONIC_LAYERS_DRAW_H
 #define CONIC_LAYERS_DRAW_H
 

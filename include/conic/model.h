@@ -44,8 +44,8 @@ typedef struct conic_read_options {
 /* Cutoff 1.5, points alone. */
 CONIC_API void conic_read_options_init(conic_read_options *options);
 
-/* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/formats.md); "-" is standard input. The format is told by the
- * content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
+/* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/reference/formats.md); "-" is standard input. The format is told by
+ * the content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
  * sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double or 32-bit integer in a
  * PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the origin; else the origin
  * is zero. On success the caller owns *model and releases it; on failure it is empty and the log says file, line or
@@ -91,7 +91,7 @@ typedef struct conic_estimate_options {
 CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
- * neighbours (Confetti §4.3 with the corrections of docs/errata.md); a set that has axes keeps them, and only
+ * neighbours (Confetti §4.3 with the corrections of docs/reference/errata.md); a set that has axes keeps them, and only
  * its zero and non-finite ones are repaired. Missing normals come from the covariance of the neighbours and are
  * oriented consistently. Points that can't be repaired get NaN axes, which the renderer skips and counts, so that
  * indices stay those of the file. The result is the same for any number of threads. `repairs` may be null. Errors:

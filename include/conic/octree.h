@@ -1,5 +1,5 @@
 /* The point-octree: a hierarchy over a set of splats, so that no more of them are drawn than a picture needs
- * (docs/octree.md). */
+ * (docs/reference/octree.md). */
 #ifndef CONIC_OCTREE_H
 #define CONIC_OCTREE_H
 
@@ -21,7 +21,7 @@ typedef struct conic_octree conic_octree;
 typedef struct conic_octree_options {
   size_t size;  /* sizeof(conic_octree_options), set by the init function */
   float cutoff; /* F_g of the kernel that will draw: every bound is about outlines */
-  int quantize; /* round the splats too, for a file of under half the size (docs/format-cot.md) */
+  int quantize; /* round the splats too, for a file of about half the size (docs/reference/format-cot.md) */
 } conic_octree_options;
 
 /* Cutoff 1.5, not quantised. */
@@ -37,8 +37,8 @@ CONIC_API conic_status conic_octree_build(conic_context *context, conic_splats *
 /* Null is allowed. */
 CONIC_API void conic_octree_destroy(conic_octree *octree);
 
-/* Writes a .cot file (docs/format-cot.md), which appears under its name only when it is whole. Errors: MEMORY, IO,
- * UNSUPPORTED (a big-endian machine). */
+/* Writes a .cot file (docs/reference/format-cot.md), which appears under its name only when it is whole. Errors:
+ * MEMORY, IO, UNSUPPORTED (a big-endian machine). */
 CONIC_API conic_status conic_octree_write(conic_octree *octree, const char *path);
 
 /* Maps the file into memory and checks all of it: sums, sizes, structure. On success the caller owns *octree, which

@@ -1,4 +1,4 @@
-/* Drawing on another device through OpenCL: the same pictures, bit for bit (docs/opencl.md).
+/* Drawing on another device through OpenCL: the same pictures, bit for bit (docs/reference/opencl.md).
  *
  * A renderer that is made here is used like any other: conic_render and conic_render_samples draw on its device. */
 #ifndef CONIC_OPENCL_H

@@ -1,8 +1,8 @@
 /* The oracle: what a picture should have been, slowly and in double precision.
  *
- * It implements docs/picture.md once more, from the equations, pixel by pixel over all splats, and shares no code
- * with the renderer; docs/oracle.md says how it computes and how far it can be trusted. Who writes a renderer of
- * splats can measure it against this: ask for the reference of a scene, then compare an image with it. */
+ * It implements docs/reference/picture.md once more, from the equations, pixel by pixel over all splats, and shares no
+ * code with the renderer; docs/reference/oracle.md says how it computes and how far it can be trusted. Who writes a
+ * renderer of splats can measure it against this: ask for the reference of a scene, then compare an image with it. */
 #ifndef CONIC_ORACLE_H
 #define CONIC_ORACLE_H
 
@@ -81,8 +81,8 @@ CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_s
                                            const conic_camera *camera, const conic_render_options *options,
                                            conic_oracle_question question, conic_reference *reference);
 
-/* The same with samples × samples samples a pixel (docs/picture.md), 1 to 16. A pixel is as unstable as its samples are
- * together. All samples are kept until they are reduced: some 120 bytes each. */
+/* The same with samples × samples samples a pixel (docs/reference/picture.md), 1 to 16. A pixel is as unstable as its
+ * samples are together. All samples are kept until they are reduced: some 120 bytes each. */
 CONIC_API conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats,
                                                    const conic_camera *camera, const conic_render_options *options,
                                                    conic_oracle_question question, int samples,
@@ -112,8 +112,8 @@ typedef struct conic_oracle_verdict {
   int pass;              /* every bound and the limit are kept */
 } conic_oracle_verdict;
 
-/* Compares `image`, of the reference's size, with it: against the bounds of docs/oracle.md where the question was the
- * method's; the exact question has no bounds, and everything passes. Errors: ARGUMENT, MEMORY. */
+/* Compares `image`, of the reference's size, with it: against the bounds of docs/reference/oracle.md where the question
+ * was the method's; the exact question has no bounds, and everything passes. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference,
                                             const conic_image *image, conic_oracle_verdict *verdict);
 

@@ -2,9 +2,9 @@
  *
  * Every point of a set gets the polynomial that moving least squares fits about it, over a disc of its plane. For a
  * picture, those in sight are sampled on grids as fine as the screen asks for; the samples are splats like any others,
- * weighed so that neighbouring polynomials blend into one smooth surface (docs/surfaces.md). What a selection holds
- * depends on the set, the options, the camera and nothing else: neither threads nor instruction sets nor the frames
- * before. */
+ * weighed so that neighbouring polynomials blend into one smooth surface (docs/reference/surfaces.md). What a selection
+ * holds depends on the set, the options, the camera and nothing else: neither threads nor instruction sets nor the
+ * frames before. */
 #ifndef CONIC_PATCHES_H
 #define CONIC_PATCHES_H
 

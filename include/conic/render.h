@@ -1,7 +1,7 @@
 /* Rendering: splats and a camera in, an image and its statistics out.
  *
- * What a picture is, is defined in docs/picture.md. It has one set of bits: threads, tile size, compiler and machine
- * change none of them. */
+ * What a picture is, is defined in docs/reference/picture.md. It has one set of bits: threads, tile size, compiler and
+ * machine change none of them. */
 #ifndef CONIC_RENDER_H
 #define CONIC_RENDER_H
 
@@ -140,10 +140,11 @@ CONIC_API conic_status conic_render(conic_renderer *renderer, const conic_splats
 
 #define CONIC_MAX_SAMPLES 16
 
-/* The same with samples × samples samples a pixel (docs/picture.md): the picture is drawn so many times as wide and as
- * high, the prefilter in px² of that, and reduced. 1 is conic_render itself; samples times the image's size is 65535 at
- * most. Needs memory for up to 2²⁴ samples or one row of the image's, whichever is more, at 4 bytes a channel, beside
- * the renderer's. In `statistics`, fragments and pixels_covered count samples. `context` is the renderer's. */
+/* The same with samples × samples samples a pixel (docs/reference/picture.md): the picture is drawn so many times as
+ * wide and as high, the prefilter in px² of that, and reduced. 1 is conic_render itself; samples times the image's size
+ * is 65535 at most. Needs memory for up to 2²⁴ samples or one row of the image's, whichever is more, at 4 bytes a
+ * channel, beside the renderer's. In `statistics`, fragments and pixels_covered count samples. `context` is the
+ * renderer's. */
 CONIC_API conic_status conic_render_samples(conic_context *context, conic_renderer *renderer,
                                             const conic_splats *splats, const conic_camera *camera,
                                             const conic_render_options *options, int samples, conic_image *image,

@@ -23,7 +23,7 @@ typedef enum conic_clip_operator {
 
 /* The clip lines of one splat, in its own plane: a line (a, b, c) keeps the points p + u·t_u + v·t_v with
  * a·u + b·v + c ≥ 0. A line that is not finite, or whose a and b are both 0, is none, and is left out
- * (docs/picture.md, Clip lines). */
+ * (docs/reference/picture.md, Clip lines). */
 typedef struct conic_clip {
   uint32_t splat;     /* its index in the set */
   uint16_t n_lines;   /* 1 or 2 */
@@ -96,7 +96,7 @@ CONIC_API void conic_splats_release(conic_context *context, conic_splats *splats
 CONIC_API size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]);
 
 /* The lower median of max(|t_u|, |t_v|) over the splats whose centre and axes are finite and whose axes are not zero:
- * the scale of the automatic ε (docs/picture.md). 0 where there is none. Errors: MEMORY. */
+ * the scale of the automatic ε (docs/reference/picture.md). 0 where there is none. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length);
 
 /* The median sample spacing in world units: √(area a point), from each point's eight nearest neighbours. A unit for

@@ -1,8 +1,8 @@
 /* Point-set surfaces: the smooth surface that a set of points means, and sets that are cleaner, smaller or denser.
  *
  * A surface is what a projection leaves where it is: moving least squares (Alexa et al. 2003: a local plane, and a
- * polynomial over it) or algebraic spheres (Guennebaud and Gross 2007). docs/surfaces.md has the formulas. The results
- * never depend on the number of threads, the instruction set or the compiler. */
+ * polynomial over it) or algebraic spheres (Guennebaud and Gross 2007). docs/reference/surfaces.md has the formulas.
+ * The results never depend on the number of threads, the instruction set or the compiler. */
 #ifndef CONIC_SURFACE_H
 #define CONIC_SURFACE_H
 

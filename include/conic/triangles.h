@@ -1,4 +1,5 @@
-/* Triangles: meshes drawn as what they are, alone or together with splats in one picture (docs/picture.md, Triangles).
+/* Triangles: meshes drawn as what they are, alone or together with splats in one picture (docs/reference/picture.md,
+ * Triangles).
  */
 #ifndef CONIC_TRIANGLES_H
 #define CONIC_TRIANGLES_H

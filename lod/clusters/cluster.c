@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-double conic_patch_edge_length(const conic_patch_mesh *mesh, uint32_t patch) {
-  size_t begin = mesh->starts[patch], end = mesh->starts[patch + 1];
+double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t cluster) {
+  size_t begin = mesh->starts[cluster], end = mesh->starts[cluster + 1];
   double sum = 0.0;
   for (size_t i = begin; i < end; i++)
     for (int corner = 0; corner < 3; corner++) {
@@ -19,7 +19,7 @@ double conic_patch_edge_length(const conic_patch_mesh *mesh, uint32_t patch) {
 }
 
 /* Two sides of a face, from its first corner. */
-static void sides_of(const conic_patch_mesh *mesh, uint32_t face, double sides[2][3]) {
+static void sides_of(const conic_clustered_mesh *mesh, uint32_t face, double sides[2][3]) {
   double first[3];
   conic_mesh_corner(&mesh->mesh, face, 0, first);
   for (int k = 0; k < 2; k++) {
@@ -29,7 +29,7 @@ static void sides_of(const conic_patch_mesh *mesh, uint32_t face, double sides[2
   }
 }
 
-void conic_patch_face_normal(const conic_patch_mesh *mesh, uint32_t face, double normal[3]) {
+void conic_cluster_face_normal(const conic_clustered_mesh *mesh, uint32_t face, double normal[3]) {
   double sides[2][3];
   sides_of(mesh, face, sides);
   conic_cross(sides[0], sides[1], normal);
@@ -39,7 +39,7 @@ void conic_patch_face_normal(const conic_patch_mesh *mesh, uint32_t face, double
     normal[axis] *= factor;
 }
 
-void conic_patch_place(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double place[3]) {
+void conic_cluster_place(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double place[3]) {
   for (int axis = 0; axis < 3; axis++) {
     const float *values = mesh->mesh.position[axis];
     const uint32_t *corners = mesh->mesh.faces[face];
@@ -49,8 +49,8 @@ void conic_patch_place(const conic_patch_mesh *mesh, uint32_t face, const double
 }
 
 /* As the mesh is shaded: the unit normals' mean, or the face's own where one of them is none. */
-void conic_patch_normal(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
-                        double normal[3]) {
+void conic_cluster_normal(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
+                          double normal[3]) {
   const conic_triangles *t = mesh->triangles;
   double sum[3] = {0.0, 0.0, 0.0};
   int is_good = 1;
@@ -76,7 +76,7 @@ static const conic_material *material_of(const conic_triangles *t, uint32_t face
   return t->n_materials == 0 ? NULL : &t->materials[t->material ? t->material[face] : 0];
 }
 
-void conic_patch_color(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double color[3]) {
+void conic_cluster_color(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double color[3]) {
   const conic_triangles *t = mesh->triangles;
   const conic_material *material = material_of(t, face);
   for (int channel = 0; channel < 3; channel++) {
@@ -90,8 +90,8 @@ void conic_patch_color(const conic_patch_mesh *mesh, uint32_t face, const double
   }
 }
 
-void conic_patch_texel(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double side,
-                       double color[3]) {
+void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double side,
+                         double color[3]) {
   const conic_triangles *t = mesh->triangles;
   const conic_material *material = material_of(t, face);
   color[0] = color[1] = color[2] = 1.0;

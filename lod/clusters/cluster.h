@@ -1,40 +1,41 @@
-/* Patches: the clusters of a mesh, one by one, and what their surface is at a place. */
+/* The clusters of a mesh, one by one, and what their surface is at a place. */
 #ifndef CONIC_CLUSTER_H
 #define CONIC_CLUSTER_H
 
 #include "conic/triangles.h"
 #include "lod/mesh/mesh_clusters.h"
 
-typedef struct conic_patch_mesh {
+typedef struct conic_clustered_mesh {
   const conic_triangles *triangles;
   conic_mesh mesh; /* the same */
   const conic_adjacency *adjacency;
   const conic_mesh_clusters *clusters;
   const uint32_t *faces; /* of use, by cluster */
   const size_t *starts;  /* n_clusters + 1: those of cluster i are faces[starts[i] … starts[i + 1]) */
-} conic_patch_mesh;
+} conic_clustered_mesh;
 
-/* Whether what lies across that edge of a face is another patch, or nothing. */
-static inline int conic_patch_ends_at(const conic_patch_mesh *mesh, uint32_t face, int corner) {
+/* Whether what lies across that edge of a face is another cluster, or nothing. */
+static inline int conic_cluster_ends_at(const conic_clustered_mesh *mesh, uint32_t face, int corner) {
   uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
   return !conic_edge_is_shared(across) || mesh->clusters->of_face[across / 3] != mesh->clusters->of_face[face];
 }
 
-/* The mean length of a patch's edges, and the mean of its faces' areas. */
-double conic_patch_edge_length(const conic_patch_mesh *mesh, uint32_t patch);
+/* The mean length of a cluster's edges, and the mean of its faces' areas. */
+double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t cluster);
 
 /* Unit normal of a face's plane, on the side that its neighbours agree upon; zero where it has no area. */
-void conic_patch_face_normal(const conic_patch_mesh *mesh, uint32_t face, double normal[3]);
+void conic_cluster_face_normal(const conic_clustered_mesh *mesh, uint32_t face, double normal[3]);
 
 /* At barycentric coordinates of a face: the place (from the origin), the normal that it is shaded with, not unit, on
  * the side of `facing`, and the colour without the texture. */
-void conic_patch_place(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double place[3]);
-void conic_patch_normal(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
-                        double normal[3]);
-void conic_patch_color(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double color[3]);
+void conic_cluster_place(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double place[3]);
+void conic_cluster_normal(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], const double facing[3],
+                          double normal[3]);
+void conic_cluster_color(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double color[3]);
 
 /* What the texture multiplies the colour with at a place, filtered over a square of that side on the face: white
  * where there is none. */
-void conic_patch_texel(const conic_patch_mesh *mesh, uint32_t face, const double bary[3], double side, double color[3]);
+void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const double bary[3], double side,
+                         double color[3]);
 
 #endif

@@ -1,4 +1,4 @@
-/* Surfels from three faces of the patch's box (HQP §3.3.2, Algorithm 3.4). What a line of the grid meets is found by
+/* Surfels from three faces of the cluster's box (HQP §3.3.2, Algorithm 3.4). What a line of the grid meets is found by
  * looking at each face along the axis and at the lines that pass it, which gives the same as asking every line for
  * every face. */
 #include <math.h>
@@ -14,13 +14,13 @@ typedef struct box_sampling {
   conic_context *context;
   const conic_sampling_job *job;
   conic_surfels *surfels;
-  double low[3]; /* of the patch's box: where the grids begin */
+  double low[3]; /* of the cluster's box: where the grids begin */
 } box_sampling;
 
 static void find_box(box_sampling *b) {
-  const conic_patch_mesh *mesh = b->job->mesh;
+  const conic_clustered_mesh *mesh = b->job->mesh;
   b->low[0] = b->low[1] = b->low[2] = HUGE_VAL;
-  for (size_t i = mesh->starts[b->job->patch]; i < mesh->starts[b->job->patch + 1]; i++)
+  for (size_t i = mesh->starts[b->job->cluster]; i < mesh->starts[b->job->cluster + 1]; i++)
     for (int corner = 0; corner < 3; corner++) {
       double at[3];
       conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at);
@@ -30,18 +30,18 @@ static void find_box(box_sampling *b) {
 }
 
 static conic_status add_surfel(box_sampling *b, uint32_t face, const double bary[3]) {
-  const conic_patch_mesh *mesh = b->job->mesh;
+  const conic_clustered_mesh *mesh = b->job->mesh;
   double at[3], facing[3], normal[3], color[3], texel[3], u[3], v[3];
   double reach = radius_in_spacings * b->job->spacing, sigma = reach / b->job->cutoff;
   conic_status status = conic_surfels_reserve(b->context, b->surfels);
   if (status != CONIC_OK)
     return status;
   conic_surfel *surfel = &b->surfels->items[b->surfels->n++];
-  conic_patch_place(mesh, face, bary, at);
-  conic_patch_face_normal(mesh, face, facing);
-  conic_patch_normal(mesh, face, bary, facing, normal);
-  conic_patch_color(mesh, face, bary, color);
-  conic_patch_texel(mesh, face, bary, b->job->spacing, texel);
+  conic_cluster_place(mesh, face, bary, at);
+  conic_cluster_face_normal(mesh, face, facing);
+  conic_cluster_normal(mesh, face, bary, facing, normal);
+  conic_cluster_color(mesh, face, bary, color);
+  conic_cluster_texel(mesh, face, bary, b->job->spacing, texel);
   conic_tangent_basis(normal, u, v);
   for (int axis = 0; axis < 3; axis++) {
     surfel->position[axis] = (float)at[axis];
@@ -103,12 +103,12 @@ static conic_status sample_face(box_sampling *b, uint32_t face, int axis) {
   return status;
 }
 
-conic_status conic_patch_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels) {
+conic_status conic_cluster_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels) {
   box_sampling b = {.context = context, .job = job, .surfels = surfels};
   conic_status status = CONIC_OK;
   find_box(&b);
   for (int axis = 0; axis < 3; axis++)
-    for (size_t i = job->mesh->starts[job->patch]; i < job->mesh->starts[job->patch + 1] && status == CONIC_OK; i++)
+    for (size_t i = job->mesh->starts[job->cluster]; i < job->mesh->starts[job->cluster + 1] && status == CONIC_OK; i++)
       status = sample_face(&b, job->mesh->faces[i], axis);
   return status;
 }

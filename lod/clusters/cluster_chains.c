@@ -4,13 +4,13 @@
 
 #include "core/base/memory.h"
 
-/* An edge between two patches, its ends as places. */
+/* An edge between two clusters, its ends as places. */
 typedef struct border_edge {
-  uint32_t ends[2], patches[2]; /* the lower patch first */
+  uint32_t ends[2], clusters[2]; /* the lower cluster first */
   uint32_t is_taken;
 } border_edge;
 
-/* The edges between patches that end at a place. */
+/* The edges between clusters that end at a place. */
 typedef struct border_place {
   uint32_t edges[2];
   uint32_t vertex; /* one of the mesh that lies there */
@@ -19,12 +19,12 @@ typedef struct border_place {
 
 typedef struct finding {
   conic_context *context;
-  const conic_patch_mesh *mesh;
+  const conic_clustered_mesh *mesh;
   const uint32_t *region;
   size_t n_edges;
   border_edge *edges;
   border_place *places; /* by vertex */
-  conic_patch_chains *chains;
+  conic_cluster_chains *chains;
 } finding;
 
 enum { CROWD = 3 };
@@ -33,14 +33,14 @@ static uint32_t place_of(const finding *f, uint32_t face, int corner) {
   return f->mesh->adjacency->place[f->mesh->mesh.faces[face][corner]];
 }
 
-/* The patch across an edge of a face, if it is another one of the same region. */
-static int is_between(const finding *f, uint32_t face, int corner, uint32_t *across_patch) {
+/* The cluster across an edge of a face, if it is another one of the same region. */
+static int is_between(const finding *f, uint32_t face, int corner, uint32_t *across_cluster) {
   uint32_t across = f->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
   const uint32_t *of_face = f->mesh->clusters->of_face;
   if (!conic_edge_is_shared(across))
     return 0;
-  *across_patch = of_face[across / 3];
-  return f->region[*across_patch] == f->region[of_face[face]];
+  *across_cluster = of_face[across / 3];
+  return f->region[*across_cluster] == f->region[of_face[face]];
 }
 
 static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
@@ -48,8 +48,8 @@ static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
   border_edge *edge = &f->edges[i];
   edge->ends[0] = place_of(f, face, corner);
   edge->ends[1] = place_of(f, face, (corner + 1) % 3);
-  edge->patches[0] = own < other ? own : other;
-  edge->patches[1] = own < other ? other : own;
+  edge->clusters[0] = own < other ? own : other;
+  edge->clusters[1] = own < other ? other : own;
   edge->is_taken = 0;
   for (int k = 0; k < 2; k++) {
     border_place *place = &f->places[edge->ends[k]];
@@ -66,7 +66,7 @@ static void find_edges(finding *f) {
   for (size_t i = 0; i < n_faces; i++)
     for (int corner = 0; corner < 3; corner++) {
       uint32_t face = f->mesh->faces[i], other;
-      if (!conic_patch_ends_at(f->mesh, face, corner))
+      if (!conic_cluster_ends_at(f->mesh, face, corner))
         continue;
       if (!is_between(f, face, corner, &other))
         f->places[place_of(f, face, corner)].n = f->places[place_of(f, face, (corner + 1) % 3)].n = CROWD;
@@ -81,7 +81,7 @@ static int goes_on(const finding *f, uint32_t place) {
   if (p->n != 2)
     return 0;
   const border_edge *a = &f->edges[p->edges[0]], *b = &f->edges[p->edges[1]];
-  return a->patches[0] == b->patches[0] && a->patches[1] == b->patches[1] && p->edges[0] != p->edges[1];
+  return a->clusters[0] == b->clusters[0] && a->clusters[1] == b->clusters[1] && p->edges[0] != p->edges[1];
 }
 
 /* The edge beyond a place, and where it leads. */
@@ -93,15 +93,15 @@ static uint32_t step(const finding *f, uint32_t edge, uint32_t *place) {
 }
 
 static void put_slot(finding *f, uint32_t place, int is_between_ends) {
-  conic_patch_chains *c = f->chains;
+  conic_cluster_chains *c = f->chains;
   if (is_between_ends)
     c->of_vertex[place] = (uint32_t)c->n_slots;
-  c->slots[c->n_slots++] = (conic_hybrid_slot){.vertex = f->places[place].vertex, .stage = CONIC_HYBRID_ALWAYS};
+  c->slots[c->n_slots++] = (conic_cluster_slot){.vertex = f->places[place].vertex, .stage = CONIC_CLUSTER_ALWAYS};
 }
 
 /* From an edge back to the chain's beginning, then along all of it. A closed one begins where the edge does. */
 static void trace(finding *f, uint32_t edge) {
-  conic_patch_chains *c = f->chains;
+  conic_cluster_chains *c = f->chains;
   uint32_t place = f->edges[edge].ends[0], first = edge, closed_at = place;
   while (goes_on(f, place)) {
     uint32_t next = step(f, first, &place);
@@ -111,7 +111,7 @@ static void trace(finding *f, uint32_t edge) {
   }
   conic_chain *chain = &c->chains[c->n_chains];
   chain->first = (uint32_t)c->n_slots;
-  memcpy(chain->patches, f->edges[edge].patches, sizeof chain->patches);
+  memcpy(chain->clusters, f->edges[edge].clusters, sizeof chain->clusters);
   put_slot(f, place, 0);
   uint32_t begin = place, now = first;
   place = f->edges[now].ends[0] == place ? f->edges[now].ends[1] : f->edges[now].ends[0];
@@ -133,7 +133,7 @@ static conic_status find(finding *f) {
   size_t n_vertices = f->mesh->mesh.n_vertices, n_faces = f->mesh->starts[f->mesh->clusters->n_clusters], n = 0;
   for (size_t i = 0; i < n_faces; i++)
     for (int corner = 0; corner < 3; corner++)
-      n += (size_t)conic_patch_ends_at(f->mesh, f->mesh->faces[i], corner);
+      n += (size_t)conic_cluster_ends_at(f->mesh, f->mesh->faces[i], corner);
   f->edges = conic_memory_allocate(f->context, n, sizeof *f->edges);
   f->places = conic_memory_allocate_zeroed(f->context, n_vertices, sizeof *f->places);
   f->chains->chains = conic_memory_allocate(f->context, n, sizeof *f->chains->chains);
@@ -149,19 +149,19 @@ static conic_status find(finding *f) {
   return CONIC_OK;
 }
 
-conic_status conic_patch_chains_find(conic_context *context, const conic_patch_mesh *mesh, const uint32_t *region,
-                                     conic_patch_chains *chains) {
+conic_status conic_cluster_chains_find(conic_context *context, const conic_clustered_mesh *mesh, const uint32_t *region,
+                                       conic_cluster_chains *chains) {
   finding f = {.context = context, .mesh = mesh, .region = region, .chains = chains};
   memset(chains, 0, sizeof *chains);
   conic_status status = find(&f);
   conic_memory_release(context, f.places);
   conic_memory_release(context, f.edges);
   if (status != CONIC_OK)
-    conic_patch_chains_release(context, chains);
+    conic_cluster_chains_release(context, chains);
   return status;
 }
 
-void conic_patch_chains_release(conic_context *context, conic_patch_chains *chains) {
+void conic_cluster_chains_release(conic_context *context, conic_cluster_chains *chains) {
   conic_memory_release(context, chains->chains);
   conic_memory_release(context, chains->slots);
   conic_memory_release(context, chains->of_vertex);

@@ -8,14 +8,14 @@ static int has_colors(const conic_triangles *t) {
   return t->color[0] || has_texture || (t->n_materials > 1 && t->material);
 }
 
-static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, double side) {
-  conic_site *site = &s->sites[s->owner[conic_lattice_place(l, i, j)]];
+static void note_color(conic_sampler *s, const conic_face_lattice *l, int i, int j, double side) {
+  conic_site *site = &s->sites[s->owner[conic_face_lattice_place(l, i, j)]];
   double bary[3], color[3], texel[3];
   if (site->is_settled)
     return;
-  conic_lattice_bary(l, i, j, bary);
-  conic_patch_color(s->job->mesh, l->face, bary, color);
-  conic_patch_texel(s->job->mesh, l->face, bary, side, texel);
+  conic_face_lattice_bary(l, i, j, bary);
+  conic_cluster_color(s->job->mesh, l->face, bary, color);
+  conic_cluster_texel(s->job->mesh, l->face, bary, side, texel);
   for (int channel = 0; channel < 3; channel++) {
     double shown = conic_as_shown(color[channel] * texel[channel]);
     site->darkest[channel] = shown < site->darkest[channel] ? shown : site->darkest[channel];
@@ -23,7 +23,7 @@ static void note_color(conic_sampler *s, const conic_lattice *l, int i, int j, d
   }
 }
 
-void conic_patch_find_contrasts(conic_sampler *s) {
+void conic_cluster_find_contrasts(conic_sampler *s) {
   if (!has_colors(s->job->mesh->triangles))
     return;
   for (size_t i = 0; i < s->n_sites; i++)
@@ -32,10 +32,10 @@ void conic_patch_find_contrasts(conic_sampler *s) {
       s->sites[i].brightest[channel] = 0.0;
     }
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i; j++)
-        if (conic_lattice_is_own(s->job->mesh, l, i, j))
+        if (conic_face_lattice_is_own(s->job->mesh, l, i, j))
           note_color(s, l, i, j, conic_spacing_at(s, s->depth[k]));
   }
   for (size_t i = 0; i < s->n_sites; i++)

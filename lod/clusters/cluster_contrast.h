@@ -14,6 +14,6 @@ static inline double conic_as_shown(double linear) {
 /* Fills in the contrasts of the sites that are not settled: the greatest difference in a channel among the places that
  * they own, as it is shown (1: black and white). Details that are finer than the lattices count as what they are in the
  * mean. */
-void conic_patch_find_contrasts(conic_sampler *sampler);
+void conic_cluster_find_contrasts(conic_sampler *sampler);
 
 #endif

@@ -148,7 +148,7 @@ double conic_site_error(const conic_sampler *s, const conic_site *site, double k
 
 /* --- closely --- */
 
-/* Rings about the middle, the last the outline, at places a fortieth of a turn apart. A surfel of a patch is farthest
+/* Rings about the middle, the last the outline, at places a fortieth of a turn apart. A surfel of a cluster is farthest
  * on its outline; one that stands for more may lie over what the mesh leaves open. */
 enum { RINGS = 4, PLACES_ON_RING = 40 };
 static const double turn[2] = {0.98768834, 0.15643447};

@@ -1,6 +1,6 @@
 #include "lod/clusters/cluster_reuse.h"
 
-void conic_patch_end_pass(conic_sampler *s) {
+void conic_cluster_end_pass(conic_sampler *s) {
   conic_sampling_pass now = {.n_sites = s->n_sites,
                              .lattices_room = s->lattices_room,
                              .owner_room = s->owner_room,
@@ -43,7 +43,7 @@ static void match_sites(conic_sampler *s) {
 /* Whether each place of a face belongs to the site that it belonged to. */
 static int is_as_it_was(const conic_sampler *s, size_t k) {
   const uint32_t *owner = s->owner + s->lattices[k].first, *last = s->last.owner + s->last.lattices[k].first;
-  uint32_t n = conic_lattice_places(s->lattices[k].sides), i = 0;
+  uint32_t n = conic_face_lattice_places(s->lattices[k].sides), i = 0;
   if (!is_as_fine(s, k))
     return 0;
   while (i < n && s->sites[owner[i]].last == last[i])
@@ -53,17 +53,17 @@ static int is_as_it_was(const conic_sampler *s, size_t k) {
 
 /* Neither who owns something of a face now nor who did is settled. */
 static void unsettle(conic_sampler *s, size_t k) {
-  const conic_lattice *now = &s->lattices[k], *then = &s->last.lattices[k];
-  for (uint32_t i = 0; i < conic_lattice_places(now->sides); i++)
+  const conic_face_lattice *now = &s->lattices[k], *then = &s->last.lattices[k];
+  for (uint32_t i = 0; i < conic_face_lattice_places(now->sides); i++)
     s->sites[s->owner[now->first + i]].is_settled = 0;
-  for (uint32_t i = 0; i < conic_lattice_places(then->sides); i++) {
+  for (uint32_t i = 0; i < conic_face_lattice_places(then->sides); i++) {
     uint32_t same = s->last.sites[s->last.owner[then->first + i]].last;
     if (same != CONIC_NO_SITE)
       s->sites[same].is_settled = 0;
   }
 }
 
-void conic_patch_settle_sites(conic_sampler *s) {
+void conic_cluster_settle_sites(conic_sampler *s) {
   match_sites(s);
   for (size_t k = 0; k < s->n_lattices; k++)
     if (!is_as_it_was(s, k))

@@ -1,14 +1,14 @@
-/* What one pass over a patch need not do again: sites whose surroundings are as they were in the last. */
+/* What one pass over a cluster need not do again: sites whose surroundings are as they were in the last. */
 #ifndef CONIC_CLUSTER_REUSE_H
 #define CONIC_CLUSTER_REUSE_H
 
 #include "lod/clusters/cluster_sites.h"
 
 /* Puts this pass's lattices, owners and sites aside, as the last one's. */
-void conic_patch_end_pass(conic_sampler *sampler);
+void conic_cluster_end_pass(conic_sampler *sampler);
 
 /* After new sites and owners were found: a site is settled where everything that it stands for, and whatever lies on
  * the same faces, belongs to the same sites as in the last pass. It then has all that it had there. */
-void conic_patch_settle_sites(conic_sampler *sampler);
+void conic_cluster_settle_sites(conic_sampler *sampler);
 
 #endif

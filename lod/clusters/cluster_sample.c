@@ -1,4 +1,4 @@
-/* From a patch to surfels: sites, closer ones where their ellipses stray from the surface, and colours. */
+/* From a cluster to surfels: sites, closer ones where their ellipses stray from the surface, and colours. */
 #include "lod/clusters/cluster_sample.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
   double texel[3];
   if (!conic_ellipse_axes(&site->ellipse, site->u, site->v, s->job->cutoff, surfel->tangent_u, surfel->tangent_v))
     return CONIC_OK; /* it stands for nothing that has an area */
-  conic_patch_texel(s->job->mesh, site->face, site->bary, site->spacing, texel);
+  conic_cluster_texel(s->job->mesh, site->face, site->bary, site->spacing, texel);
   for (int axis = 0; axis < 3; axis++) {
     double own = site->area > 0.0 ? site->color[axis] / site->area : 1.0;
     surfel->position[axis] = (float)site->at[axis];
@@ -152,9 +152,9 @@ static double error_to_part(const conic_sampler *s) {
 static int refine_faces(conic_sampler *s, double limit) {
   int is_any = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     int is_bad = 0;
-    for (uint32_t i = 0; i < conic_lattice_places(l->sides) && !is_bad; i++)
+    for (uint32_t i = 0; i < conic_face_lattice_places(l->sides) && !is_bad; i++)
       is_bad = s->sites[s->owner[l->first + i]].error > limit;
     if (is_bad && s->depth[k] < CONIC_MOST_DEPTH) {
       s->depth[k]++;
@@ -164,9 +164,9 @@ static int refine_faces(conic_sampler *s, double limit) {
   return is_any;
 }
 
-/* Where spacings begin: as wide as wanted; after a finer level of the same patch a step wider than that needed. */
+/* Where spacings begin: as wide as wanted; after a finer level of the same cluster a step wider than that needed. */
 static conic_status begin_depths(conic_sampler *s) {
-  size_t n = s->job->mesh->starts[s->job->patch + 1] - s->job->mesh->starts[s->job->patch];
+  size_t n = s->job->mesh->starts[s->job->cluster + 1] - s->job->mesh->starts[s->job->cluster];
   void *depth = s->depth;
   conic_status status = conic_sampler_grow(s, &depth, 0, n, &s->depth_room, sizeof *s->depth);
   s->depth = depth;
@@ -204,18 +204,18 @@ static int is_coarsest(const conic_sampler *s) {
   return is_plain && square < 0.999 * s->job->spacing * s->job->spacing;
 }
 
-conic_status conic_patch_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
+conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *job, conic_surfels *surfels) {
   s->job = job;
   s->n_supports = s->n_sorted = 0;
   conic_status status = begin_depths(s);
   for (int pass = 1; status == CONIC_OK; pass++) {
     if (pass > 1)
-      conic_patch_end_pass(s);
-    status = conic_patch_find_sites(s);
+      conic_cluster_end_pass(s);
+    status = conic_cluster_find_sites(s);
     if (status == CONIC_OK && pass > 1)
-      conic_patch_settle_sites(s);
+      conic_cluster_settle_sites(s);
     if (status == CONIC_OK)
-      status = conic_patch_shape_sites(s);
+      status = conic_cluster_shape_sites(s);
     if (status != CONIC_OK || pass == MOST_PASSES || !refine_faces(s, error_to_part(s)))
       break;
   }

@@ -1,4 +1,4 @@
-/* Surfels of a patch: splats that stand for its faces. */
+/* Surfels of a cluster: splats that stand for its faces. */
 #ifndef CONIC_CLUSTER_SAMPLE_H
 #define CONIC_CLUSTER_SAMPLE_H
 
@@ -24,31 +24,31 @@ typedef struct conic_surfels {
 } conic_surfels;
 
 typedef struct conic_sampling_job {
-  const conic_patch_mesh *mesh;
+  const conic_clustered_mesh *mesh;
   const conic_face_tree *tree; /* of all its faces */
-  uint32_t patch;
+  uint32_t cluster;
   double spacing;   /* no two surfels that face alike are nearer than this, but where the surface needs closer ones */
   double tolerance; /* surfels whose error is larger are made of closer ones, */
   size_t most;      /* as long as there are no more than these */
   size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
-  int is_coarser;   /* the job before was the same patch's, at half the spacing */
+  int is_coarser;   /* the job before was the same cluster's, at half the spacing */
   int is_off_mesh;  /* what sites stand for lies near the mesh, but not on it */
   double cutoff;    /* standard deviations at which a splat ends */
 } conic_sampling_job;
 
-/* Memory that is kept from patch to patch. Zero before the first use. */
+/* Memory that is kept from cluster to cluster. Zero before the first use. */
 typedef struct conic_sampler conic_sampler;
 conic_status conic_sampler_create(conic_context *context, conic_sampler **sampler);
 void conic_sampler_destroy(conic_sampler *sampler);
 
 /* Area-weighted blue noise: places at random, none nearer to another than the spacing, until no more go in; those on
- * the patch's border to triangles or to nothing first. Each stands for what is nearest to it, and its ellipse covers
+ * the cluster's border to triangles or to nothing first. Each stands for what is nearest to it, and its ellipse covers
  * that: together they cover every face, whole. Appends to *surfels. Errors: MEMORY. */
-conic_status conic_patch_sample(conic_sampler *sampler, const conic_sampling_job *job, conic_surfels *surfels);
+conic_status conic_cluster_sample(conic_sampler *sampler, const conic_sampling_job *job, conic_surfels *surfels);
 
 /* As in HQP §3.3.2: where the lines of a grid of that spacing, along each of the three axes, meet the faces; circles of
  * √3 spacings. For comparison. Appends to *surfels. Errors: MEMORY. */
-conic_status conic_patch_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels);
+conic_status conic_cluster_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels);
 
 /* Room for one more. Errors: MEMORY. */
 conic_status conic_surfels_reserve(conic_context *context, conic_surfels *surfels);

@@ -16,7 +16,7 @@ static const double steep = 0.5;
 /* --- the small triangles of the lattices --- */
 
 typedef struct small_triangle {
-  const conic_lattice *lattice;
+  const conic_face_lattice *lattice;
   const double *facing;
   const double *at[3];
   int steps[3][2];
@@ -30,8 +30,8 @@ static const int corner_steps[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 0}, {1,
 typedef conic_status small_task(conic_sampler *s, const small_triangle *t);
 
 /* Whether something of a face's belongs to a site that is not settled. */
-static int has_work(const conic_sampler *s, const conic_lattice *l) {
-  uint32_t n = conic_lattice_places(l->sides), i = 0;
+static int has_work(const conic_sampler *s, const conic_face_lattice *l) {
+  uint32_t n = conic_face_lattice_places(l->sides), i = 0;
   while (i < n && s->sites[s->owner[l->first + i]].is_settled)
     i++;
   return i < n;
@@ -40,7 +40,7 @@ static int has_work(const conic_sampler *s, const conic_lattice *l) {
 static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     if (!has_work(s, l))
       continue;
     for (int i = 0; i < l->sides; i++)
@@ -53,7 +53,7 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
           for (int corner = 0; corner < 3; corner++) {
             t.steps[corner][0] = i + corner_steps[between][corner][0];
             t.steps[corner][1] = j + corner_steps[between][corner][1];
-            uint32_t place = conic_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
+            uint32_t place = conic_face_lattice_place(l, t.steps[corner][0], t.steps[corner][1]);
             t.at[corner] = s->places[place];
             t.owners[corner] = s->owner[place];
           }
@@ -69,9 +69,9 @@ static conic_status do_small_triangles(conic_sampler *s, small_task *task) {
 static void look_at_corner(const conic_sampler *s, const small_triangle *t, int corner, double normal[3],
                            double color[3]) {
   double bary[3];
-  conic_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
-  conic_patch_normal(s->job->mesh, t->lattice->face, bary, t->facing, normal);
-  conic_patch_color(s->job->mesh, t->lattice->face, bary, color);
+  conic_face_lattice_bary(t->lattice, t->steps[corner][0], t->steps[corner][1], bary);
+  conic_cluster_normal(s->job->mesh, t->lattice->face, bary, t->facing, normal);
+  conic_cluster_color(s->job->mesh, t->lattice->face, bary, color);
 }
 
 static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
@@ -101,7 +101,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
 }
 
 /* Where what a site stands for has no direction in the mean, its own face says. */
-void conic_patch_settle_planes(conic_sampler *s) {
+void conic_cluster_settle_planes(conic_sampler *s) {
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
     if (site->is_settled)
@@ -125,8 +125,8 @@ static conic_status grow_supports(conic_sampler *s) {
   return status;
 }
 
-conic_status conic_patch_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
-                                      const double facing[3]) {
+conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,
+                                        const double facing[3]) {
   conic_site *site = &s->sites[i_site];
   if (site->is_settled)
     return CONIC_OK;
@@ -167,12 +167,12 @@ static void find_border(const conic_sampler *s, const small_triangle *t, int fro
 static conic_status cover_places(conic_sampler *s) {
   conic_status status = CONIC_OK;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
-    size_t begin = l->first, end = begin + conic_lattice_places(l->sides);
+    const conic_face_lattice *l = &s->lattices[k];
+    size_t begin = l->first, end = begin + conic_face_lattice_places(l->sides);
     if (!has_work(s, l))
       continue;
     for (size_t i = begin; i < end && status == CONIC_OK; i++)
-      status = conic_patch_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
+      status = conic_cluster_note_support(s, s->owner[i], s->places[i], l->face, s->facing[k]);
   }
   return status;
 }
@@ -191,14 +191,14 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
     n_parted++;
     find_border(s, t, k, (k + 1) % 3, border[k]);
     for (int end = 0; end < 2 && status == CONIC_OK && !t->is_between; end++)
-      status = conic_patch_note_support(s, owners[end], border[k], t->lattice->face, t->facing);
+      status = conic_cluster_note_support(s, owners[end], border[k], t->lattice->face, t->facing);
   }
   if (n_parted < 3)
     return status;
   for (int axis = 0; axis < 3; axis++)
     middle[axis] = (border[0][axis] + border[1][axis] + border[2][axis]) / 3.0;
   for (int corner = 0; corner < 3 && status == CONIC_OK; corner++)
-    status = conic_patch_note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
+    status = conic_cluster_note_support(s, t->owners[corner], middle, t->lattice->face, t->facing);
   return status;
 }
 
@@ -331,7 +331,7 @@ static void shape_site(conic_sampler *s, conic_site *site) {
   site->error = conic_site_error(s, site, s->job->tolerance, &site->error_bound);
 }
 
-conic_status conic_patch_shape_supported(conic_sampler *s) {
+conic_status conic_cluster_shape_supported(conic_sampler *s) {
   conic_status status = sort_supports(s);
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     if (!s->sites[i].is_settled)
@@ -339,14 +339,14 @@ conic_status conic_patch_shape_supported(conic_sampler *s) {
   return status;
 }
 
-conic_status conic_patch_shape_sites(conic_sampler *s) {
+conic_status conic_cluster_shape_sites(conic_sampler *s) {
   conic_status status = do_small_triangles(s, add_to_sums);
   if (status != CONIC_OK)
     return status;
-  conic_patch_settle_planes(s);
-  conic_patch_find_contrasts(s);
+  conic_cluster_settle_planes(s);
+  conic_cluster_find_contrasts(s);
   status = cover_places(s);
   if (status == CONIC_OK)
     status = do_small_triangles(s, cover_small_triangle);
-  return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
+  return status == CONIC_OK ? conic_cluster_shape_supported(s) : status;
 }

@@ -1,5 +1,5 @@
 /* What simplifying works on: the triangles of a region, vertices with their quadrics, and the places of the mesh by
- * which errors are measured. Private to lod/patch_simplify*.c. */
+ * which errors are measured. Private to lod/clusters/cluster_simplify*.c. */
 #ifndef CONIC_CLUSTER_SIMPLIFIER_H
 #define CONIC_CLUSTER_SIMPLIFIER_H
 
@@ -10,9 +10,9 @@
 #define CONIC_NONE UINT32_MAX
 
 typedef enum conic_simplifier_kind {
-  CONIC_VERTEX_FREE = 0,   /* faces of one patch all around */
+  CONIC_VERTEX_FREE = 0,   /* faces of one cluster all around */
   CONIC_VERTEX_BORDER = 1, /* on an open border, along which it may go */
-  CONIC_VERTEX_CHAIN = 2,  /* between two patches, along whose chain it may go */
+  CONIC_VERTEX_CHAIN = 2,  /* between two clusters, along whose chain it may go */
   CONIC_VERTEX_LOCKED = 3  /* of another region too; or its surroundings are no surface, or its attributes differ */
 } conic_simplifier_kind;
 
@@ -33,7 +33,7 @@ typedef struct conic_simplifier_triangle {
   uint32_t corners[3]; /* vertices */
   uint32_t next[3];    /* slots in the rings */
   uint32_t face;
-  uint32_t patch; /* from the region's first */
+  uint32_t cluster; /* from the region's first */
   int is_alive;
 } conic_simplifier_triangle;
 
@@ -53,15 +53,15 @@ typedef struct conic_simplifier_spoke {
 
 /* Along it, vertices were left out. */
 typedef struct conic_simplifier_border {
-  conic_hybrid_border of; /* the triangle's number is that in the region */
-  uint32_t patch;         /* from the region's first */
+  conic_cluster_border of; /* the triangle's number is that in the region */
+  uint32_t cluster;        /* from the region's first */
 } conic_simplifier_border;
 
 struct conic_simplifier {
   conic_context *context;
-  const conic_patch_mesh *mesh;
+  const conic_clustered_mesh *mesh;
   const conic_face_tree *tree; /* of all the mesh's faces */
-  conic_patch_chains *chains;
+  conic_cluster_chains *chains;
   uint32_t *number; /* of each place of the mesh, while its region is worked on; else none */
   uint32_t begin, end;
   size_t n_vertices, n_triangles, n_points, n_borders, n_alive;
@@ -71,15 +71,15 @@ struct conic_simplifier {
   uint32_t (*near)[4];      /* faces of the mesh that were near the middles of their edges, and near their own */
   conic_simplifier_point *points;
   conic_simplifier_border *borders; /* of the stage that is to be taken */
-  size_t *point_starts[2];          /* of each patch, and an end: its own, and those of its borders, after all own */
+  size_t *point_starts[2];          /* of each cluster, and an end: its own, and those of its borders, after all own */
   size_t *border_starts;            /* likewise */
-  uint32_t *alive;                  /* triangles of each patch */
-  uint32_t *taken;                  /* of each patch: triangles of its last level */
-  double *errors2;                  /* of each patch, squared, so far */
+  uint32_t *alive;                  /* triangles of each cluster */
+  uint32_t *taken;                  /* of each cluster: triangles of its last level */
+  double *errors2;                  /* of each cluster, squared, so far */
   uint32_t stage;                   /* the last one that is taken, or is to be */
   size_t n_last, n_wanted;          /* triangles: of the last stage, and of the next */
   int is_to_take, is_over;
-  conic_patch_levels *levels;     /* of the region's patches */
+  conic_cluster_levels *levels;   /* of the region's clusters */
   conic_simplifier_spoke *spokes; /* room for those of any vertex */
   void *memory[14];               /* all of these, but for the borders */
   conic_heap queue;
@@ -107,12 +107,12 @@ conic_status conic_simplifier_load(conic_simplifier *s);
 /* Sets the target of vertex u and its key, or neither where it may be drawn onto no neighbour. */
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u);
 
-/* Whether a patch has become so much simpler that this stage is a level of it. */
-static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t patch) {
-  return 4 * (size_t)s->alive[patch] <= 3 * (size_t)s->taken[patch];
+/* Whether a cluster has become so much simpler that this stage is a level of it. */
+static inline int conic_simplifier_is_worth_a_level(const conic_simplifier *s, uint32_t cluster) {
+  return 4 * (size_t)s->alive[cluster] <= 3 * (size_t)s->taken[cluster];
 }
 
-/* Makes what is alive one more stage, to be measured and then taken, if patches would fit; else it is over. Errors:
+/* Makes what is alive one more stage, to be measured and then taken, if clusters would fit; else it is over. Errors:
  * MEMORY. */
 conic_status conic_simplifier_begin_stage(conic_simplifier *s);
 

@@ -6,10 +6,8 @@
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_triangle triangle;
-
-conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh, const conic_face_tree *tree,
-                                     conic_simplifier **simplifier) {
+conic_status conic_simplifier_create(conic_context *context, const conic_clustered_mesh *mesh,
+                                     const conic_face_tree *tree, conic_simplifier **simplifier) {
   conic_simplifier *s = conic_memory_allocate_zeroed(context, 1, sizeof *s);
   *simplifier = s;
   if (!s)
@@ -49,7 +47,7 @@ static void prune_ring(conic_simplifier *s, uint32_t v) {
   *link = CONIC_NONE;
 }
 
-/* Of a vertex between two patches: it is there up to the last stage that was taken. */
+/* Of a vertex between two clusters: it is there up to the last stage that was taken. */
 static void leave_slot(conic_simplifier *s, uint32_t u) {
   uint32_t slot = s->chains->of_vertex[s->mesh->adjacency->place[s->vertices[u].original]];
   if (slot != CONIC_NO_SLOT)
@@ -58,11 +56,11 @@ static void leave_slot(conic_simplifier *s, uint32_t u) {
 
 static void draw_together(conic_simplifier *s, uint32_t u, uint32_t v) {
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;) {
-    triangle *t = &s->triangles[slot / 3];
+    conic_simplifier_triangle *t = &s->triangles[slot / 3];
     uint32_t following = conic_simplifier_after(s, slot);
     if (conic_simplifier_has(t, v)) {
       t->is_alive = 0;
-      s->alive[t->patch]--;
+      s->alive[t->cluster]--;
       s->n_alive--;
     } else {
       t->corners[slot % 3] = v;
@@ -92,8 +90,8 @@ static void fill_queue(conic_simplifier *s) {
     }
 }
 
-conic_status conic_region_begin(conic_simplifier *s, conic_patch_chains *chains, uint32_t begin, uint32_t end,
-                                conic_patch_levels *levels) {
+conic_status conic_region_begin(conic_simplifier *s, conic_cluster_chains *chains, uint32_t begin, uint32_t end,
+                                conic_cluster_levels *levels) {
   s->chains = chains;
   s->begin = begin;
   s->end = end;
@@ -128,7 +126,7 @@ static conic_status simplify(conic_simplifier *s) {
   return is_worth_it ? conic_simplifier_begin_stage(s) : CONIC_OK;
 }
 
-conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_patches) {
+conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_clusters) {
   conic_status status = CONIC_OK;
   if (s->is_to_take) {
     status = conic_simplifier_take(s);
@@ -137,6 +135,6 @@ conic_status conic_region_advance(conic_simplifier *s, uint32_t *n_patches) {
   }
   if (status == CONIC_OK && !s->is_over)
     status = simplify(s);
-  *n_patches = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
+  *n_clusters = status == CONIC_OK && s->is_to_take ? s->end - s->begin : 0;
   return status;
 }

@@ -1,4 +1,4 @@
-/* Simpler and simpler triangles for the patches of a region, which are simplified together. */
+/* Simpler and simpler triangles for the clusters of a region, which are simplified together. */
 #ifndef CONIC_CLUSTER_SIMPLIFY_H
 #define CONIC_CLUSTER_SIMPLIFY_H
 
@@ -8,48 +8,48 @@
 enum { CONIC_MOST_TRIANGLE_LEVELS = 12 };
 
 /* Triangles of the mesh's own vertices. */
-typedef struct conic_patch_level {
+typedef struct conic_cluster_level {
   size_t n, n_borders;
   uint32_t (*corners)[3];
   uint32_t *face; /* of each: the face of the mesh that it came from */
-  conic_hybrid_border *borders;
+  conic_cluster_border *borders;
   uint32_t stage;
-  double error; /* no vertex of the patch, nor middle of an edge or a face, is farther from these triangles, those of
-                   the other patches of the same stage beside them; nor are the middles of these and of their edges
+  double error; /* no vertex of the cluster, nor middle of an edge or a face, is farther from these triangles, those of
+                   the other clusters of the same stage beside them; nor are the middles of these and of their edges
                    from the mesh, nor those of the fans that they become beside others */
-} conic_patch_level;
+} conic_cluster_level;
 
-typedef struct conic_patch_levels {
+typedef struct conic_cluster_levels {
   int n; /* the first one is the next simpler than the mesh itself */
-  conic_patch_level levels[CONIC_MOST_TRIANGLE_LEVELS];
-} conic_patch_levels;
+  conic_cluster_level levels[CONIC_MOST_TRIANGLE_LEVELS];
+} conic_cluster_levels;
 
 /* Memory that is kept from region to region. */
 typedef struct conic_simplifier conic_simplifier;
-conic_status conic_simplifier_create(conic_context *context, const conic_patch_mesh *mesh, const conic_face_tree *tree,
-                                     conic_simplifier **simplifier);
+conic_status conic_simplifier_create(conic_context *context, const conic_clustered_mesh *mesh,
+                                     const conic_face_tree *tree, conic_simplifier **simplifier);
 void conic_simplifier_destroy(conic_simplifier *simplifier);
 
 /* Draws edges together, the cheapest first by their quadrics (HQP §3.2.1), each onto one of its ends: what stays are
- * vertices of the mesh. Each stage has half as many triangles as the one before, as far as that is possible; a patch
+ * vertices of the mesh. Each stage has half as many triangles as the one before, as far as that is possible; a cluster
  * has a level of it where that is much simpler than its last. Vertices between the ends of chains may go along them,
  * and their slots then tell the last stage that has them; those on an open border along that, held by planes that stand
- * on its edges (§3.2.4). Vertices of another region stay, and of no patch all triangles go. Region: the patches
+ * on its edges (§3.2.4). Vertices of another region stay, and of no cluster all triangles go. Region: the clusters
  * [begin, end), whose levels are levels[0 …], filled in by what follows. The caller ends the region, and releases the
  * levels, on failure too. Errors: MEMORY. */
-conic_status conic_region_begin(conic_simplifier *simplifier, conic_patch_chains *chains, uint32_t begin, uint32_t end,
-                                conic_patch_levels *levels);
+conic_status conic_region_begin(conic_simplifier *simplifier, conic_cluster_chains *chains, uint32_t begin,
+                                uint32_t end, conic_cluster_levels *levels);
 
-/* Takes the stage that was measured, if any, as levels, and goes on to the next: n_patches are to be measured before it
- * is taken. None where all is done. Errors: MEMORY. */
-conic_status conic_region_advance(conic_simplifier *simplifier, uint32_t *n_patches);
+/* Takes the stage that was measured, if any, as levels, and goes on to the next: n_clusters are to be measured before
+ * it is taken. None where all is done. Errors: MEMORY. */
+conic_status conic_region_advance(conic_simplifier *simplifier, uint32_t *n_clusters);
 
-/* Measures one of them, the region's i-th. Patches may be measured at the same time. */
-void conic_region_measure(conic_simplifier *simplifier, uint32_t patch);
+/* Measures one of them, the region's i-th. Clusters may be measured at the same time. */
+void conic_region_measure(conic_simplifier *simplifier, uint32_t cluster);
 
 /* The region is left: no place has a number any more. */
 void conic_region_end(conic_simplifier *simplifier);
 
-void conic_patch_levels_release(conic_context *context, conic_patch_levels *levels);
+void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *levels);
 
 #endif

@@ -5,9 +5,6 @@
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_vertex vertex;
-typedef conic_simplifier_triangle triangle;
-
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */
 static const double border_weight = 10.0;
 
@@ -22,20 +19,20 @@ static void release(conic_simplifier *s) {
 
 /* Edges have a point each, and at most two on a border; they are at most three a face. */
 static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_faces) {
-  size_t n_patches = s->end - s->begin;
+  size_t n_clusters = s->end - s->begin;
   release(s);
   s->memory[0] = s->vertices = conic_memory_allocate(s->context, n_vertices, sizeof *s->vertices);
   s->memory[1] = s->triangles = conic_memory_allocate(s->context, n_faces, sizeof *s->triangles);
   s->memory[2] = s->points = conic_memory_allocate(s->context, n_vertices + 7 * n_faces, sizeof *s->points);
-  s->memory[3] = s->alive = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->alive);
-  s->memory[4] = s->taken = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->taken);
-  s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_patches, sizeof *s->errors2);
+  s->memory[3] = s->alive = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->alive);
+  s->memory[4] = s->taken = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->taken);
+  s->memory[5] = s->errors2 = conic_memory_allocate_zeroed(s->context, n_clusters, sizeof *s->errors2);
   s->memory[6] = s->queue.keys = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.keys);
   s->memory[7] = s->queue.slots = conic_memory_allocate(s->context, n_vertices, sizeof *s->queue.slots);
   for (int i = 0; i < 2; i++)
     s->memory[8 + i] = s->point_starts[i] =
-        conic_memory_allocate(s->context, n_patches + 1, sizeof *s->point_starts[i]);
-  s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_patches + 1, sizeof *s->border_starts);
+        conic_memory_allocate(s->context, n_clusters + 1, sizeof *s->point_starts[i]);
+  s->memory[10] = s->border_starts = conic_memory_allocate(s->context, n_clusters + 1, sizeof *s->border_starts);
   s->memory[11] = s->spokes = conic_memory_allocate(s->context, 2 * n_faces, sizeof *s->spokes);
   s->memory[12] = s->originals = conic_memory_allocate(s->context, n_faces, sizeof *s->originals);
   s->memory[13] = s->near = conic_memory_allocate(s->context, n_faces, sizeof *s->near);
@@ -47,7 +44,7 @@ static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_f
 
 /* Numbers the region's places. */
 static void number_places(conic_simplifier *s) {
-  const conic_patch_mesh *mesh = s->mesh;
+  const conic_clustered_mesh *mesh = s->mesh;
   s->n_vertices = 0;
   for (size_t i = mesh->starts[s->begin]; i < mesh->starts[s->end]; i++)
     for (int corner = 0; corner < 3; corner++) {
@@ -58,7 +55,7 @@ static void number_places(conic_simplifier *s) {
 }
 
 void conic_region_end(conic_simplifier *s) {
-  const conic_patch_mesh *mesh = s->mesh;
+  const conic_clustered_mesh *mesh = s->mesh;
   for (size_t i = mesh->starts[s->begin]; i < mesh->starts[s->end]; i++)
     for (int corner = 0; corner < 3; corner++)
       s->number[mesh->adjacency->place[mesh->mesh.faces[mesh->faces[i]][corner]]] = CONIC_NONE;
@@ -73,7 +70,7 @@ static void add_point(conic_simplifier *s, uint32_t i_vertex, const double at[3]
 /* The region's number of a mesh's vertex. */
 static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t material) {
   uint32_t i = s->number[s->mesh->adjacency->place[original]];
-  vertex *v = &s->vertices[i];
+  conic_simplifier_vertex *v = &s->vertices[i];
   if (v->original == CONIC_NONE) {
     v->original = original;
     v->material = material;
@@ -87,20 +84,20 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t mate
   return i;
 }
 
-static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
+static void add_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
-  triangle *t = &s->triangles[i];
+  conic_simplifier_triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
   t->face = s->near[i][0] = s->near[i][1] = s->near[i][2] = s->near[i][3] = face;
-  t->patch = patch;
+  t->cluster = cluster;
   t->is_alive = 1;
-  s->alive[patch]++;
-  conic_patch_face_normal(s->mesh, face, t->normal);
+  s->alive[cluster]++;
+  conic_cluster_face_normal(s->mesh, face, t->normal);
   for (int corner = 0; corner < 3; corner++) {
     const uint32_t *materials = s->mesh->triangles->material;
     s->originals[i][corner] = s->mesh->mesh.faces[face][corner];
     uint32_t k = use_vertex(s, s->originals[i][corner], materials ? materials[face] : 0);
-    vertex *v = &s->vertices[k];
+    conic_simplifier_vertex *v = &s->vertices[k];
     t->corners[corner] = k;
     t->next[corner] = v->ring;
     v->ring = 3 * i + (uint32_t)corner;
@@ -112,14 +109,14 @@ static void add_triangle(conic_simplifier *s, uint32_t patch, uint32_t face) {
     uint32_t across = s->mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
     const double *a = s->vertices[t->corners[corner]].at, *b = s->vertices[t->corners[(corner + 1) % 3]].at;
     const double half[3] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
-    if (conic_patch_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
+    if (conic_cluster_ends_at(s->mesh, face, corner) || across / 3 > face) /* of two faces the one */
       add_point(s, t->corners[corner], half);
   }
 }
 
 /* --- borders --- */
 
-static void stand_on_edge(const triangle *t, vertex *ends[2]) {
+static void stand_on_edge(const conic_simplifier_triangle *t, conic_simplifier_vertex *ends[2]) {
   double side[3], upright[3];
   for (int axis = 0; axis < 3; axis++)
     side[axis] = ends[1]->at[axis] - ends[0]->at[axis];
@@ -135,12 +132,12 @@ static void stand_on_edge(const triangle *t, vertex *ends[2]) {
 }
 
 /* The ends of an edge on a border are on an open one, or within a chain, or they stay. */
-static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
+static void treat_border(conic_simplifier *s, const conic_simplifier_triangle *t, int corner) {
   uint32_t across = s->mesh->adjacency->across[3 * (size_t)t->face + (size_t)corner];
-  vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
-  if (!conic_patch_ends_at(s->mesh, t->face, corner))
+  conic_simplifier_vertex *ends[2] = {&s->vertices[t->corners[corner]], &s->vertices[t->corners[(corner + 1) % 3]]};
+  if (!conic_cluster_ends_at(s->mesh, t->face, corner))
     return;
-  add_point(s, t->corners[corner], ends[0]->at); /* it is of each patch that has it */
+  add_point(s, t->corners[corner], ends[0]->at); /* it is of each cluster that has it */
   for (int k = 0; k < 2; k++) {
     uint32_t place = s->mesh->adjacency->place[ends[k]->original];
     uint8_t kind = across == CONIC_OPEN_EDGE                      ? CONIC_VERTEX_BORDER
@@ -152,7 +149,7 @@ static void treat_border(conic_simplifier *s, const triangle *t, int corner) {
     stand_on_edge(t, ends);
 }
 
-static void add_planes(conic_simplifier *s, const triangle *t) {
+static void add_planes(conic_simplifier *s, const conic_simplifier_triangle *t) {
   double sides[2][3], cross[3];
   for (int k = 0; k < 2; k++)
     for (int axis = 0; axis < 3; axis++)
@@ -163,18 +160,18 @@ static void add_planes(conic_simplifier *s, const triangle *t) {
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }
 
-static void treat_triangle(conic_simplifier *s, const triangle *t) {
+static void treat_triangle(conic_simplifier *s, const conic_simplifier_triangle *t) {
   for (int corner = 0; corner < 3; corner++)
     treat_border(s, t, corner);
   add_planes(s, t);
 }
 
 conic_status conic_simplifier_load(conic_simplifier *s) {
-  const conic_patch_mesh *mesh = s->mesh;
+  const conic_clustered_mesh *mesh = s->mesh;
   const size_t *starts = mesh->starts + s->begin;
-  uint32_t n_patches = s->end - s->begin;
+  uint32_t n_clusters = s->end - s->begin;
   number_places(s);
-  conic_status status = make_room(s, s->n_vertices, starts[n_patches] - starts[0]);
+  conic_status status = make_room(s, s->n_vertices, starts[n_clusters] - starts[0]);
   if (status != CONIC_OK)
     return status;
   s->n_triangles = s->n_points = s->queue.n = 0;
@@ -182,19 +179,19 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   memset(s->vertices, 0, s->n_vertices * sizeof *s->vertices);
   for (size_t i = 0; i < s->n_vertices; i++)
     s->vertices[i].original = s->vertices[i].ring = s->vertices[i].target = CONIC_NONE;
-  for (uint32_t patch = 0; patch < n_patches; patch++) {
-    s->point_starts[0][patch] = s->n_points;
-    for (size_t i = starts[patch]; i < starts[patch + 1]; i++)
-      add_triangle(s, patch, mesh->faces[i]);
+  for (uint32_t cluster = 0; cluster < n_clusters; cluster++) {
+    s->point_starts[0][cluster] = s->n_points;
+    for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++)
+      add_triangle(s, cluster, mesh->faces[i]);
   }
-  s->point_starts[0][n_patches] = s->n_points;
-  memcpy(s->taken, s->alive, n_patches * sizeof *s->taken);
+  s->point_starts[0][n_clusters] = s->n_points;
+  memcpy(s->taken, s->alive, n_clusters * sizeof *s->taken);
   s->n_alive = s->n_triangles;
-  for (uint32_t patch = 0; patch < n_patches; patch++) {
-    s->point_starts[1][patch] = s->n_points;
-    for (size_t i = starts[patch] - starts[0]; i < starts[patch + 1] - starts[0]; i++)
+  for (uint32_t cluster = 0; cluster < n_clusters; cluster++) {
+    s->point_starts[1][cluster] = s->n_points;
+    for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++)
       treat_triangle(s, &s->triangles[i]);
   }
-  s->point_starts[1][n_patches] = s->n_points;
+  s->point_starts[1][n_clusters] = s->n_points;
   return CONIC_OK;
 }

@@ -1,11 +1,9 @@
-/* How far a patch and its simpler triangles are from each other. What is found depends on no other patch's, so that
- * patches may be measured at the same time. */
+/* How far a cluster and its simpler triangles are from each other. What is found depends on no other cluster's, so that
+ * clusters may be measured at the same time. */
 #include <math.h>
 
 #include "lod/clusters/cluster_simplifier.h"
 #include "lod/mesh/distance.h"
-
-typedef conic_simplifier_triangle triangle;
 
 /* What a vertex has become, at the end of a way that is made shorter on it. */
 static uint32_t now_at(conic_simplifier *s, uint32_t v) {
@@ -33,11 +31,11 @@ typedef struct approach {
 } approach;
 
 /* The nearest of the triangles about a vertex, if it is nearer than all before. */
-static const triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
-  const triangle *nearest = NULL;
+static const conic_simplifier_triangle *nearest_about(const conic_simplifier *s, uint32_t v, approach *a) {
+  const conic_simplifier_triangle *nearest = NULL;
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[v].ring); slot != CONIC_NONE && a->least2 > a->enough2;
        slot = conic_simplifier_after(s, slot)) {
-    const triangle *t = &s->triangles[slot / 3];
+    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
     double distance2 = conic_distance2_to_triangle(a->at, s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
                                                    s->vertices[t->corners[2]].at);
     if (!(distance2 < a->least2))
@@ -54,14 +52,14 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
   const conic_simplifier_vertex *own = &s->vertices[point->vertex];
   uint32_t first = own->is_gone ? own->target : point->vertex;
   approach a = {.at = point->at, .least2 = HUGE_VAL, .enough2 = enough2};
-  const triangle *before = NULL, *from = nearest_about(s, first, &a);
+  const conic_simplifier_triangle *before = NULL, *from = nearest_about(s, first, &a);
   while (from && a.least2 > enough2) {
-    const triangle *nearest = NULL;
+    const conic_simplifier_triangle *nearest = NULL;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t v = from->corners[corner];
       if (before ? conic_simplifier_has(before, v) : v == first)
         continue;
-      const triangle *found = nearest_about(s, v, &a);
+      const conic_simplifier_triangle *found = nearest_about(s, v, &a);
       nearest = found ? found : nearest;
     }
     before = from;
@@ -70,13 +68,13 @@ static double distance2_of(const conic_simplifier *s, const conic_simplifier_poi
   return a.least2;
 }
 
-static void measure_points(conic_simplifier *s, uint32_t patch, const size_t *starts) {
-  double most2 = s->errors2[patch];
-  for (size_t i = starts[patch]; i < starts[patch + 1]; i++) {
+static void measure_points(conic_simplifier *s, uint32_t cluster, const size_t *starts) {
+  double most2 = s->errors2[cluster];
+  for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++) {
     double distance2 = distance2_of(s, &s->points[i], most2);
     most2 = distance2 > most2 ? distance2 : most2;
   }
-  s->errors2[patch] = most2;
+  s->errors2[cluster] = most2;
 }
 
 /* --- from the triangles to the mesh --- */
@@ -114,11 +112,11 @@ static double farther(const conic_simplifier *s, const double *const places[3], 
 }
 
 /* The middles of the triangles, and those of their edges. */
-static double measure_back(const conic_simplifier *s, uint32_t patch, double most) {
-  size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + patch] - first,
-         end = s->mesh->starts[s->begin + patch + 1] - first;
+static double measure_back(const conic_simplifier *s, uint32_t cluster, double most) {
+  size_t first = s->mesh->starts[s->begin], begin = s->mesh->starts[s->begin + cluster] - first,
+         end = s->mesh->starts[s->begin + cluster + 1] - first;
   for (size_t i = begin; i < end; i++) {
-    const triangle *t = &s->triangles[i];
+    const conic_simplifier_triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
     const double *const corners[4] = {s->vertices[t->corners[0]].at, s->vertices[t->corners[1]].at,
@@ -137,7 +135,7 @@ static const double *slot_at(const conic_simplifier *s, uint32_t slot) {
 }
 
 /* Whether something between a border's ends is there at the stage before this one, and no more at this one. */
-static int loses_some(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage) {
+static int loses_some(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage) {
   uint32_t low = border->from < border->to ? border->from : border->to, high = low ^ border->from ^ border->to;
   for (uint32_t slot = low + 1; slot < high; slot++)
     if (s->chains->slots[slot].stage + 1 == stage)
@@ -145,10 +143,10 @@ static int loses_some(const conic_simplifier *s, const conic_hybrid_border *bord
   return 0;
 }
 
-/* The fan that a border's triangle becomes beside a patch of an earlier stage: the middles of its triangles and of the
- * edges between them. */
-static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *border, uint32_t stage, double most) {
-  const triangle *t = &s->triangles[border->edge / 4];
+/* The fan that a border's triangle becomes beside a cluster of an earlier stage: the middles of its triangles and of
+ * the edges between them. */
+static double measure_fan(const conic_simplifier *s, const conic_cluster_border *border, uint32_t stage, double most) {
+  const conic_simplifier_triangle *t = &s->triangles[border->edge / 4];
   const double *opposite = s->vertices[t->corners[(border->edge % 4 + 2) % 3]].at;
   const double *corners[3] = {opposite, slot_at(s, border->from), NULL};
   uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */
@@ -165,19 +163,19 @@ static double measure_fan(const conic_simplifier *s, const conic_hybrid_border *
   }
 }
 
-static double measure_fans(const conic_simplifier *s, uint32_t patch, double most) {
-  for (size_t i = s->border_starts[patch]; i < s->border_starts[patch + 1]; i++)
+static double measure_fans(const conic_simplifier *s, uint32_t cluster, double most) {
+  for (size_t i = s->border_starts[cluster]; i < s->border_starts[cluster + 1]; i++)
     for (uint32_t stage = 0; stage < s->stage; stage++)
       if (stage == 0 || loses_some(s, &s->borders[i].of, stage))
         most = measure_fan(s, &s->borders[i].of, stage, most);
   return most;
 }
 
-void conic_region_measure(conic_simplifier *s, uint32_t patch) {
-  measure_points(s, patch, s->point_starts[0]);
-  measure_points(s, patch, s->point_starts[1]);
-  if (!conic_simplifier_is_worth_a_level(s, patch))
+void conic_region_measure(conic_simplifier *s, uint32_t cluster) {
+  measure_points(s, cluster, s->point_starts[0]);
+  measure_points(s, cluster, s->point_starts[1]);
+  if (!conic_simplifier_is_worth_a_level(s, cluster))
     return;
-  double most = measure_fans(s, patch, measure_back(s, patch, sqrt(s->errors2[patch])));
-  s->errors2[patch] = most * most;
+  double most = measure_fans(s, cluster, measure_back(s, cluster, sqrt(s->errors2[cluster])));
+  s->errors2[cluster] = most * most;
 }

@@ -1,12 +1,10 @@
-/* Levels of what simplifying has left: each patch's triangles and their borders. */
+/* Levels of what simplifying has left: each cluster's triangles and their borders. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_simplifier.h"
-
-typedef conic_simplifier_triangle triangle;
 
 /* --- borders --- */
 
@@ -15,37 +13,37 @@ static int compare_borders(const void *a, const void *b) {
   return (first->of.edge > second->of.edge) - (first->of.edge < second->of.edge);
 }
 
-/* The border of a patch between two vertices next to each other on a chain. Returns how many there are: one. */
+/* The border of a cluster between two vertices next to each other on a chain. Returns how many there are: one. */
 static int add_border(conic_simplifier *s, const conic_chain *chain, int side, const uint32_t slots[2]) {
-  uint32_t ends[2], patch = chain->patches[side] - s->begin;
+  uint32_t ends[2], cluster = chain->clusters[side] - s->begin;
   int n = 0;
   for (int k = 0; k < 2; k++)
     ends[k] = s->number[s->mesh->adjacency->place[s->chains->slots[slots[k]].vertex]];
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[ends[0]].ring); slot != CONIC_NONE;
        slot = conic_simplifier_after(s, slot)) {
-    const triangle *t = &s->triangles[slot / 3];
+    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
     uint32_t corner = slot % 3;
     int is_ahead = t->corners[(corner + 1) % 3] == ends[1], is_back = t->corners[(corner + 2) % 3] == ends[1];
-    if (t->patch != patch || (!is_ahead && !is_back))
+    if (t->cluster != cluster || (!is_ahead && !is_back))
       continue;
     n++;
     conic_simplifier_border *found = &s->borders[s->n_borders++];
-    found->patch = patch;
+    found->cluster = cluster;
     found->of.edge = 4 * (slot / 3) + (is_ahead ? corner : (corner + 2) % 3);
     found->of.from = slots[!is_ahead];
     found->of.to = slots[is_ahead];
-    found->of.across = chain->patches[!side];
+    found->of.across = chain->clusters[!side];
   }
   return n;
 }
 
 /* Both sides of a chain, where something was left out. Whether each has just one triangle there. */
 static int add_chain(conic_simplifier *s, const conic_chain *chain) {
-  const conic_hybrid_slot *slots = s->chains->slots;
+  const conic_cluster_slot *slots = s->chains->slots;
   uint32_t last = chain->first;
   int is_sound = 1;
   for (uint32_t i = last + 1; i < chain->first + chain->n; i++) {
-    if (slots[i].stage != CONIC_HYBRID_ALWAYS)
+    if (slots[i].stage != CONIC_CLUSTER_ALWAYS)
       continue; /* it is gone */
     const uint32_t ends[2] = {last, i};
     for (int side = 0; side < 2 && i > last + 1; side++)
@@ -56,11 +54,11 @@ static int add_chain(conic_simplifier *s, const conic_chain *chain) {
 }
 
 static int is_of_region(const conic_simplifier *s, const conic_chain *chain) {
-  return chain->patches[0] >= s->begin && chain->patches[0] < s->end;
+  return chain->clusters[0] >= s->begin && chain->clusters[0] < s->end;
 }
 
-/* All borders of the region, by their triangles. `is_sound` is 0 where a patch has not one edge along a chain: then it
- * could not be fitted to its neighbour. */
+/* All borders of the region, by their triangles. `is_sound` is 0 where a cluster has not one edge along a chain: then
+ * it could not be fitted to its neighbour. */
 static conic_status list_borders(conic_simplifier *s, int *is_sound) {
   const conic_chain *chains = s->chains->chains;
   size_t room = 0;
@@ -80,12 +78,12 @@ static conic_status list_borders(conic_simplifier *s, int *is_sound) {
   return CONIC_OK;
 }
 
-/* Those of a patch lie together, as its triangles do. */
+/* Those of a cluster lie together, as its triangles do. */
 static void part_borders(conic_simplifier *s) {
   size_t i = 0;
-  for (uint32_t patch = 0; patch < s->end - s->begin; patch++) {
-    s->border_starts[patch] = i;
-    while (i < s->n_borders && s->borders[i].patch == patch)
+  for (uint32_t cluster = 0; cluster < s->end - s->begin; cluster++) {
+    s->border_starts[cluster] = i;
+    while (i < s->n_borders && s->borders[i].cluster == cluster)
       i++;
   }
   s->border_starts[s->end - s->begin] = i;
@@ -106,20 +104,20 @@ conic_status conic_simplifier_begin_stage(conic_simplifier *s) {
 
 /* --- levels --- */
 
-/* The patch's triangles lie together. */
-static conic_status take_patch(const conic_simplifier *s, uint32_t patch, conic_patch_levels *levels) {
+/* The cluster's triangles lie together. */
+static conic_status take_cluster(const conic_simplifier *s, uint32_t cluster, conic_cluster_levels *levels) {
   const size_t *starts = s->mesh->starts + s->begin;
-  const conic_simplifier_border *borders = s->borders + s->border_starts[patch];
-  size_t n_borders = s->border_starts[patch + 1] - s->border_starts[patch];
-  conic_patch_level *level = &levels->levels[levels->n++];
+  const conic_simplifier_border *borders = s->borders + s->border_starts[cluster];
+  size_t n_borders = s->border_starts[cluster + 1] - s->border_starts[cluster];
+  conic_cluster_level *level = &levels->levels[levels->n++];
   memset(level, 0, sizeof *level);
-  level->corners = conic_memory_allocate(s->context, s->alive[patch], sizeof *level->corners);
-  level->face = conic_memory_allocate(s->context, s->alive[patch], sizeof *level->face);
+  level->corners = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->corners);
+  level->face = conic_memory_allocate(s->context, s->alive[cluster], sizeof *level->face);
   level->borders = conic_memory_allocate(s->context, n_borders, sizeof *level->borders);
   if (!level->corners || !level->face || !level->borders)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = starts[patch] - starts[0]; i < starts[patch + 1] - starts[0]; i++) {
-    const triangle *t = &s->triangles[i];
+  for (size_t i = starts[cluster] - starts[0]; i < starts[cluster + 1] - starts[0]; i++) {
+    const conic_simplifier_triangle *t = &s->triangles[i];
     if (!t->is_alive)
       continue;
     for (; level->n_borders < n_borders && borders[level->n_borders].of.edge / 4 == i; level->n_borders++) {
@@ -130,22 +128,22 @@ static conic_status take_patch(const conic_simplifier *s, uint32_t patch, conic_
     level->face[level->n++] = t->face;
   }
   level->stage = s->stage;
-  level->error = sqrt(s->errors2[patch]);
+  level->error = sqrt(s->errors2[cluster]);
   return CONIC_OK;
 }
 
 conic_status conic_simplifier_take(conic_simplifier *s) {
   conic_status status = CONIC_OK;
-  for (uint32_t patch = 0; patch < s->end - s->begin && status == CONIC_OK; patch++)
-    if (conic_simplifier_is_worth_a_level(s, patch)) {
-      status = take_patch(s, patch, &s->levels[patch]);
-      s->taken[patch] = s->alive[patch];
+  for (uint32_t cluster = 0; cluster < s->end - s->begin && status == CONIC_OK; cluster++)
+    if (conic_simplifier_is_worth_a_level(s, cluster)) {
+      status = take_cluster(s, cluster, &s->levels[cluster]);
+      s->taken[cluster] = s->alive[cluster];
     }
   s->is_to_take = 0;
   return status;
 }
 
-void conic_patch_levels_release(conic_context *context, conic_patch_levels *levels) {
+void conic_cluster_levels_release(conic_context *context, conic_cluster_levels *levels) {
   for (int i = 0; i < levels->n; i++) {
     conic_memory_release(context, levels->levels[i].corners);
     conic_memory_release(context, levels->levels[i].face);

@@ -3,10 +3,6 @@
 
 #include "lod/clusters/cluster_simplifier.h"
 
-typedef conic_simplifier_vertex vertex;
-typedef conic_simplifier_triangle triangle;
-typedef conic_simplifier_spoke spoke;
-
 /* The least cosine by which a face may turn. */
 static const double least_turn = 0.2;
 
@@ -15,7 +11,7 @@ static const double least_turn = 0.2;
 typedef struct fan {
   uint32_t vertex;
   size_t n_triangles, n_spokes;
-  spoke *spokes; /* the simplifier's */
+  conic_simplifier_spoke *spokes; /* the simplifier's */
 } fan;
 
 static int is_ahead(const fan *f, uint32_t v) {
@@ -29,37 +25,38 @@ static fan fan_of(const conic_simplifier *s, uint32_t u) {
   fan f = {.vertex = u, .spokes = s->spokes};
   for (uint32_t slot = conic_simplifier_living(s, s->vertices[u].ring); slot != CONIC_NONE;
        slot = conic_simplifier_after(s, slot)) {
-    const triangle *t = &s->triangles[slot / 3];
-    f.spokes[f.n_triangles++] =
-        (spoke){.vertex = t->corners[(slot % 3 + 1) % 3], .before = t->corners[(slot % 3 + 2) % 3], .slot = slot};
+    const conic_simplifier_triangle *t = &s->triangles[slot / 3];
+    f.spokes[f.n_triangles++] = (conic_simplifier_spoke){
+        .vertex = t->corners[(slot % 3 + 1) % 3], .before = t->corners[(slot % 3 + 2) % 3], .slot = slot};
   }
   f.n_spokes = f.n_triangles;
   for (size_t i = 0; i < f.n_triangles; i++)
     if (!is_ahead(&f, f.spokes[i].before))
-      f.spokes[f.n_spokes++] = (spoke){.vertex = f.spokes[i].before, .before = CONIC_NONE};
+      f.spokes[f.n_spokes++] = (conic_simplifier_spoke){.vertex = f.spokes[i].before, .before = CONIC_NONE};
   return f;
 }
 
-static int has(const spoke *of_triangle, uint32_t v) {
+static int has(const conic_simplifier_spoke *of_triangle, uint32_t v) {
   return of_triangle->vertex == v || of_triangle->before == v;
 }
 
-static const triangle *triangle_of(const conic_simplifier *s, const spoke *of_triangle) {
+static const conic_simplifier_triangle *triangle_of(const conic_simplifier *s,
+                                                    const conic_simplifier_spoke *of_triangle) {
   return &s->triangles[of_triangle->slot / 3];
 }
 
-/* How many triangles are beside the edge to v. Between patches they are of two. */
-static int count_beside(const conic_simplifier *s, const fan *f, uint32_t v, int *is_between_patches) {
-  uint32_t patch = CONIC_NONE;
+/* How many triangles are beside the edge to v. Between clusters they are of two. */
+static int count_beside(const conic_simplifier *s, const fan *f, uint32_t v, int *is_between_clusters) {
+  uint32_t cluster = CONIC_NONE;
   int n = 0;
-  *is_between_patches = 0;
+  *is_between_clusters = 0;
   for (size_t i = 0; i < f->n_triangles; i++) {
     if (!has(&f->spokes[i], v))
       continue;
-    const triangle *t = triangle_of(s, &f->spokes[i]);
+    const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
     n++;
-    *is_between_patches |= patch != CONIC_NONE && t->patch != patch;
-    patch = t->patch;
+    *is_between_clusters |= cluster != CONIC_NONE && t->cluster != cluster;
+    cluster = t->cluster;
   }
   return n;
 }
@@ -85,8 +82,8 @@ static int count_common(const conic_simplifier *s, const fan *f, uint32_t v) {
  * corner that neighbours both its ends, opposite, and there are no others; and some of the triangles stay. */
 static int keeps_surface(const conic_simplifier *s, const fan *f, uint32_t v) {
   uint8_t kind = s->vertices[f->vertex].kind;
-  int is_between_patches, n = count_beside(s, f, v, &is_between_patches);
-  if (n != (kind == CONIC_VERTEX_BORDER ? 1 : 2) || (kind == CONIC_VERTEX_CHAIN && !is_between_patches))
+  int is_between_clusters, n = count_beside(s, f, v, &is_between_clusters);
+  if (n != (kind == CONIC_VERTEX_BORDER ? 1 : 2) || (kind == CONIC_VERTEX_CHAIN && !is_between_clusters))
     return 0;
   return f->n_triangles > (size_t)n && count_common(s, f, v) == n;
 }
@@ -105,7 +102,7 @@ static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
   for (size_t i = 0; i < f->n_triangles; i++) {
     if (has(&f->spokes[i], v))
       continue;
-    const triangle *t = triangle_of(s, &f->spokes[i]);
+    const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
     uint32_t corners[3] = {t->corners[0], t->corners[1], t->corners[2]};
     double cross[3];
     corners[f->spokes[i].slot % 3] = v;
@@ -117,16 +114,16 @@ static int keeps_facing(const conic_simplifier *s, const fan *f, uint32_t v) {
   return 1;
 }
 
-/* Whether a triangle is left of each patch, and to each corner of what goes. */
+/* Whether a triangle is left of each cluster, and to each corner of what goes. */
 static int leaves_some(const conic_simplifier *s, const fan *f, uint32_t v) {
-  uint32_t last_patch = CONIC_NONE;
+  uint32_t last_cluster = CONIC_NONE;
   for (size_t i = 0; i < f->n_triangles; i++) {
     if (!has(&f->spokes[i], v))
       continue;
-    const triangle *t = triangle_of(s, &f->spokes[i]);
-    if (s->alive[t->patch] <= 1u + (t->patch == last_patch))
+    const conic_simplifier_triangle *t = triangle_of(s, &f->spokes[i]);
+    if (s->alive[t->cluster] <= 1u + (t->cluster == last_cluster))
       return 0;
-    last_patch = t->patch;
+    last_cluster = t->cluster;
     for (int corner = 0; corner < 3; corner++) {
       uint32_t ring = conic_simplifier_living(s, s->vertices[t->corners[corner]].ring);
       if (conic_simplifier_after(s, ring) == CONIC_NONE)
@@ -142,7 +139,7 @@ static int may_go(const conic_simplifier *s, const fan *f, uint32_t v) {
 
 static void find_costs(const conic_simplifier *s, const fan *f) {
   for (size_t i = 0; i < f->n_spokes; i++) {
-    const vertex *v = &s->vertices[f->spokes[i].vertex];
+    const conic_simplifier_vertex *v = &s->vertices[f->spokes[i].vertex];
     conic_quadric both = s->vertices[f->vertex].quadric;
     conic_quadric_add(&both, &v->quadric);
     f->spokes[i].cost = conic_quadric_at(&both, v->at);
@@ -150,9 +147,9 @@ static void find_costs(const conic_simplifier *s, const fan *f) {
 }
 
 /* The cheapest, of equals the lowest vertex; null where no cost is finite. */
-static spoke *cheapest_of(const fan *f) {
-  spoke *cheapest = NULL;
-  for (spoke *next = f->spokes; next < f->spokes + f->n_spokes; next++) {
+static conic_simplifier_spoke *cheapest_of(const fan *f) {
+  conic_simplifier_spoke *cheapest = NULL;
+  for (conic_simplifier_spoke *next = f->spokes; next < f->spokes + f->n_spokes; next++) {
     double least = cheapest ? cheapest->cost : HUGE_VAL;
     if (next->cost < least || (cheapest && next->cost == least && next->vertex < cheapest->vertex))
       cheapest = next;
@@ -161,7 +158,7 @@ static spoke *cheapest_of(const fan *f) {
 }
 
 void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
-  vertex *own = &s->vertices[u];
+  conic_simplifier_vertex *own = &s->vertices[u];
   fan f = fan_of(s, u);
   s->queue.keys[u] = HUGE_VAL;
   own->target = CONIC_NONE;
@@ -169,7 +166,7 @@ void conic_simplifier_find_target(conic_simplifier *s, uint32_t u) {
   if (f.n_spokes - f.n_triangles != (own->kind == CONIC_VERTEX_BORDER)) /* the triangles are no simple fan */
     return;
   find_costs(s, &f);
-  for (spoke *next = cheapest_of(&f); next; next = cheapest_of(&f)) {
+  for (conic_simplifier_spoke *next = cheapest_of(&f); next; next = cheapest_of(&f)) {
     if (may_go(s, &f, next->vertex)) {
       s->queue.keys[u] = next->cost;
       own->target = next->vertex;

@@ -39,8 +39,8 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 }
 
 static conic_status lay_lattices(conic_sampler *s) {
-  const conic_patch_mesh *mesh = s->job->mesh;
-  size_t begin = mesh->starts[s->job->patch], n = mesh->starts[s->job->patch + 1] - begin;
+  const conic_clustered_mesh *mesh = s->job->mesh;
+  size_t begin = mesh->starts[s->job->cluster], n = mesh->starts[s->job->cluster + 1] - begin;
   void *lattices = s->lattices, *facing = s->facing;
   conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
   s->lattices = lattices;
@@ -56,11 +56,11 @@ static conic_status lay_lattices(conic_sampler *s) {
   for (size_t i = 0; i < n; i++) {
     uint32_t face = mesh->faces[begin + i];
     int depth = s->depth[i];
-    s->lattices[i] = (conic_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
+    s->lattices[i] = (conic_face_lattice){face, sides_of_face(s, face, depth), depth, (uint32_t)s->n_places};
     s->finest = depth > s->finest ? depth : s->finest;
     s->coarsest = depth < s->coarsest ? depth : s->coarsest;
-    s->n_places += conic_lattice_places(s->lattices[i].sides);
-    conic_patch_face_normal(mesh, face, s->facing[i]);
+    s->n_places += conic_face_lattice_places(s->lattices[i].sides);
+    conic_cluster_face_normal(mesh, face, s->facing[i]);
   }
   size_t lattice_room = s->places_room;
   void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
@@ -75,9 +75,9 @@ static conic_status lay_lattices(conic_sampler *s) {
   return status;
 }
 
-/* As conic_patch_place of each. */
+/* As conic_cluster_place of each. */
 static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
-  const conic_lattice *l = &s->lattices[i_lattice];
+  const conic_face_lattice *l = &s->lattices[i_lattice];
   double corners[3][3], shares[MOST_SIDES + 1];
   uint32_t place = l->first;
   for (int corner = 0; corner < 3; corner++)
@@ -96,39 +96,39 @@ static void find_places_of(conic_sampler *s, uint32_t i_lattice) {
 /* --- candidates --- */
 
 /* Sides of a face, as bits by the corner where each begins: those that a place lies on. */
-static int sides_at(const conic_lattice *l, int i, int j) {
+static int sides_at(const conic_face_lattice *l, int i, int j) {
   return (j == 0) | (i + j == l->sides) << 1 | (i == 0) << 2;
 }
 
 /* Those that the surfels must reach to by themselves: what lies across is no surfels, or nothing. */
-static int rims_of(const conic_patch_mesh *mesh, uint32_t face) {
+static int rims_of(const conic_clustered_mesh *mesh, uint32_t face) {
   int rims = 0;
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-    int is_rim = conic_patch_ends_at(mesh, face, corner) &&
+    int is_rim = conic_cluster_ends_at(mesh, face, corner) &&
                  (!conic_edge_is_shared(across) || !mesh->clusters->is_gathered[mesh->clusters->of_face[across / 3]]);
     rims |= is_rim << corner;
   }
   return rims;
 }
 
-/* Those whose places are another face's of the patch, too, which answers for them. */
-static int sides_of_others(const conic_patch_mesh *mesh, uint32_t face) {
+/* Those whose places are another face's of the cluster, too, which answers for them. */
+static int sides_of_others(const conic_clustered_mesh *mesh, uint32_t face) {
   int sides = 0;
   for (int corner = 0; corner < 3; corner++) {
     uint32_t across = mesh->adjacency->across[3 * (size_t)face + (size_t)corner];
-    sides |= (!conic_patch_ends_at(mesh, face, corner) && across / 3 < face) << corner;
+    sides |= (!conic_cluster_ends_at(mesh, face, corner) && across / 3 < face) << corner;
   }
   return sides;
 }
 
-int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *l, int i, int j) {
+int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *l, int i, int j) {
   return !(sides_at(l, i, j) & sides_of_others(mesh, l->face));
 }
 
 /* There is room for it. */
 static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, int is_first) {
-  const conic_lattice *l = &s->lattices[i_lattice];
+  const conic_face_lattice *l = &s->lattices[i_lattice];
   uint64_t turn = conic_random_bits(l->face, (uint64_t)i << 16 | (uint64_t)j, 0) >> 43;
   int rank = (is_first ? 0 : CONIC_MOST_DEPTH + 1) + l->depth;
   s->candidates[s->n_candidates].key = (uint64_t)rank << 21 | turn;
@@ -151,7 +151,7 @@ static conic_status list_candidates(conic_sampler *s) {
   conic_status status = make_room_for_candidates(s);
   s->n_candidates = 0;
   for (size_t k = 0; k < s->n_lattices && status == CONIC_OK; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     int rims = rims_of(s->job->mesh, l->face), others = sides_of_others(s->job->mesh, l->face);
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i; j++) {
@@ -167,8 +167,8 @@ static conic_status list_candidates(conic_sampler *s) {
 
 /* Becomes the owner of what it is nearest to, of the places from number `first` on. */
 static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j, size_t first) {
-  const conic_lattice *l = &s->lattices[i_lattice];
-  uint32_t place = conic_lattice_place(l, i, j);
+  const conic_face_lattice *l = &s->lattices[i_lattice];
+  uint32_t place = conic_face_lattice_place(l, i, j);
   const double *at = s->places[place];
   void *sites = s->sites;
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
@@ -179,7 +179,7 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   memset(site, 0, sizeof *site);
   memcpy(site->at, at, sizeof site->at);
   memcpy(site->foot, at, sizeof site->foot);
-  conic_lattice_bary(l, i, j, site->bary);
+  conic_face_lattice_bary(l, i, j, site->bary);
   memcpy(site->facing, s->facing[i_lattice], sizeof site->facing);
   site->face = l->face;
   site->place = place;
@@ -208,7 +208,7 @@ static conic_status choose_sites(conic_sampler *s) {
   for (size_t k = 0; k < s->n_candidates && status == CONIC_OK; k++) {
     const uint32_t *seed = s->seeds[s->candidates[k].value];
     int i = (int)(seed[1] >> 16), j = (int)(seed[1] & 0xFFFF);
-    if (s->owner[conic_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
+    if (s->owner[conic_face_lattice_place(&s->lattices[seed[0]], i, j)] == CONIC_NO_SITE)
       status = add_site(s, seed[0], i, j, 0);
   }
   return status;
@@ -220,7 +220,7 @@ static conic_status choose_in_folds(conic_sampler *s) {
   conic_status status = CONIC_OK;
   size_t place = 0;
   for (size_t k = 0; k < s->n_lattices; k++) {
-    const conic_lattice *l = &s->lattices[k];
+    const conic_face_lattice *l = &s->lattices[k];
     for (int i = 0; i <= l->sides; i++)
       for (int j = 0; j <= l->sides - i && status == CONIC_OK; j++, place++)
         if (s->owner[place] == CONIC_NO_SITE) {
@@ -232,7 +232,7 @@ static conic_status choose_in_folds(conic_sampler *s) {
   return status;
 }
 
-conic_status conic_patch_find_sites(conic_sampler *s) {
+conic_status conic_cluster_find_sites(conic_sampler *s) {
   conic_status status = lay_lattices(s);
   if (status != CONIC_OK)
     return status;

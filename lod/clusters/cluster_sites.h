@@ -1,4 +1,4 @@
-/* The places that surfels are put at, and what of the patch each of them stands for. */
+/* The places that surfels are put at, and what of the cluster each of them stands for. */
 #ifndef CONIC_CLUSTER_SITES_H
 #define CONIC_CLUSTER_SITES_H
 
@@ -9,22 +9,22 @@
 
 /* Every face is looked at through a lattice that parts its sides into `sides` pieces: places, and the small triangles
  * between them. */
-typedef struct conic_lattice {
+typedef struct conic_face_lattice {
   uint32_t face;
   int sides, depth; /* how often the spacing is halved here */
   uint32_t first;   /* of its places among all */
-} conic_lattice;
+} conic_face_lattice;
 
-static inline uint32_t conic_lattice_places(int sides) {
+static inline uint32_t conic_face_lattice_places(int sides) {
   return (uint32_t)((sides + 1) * (sides + 2) / 2);
 }
 
 /* The place (i, j), i + j ≤ sides: i steps along the first side, j along the second. */
-static inline uint32_t conic_lattice_place(const conic_lattice *l, int i, int j) {
+static inline uint32_t conic_face_lattice_place(const conic_face_lattice *l, int i, int j) {
   return l->first + (uint32_t)(i * (l->sides + 1) - i * (i - 1) / 2 + j);
 }
 
-static inline void conic_lattice_bary(const conic_lattice *l, int i, int j, double bary[3]) {
+static inline void conic_face_lattice_bary(const conic_face_lattice *l, int i, int j, double bary[3]) {
   bary[1] = (double)i / (double)l->sides;
   bary[2] = (double)j / (double)l->sides;
   bary[0] = (double)(l->sides - i - j) / (double)l->sides;
@@ -62,7 +62,7 @@ typedef struct conic_support {
 /* Of a pass: what the next one may look up. */
 typedef struct conic_sampling_pass {
   size_t n_sites, lattices_room, owner_room, sites_room;
-  conic_lattice *lattices;
+  conic_face_lattice *lattices;
   uint32_t *owner;
   conic_site *sites;
 } conic_sampling_pass;
@@ -72,9 +72,9 @@ struct conic_sampler {
   const conic_sampling_job *job;
   conic_sampling_pass last;
   size_t n_lattices, lattices_room, facing_room;
-  conic_lattice *lattices;
+  conic_face_lattice *lattices;
   double (*facing)[3]; /* of each lattice's face */
-  uint8_t *depth;      /* of each face of the patch: how often the spacing is halved there */
+  uint8_t *depth;      /* of each face of the cluster: how often the spacing is halved there */
   size_t depth_room;
   int coarsest, finest; /* of those */
   size_t n_places, places_room, owner_room;
@@ -98,11 +98,11 @@ static inline double conic_spacing_at(const conic_sampler *sampler, int depth) {
   return sampler->job->spacing / (double)(1 << depth);
 }
 
-/* Of a place on a side that two faces of the patch share, only the one answers other than 0. */
-int conic_lattice_is_own(const conic_patch_mesh *mesh, const conic_lattice *lattice, int i, int j);
+/* Of a place on a side that two faces of the cluster share, only the one answers other than 0. */
+int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face_lattice *lattice, int i, int j);
 
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
-conic_status conic_patch_find_sites(conic_sampler *sampler);
+conic_status conic_cluster_find_sites(conic_sampler *sampler);
 
 /* Room for `count` in an array of the sampler's that grows by half. Errors: MEMORY. */
 conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,

@@ -1,4 +1,4 @@
-/* Places of a patch, by where they are, each with the nearest of the sites that were put so far. */
+/* Places of a cluster, by where they are, each with the nearest of the sites that were put so far. */
 #ifndef CONIC_PLACE_TABLE_H
 #define CONIC_PLACE_TABLE_H
 

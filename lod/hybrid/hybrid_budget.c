@@ -8,21 +8,21 @@
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
-/* Patches in sight, and how far on the screen each of their levels is off. */
+/* Clusters in sight, and how far on the screen each of their levels is off. */
 typedef struct fitting {
   const conic_hybrid *hybrid;
   int only_kind;
-  const uint32_t *patches;
+  const uint32_t *clusters;
   size_t n;
-  double *errors_px; /* of all levels of the first patch, then of the second … */
+  double *errors_px; /* of all levels of the first cluster, then of the second … */
   uint32_t *levels;
-  uint32_t *stages;     /* of each of the model's patches: of the level that it has now; hidden if it is not in sight */
-  double *node_errors;  /* of all levels of the first node, and its point, then of the second … */
+  uint32_t *stages;    /* of each of the model's clusters: of the level that it has now; hidden if it is not in sight */
+  double *node_errors; /* of all levels of the first node, and its point, then of the second … */
   size_t *first_errors; /* of each node */
-  double *counts;       /* of each of the model's patches, as cutting takes them */
+  double *counts;       /* of each of the model's clusters, as cutting takes them */
   double *below;
-  uint32_t *nodes;    /* what stands for its patches now */
-  uint32_t *standing; /* of each of the model's patches */
+  uint32_t *nodes;    /* what stands for its clusters now */
+  uint32_t *standing; /* of each of the model's clusters */
   double error_px;
 } fitting;
 
@@ -39,10 +39,11 @@ static uint32_t finest(const fitting *f, const conic_hybrid_level *levels, uint3
 }
 
 /* The level of fewest primitives among those that are good enough; of as many, the better one. */
-static uint32_t fewest(const fitting *f, const conic_hybrid_patch *patch, const double *errors_px, double error_px) {
-  const conic_hybrid_level *levels = f->hybrid->levels + patch->first_level;
-  uint32_t best = finest(f, levels, patch->n_levels);
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
+static uint32_t fewest(const fitting *f, const conic_hybrid_cluster *cluster, const double *errors_px,
+                       double error_px) {
+  const conic_hybrid_level *levels = f->hybrid->levels + cluster->first_level;
+  uint32_t best = finest(f, levels, cluster->n_levels);
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
     int is_fewer = levels[k].count < levels[best].count ||
                    (levels[k].count == levels[best].count && errors_px[k] < errors_px[best]);
     if (is_allowed(f, &levels[k]) && errors_px[k] <= error_px && is_fewer)
@@ -52,7 +53,7 @@ static uint32_t fewest(const fitting *f, const conic_hybrid_patch *patch, const 
 }
 
 static const conic_hybrid_level *chosen(const fitting *f, size_t i) {
-  return &f->hybrid->levels[f->hybrid->patches[f->patches[i]].first_level + f->levels[i]];
+  return &f->hybrid->levels[f->hybrid->clusters[f->clusters[i]].first_level + f->levels[i]];
 }
 
 static const double *errors_of_node(const fitting *f, const conic_hybrid_node *node) {
@@ -77,11 +78,11 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
   return best;
 }
 
-/* Lets nodes stand for patches where that is fewer. Returns how many fewer. */
+/* Lets nodes stand for clusters where that is fewer. Returns how many fewer. */
 static uint64_t cut(fitting *f) {
   const conic_hybrid_cutting cutting = {f->hybrid, f->counts, ask_node, f, f->below};
   for (size_t i = 0; i < f->n; i++)
-    f->counts[f->patches[i]] = f->only_kind == CONIC_HYBRID_TRIANGLES ? NAN : (double)chosen(f, i)->count;
+    f->counts[f->clusters[i]] = f->only_kind == CONIC_HYBRID_TRIANGLES ? NAN : (double)chosen(f, i)->count;
   return (uint64_t)conic_hybrid_cut(&cutting, f->nodes); /* a whole number */
 }
 
@@ -95,17 +96,17 @@ static double greatest_error(const fitting *f) {
   double greatest = 0.0;
   conic_hybrid_find_standing(f->hybrid, f->nodes, f->standing);
   for (size_t i = 0; i < f->n; i++) {
-    uint32_t standing = f->standing[f->patches[i]];
+    uint32_t standing = f->standing[f->clusters[i]];
     double error_px = errors_px[f->levels[i]];
     if (standing != CONIC_HYBRID_NO_NODE)
       error_px = errors_of_node(f, &f->hybrid->nodes[standing])[f->nodes[standing]];
     greatest = error_px > greatest ? error_px : greatest;
-    errors_px += f->hybrid->patches[f->patches[i]].n_levels;
+    errors_px += f->hybrid->clusters[f->clusters[i]].n_levels;
   }
   return greatest;
 }
 
-/* Chooses for all patches; returns how many primitives that are, without those that fit them to each other.
+/* Chooses for all clusters; returns how many primitives that are, without those that fit them to each other.
  * `greatest_px` is the greatest error of what was chosen, `next_px` the least above `error_px` that any level has. */
 static uint64_t choose_all(fitting *f, double error_px, double *greatest_px, double *next_px) {
   const conic_hybrid *h = f->hybrid;
@@ -114,11 +115,11 @@ static uint64_t choose_all(fitting *f, double error_px, double *greatest_px, dou
   f->error_px = error_px;
   *next_px = HUGE_VAL;
   for (size_t i = 0; i < f->n; i++) {
-    const conic_hybrid_patch *patch = &h->patches[f->patches[i]];
-    f->levels[i] = fewest(f, patch, errors_px, error_px);
+    const conic_hybrid_cluster *cluster = &h->clusters[f->clusters[i]];
+    f->levels[i] = fewest(f, cluster, errors_px, error_px);
     count += chosen(f, i)->count;
-    note_next(errors_px, patch->n_levels, error_px, next_px);
-    errors_px += patch->n_levels;
+    note_next(errors_px, cluster->n_levels, error_px, next_px);
+    errors_px += cluster->n_levels;
   }
   for (size_t i = 0; i < h->n_nodes; i++)
     note_next(errors_of_node(f, &h->nodes[i]), h->nodes[i].n_levels + 1, error_px, next_px);
@@ -131,9 +132,9 @@ static uint64_t choose_all(fitting *f, double error_px, double *greatest_px, dou
 static uint64_t count_stitches(const fitting *f) {
   uint64_t count = 0;
   for (size_t i = 0; i < f->n; i++)
-    f->stages[f->patches[i]] = f->standing[f->patches[i]] == CONIC_HYBRID_NO_NODE ? chosen(f, i)->stage : 0;
+    f->stages[f->clusters[i]] = f->standing[f->clusters[i]] == CONIC_HYBRID_NO_NODE ? chosen(f, i)->stage : 0;
   for (size_t i = 0; i < f->n; i++)
-    if (f->standing[f->patches[i]] == CONIC_HYBRID_NO_NODE)
+    if (f->standing[f->clusters[i]] == CONIC_HYBRID_NO_NODE)
       count += conic_hybrid_count_stitches(f->hybrid, chosen(f, i), f->stages);
   return count;
 }
@@ -142,14 +143,14 @@ static conic_status measure_levels(fitting *f, const conic_hybrid_camera *view) 
   const conic_hybrid *h = f->hybrid;
   size_t n_levels = 0;
   for (size_t i = 0; i < f->n; i++)
-    n_levels += h->patches[f->patches[i]].n_levels;
+    n_levels += h->clusters[f->clusters[i]].n_levels;
   double *next = f->errors_px = conic_memory_allocate(h->context, n_levels, sizeof *f->errors_px);
   if (!next)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < f->n; i++) {
-    const conic_hybrid_patch *patch = &h->patches[f->patches[i]];
-    for (uint32_t k = 0; k < patch->n_levels; k++)
-      *next++ = conic_hybrid_error_px(view, &patch->bound, &h->levels[patch->first_level + k]);
+    const conic_hybrid_cluster *cluster = &h->clusters[f->clusters[i]];
+    for (uint32_t k = 0; k < cluster->n_levels; k++)
+      *next++ = conic_hybrid_error_px(view, &cluster->bound, &h->levels[cluster->first_level + k]);
   }
   return CONIC_OK;
 }
@@ -214,7 +215,7 @@ static int fit(fitting *f, uint64_t budget, uint64_t *count, double *greatest_px
   }
 }
 
-/* Of each patch the level of fewest primitives; or of one kind alone, which may be fewer together. */
+/* Of each cluster the level of fewest primitives; or of one kind alone, which may be fewer together. */
 static conic_status fit_kinds(fitting *f, uint64_t budget, uint32_t *levels, uint32_t *nodes) {
   uint64_t fewest_count = UINT64_MAX;
   double least_px = 0.0;
@@ -241,23 +242,23 @@ static conic_status fit_kinds(fitting *f, uint64_t budget, uint32_t *levels, uin
 static conic_status begin(fitting *f, const conic_hybrid_camera *view) {
   const conic_hybrid *h = f->hybrid;
   f->levels = conic_memory_allocate(h->context, f->n, sizeof *f->levels);
-  f->stages = conic_memory_allocate(h->context, h->n_patches, sizeof *f->stages);
-  f->counts = conic_memory_allocate_zeroed(h->context, h->n_patches, sizeof *f->counts);
-  f->standing = conic_memory_allocate(h->context, h->n_patches, sizeof *f->standing);
+  f->stages = conic_memory_allocate(h->context, h->n_clusters, sizeof *f->stages);
+  f->counts = conic_memory_allocate_zeroed(h->context, h->n_clusters, sizeof *f->counts);
+  f->standing = conic_memory_allocate(h->context, h->n_clusters, sizeof *f->standing);
   f->below = conic_memory_allocate(h->context, h->n_nodes, sizeof *f->below);
   f->nodes = conic_memory_allocate(h->context, h->n_nodes, sizeof *f->nodes);
   if (!f->levels || !f->stages || !f->counts || !f->standing || !f->below || !f->nodes)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < h->n_patches; i++)
+  for (size_t i = 0; i < h->n_clusters; i++)
     f->stages[i] = CONIC_HYBRID_HIDDEN;
   conic_status status = measure_levels(f, view);
   return status == CONIC_OK ? measure_nodes(f, view) : status;
 }
 
 conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hybrid_camera *view, int only_kind,
-                                     uint64_t budget, const uint32_t *patches, size_t n, uint32_t *levels,
+                                     uint64_t budget, const uint32_t *clusters, size_t n, uint32_t *levels,
                                      uint32_t *nodes) {
-  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .patches = patches, .n = n};
+  fitting f = {.hybrid = hybrid, .only_kind = only_kind, .clusters = clusters, .n = n};
   conic_status status = begin(&f, view);
   if (status == CONIC_OK)
     status = fit_kinds(&f, budget, levels, nodes);

@@ -25,16 +25,16 @@ typedef struct building {
   conic_triangles flat;
   conic_adjacency adjacency;
   conic_mesh_clusters clusters;
-  conic_patch_mesh mesh;
+  conic_clustered_mesh mesh;
   uint32_t *faces;
   size_t *starts;
-  conic_patch_ways *ways;
+  conic_cluster_ways *ways;
   conic_hybrid_report *report;
 } building;
 
 static void release(building *b) {
   for (size_t i = 0; b->ways && i < b->clusters.n_clusters; i++)
-    conic_patch_ways_release(b->context, &b->ways[i]);
+    conic_cluster_ways_release(b->context, &b->ways[i]);
   conic_memory_release(b->context, b->ways);
   conic_memory_release(b->context, b->faces);
   conic_memory_release(b->context, b->starts);
@@ -55,7 +55,7 @@ static double most_area_of(const building *b) {
 
 static conic_status find_clusters(building *b) {
   const conic_clustering_options options = {b->options->phase1, b->options->phase2, most_area_of(b)};
-  conic_patch_mesh *mesh = &b->mesh;
+  conic_clustered_mesh *mesh = &b->mesh;
   mesh->triangles = &b->flat;
   mesh->mesh = (conic_mesh){.n_vertices = b->flat.n_vertices,
                             .n_faces = b->flat.count,
@@ -96,7 +96,7 @@ static conic_status order_clusters(building *b) {
   uint8_t *is_gathered = conic_memory_allocate(b->context, n, 1);
   conic_status status = bounds && order && rank && is_gathered ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
-    bounds[i] = conic_patch_bound(&b->mesh, (uint32_t)i);
+    bounds[i] = conic_cluster_bound(&b->mesh, (uint32_t)i);
   if (status == CONIC_OK)
     status = conic_hybrid_order(b->context, bounds, n, order);
   if (status == CONIC_OK) {
@@ -117,7 +117,7 @@ static conic_status order_clusters(building *b) {
   return status;
 }
 
-static conic_status make_patches(building *b) {
+static conic_status make_clusters(building *b) {
   size_t n = b->clusters.n_clusters;
   b->faces = conic_memory_allocate(b->context, b->flat.count, sizeof *b->faces);
   b->starts = conic_memory_allocate(b->context, n + 2, sizeof *b->starts);
@@ -163,7 +163,7 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   b->flat.materials = mesh->materials;
   status = find_clusters(b);
   if (status == CONIC_OK)
-    status = make_patches(b);
+    status = make_clusters(b);
   if (status != CONIC_OK)
     return status;
   report_oddities(b, mesh);
@@ -174,7 +174,7 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   b->report->simplify_seconds = ways.simplify_seconds;
   if (status == CONIC_OK)
     status = conic_hybrid_pack(&ways, hybrid);
-  conic_patch_chains_release(b->context, &ways.chains);
+  conic_cluster_chains_release(b->context, &ways.chains);
   conic_nodes_release(&ways);
   return status;
 }

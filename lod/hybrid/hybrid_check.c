@@ -40,18 +40,18 @@ static int faces_within(const conic_hybrid_bound *bound, double at[3][3]) {
 }
 
 /* The faces themselves: the first level. */
-static void check_patch(const conic_hybrid *h, const conic_hybrid_patch *patch, conic_hybrid_defects *found) {
-  const conic_hybrid_level *levels = h->levels + patch->first_level;
-  double most = (double)patch->bound.radius * (1.0 + hair);
+static void check_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster, conic_hybrid_defects *found) {
+  const conic_hybrid_level *levels = h->levels + cluster->first_level;
+  double most = (double)cluster->bound.radius * (1.0 + hair);
   int is_out = 0, is_turned = 0, is_wrong = levels[0].error != 0.0f;
   for (size_t i = 0; i < levels[0].count; i++) {
     double at[3][3];
     corners_of(h, &levels[0], i, at);
     for (int corner = 0; corner < 3; corner++)
-      is_out |= !(distance_of(&patch->bound, at[corner]) <= most);
-    is_turned |= !faces_within(&patch->bound, at);
+      is_out |= !(distance_of(&cluster->bound, at[corner]) <= most);
+    is_turned |= !faces_within(&cluster->bound, at);
   }
-  for (uint32_t k = 1; k < patch->n_levels; k++)
+  for (uint32_t k = 1; k < cluster->n_levels; k++)
     is_wrong |= levels[k].kind == levels[k - 1].kind ? !(levels[k].error >= levels[k - 1].error)
                                                      : levels[k].kind != CONIC_HYBRID_SURFELS;
   found->spheres += (size_t)is_out;
@@ -59,14 +59,14 @@ static void check_patch(const conic_hybrid *h, const conic_hybrid_patch *patch, 
   found->levels += (size_t)is_wrong;
 }
 
-/* A node's levels are of growing error, and the disc of its point holds the faces of all of its patches. */
+/* A node's levels are of growing error, and the disc of its point holds the faces of all of its clusters. */
 static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   const conic_hybrid_bound point = {.center = {node->bound.center[0], node->bound.center[1], node->bound.center[2]}};
   int is_out = 0, is_wrong = 0;
   for (uint32_t k = 1; k < node->n_levels; k++)
     is_wrong |= !(h->levels[node->first_level + k].error >= h->levels[node->first_level + k - 1].error);
   for (uint32_t i = node->begin; i < node->end && node->point.radius > 0.0f; i++) {
-    const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
+    const conic_hybrid_level *faces = &h->levels[h->clusters[i].first_level];
     for (uint32_t k = 0; k < faces->n_vertices; k++) {
       double at[3];
       for (int axis = 0; axis < 3; axis++)
@@ -81,21 +81,21 @@ static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, c
     found->values += !is_number(node->point.color[channel]);
 }
 
-/* All that is drawn of a node's patches lies in its sphere, and their cones in its cone. */
+/* All that is drawn of a node's clusters lies in its sphere, and their cones in its cone. */
 static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   int is_out = 0, is_turned = 0;
   for (uint32_t i = node->begin; i < node->end; i++) {
-    const conic_hybrid_patch *patch = &h->patches[i];
-    double center[3], reach = 0.0, along = 0.0, cone = (double)patch->bound.cone;
-    for (uint32_t k = 0; k < patch->n_levels; k++) {
-      double own = (double)h->levels[patch->first_level + k].reach;
+    const conic_hybrid_cluster *cluster = &h->clusters[i];
+    double center[3], reach = 0.0, along = 0.0, cone = (double)cluster->bound.cone;
+    for (uint32_t k = 0; k < cluster->n_levels; k++) {
+      double own = (double)h->levels[cluster->first_level + k].reach;
       reach = own > reach ? own : reach;
     }
     for (int axis = 0; axis < 3; axis++) {
-      center[axis] = (double)patch->bound.center[axis];
-      along += (double)patch->bound.axis[axis] * (double)node->bound.axis[axis];
+      center[axis] = (double)cluster->bound.center[axis];
+      along += (double)cluster->bound.axis[axis] * (double)node->bound.axis[axis];
     }
-    double farthest = distance_of(&node->bound, center) + (double)patch->bound.radius + reach;
+    double farthest = distance_of(&node->bound, center) + (double)cluster->bound.radius + reach;
     is_out |= !(farthest <= (double)node->bound.radius * (1.0 + hair));
     if (node->bound.cone <= -1.0f)
       continue;
@@ -123,8 +123,8 @@ conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *def
   }
   for (int k = 0; k < 12; k++)
     defects->values += count_wrong(h->surfels[k], h->n_surfels);
-  for (size_t i = 0; i < h->n_patches; i++)
-    check_patch(h, &h->patches[i], defects);
+  for (size_t i = 0; i < h->n_clusters; i++)
+    check_cluster(h, &h->clusters[i], defects);
   for (size_t i = 0; i < h->n_nodes; i++) {
     check_node(h, &h->nodes[i], defects);
     check_joined(h, &h->nodes[i], defects);

@@ -8,7 +8,8 @@
 #include "lod/hybrid/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
- * holds a pixel's centre, and a pixel of the patch; a surfel, and a pixel of its outline (docs/hybrid.md). */
+ * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
+ * (docs/notes/hybrid-measured.md). */
 static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
@@ -77,7 +78,7 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
   return view->cull_back && faces_away(view, bound, radius);
 }
 
-/* A patch as the camera sees it. */
+/* A cluster as the camera sees it. */
 typedef struct sight {
   double z, distance; /* of its sphere's centre */
   double radius;
@@ -120,8 +121,9 @@ static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_boun
   return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
 }
 
-static double cost_of_triangles(const conic_hybrid_patch *patch, const conic_hybrid_level *level, const sight *seen) {
-  double n = (double)level->count, n_pixels = (double)patch->area * seen->scale2 * seen->facing;
+static double cost_of_triangles(const conic_hybrid_cluster *cluster, const conic_hybrid_level *level,
+                                const sight *seen) {
+  double n = (double)level->count, n_pixels = (double)cluster->area * seen->scale2 * seen->facing;
   double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
   return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
 }
@@ -151,9 +153,9 @@ static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bo
 /* Tiles are mostly this wide. */
 static const double tile_px = 64.0;
 
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch) {
-  sight seen = look_well_at(view, &patch->bound);
-  double side = sqrt((double)patch->area * seen.scale2 * seen.facing) + tile_px;
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster) {
+  sight seen = look_well_at(view, &cluster->bound);
+  double side = sqrt((double)cluster->area * seen.scale2 * seen.facing) + tile_px;
   return side * side;
 }
 
@@ -173,23 +175,23 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
   return best;
 }
 
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
-                         double error_px, conic_hybrid_offer offers[2]) {
-  const conic_hybrid_level *levels = hybrid->levels + patch->first_level;
-  sight seen = look_well_at(view, &patch->bound);
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]) {
+  const conic_hybrid_level *levels = hybrid->levels + cluster->first_level;
+  sight seen = look_well_at(view, &cluster->bound);
   offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
     conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(patch, &levels[k], &seen)
+    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(cluster, &levels[k], &seen)
                                                            : cost_of_surfels(view, &levels[k], &seen);
     if (cost < offer->amount && error_px_of(view, &seen, &levels[k]) <= error_px)
       *offer = (conic_hybrid_offer){k, cost};
   }
 }
 
-uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_patch *patch, int only_kind) {
-  for (uint32_t k = 0; k < patch->n_levels; k++)
-    if (hybrid->levels[patch->first_level + k].kind == (uint32_t)only_kind)
+uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind) {
+  for (uint32_t k = 0; k < cluster->n_levels; k++)
+    if (hybrid->levels[cluster->first_level + k].kind == (uint32_t)only_kind)
       return k;
   return 0;
 }

@@ -1,10 +1,10 @@
-/* Which level of each patch a picture needs. */
+/* Which level of each cluster a picture needs. */
 #ifndef CONIC_HYBRID_CHOOSE_H
 #define CONIC_HYBRID_CHOOSE_H
 
 #include "lod/hybrid/hybrid_model.h"
 
-/* A camera as the patches are looked at by. */
+/* A camera as the clusters are looked at by. */
 typedef struct conic_hybrid_camera {
   double rotation[3][3], translation[3], eye[3]; /* from the model's origin */
   double side[4][3]; /* planes of the picture's sides: unit normals, inwards, through the eye */
@@ -22,12 +22,12 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
 /* The most pixels that a displacement of one can be within `reach` of the sphere: infinite where that is near. */
 double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach);
 
-/* How many pixels places of a patch or node with that bound may be off where the level draws it: infinite where its
+/* How many pixels places of a cluster or node with that bound may be off where the level draws it: infinite where its
  * sphere reaches near. */
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level);
 
-/* What one of the narrow triangles takes that fit patches to each other, in nanoseconds of one core. */
+/* What one of the narrow triangles takes that fit clusters to each other, in nanoseconds of one core. */
 #define CONIC_HYBRID_STITCH_NS 70.0
 
 /* What a picture of both kinds takes more than its parts: at all, for each of its pixels, and for each of those in
@@ -36,15 +36,15 @@ double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid
 #define CONIC_HYBRID_BOTH_PIXEL_NS 0.2
 #define CONIC_HYBRID_BOTH_TILE_NS 0.5
 
-/* How many pixels the tiles have, about, that a patch's faces meet: of a square of its size, wherever it lies. */
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_patch *patch);
+/* How many pixels the tiles have, about, that a cluster's faces meet: of a square of its size, wherever it lies. */
+double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster);
 
 /* What a round splat may take that faces the camera, in nanoseconds of one core; `radius_px2` is its squared radius,
  * without the prefilter. */
 double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2);
 
-/* A level of a patch or node, from its first, and what drawing it may take: nanoseconds of one core where nothing else
- * is said. */
+/* A level of a cluster or node, from its first, and what drawing it may take: nanoseconds of one core where nothing
+ * else is said. */
 typedef struct conic_hybrid_offer {
   uint32_t level;
   double amount;
@@ -57,10 +57,10 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
 
 /* Of each kind the level that costs least among those whose error is at most so many pixels; of infinite cost where
  * there is none, which is never so for triangles. */
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view, const conic_hybrid_patch *patch,
-                         double error_px, conic_hybrid_offer offers[2]);
+void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
+                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]);
 
-/* The finest level of that kind, from the patch's first; or the first of all. */
-uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_patch *patch, int only_kind);
+/* The finest level of that kind, from the cluster's first; or the first of all. */
+uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind);
 
 #endif

@@ -1,6 +1,6 @@
 #include "lod/hybrid/hybrid_cut.h"
 
-static double sum_patches(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
+static double sum_clusters(const conic_hybrid_cutting *c, const conic_hybrid_node *node) {
   double sum = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++)
     sum += c->amounts[i];
@@ -19,7 +19,7 @@ static double sum_children(const conic_hybrid_cutting *c, size_t node) {
 static void cut_upwards(const conic_hybrid_cutting *c, uint32_t *nodes) {
   for (size_t i = c->hybrid->n_nodes; i-- > 0;) {
     const conic_hybrid_node *node = &c->hybrid->nodes[i];
-    double sum = node->next == i + 1 ? sum_patches(c, node) : sum_children(c, i);
+    double sum = node->next == i + 1 ? sum_clusters(c, node) : sum_children(c, i);
     nodes[i] = CONIC_HYBRID_NO_NODE;
     c->below[i] = sum;
     if (!(sum > 0.0)) /* nothing is in sight, or something must stay */
@@ -41,7 +41,7 @@ double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
       i++;
       continue;
     }
-    less += sum_patches(c, &h->nodes[i]) - c->below[i];
+    less += sum_clusters(c, &h->nodes[i]) - c->below[i];
     for (size_t k = i + 1; k < h->nodes[i].next; k++)
       nodes[k] = CONIC_HYBRID_NO_NODE;
     i = h->nodes[i].next;
@@ -50,7 +50,7 @@ double conic_hybrid_cut(const conic_hybrid_cutting *c, uint32_t *nodes) {
 }
 
 void conic_hybrid_find_standing(const conic_hybrid *h, const uint32_t *nodes, uint32_t *standing) {
-  for (size_t i = 0; i < h->n_patches; i++)
+  for (size_t i = 0; i < h->n_clusters; i++)
     standing[i] = CONIC_HYBRID_NO_NODE;
   for (uint32_t i = 0; i < h->n_nodes; i++)
     for (uint32_t k = h->nodes[i].begin; k < h->nodes[i].end && nodes[i] != CONIC_HYBRID_NO_NODE; k++)

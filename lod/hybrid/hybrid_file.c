@@ -1,4 +1,4 @@
-/* .chy files: docs/format-chy.md. */
+/* .chy files: docs/reference/format-chy.md. */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,12 +9,10 @@
 #include "core/files/file_header.h"
 #include "lod/hybrid/hybrid_layout.h"
 
-typedef conic_chy_header header;
-
-#define FIELD(member) CONIC_FILE_FIELD(header, member)
+#define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
 
 static const conic_file_field fields[] = {FIELD(version),  FIELD(flags),       FIELD(n_vertices),   FIELD(n_triangles),
-                                          FIELD(n_listed), FIELD(n_surfels),   FIELD(n_levels),     FIELD(n_patches),
+                                          FIELD(n_listed), FIELD(n_surfels),   FIELD(n_levels),     FIELD(n_clusters),
                                           FIELD(n_nodes),  FIELD(n_materials), FIELD(n_texels),     FIELD(origin),
                                           FIELD(low),      FIELD(high),        FIELD(splat_length), FIELD(cutoff),
                                           FIELD(zero),     FIELD(body_sum),    FIELD(n_slots),      FIELD(n_borders)};
@@ -24,14 +22,14 @@ static const conic_file_kind kind = {
 
 /* --- sums --- */
 
-typedef struct sum_job {
+typedef struct array_sums {
   const conic_chy_layout *layout;
   const unsigned char *bytes;
   uint64_t sums[CONIC_CHY_N_ARRAYS];
-} sum_job;
+} array_sums;
 
 static void sum_task(void *data, size_t i, int i_thread) {
-  sum_job *job = data;
+  array_sums *job = data;
   (void)i_thread;
   job->sums[i] = conic_checksum(job->bytes + job->layout->arrays[i].offset, job->layout->arrays[i].n_bytes);
 }
@@ -44,28 +42,28 @@ static uint64_t sum_of_sums(const uint64_t sums[CONIC_CHY_N_ARRAYS]) {
 }
 
 static uint64_t sum_body(conic_context *context, const conic_chy_layout *l, const unsigned char *bytes) {
-  sum_job job = {.layout = l, .bytes = bytes};
+  array_sums job = {.layout = l, .bytes = bytes};
   conic_parallel_for(context, CONIC_CHY_N_ARRAYS, sum_task, &job);
   return sum_of_sums(job.sums);
 }
 
 /* --- writing --- */
 
-static header header_of(const conic_hybrid *hybrid) {
-  header h = {.version = CONIC_CHY_VERSION,
-              .n_vertices = hybrid->n_vertices,
-              .n_triangles = hybrid->n_triangles,
-              .n_listed = hybrid->n_listed,
-              .n_surfels = hybrid->n_surfels,
-              .n_levels = hybrid->n_levels,
-              .n_patches = hybrid->n_patches,
-              .n_nodes = hybrid->n_nodes,
-              .n_slots = hybrid->n_slots,
-              .n_borders = hybrid->n_borders,
-              .n_materials = hybrid->n_materials,
-              .n_texels = hybrid->n_texels,
-              .splat_length = hybrid->splat_length,
-              .cutoff = hybrid->cutoff};
+static conic_chy_header header_of(const conic_hybrid *hybrid) {
+  conic_chy_header h = {.version = CONIC_CHY_VERSION,
+                        .n_vertices = hybrid->n_vertices,
+                        .n_triangles = hybrid->n_triangles,
+                        .n_listed = hybrid->n_listed,
+                        .n_surfels = hybrid->n_surfels,
+                        .n_levels = hybrid->n_levels,
+                        .n_clusters = hybrid->n_clusters,
+                        .n_nodes = hybrid->n_nodes,
+                        .n_slots = hybrid->n_slots,
+                        .n_borders = hybrid->n_borders,
+                        .n_materials = hybrid->n_materials,
+                        .n_texels = hybrid->n_texels,
+                        .splat_length = hybrid->splat_length,
+                        .cutoff = hybrid->cutoff};
   h.flags = (hybrid->normal[0] ? CONIC_CHY_NORMALS : 0u) | (hybrid->color[0] ? CONIC_CHY_COLORS : 0u) |
             (hybrid->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
             (hybrid->material ? CONIC_CHY_MATERIALS : 0u);
@@ -76,7 +74,7 @@ static header header_of(const conic_hybrid *hybrid) {
 }
 
 uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
-  header h = header_of(hybrid);
+  conic_chy_header h = header_of(hybrid);
   return conic_chy_lay_out(&h).n_bytes;
 }
 
@@ -84,7 +82,7 @@ uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid) {
 conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
   const unsigned char *body = hybrid->owned ? hybrid->owned : hybrid->mapping.bytes;
   unsigned char bytes[CONIC_FILE_HEADER_BYTES];
-  header h = header_of(hybrid);
+  conic_chy_header h = header_of(hybrid);
   conic_chy_layout l = conic_chy_lay_out(&h);
   conic_output *output;
   h.body_sum = sum_body(hybrid->context, &l, body);
@@ -114,16 +112,16 @@ static int is_finite(double value) {
 }
 
 /* What is wrong with a header whose sum is right, or null. */
-static const char *check_header(const header *h) {
-  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_patches,
+static const char *check_header(const conic_chy_header *h) {
+  const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_clusters,
                              h->n_nodes,    h->n_texels,    h->n_materials, h->n_slots,   h->n_borders};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i] > UINT32_MAX)
       return "counts that do not go together";
   if (h->flags & ~(uint32_t)CONIC_CHY_ALL_FLAGS || h->zero)
     return "unknown flags";
-  if (h->n_patches < 1 || h->n_patches + h->n_nodes > UINT32_MAX || h->n_levels < h->n_patches || h->n_nodes < 1 ||
-      h->n_nodes >= 2 * h->n_patches || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
+  if (h->n_clusters < 1 || h->n_clusters + h->n_nodes > UINT32_MAX || h->n_levels < h->n_clusters || h->n_nodes < 1 ||
+      h->n_nodes >= 2 * h->n_clusters || ((h->flags & CONIC_CHY_MATERIALS) && h->n_materials < 1) ||
       (h->n_texels && h->n_materials < 1))
     return "counts that do not go together";
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
@@ -135,7 +133,7 @@ static const char *check_header(const header *h) {
   return NULL;
 }
 
-static conic_status read_header(conic_hybrid *hybrid, const char *path, header *h) {
+static conic_status read_header(conic_hybrid *hybrid, const char *path, conic_chy_header *h) {
   const conic_mapping *file = &hybrid->mapping;
   conic_status status = conic_file_read_header(hybrid->context, path, &kind, file->bytes, file->n_bytes, h);
   const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
@@ -144,7 +142,7 @@ static conic_status read_header(conic_hybrid *hybrid, const char *path, header *
 }
 
 /* The size, the sums, and nothing between the arrays. */
-static conic_status check_body(const conic_hybrid *hybrid, const char *path, const header *h) {
+static conic_status check_body(const conic_hybrid *hybrid, const char *path, const conic_chy_header *h) {
   const conic_mapping *file = &hybrid->mapping;
   conic_chy_layout l = conic_chy_lay_out(h);
   if (file->n_bytes != l.n_bytes)
@@ -164,7 +162,7 @@ static conic_status check_body(const conic_hybrid *hybrid, const char *path, con
 }
 
 static conic_status read_file(conic_hybrid *hybrid, const char *path) {
-  header h;
+  conic_chy_header h;
   conic_status status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
   if (status == CONIC_OK)
     status = read_header(hybrid, path, &h);
@@ -199,7 +197,7 @@ int conic_hybrid_is_file(const char *path) {
 }
 
 void conic_hybrid_mend(unsigned char *bytes, size_t n_bytes) {
-  header h;
+  conic_chy_header h;
   conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
   if (!check_header(&h)) {
     conic_chy_layout l = conic_chy_lay_out(&h);

@@ -9,9 +9,9 @@ enum { ALIGNMENT = 64 };
 
 /* The records are in the file as they are in memory. */
 _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
-_Static_assert(sizeof(conic_hybrid_slot) == 8, "slots of 8 bytes");
-_Static_assert(sizeof(conic_hybrid_border) == 16, "borders of 16 bytes");
-_Static_assert(sizeof(conic_hybrid_patch) == 48, "patches of 48 bytes");
+_Static_assert(sizeof(conic_cluster_slot) == 8, "slots of 8 bytes");
+_Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
+_Static_assert(sizeof(conic_hybrid_cluster) == 48, "clusters of 48 bytes");
 _Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
 
@@ -20,7 +20,7 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
   size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
   size_t vertices = (size_t)h->n_vertices * sizeof(float);
   sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);
-  sizes[CONIC_CHY_PATCHES] = (size_t)h->n_patches * sizeof(conic_hybrid_patch);
+  sizes[CONIC_CHY_CLUSTERS] = (size_t)h->n_clusters * sizeof(conic_hybrid_cluster);
   sizes[CONIC_CHY_LEVELS] = (size_t)h->n_levels * sizeof(conic_hybrid_level);
   sizes[CONIC_CHY_CORNERS] = (size_t)h->n_triangles * 3 * sizeof(uint32_t);
   sizes[CONIC_CHY_LISTED] = (size_t)h->n_listed * sizeof(uint32_t);
@@ -36,8 +36,8 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
     sizes[CONIC_CHY_TEXTURE + k] = h->flags & CONIC_CHY_TEXTURE_COORDINATES ? vertices : 0;
   for (int k = 0; k < 12; k++)
     sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
-  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_hybrid_slot);
-  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_hybrid_border);
+  sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_cluster_slot);
+  sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_cluster_border);
   for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
     l.arrays[i] = (conic_chy_array){l.n_bytes, sizes[i]};
     l.n_bytes = (l.n_bytes + sizes[i] + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
@@ -62,14 +62,14 @@ void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hyb
   hybrid->n_listed = (size_t)h->n_listed;
   hybrid->n_surfels = (size_t)h->n_surfels;
   hybrid->n_levels = (size_t)h->n_levels;
-  hybrid->n_patches = (size_t)h->n_patches;
+  hybrid->n_clusters = (size_t)h->n_clusters;
   hybrid->n_nodes = (size_t)h->n_nodes;
   hybrid->n_slots = (size_t)h->n_slots;
   hybrid->n_borders = (size_t)h->n_borders;
   hybrid->n_materials = (size_t)h->n_materials;
   hybrid->n_texels = (size_t)h->n_texels;
   hybrid->nodes = array_at(&l, bytes, CONIC_CHY_NODES);
-  hybrid->patches = array_at(&l, bytes, CONIC_CHY_PATCHES);
+  hybrid->clusters = array_at(&l, bytes, CONIC_CHY_CLUSTERS);
   hybrid->levels = array_at(&l, bytes, CONIC_CHY_LEVELS);
   hybrid->slots = array_at(&l, bytes, CONIC_CHY_SLOTS);
   hybrid->borders = array_at(&l, bytes, CONIC_CHY_BORDERS);

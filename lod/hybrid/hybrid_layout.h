@@ -18,7 +18,7 @@ enum {
 /* Each member is little-endian in the file, one after the other, after the 8 bytes that say what it is. */
 typedef struct conic_chy_header {
   uint32_t version, flags;
-  uint64_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_patches, n_nodes, n_materials, n_texels;
+  uint64_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
   double origin[3];
   float low[3], high[3];
   double splat_length;
@@ -43,7 +43,7 @@ typedef struct conic_chy_array {
 /* The arrays by number. */
 enum {
   CONIC_CHY_NODES,
-  CONIC_CHY_PATCHES,
+  CONIC_CHY_CLUSTERS,
   CONIC_CHY_LEVELS,
   CONIC_CHY_CORNERS,
   CONIC_CHY_LISTED,

@@ -10,8 +10,8 @@
 #include "core/base/threads.h"
 #include "lod/hybrid/hybrid_nodes.h"
 
-void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
-  conic_patch_levels_release(context, &ways->triangles);
+void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways) {
+  conic_cluster_levels_release(context, &ways->triangles);
   for (int i = 0; i < ways->n_surfels; i++)
     conic_surfels_release(context, &ways->surfels[i]);
   ways->n_surfels = 0;
@@ -19,11 +19,11 @@ void conic_patch_ways_release(conic_context *context, conic_patch_ways *ways) {
 
 /* --- bounds --- */
 
-static void bound_sphere(const conic_patch_mesh *mesh, uint32_t patch, conic_hybrid_bound *bound) {
+static void bound_sphere(const conic_clustered_mesh *mesh, uint32_t cluster, conic_hybrid_bound *bound) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, farthest2 = 0.0;
   memset(bound->center, 0, sizeof bound->center); /* known in the second pass */
   for (int pass = 0; pass < 2; pass++) {
-    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++)
+    for (size_t i = mesh->starts[cluster]; i < mesh->starts[cluster + 1]; i++)
       for (int corner = 0; corner < 3; corner++) {
         double at[3], distance2 = 0.0;
         conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at);
@@ -42,12 +42,12 @@ static void bound_sphere(const conic_patch_mesh *mesh, uint32_t patch, conic_hyb
 }
 
 /* The cone of the faces as they are wound, for that is what culling goes by. A face without area faces nowhere. */
-static void bound_cone(const conic_patch_mesh *mesh, uint32_t patch, conic_hybrid_bound *bound) {
+static void bound_cone(const conic_clustered_mesh *mesh, uint32_t cluster, conic_hybrid_bound *bound) {
   double axis[3] = {0.0, 0.0, 0.0}, least = 1.0;
   for (int pass = 0; pass < 2; pass++) {
-    for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++) {
+    for (size_t i = mesh->starts[cluster]; i < mesh->starts[cluster + 1]; i++) {
       double normal[3], along;
-      conic_patch_face_normal(mesh, mesh->faces[i], normal);
+      conic_cluster_face_normal(mesh, mesh->faces[i], normal);
       for (int k = 0; k < 3; k++) {
         normal[k] *= (double)mesh->adjacency->side[mesh->faces[i]];
         axis[k] += pass ? 0.0 : normal[k];
@@ -64,16 +64,16 @@ static void bound_cone(const conic_patch_mesh *mesh, uint32_t patch, conic_hybri
   bound->cone = least > 1e-3 ? (float)(least - 1e-5) : -1.0f;
 }
 
-conic_hybrid_bound conic_patch_bound(const conic_patch_mesh *mesh, uint32_t patch) {
+conic_hybrid_bound conic_cluster_bound(const conic_clustered_mesh *mesh, uint32_t cluster) {
   conic_hybrid_bound bound;
-  bound_sphere(mesh, patch, &bound);
-  bound_cone(mesh, patch, &bound);
+  bound_sphere(mesh, cluster, &bound);
+  bound_cone(mesh, cluster, &bound);
   return bound;
 }
 
-static double patch_area(const conic_patch_mesh *mesh, uint32_t patch) {
+static double cluster_area(const conic_clustered_mesh *mesh, uint32_t cluster) {
   double area = 0.0;
-  for (size_t i = mesh->starts[patch]; i < mesh->starts[patch + 1]; i++) {
+  for (size_t i = mesh->starts[cluster]; i < mesh->starts[cluster + 1]; i++) {
     double at[3][3], sides[2][3], cross[3];
     for (int corner = 0; corner < 3; corner++)
       conic_mesh_corner(&mesh->mesh, mesh->faces[i], corner, at[corner]);
@@ -90,12 +90,13 @@ static double patch_area(const conic_patch_mesh *mesh, uint32_t patch) {
 /* --- surfels --- */
 
 /* What is triangles as built begins with surfels that are half as many: finer ones would be of no use. */
-static double first_spacing(const conic_ways_job *job, uint32_t patch) {
-  const conic_patch_mesh *mesh = job->mesh;
-  double edge = conic_patch_edge_length(mesh, patch), n_faces = (double)(mesh->starts[patch + 1] - mesh->starts[patch]);
-  if (mesh->clusters->is_gathered[patch])
+static double first_spacing(const conic_ways_job *job, uint32_t cluster) {
+  const conic_clustered_mesh *mesh = job->mesh;
+  double edge = conic_cluster_edge_length(mesh, cluster),
+         n_faces = (double)(mesh->starts[cluster + 1] - mesh->starts[cluster]);
+  if (mesh->clusters->is_gathered[cluster])
     return edge / job->options->density;
-  double sparse = sqrt(1.3 * job->ways[patch].area / n_faces);
+  double sparse = sqrt(1.3 * job->ways[cluster].area / n_faces);
   return sparse > edge ? sparse : edge;
 }
 
@@ -105,12 +106,12 @@ static const double tolerance = 0.5;
 enum { MOST_A_FACE = 2, MOST_A_FACE_OF_TRIANGLES = 1 };
 
 /* With how many surfels the next level is worth one: a fourth less than the one before has. */
-static size_t most_of_next(const conic_patch_ways *ways) {
+static size_t most_of_next(const conic_cluster_ways *ways) {
   return ways->n_surfels ? 3 * ways->surfels[ways->n_surfels - 1].n / 4 : SIZE_MAX;
 }
 
 /* Keeps the level that was sampled last where it is worth one. */
-static void keep_level(conic_context *context, conic_patch_ways *ways) {
+static void keep_level(conic_context *context, conic_cluster_ways *ways) {
   conic_surfels *last = &ways->surfels[ways->n_surfels];
   if (last->n == 0 || last->n > most_of_next(ways))
     conic_surfels_release(context, last);
@@ -118,21 +119,21 @@ static void keep_level(conic_context *context, conic_patch_ways *ways) {
     ways->n_surfels++;
 }
 
-/* Whether a patch that was gathered is drawn as its finest surfels where no error is asked for. */
+/* Whether a cluster that was gathered is drawn as its finest surfels where no error is asked for. */
 static int is_surfels(const conic_hybrid_options *options, const conic_surfels *finest, double spacing) {
   int is_good = options->most_error <= 0.0 || finest->refined_error <= options->most_error * spacing;
   return finest->n > 0 && (is_good || options->sampling == CONIC_SAMPLING_BOX);
 }
 
-/* A cover of the patch by one kind of sampling, each level twice as wide as the one before, down to a few surfels. */
-static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, uint32_t patch) {
-  conic_patch_ways *ways = &job->ways[patch];
-  size_t n_faces = job->mesh->starts[patch + 1] - job->mesh->starts[patch];
-  int is_gathered = job->mesh->clusters->is_gathered[patch], is_single = job->options->has_single_levels;
+/* A cover of the cluster by one kind of sampling, each level twice as wide as the one before, down to a few surfels. */
+static conic_status sample_cluster(conic_ways_job *job, conic_sampler *sampler, uint32_t cluster) {
+  conic_cluster_ways *ways = &job->ways[cluster];
+  size_t n_faces = job->mesh->starts[cluster + 1] - job->mesh->starts[cluster];
+  int is_gathered = job->mesh->clusters->is_gathered[cluster], is_single = job->options->has_single_levels;
   conic_sampling_job sampling = {.mesh = job->mesh,
                                  .tree = &job->tree,
-                                 .patch = patch,
-                                 .spacing = first_spacing(job, patch),
+                                 .cluster = cluster,
+                                 .spacing = first_spacing(job, cluster),
                                  .most = n_faces * (is_gathered ? MOST_A_FACE : MOST_A_FACE_OF_TRIANGLES),
                                  .cutoff = (double)job->options->cutoff};
   conic_status status = CONIC_OK;
@@ -144,9 +145,9 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
     sampling.useful = most_of_next(ways);
     sampling.is_coarser = i > 0;
     if (job->options->sampling == CONIC_SAMPLING_BOX)
-      status = conic_patch_sample_box(job->context, &sampling, surfels);
+      status = conic_cluster_sample_box(job->context, &sampling, surfels);
     else
-      status = conic_patch_sample(sampler, &sampling, surfels);
+      status = conic_cluster_sample(sampler, &sampling, surfels);
     if (i == 0)
       ways->is_surfels = is_gathered && is_surfels(job->options, surfels, sampling.spacing);
     int is_last = surfels->n <= 2 || surfels->is_coarsest;
@@ -158,16 +159,16 @@ static conic_status sample_patch(conic_ways_job *job, conic_sampler *sampler, ui
   return status;
 }
 
-/* --- all patches --- */
+/* --- all clusters --- */
 
 typedef struct ways_pass {
   conic_ways_job *job;
-  uint32_t *order; /* of the patches, the largest first: none of them is begun when the others are done */
+  uint32_t *order; /* of the clusters, the largest first: none of them is begun when the others are done */
   void **workers;  /* a sampler for each thread */
   conic_status *statuses;
 } ways_pass;
 
-static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
+static conic_status do_cluster(ways_pass *pass, uint32_t cluster, int i_thread) {
   conic_ways_job *job = pass->job;
   void **worker = &pass->workers[i_thread];
   conic_status status = CONIC_OK;
@@ -175,13 +176,13 @@ static conic_status do_patch(ways_pass *pass, uint32_t patch, int i_thread) {
   if (!sampler)
     status = conic_sampler_create(job->context, &sampler);
   *worker = sampler;
-  return status == CONIC_OK ? sample_patch(job, sampler, patch) : status;
+  return status == CONIC_OK ? sample_cluster(job, sampler, cluster) : status;
 }
 
 static void ways_task(void *data, size_t i_task, int i_thread) {
   ways_pass *pass = data;
   if (pass->statuses[i_thread] == CONIC_OK)
-    pass->statuses[i_thread] = do_patch(pass, pass->order[i_task], i_thread);
+    pass->statuses[i_thread] = do_cluster(pass, pass->order[i_task], i_thread);
 }
 
 static conic_status run_pass(ways_pass *pass) {
@@ -194,7 +195,7 @@ static conic_status run_pass(ways_pass *pass) {
 }
 
 static conic_status order_by_size(ways_pass *pass) {
-  const conic_patch_mesh *mesh = pass->job->mesh;
+  const conic_clustered_mesh *mesh = pass->job->mesh;
   size_t n = mesh->clusters->n_clusters;
   conic_radix_item *items = conic_memory_allocate(pass->job->context, n, sizeof *items);
   if (!items)
@@ -239,8 +240,8 @@ conic_status conic_find_ways(conic_ways_job *job) {
     status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < n; i++) {
-      job->ways[i].area = patch_area(job->mesh, (uint32_t)i);
-      job->ways[i].bound = conic_patch_bound(job->mesh, (uint32_t)i);
+      job->ways[i].area = cluster_area(job->mesh, (uint32_t)i);
+      job->ways[i].bound = conic_cluster_bound(job->mesh, (uint32_t)i);
     }
     status = run_passes(&pass);
   }

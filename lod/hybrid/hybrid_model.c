@@ -20,7 +20,7 @@ void conic_hybrid_destroy(conic_hybrid *hybrid) {
 conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info) {
   double square = 0.0;
   memset(info, 0, sizeof *info);
-  info->n_patches = hybrid->n_patches;
+  info->n_clusters = hybrid->n_clusters;
   info->n_all_triangles = hybrid->n_triangles;
   info->n_all_surfels = hybrid->n_surfels;
   info->n_vertices = hybrid->n_vertices;
@@ -28,12 +28,12 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
   info->cutoff = hybrid->cutoff;
   info->splat_length = hybrid->splat_length;
   info->n_bytes = conic_hybrid_file_bytes(hybrid);
-  for (size_t i = 0; i < hybrid->n_patches; i++) {
-    const conic_hybrid_patch *patch = &hybrid->patches[i];
-    const conic_hybrid_level *built = &hybrid->levels[patch->first_level + patch->built];
+  for (size_t i = 0; i < hybrid->n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &hybrid->clusters[i];
+    const conic_hybrid_level *built = &hybrid->levels[cluster->first_level + cluster->built];
     int is_surfels = built->kind == CONIC_HYBRID_SURFELS;
-    info->n_levels += patch->n_levels;
-    info->n_surfel_patches += (size_t)is_surfels;
+    info->n_levels += cluster->n_levels;
+    info->n_surfel_clusters += (size_t)is_surfels;
     *(is_surfels ? &info->n_surfels : &info->n_triangles) += built->count;
   }
   info->n_node_levels = hybrid->n_levels - info->n_levels;
@@ -85,14 +85,14 @@ static int is_corner(const conic_hybrid *h, const conic_hybrid_level *level, uin
 }
 
 /* `n_left_out` is how many slots the borders run over. */
-static const char *wrong_borders(const conic_hybrid *h, uint32_t patch, const conic_hybrid_level *level,
+static const char *wrong_borders(const conic_hybrid *h, uint32_t cluster, const conic_hybrid_level *level,
                                  size_t *n_left_out) {
   *n_left_out = 0;
   for (uint32_t i = 0; i < level->n_borders; i++) {
-    const conic_hybrid_border *border = &h->borders[level->first_border + i];
+    const conic_cluster_border *border = &h->borders[level->first_border + i];
     if ((i > 0 && border->edge <= border[-1].edge) || border->edge / 4 >= level->count || border->edge % 4 > 2 ||
-        border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_patches ||
-        border->across == patch)
+        border->from >= h->n_slots || border->to >= h->n_slots || border->across >= h->n_clusters ||
+        border->across == cluster)
       return "a border out of range";
     if (!is_corner(h, level, border->edge / 4, border->edge % 4, border->from) ||
         !is_corner(h, level, border->edge / 4, border->edge % 4 + 1, border->to))
@@ -102,14 +102,14 @@ static const char *wrong_borders(const conic_hybrid *h, uint32_t patch, const co
   return NULL;
 }
 
-/* A slot is of two patches, so that there is never more to put in than twice as many as there are slots. */
+/* A slot is of two clusters, so that there is never more to put in than twice as many as there are slots. */
 static const char *wrong_chains(const conic_hybrid *h) {
   size_t n_left = 2 * h->n_slots;
-  for (uint32_t i = 0; i < h->n_patches; i++) {
+  for (uint32_t i = 0; i < h->n_clusters; i++) {
     size_t most = 0;
-    for (uint32_t k = 0; k < h->patches[i].n_levels; k++) {
+    for (uint32_t k = 0; k < h->clusters[i].n_levels; k++) {
       size_t n;
-      const char *wrong = wrong_borders(h, i, &h->levels[h->patches[i].first_level + k], &n);
+      const char *wrong = wrong_borders(h, i, &h->levels[h->clusters[i].first_level + k], &n);
       if (wrong)
         return wrong;
       most = n > most ? n : most;
@@ -128,29 +128,29 @@ static int is_bound(const conic_hybrid_bound *b) {
   return b->radius >= 0.0f && b->radius < HUGE_VALF && b->cone >= -1.0f && b->cone <= 1.0f;
 }
 
-/* Every level belongs to just one patch, in their order. */
-static const char *wrong_patches(const conic_hybrid *h) {
+/* Every level belongs to just one cluster, in their order. */
+static const char *wrong_clusters(const conic_hybrid *h) {
   size_t next = 0;
-  for (size_t i = 0; i < h->n_patches; i++) {
-    const conic_hybrid_patch *patch = &h->patches[i];
-    if (patch->first_level != next || patch->n_levels < 1 || patch->n_levels > h->n_levels - next ||
-        patch->built >= patch->n_levels)
+  for (size_t i = 0; i < h->n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &h->clusters[i];
+    if (cluster->first_level != next || cluster->n_levels < 1 || cluster->n_levels > h->n_levels - next ||
+        cluster->built >= cluster->n_levels)
       return "a patch without its levels";
-    if (!is_bound(&patch->bound) || !(patch->area >= 0.0f && patch->area < HUGE_VALF))
+    if (!is_bound(&cluster->bound) || !(cluster->area >= 0.0f && cluster->area < HUGE_VALF))
       return "a patch's bounds out of range";
-    for (size_t k = 0; k < patch->n_levels; k++) {
+    for (size_t k = 0; k < cluster->n_levels; k++) {
       const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
       if (wrong)
         return wrong;
     }
-    next += patch->n_levels;
+    next += cluster->n_levels;
   }
   return NULL;
 }
 
-/* The nodes' levels come after those of the patches, in their order. */
+/* The nodes' levels come after those of the clusters, in their order. */
 static const char *wrong_node_levels(const conic_hybrid *h) {
-  const conic_hybrid_patch *last = &h->patches[h->n_patches - 1];
+  const conic_hybrid_cluster *last = &h->clusters[h->n_clusters - 1];
   size_t next = (size_t)last->first_level + last->n_levels;
   for (size_t i = 0; i < h->n_nodes; i++) {
     const conic_hybrid_node *node = &h->nodes[i];
@@ -171,24 +171,24 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
   return next == h->n_levels ? NULL : "levels of no patch or node";
 }
 
-/* A walk goes from a node to the one after it, or past its subtree; and what is left of the patches is always what the
+/* A walk goes from a node to the one after it, or past its subtree; and what is left of the clusters is always what the
  * walk has not come by. */
 static const char *wrong_nodes(const conic_hybrid *h) {
-  size_t next_patch = 0;
+  size_t next_cluster = 0;
   for (size_t i = 0; i < h->n_nodes; i++) {
     const conic_hybrid_node *node = &h->nodes[i];
-    if (node->next <= i || node->next > h->n_nodes || node->begin >= node->end || node->end > h->n_patches ||
+    if (node->next <= i || node->next > h->n_nodes || node->begin >= node->end || node->end > h->n_clusters ||
         !is_bound(&node->bound))
       return "a node that is none";
-    if (node->begin != next_patch)
+    if (node->begin != next_cluster)
       return "nodes out of order";
     if (node->next == i + 1)
-      next_patch = node->end;
+      next_cluster = node->end;
     else if (h->nodes[i + 1].begin != node->begin || h->nodes[node->next - 1].end != node->end)
       return "nodes that are not within each other";
   }
-  return h->n_nodes > 0 && next_patch == h->n_patches && h->nodes[0].next == h->n_nodes &&
-                 h->nodes[0].end == h->n_patches
+  return h->n_nodes > 0 && next_cluster == h->n_clusters && h->nodes[0].next == h->n_nodes &&
+                 h->nodes[0].end == h->n_clusters
              ? NULL
              : "patches of no node";
 }
@@ -207,7 +207,7 @@ static const char *wrong_children(const conic_hybrid *h) {
 }
 
 const char *conic_hybrid_structure(const conic_hybrid *h) {
-  const char *wrong = wrong_patches(h);
+  const char *wrong = wrong_clusters(h);
   if (!wrong)
     wrong = wrong_nodes(h);
   if (!wrong)

@@ -4,48 +4,34 @@
 
 #include "conic/hybrid.h"
 #include "core/files/mapping.h"
+#include "lod/clusters/cluster_border.h"
 
-/* The records of a .chy file (docs/format-chy.md), as they are in memory too. */
+/* The records of a .chy file (docs/reference/format-chy.md), as they are in memory too. */
 
-/* One way to draw a patch, or a node. */
+/* One way to draw a cluster, or a node. */
 typedef struct conic_hybrid_level {
   uint32_t kind;         /* conic_hybrid_kind */
   uint32_t first, count; /* of its triangles or surfels among all */
   uint32_t first_vertex; /* triangles: their vertices are listed from here on, and their corners count from there */
   uint32_t n_vertices;
-  float error;    /* no place of the patch is drawn farther than this from where it is */
+  float error;    /* no place of the cluster is drawn farther than this from where it is */
   float reach;    /* surfels: the longest half axis of an outline */
   uint32_t stage; /* triangles: how often they were simplified; of its borders' vertices those are left that last */
   uint32_t first_border, n_borders;
   float cover, spread; /* surfels: the products of the half axes of their outlines, and their squares, summed up */
 } conic_hybrid_level;
 
-/* A vertex where two patches meet, and the last stage of simplification at which it is still there. */
-typedef struct conic_hybrid_slot {
-  uint32_t vertex, stage;
-} conic_hybrid_slot;
-
-#define CONIC_HYBRID_ALWAYS UINT32_MAX
-
-/* An edge of a level's triangle along which vertices were left out: what the patch across still has of them is put in
- * when they are drawn side by side. */
-typedef struct conic_hybrid_border {
-  uint32_t edge;     /* 4 · triangle, counted from the level's first, + the corner where the edge begins */
-  uint32_t from, to; /* slots of its two ends; what was left out lies between */
-  uint32_t across;   /* the other patch */
-} conic_hybrid_border;
-
 /* A sphere that holds the faces, and a cone of their normals: its axis and the cosine of half its opening. */
 typedef struct conic_hybrid_bound {
   float center[3], radius, axis[3], cone;
 } conic_hybrid_bound;
 
-typedef struct conic_hybrid_patch {
+typedef struct conic_hybrid_cluster {
   conic_hybrid_bound bound;
   float area;
   uint32_t first_level, n_levels; /* triangles first, of growing error, then surfels likewise */
   uint32_t built;                 /* which level is drawn where no error is asked for, from first_level */
-} conic_hybrid_patch;
+} conic_hybrid_cluster;
 
 /* All that a node holds as one disc that faces the camera, about the centre of its sphere. */
 typedef struct conic_hybrid_point {
@@ -57,9 +43,9 @@ typedef struct conic_hybrid_point {
 /* In preorder: the root first. */
 typedef struct conic_hybrid_node {
   conic_hybrid_bound bound;
-  uint32_t begin, end;            /* patches */
+  uint32_t begin, end;            /* clusters */
   uint32_t next;                  /* the node after the subtree: this one + 1 where it has no children */
-  uint32_t first_level, n_levels; /* surfels that stand for all of its patches, of growing error; may be none */
+  uint32_t first_level, n_levels; /* surfels that stand for all of its clusters, of growing error; may be none */
   conic_hybrid_point point;
 } conic_hybrid_node;
 
@@ -69,7 +55,7 @@ struct conic_hybrid {
   double origin[3];
   float low[3], high[3]; /* of the vertices, from the origin */
   double splat_length;
-  size_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_patches, n_nodes, n_slots, n_borders;
+  size_t n_vertices, n_triangles, n_listed, n_surfels, n_levels, n_clusters, n_nodes, n_slots, n_borders;
   const float *position[3], *normal[3], *color[3],
       *texture_coordinate[2]; /* by vertex; the last three kinds may be null */
   const uint32_t (*corners)[3];
@@ -77,10 +63,10 @@ struct conic_hybrid {
   const uint32_t *listed;   /* vertices, by level */
   const float *surfels[12]; /* positions, t_u, t_v, colours */
   const conic_hybrid_level *levels;
-  const conic_hybrid_patch *patches;
+  const conic_hybrid_cluster *clusters;
   const conic_hybrid_node *nodes;
-  const conic_hybrid_slot *slots;
-  const conic_hybrid_border *borders; /* by level, in the order of their edges */
+  const conic_cluster_slot *slots;
+  const conic_cluster_border *borders; /* by level, in the order of their edges */
   size_t n_materials, n_texels;
   const struct conic_chy_material *material_list;
   const unsigned char *texels;

@@ -20,37 +20,37 @@ enum { MOST_SITES = 64 };
  * made. */
 static const double first_spacing = 0.35, finer = 0.5;
 
-/* A patch's surfel as a part of what one of a node's stands for. */
-typedef struct piece {
+/* A cluster's surfel as a part of what one of a node's stands for. */
+typedef struct surfel_piece {
   double at[3], normal[3], area;
   uint32_t site;
   const conic_surfel *surfel;
-} piece;
+} surfel_piece;
 
 /* What a thread keeps from node to node. */
-typedef struct worker {
+typedef struct node_worker {
   conic_sampler *sampler;
   size_t n_pieces, room;
-  piece *pieces;
+  surfel_piece *pieces;
   double error; /* the greatest of the levels that the pieces are of */
-} worker;
+} node_worker;
 
 typedef struct nodes_pass {
   conic_ways_job *job;
-  worker *workers;
+  node_worker *workers;
   conic_status *statuses;
 } nodes_pass;
 
 /* --- pieces --- */
 
-static conic_status add_piece(const nodes_pass *pass, worker *w, const conic_surfel *surfel) {
+static conic_status add_piece(const nodes_pass *pass, node_worker *w, const conic_surfel *surfel) {
   void *pieces = w->pieces;
   conic_status status =
       conic_sampler_grow(w->sampler, &pieces, w->n_pieces, w->n_pieces + 1, &w->room, sizeof *w->pieces);
   w->pieces = pieces;
   if (status != CONIC_OK)
     return status;
-  piece *p = &w->pieces[w->n_pieces];
+  surfel_piece *p = &w->pieces[w->n_pieces];
   double u[3], v[3], cutoff = (double)pass->job->options->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     p->at[axis] = (double)surfel->position[axis];
@@ -67,16 +67,16 @@ static conic_status add_piece(const nodes_pass *pass, worker *w, const conic_sur
   return CONIC_OK;
 }
 
-/* Of a patch the coarsest surfels that are small beside the spacing, or its finest. */
-static const conic_surfels *fine_enough(const conic_patch_ways *ways, double spacing) {
+/* Of a cluster the coarsest surfels that are small beside the spacing, or its finest. */
+static const conic_surfels *fine_enough(const conic_cluster_ways *ways, double spacing) {
   int k = ways->n_surfels - 1;
   while (k > 0 && ways->surfels[k].reach > finer * spacing)
     k--;
   return &ways->surfels[k];
 }
 
-/* All of a node's patches as surfels, shuffled; none where there is a patch without. */
-static conic_status gather(const nodes_pass *pass, worker *w, const conic_hybrid_node *node, double spacing) {
+/* All of a node's clusters as surfels, shuffled; none where there is a cluster without. */
+static conic_status gather(const nodes_pass *pass, node_worker *w, const conic_hybrid_node *node, double spacing) {
   conic_status status = CONIC_OK;
   w->n_pieces = 0;
   w->error = 0.0;
@@ -92,7 +92,7 @@ static conic_status gather(const nodes_pass *pass, worker *w, const conic_hybrid
   }
   for (size_t i = w->n_pieces; i > 1 && status == CONIC_OK; i--) {
     size_t other = (size_t)(conic_random_bits(node->begin, i, node->end) % i);
-    piece swapped = w->pieces[i - 1];
+    surfel_piece swapped = w->pieces[i - 1];
     w->pieces[i - 1] = w->pieces[other];
     w->pieces[other] = swapped;
   }
@@ -101,7 +101,7 @@ static conic_status gather(const nodes_pass *pass, worker *w, const conic_hybrid
 
 /* --- sites --- */
 
-static uint32_t nearest_alike(const conic_sampler *s, const piece *p, double most) {
+static uint32_t nearest_alike(const conic_sampler *s, const surfel_piece *p, double most) {
   double least2 = most * most;
   uint32_t nearest = CONIC_NO_SITE;
   for (uint32_t i = 0; i < s->n_sites; i++) {
@@ -116,7 +116,7 @@ static uint32_t nearest_alike(const conic_sampler *s, const piece *p, double mos
   return nearest;
 }
 
-static conic_status add_site(conic_sampler *s, const piece *p, double spacing) {
+static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spacing) {
   void *sites = s->sites;
   conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   s->sites = sites;
@@ -134,7 +134,7 @@ static conic_status add_site(conic_sampler *s, const piece *p, double spacing) {
 }
 
 /* Sites no nearer to each other than the spacing, but where they face apart. */
-static conic_status choose_sites(worker *w, double spacing) {
+static conic_status choose_sites(node_worker *w, double spacing) {
   conic_status status = CONIC_OK;
   w->sampler->n_sites = 0;
   for (size_t i = 0; i < w->n_pieces && status == CONIC_OK && w->sampler->n_sites <= MOST_SITES; i++)
@@ -143,7 +143,7 @@ static conic_status choose_sites(worker *w, double spacing) {
   return status;
 }
 
-static void add_to_site(conic_site *site, const piece *p) {
+static void add_to_site(conic_site *site, const surfel_piece *p) {
   for (int k = 0; k < 3; k++) {
     double color = (double)p->surfel->color[k], shown = conic_as_shown(color);
     site->normal[k] += p->area * p->normal[k];
@@ -160,19 +160,19 @@ static void add_to_site(conic_site *site, const piece *p) {
 static const double octagon[8][2] = {{1.0, 0.0},  {0.70711, 0.70711},   {0.0, 1.0},  {-0.70711, 0.70711},
                                      {-1.0, 0.0}, {-0.70711, -0.70711}, {0.0, -1.0}, {0.70711, -0.70711}};
 
-static conic_status note_piece(conic_sampler *s, const piece *p) {
+static conic_status note_piece(conic_sampler *s, const surfel_piece *p) {
   conic_status status = CONIC_OK;
   for (int k = 0; k < 8 && status == CONIC_OK; k++) {
     double at[3];
     for (int axis = 0; axis < 3; axis++)
       at[axis] = p->at[axis] + s->job->cutoff * (octagon[k][0] * (double)p->surfel->tangent_u[axis] +
                                                  octagon[k][1] * (double)p->surfel->tangent_v[axis]);
-    status = conic_patch_note_support(s, p->site, at, p->surfel->face, p->normal);
+    status = conic_cluster_note_support(s, p->site, at, p->surfel->face, p->normal);
   }
   return status;
 }
 
-static conic_status shape_sites(worker *w) {
+static conic_status shape_sites(node_worker *w) {
   conic_sampler *s = w->sampler;
   conic_status status = CONIC_OK;
   s->n_supports = s->n_sorted = 0;
@@ -180,20 +180,20 @@ static conic_status shape_sites(worker *w) {
     w->pieces[i].site = nearest_alike(s, &w->pieces[i], HUGE_VAL);
     add_to_site(&s->sites[w->pieces[i].site], &w->pieces[i]);
   }
-  conic_patch_settle_planes(s);
+  conic_cluster_settle_planes(s);
   for (size_t i = 0; i < w->n_pieces && status == CONIC_OK; i++)
     status = note_piece(s, &w->pieces[i]);
-  return status == CONIC_OK ? conic_patch_shape_supported(s) : status;
+  return status == CONIC_OK ? conic_cluster_shape_supported(s) : status;
 }
 
 /* What the pieces are off, and the site is off from them; or its ellipse from the mesh, if that is more. Where it is
  * more than `known`; else `known`. */
-static double error_of(const worker *w, const conic_site *site, double known) {
+static double error_of(const node_worker *w, const conic_site *site, double known) {
   double error = w->error + site->least_error;
   return conic_site_off_mesh(w->sampler, site, error > known ? error : known);
 }
 
-static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfels) {
+static conic_status emit(node_worker *w, const conic_site *site, conic_surfels *surfels) {
   conic_status status = conic_surfels_reserve(w->sampler->context, surfels);
   if (status != CONIC_OK)
     return status;
@@ -212,7 +212,7 @@ static conic_status emit(worker *w, const conic_site *site, conic_surfels *surfe
   return CONIC_OK;
 }
 
-static conic_status make_level(const nodes_pass *pass, worker *w, double spacing, conic_surfels *surfels) {
+static conic_status make_level(const nodes_pass *pass, node_worker *w, double spacing, conic_surfels *surfels) {
   const conic_ways_job *job = pass->job;
   const conic_sampling_job sampling = {.mesh = job->mesh,
                                        .tree = &job->tree,
@@ -240,8 +240,8 @@ static size_t count_coarsest(const conic_ways_job *job, const conic_hybrid_node 
   return n;
 }
 
-/* Each level has a fourth less than the one before, the first than the patches by themselves. */
-static conic_status find_levels(const nodes_pass *pass, worker *w, size_t i) {
+/* Each level has a fourth less than the one before, the first than the clusters by themselves. */
+static conic_status find_levels(const nodes_pass *pass, node_worker *w, size_t i) {
   const conic_hybrid_node *node = &pass->job->nodes[i];
   conic_node_ways *ways = &pass->job->node_ways[i];
   double spacing = first_spacing * (double)node->point.radius;
@@ -264,8 +264,8 @@ static conic_status find_levels(const nodes_pass *pass, worker *w, size_t i) {
 
 /* A disc as large as the sphere hides all that is in it. None of that is farther from the disc than the centre is; nor
  * is a place of the disc farther from the mesh than the centre, and a radius more. */
-static conic_status find_point(const nodes_pass *pass, worker *w, size_t i) {
-  const conic_patch_mesh *mesh = pass->job->mesh;
+static conic_status find_point(const nodes_pass *pass, node_worker *w, size_t i) {
+  const conic_clustered_mesh *mesh = pass->job->mesh;
   conic_hybrid_node *node = &pass->job->nodes[i];
   double center[3], farthest2 = 0.0, color[3] = {0.0, 0.0, 0.0}, area = 0.0;
   conic_status status = gather(pass, w, node, HUGE_VAL);
@@ -295,7 +295,7 @@ static conic_status find_point(const nodes_pass *pass, worker *w, size_t i) {
   return CONIC_OK;
 }
 
-static conic_status do_node(nodes_pass *pass, size_t i, worker *w) {
+static conic_status do_node(nodes_pass *pass, size_t i, node_worker *w) {
   conic_status status = w->sampler ? CONIC_OK : conic_sampler_create(pass->job->context, &w->sampler);
   if (status == CONIC_OK)
     status = find_point(pass, w, i);
@@ -333,8 +333,8 @@ static conic_status find_ways(conic_ways_job *job) {
   return status;
 }
 
-/* How far each patch's surfels may stand out of its sphere. */
-static float reach_of(const conic_patch_ways *ways) {
+/* How far each cluster's surfels may stand out of its sphere. */
+static float reach_of(const conic_cluster_ways *ways) {
   float longest = 0.0f;
   for (int k = 0; k < ways->n_surfels; k++) {
     float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));

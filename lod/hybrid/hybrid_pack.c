@@ -11,12 +11,12 @@
 
 typedef struct packing {
   conic_context *context;
-  const conic_patch_mesh *mesh;
+  const conic_clustered_mesh *mesh;
   const conic_triangles *flat; /* the same mesh */
-  const conic_patch_ways *ways;
-  const conic_patch_chains *chains;
+  const conic_cluster_ways *ways;
+  const conic_cluster_chains *chains;
   const conic_ways_job *job;
-  size_t n_patches;
+  size_t n_clusters;
   float cutoff;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
   conic_chy_header header;
@@ -44,10 +44,10 @@ static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n, 
   return n_listed;
 }
 
-static void count_patch(packing *p, uint32_t patch) {
-  const conic_patch_ways *ways = &p->ways[patch];
+static void count_cluster(packing *p, uint32_t cluster) {
+  const conic_cluster_ways *ways = &p->ways[cluster];
   conic_chy_header *h = &p->header;
-  h->n_triangles += p->mesh->starts[patch + 1] - p->mesh->starts[patch];
+  h->n_triangles += p->mesh->starts[cluster + 1] - p->mesh->starts[cluster];
   for (int i = 0; i < ways->triangles.n; i++) {
     h->n_triangles += ways->triangles.levels[i].n;
     h->n_borders += ways->triangles.levels[i].n_borders;
@@ -69,7 +69,7 @@ static void measure_box(const packing *p, conic_chy_header *h) {
     h->low[axis] = HUGE_VALF;
     h->high[axis] = -HUGE_VALF;
   }
-  for (size_t i = 0; i < p->mesh->starts[p->n_patches]; i++)
+  for (size_t i = 0; i < p->mesh->starts[p->n_clusters]; i++)
     for (int corner = 0; corner < 3; corner++)
       for (int axis = 0; axis < 3; axis++) {
         float at = p->flat->position[axis][p->flat->corners[p->mesh->faces[i]][corner]];
@@ -85,7 +85,7 @@ static conic_status allocate_body(packing *p) {
   h->version = CONIC_CHY_VERSION;
   h->cutoff = p->cutoff;
   h->n_vertices = p->flat->n_vertices;
-  h->n_patches = p->n_patches;
+  h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
   h->n_slots = p->chains->n_slots;
   h->n_materials = p->flat->n_materials;
@@ -97,8 +97,8 @@ static conic_status allocate_body(packing *p) {
     if (texture)
       h->n_texels += (uint64_t)texture->levels[0].width * (uint64_t)texture->levels[0].height;
   }
-  for (uint32_t i = 0; i < p->n_patches; i++)
-    count_patch(p, i);
+  for (uint32_t i = 0; i < p->n_clusters; i++)
+    count_cluster(p, i);
   for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
     count_node(p, i);
   if (h->n_triangles > UINT32_MAX / 4 || h->n_surfels > UINT32_MAX / 4 || h->n_texels > UINT32_MAX / 4)
@@ -117,7 +117,7 @@ typedef struct cursor {
   size_t level, triangle, listed, surfel, border;
 } cursor;
 
-static void put_triangles(packing *p, cursor *at, const conic_patch_level *from) {
+static void put_triangles(packing *p, cursor *at, const conic_cluster_level *from) {
   conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
   uint32_t(*local)[3] = array_at(p, CONIC_CHY_CORNERS), *listed = array_at(p, CONIC_CHY_LISTED);
   uint32_t *material = array_at(p, CONIC_CHY_MATERIAL_OF);
@@ -136,7 +136,7 @@ static void put_triangles(packing *p, cursor *at, const conic_patch_level *from)
   for (size_t i = 0; i < from->n && p->header.flags & CONIC_CHY_MATERIALS; i++)
     material[at->triangle + i] = p->flat->material[from->face[i]];
   if (from->n_borders > 0)
-    memcpy((conic_hybrid_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
+    memcpy((conic_cluster_border *)array_at(p, CONIC_CHY_BORDERS) + at->border, from->borders,
            from->n_borders * sizeof *from->borders);
   at->triangle += from->n;
   at->listed += level->n_vertices;
@@ -180,16 +180,16 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   at->surfel += surfels->n;
 }
 
-/* The first level of triangles is the patch's faces themselves. */
-static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mesh) {
-  conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
-  const conic_patch_ways *ways = &p->ways[i];
+/* The first level of triangles is the cluster's faces themselves. */
+static void put_cluster(packing *p, cursor *at, uint32_t i, conic_cluster_level *mesh) {
+  conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
+  const conic_cluster_ways *ways = &p->ways[i];
   double error = 0.0;
-  patches[i] = (conic_hybrid_patch){.bound = ways->bound,
-                                    .area = (float)ways->area,
-                                    .first_level = (uint32_t)at->level,
-                                    .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
-  patches[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
+  clusters[i] = (conic_hybrid_cluster){.bound = ways->bound,
+                                       .area = (float)ways->area,
+                                       .first_level = (uint32_t)at->level,
+                                       .n_levels = (uint32_t)(1 + ways->triangles.n + ways->n_surfels)};
+  clusters[i].built = ways->is_surfels ? (uint32_t)(1 + ways->triangles.n) : 0;
   mesh->n = 0;
   for (size_t k = p->mesh->starts[i]; k < p->mesh->starts[i + 1]; k++, mesh->n++) {
     mesh->face[mesh->n] = p->mesh->faces[k];
@@ -197,7 +197,7 @@ static void put_patch(packing *p, cursor *at, uint32_t i, conic_patch_level *mes
   }
   put_triangles(p, at, mesh);
   for (int k = 0; k < ways->triangles.n; k++) {
-    conic_patch_level level = ways->triangles.levels[k];
+    conic_cluster_level level = ways->triangles.levels[k];
     level.error = error = level.error > error ? level.error : error; /* no less than that of what it is simpler than */
     put_triangles(p, at, &level);
   }
@@ -253,16 +253,16 @@ static void put_materials(packing *p) {
 
 /* The surfels as built, for the scale of the automatic ε. */
 static conic_status measure_surfels(packing *p) {
-  const conic_hybrid_patch *patches = array_at(p, CONIC_CHY_PATCHES);
+  const conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
   const conic_hybrid_level *levels = array_at(p, CONIC_CHY_LEVELS);
   conic_splats built;
   size_t n = 0, at = 0;
-  for (size_t i = 0; i < p->header.n_patches; i++)
-    n += patches[i].built ? levels[patches[i].first_level + patches[i].built].count : 0;
+  for (size_t i = 0; i < p->header.n_clusters; i++)
+    n += clusters[i].built ? levels[clusters[i].first_level + clusters[i].built].count : 0;
   conic_status status = conic_splats_allocate(p->context, n, CONIC_SPLATS_TANGENTS, &built);
-  for (size_t i = 0; i < p->header.n_patches && status == CONIC_OK; i++) {
-    const conic_hybrid_level *level = &levels[patches[i].first_level + patches[i].built];
-    if (!patches[i].built)
+  for (size_t i = 0; i < p->header.n_clusters && status == CONIC_OK; i++) {
+    const conic_hybrid_level *level = &levels[clusters[i].first_level + clusters[i].built];
+    if (!clusters[i].built)
       continue;
     for (int axis = 0; axis < 3; axis++) {
       const float *x = array_at(p, CONIC_CHY_SURFELS + axis), *u = array_at(p, CONIC_CHY_SURFELS + 3 + axis);
@@ -282,13 +282,13 @@ static conic_status measure_surfels(packing *p) {
 static conic_status fill_body(packing *p) {
   cursor at = {0};
   size_t most = 0;
-  for (size_t i = 0; i < p->n_patches; i++)
+  for (size_t i = 0; i < p->n_clusters; i++)
     most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
-  conic_patch_level mesh = {.corners = conic_memory_allocate(p->context, most, sizeof *mesh.corners),
-                            .face = conic_memory_allocate(p->context, most, sizeof *mesh.face)};
+  conic_cluster_level mesh = {.corners = conic_memory_allocate(p->context, most, sizeof *mesh.corners),
+                              .face = conic_memory_allocate(p->context, most, sizeof *mesh.face)};
   int is_there = mesh.corners && mesh.face;
-  for (uint32_t i = 0; i < p->n_patches && is_there; i++)
-    put_patch(p, &at, i, &mesh);
+  for (uint32_t i = 0; i < p->n_clusters && is_there; i++)
+    put_cluster(p, &at, i, &mesh);
   for (size_t i = 0; i < p->job->n_nodes && is_there; i++)
     put_node(p, &at, i);
   conic_memory_release(p->context, mesh.corners);
@@ -305,14 +305,14 @@ static conic_status fill_body(packing *p) {
 /* How long the list of vertices is shows only when it is made; so it is counted first. */
 static conic_status count_listed(packing *p) {
   size_t most = 0;
-  for (size_t i = 0; i < p->n_patches; i++)
+  for (size_t i = 0; i < p->n_clusters; i++)
     most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
   uint32_t(*corners)[3] = conic_memory_allocate(p->context, most, sizeof *corners);
   uint32_t(*local)[3] = conic_memory_allocate(p->context, most, sizeof *local);
   uint32_t *listed = conic_memory_allocate(p->context, most, 3 * sizeof *listed);
   conic_status status = corners && local && listed ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < p->n_patches && status == CONIC_OK; i++) {
-    const conic_patch_levels *simpler = &p->ways[i].triangles;
+  for (size_t i = 0; i < p->n_clusters && status == CONIC_OK; i++) {
+    const conic_cluster_levels *simpler = &p->ways[i].triangles;
     size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
     for (size_t k = 0; k < n; k++)
       memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
@@ -356,7 +356,7 @@ conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid
                .ways = ways->ways,
                .chains = &ways->chains,
                .job = ways,
-               .n_patches = ways->mesh->clusters->n_clusters,
+               .n_clusters = ways->mesh->clusters->n_clusters,
                .cutoff = ways->options->cutoff,
                .local = conic_memory_allocate(ways->context, flat->n_vertices, sizeof *p.local)};
   *hybrid = NULL;

@@ -1,4 +1,4 @@
-/* From the ways to draw each patch to a model, all in one piece of memory. */
+/* From the ways to draw each cluster to a model, all in one piece of memory. */
 #ifndef CONIC_HYBRID_PACK_H
 #define CONIC_HYBRID_PACK_H
 

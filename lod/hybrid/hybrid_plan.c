@@ -5,84 +5,84 @@
 
 #include "core/base/memory.h"
 
-/* Rounds in which each patch is thought over; and how much less a picture of both kinds must promise to be preferred to
- * one of a single kind. */
+/* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred
+ * to one of a single kind. */
 enum { ROUNDS = 4 };
 static const double margin = 0.97;
 
-/* A patch in sight. Infinite costs are of a kind that is not good enough. */
-typedef struct candidate {
+/* A cluster in sight. Infinite costs are of a kind that is not good enough. */
+typedef struct plan_candidate {
   conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
   double alone_ns;              /* of its own surfels */
   uint32_t first_link, n_links;
   uint8_t kind;
-} candidate;
+} plan_candidate;
 
-/* Two patches side by side: what triangles of the one take more if the other is drawn as surfels, for then their border
- * has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
-typedef struct link {
+/* Two clusters side by side: what triangles of the one take more if the other is drawn as surfels, for then their
+ * border has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
+typedef struct cluster_link {
   uint32_t candidate;
   double own_ns, other_ns;
-} link;
+} cluster_link;
 
-typedef struct planning {
+typedef struct hybrid_planning {
   const conic_hybrid *hybrid;
   size_t n;
-  const uint32_t *patches;
-  candidate *candidates;
-  uint32_t *of_patch; /* of each of the model's patches, where it is in sight: its candidate, else n */
+  const uint32_t *clusters;
+  plan_candidate *candidates;
+  uint32_t *of_cluster; /* of each of the model's clusters, where it is in sight: its candidate, else n */
   size_t n_links;
-  link *links;
+  cluster_link *links;
   uint8_t *kinds; /* what was found before */
   const conic_hybrid_camera *view;
   double error_px;
-  double *amounts, *below; /* of each patch of the model, and of each node, for cutting */
+  double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
   uint32_t *nodes;
-} planning;
+} hybrid_planning;
 
-static const conic_hybrid_level *triangles_of(const planning *p, size_t i) {
-  const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
-  return &p->hybrid->levels[patch->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
+static const conic_hybrid_level *triangles_of(const hybrid_planning *p, size_t i) {
+  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
+  return &p->hybrid->levels[cluster->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
 }
 
-static void ask(planning *p) {
+static void ask(hybrid_planning *p) {
   for (size_t i = 0; i < p->n; i++) {
-    candidate *c = &p->candidates[i];
-    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->patches[p->patches[i]], p->error_px, c->offers);
+    plan_candidate *c = &p->candidates[i];
+    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->clusters[p->clusters[i]], p->error_px, c->offers);
     c->alone_ns = c->offers[CONIC_HYBRID_SURFELS].amount;
   }
 }
 
 static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
-  const planning *p = data;
+  const hybrid_planning *p = data;
   return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
 }
 
-/* Lets nodes stand for patches that are surfels now. Returns how much less these take by that. */
-static double cut(const planning *p) {
+/* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
+static double cut(const hybrid_planning *p) {
   const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
   for (size_t i = 0; i < p->n; i++) {
-    const candidate *c = &p->candidates[i];
+    const plan_candidate *c = &p->candidates[i];
     int is_free = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
-    p->amounts[p->patches[i]] = is_free ? c->alone_ns : NAN;
+    p->amounts[p->clusters[i]] = is_free ? c->alone_ns : NAN;
   }
   return conic_hybrid_cut(&cutting, p->nodes);
 }
 
 /* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
-static void add_links(planning *p, uint32_t i, uint32_t *last) {
+static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
   const conic_hybrid_level *level = triangles_of(p, i);
-  candidate *c = &p->candidates[i];
+  plan_candidate *c = &p->candidates[i];
   c->first_link = (uint32_t)p->n_links;
   for (size_t k = 0; k < level->n_borders; k++) {
-    const conic_hybrid_border *border = &p->hybrid->borders[level->first_border + k];
-    uint32_t other = p->of_patch[border->across];
+    const conic_cluster_border *border = &p->hybrid->borders[level->first_border + k];
+    uint32_t other = p->of_cluster[border->across];
     uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
     if (other == p->n)
       continue;
     if (last[other] < c->first_link || last[other] >= p->n_links) {
       last[other] = (uint32_t)p->n_links;
-      p->links[p->n_links++] = (link){.candidate = other};
+      p->links[p->n_links++] = (cluster_link){.candidate = other};
     }
     p->links[last[other]].own_ns += CONIC_HYBRID_STITCH_NS * ((double)n - 1.0);
   }
@@ -90,17 +90,17 @@ static void add_links(planning *p, uint32_t i, uint32_t *last) {
 }
 
 /* What the other one's triangles take more, as far as it has a link too. */
-static void match_links(planning *p) {
+static void match_links(hybrid_planning *p) {
   for (uint32_t i = 0; i < p->n; i++)
     for (size_t k = p->candidates[i].first_link; k < p->candidates[i].first_link + p->candidates[i].n_links; k++) {
-      const candidate *other = &p->candidates[p->links[k].candidate];
+      const plan_candidate *other = &p->candidates[p->links[k].candidate];
       for (size_t m = other->first_link; m < other->first_link + other->n_links; m++)
         if (p->links[m].candidate == i)
           p->links[k].other_ns = p->links[m].own_ns;
     }
 }
 
-static conic_status find_links(planning *p) {
+static conic_status find_links(hybrid_planning *p) {
   size_t n_borders = 0;
   for (size_t i = 0; i < p->n; i++)
     n_borders += triangles_of(p, i)->n_borders;
@@ -116,11 +116,11 @@ static conic_status find_links(planning *p) {
 }
 
 /* What a candidate takes as one kind and as the other, its neighbours being what they are. */
-static void weigh(const planning *p, const candidate *c, double costs[2]) {
+static void weigh(const hybrid_planning *p, const plan_candidate *c, double costs[2]) {
   costs[0] = c->offers[0].amount;
   costs[1] = c->offers[1].amount;
   for (size_t k = 0; k < c->n_links; k++) {
-    const link *l = &p->links[c->first_link + k];
+    const cluster_link *l = &p->links[c->first_link + k];
     if (p->candidates[l->candidate].kind == CONIC_HYBRID_SURFELS)
       costs[CONIC_HYBRID_TRIANGLES] += l->own_ns;
     else
@@ -128,13 +128,13 @@ static void weigh(const planning *p, const candidate *c, double costs[2]) {
   }
 }
 
-/* Each patch in turn becomes what is cheaper, until none does. */
-static void improve(planning *p) {
+/* Each cluster in turn becomes what is cheaper, until none does. */
+static void improve(hybrid_planning *p) {
   int is_changed = 1;
   for (int round = 0; round < ROUNDS && is_changed; round++) {
     is_changed = 0;
     for (size_t i = 0; i < p->n; i++) {
-      candidate *c = &p->candidates[i];
+      plan_candidate *c = &p->candidates[i];
       double costs[2];
       weigh(p, c, costs);
       if (costs[!c->kind] < costs[c->kind]) {
@@ -145,29 +145,29 @@ static void improve(planning *p) {
   }
 }
 
-static int is_mixed(const planning *p) {
+static int is_mixed(const hybrid_planning *p) {
   for (size_t i = 1; i < p->n; i++)
     if (p->candidates[i].kind != p->candidates[0].kind)
       return 1;
   return 0;
 }
 
-/* What a picture of both kinds takes more than its parts; patches share tiles, of which there are no more than all. */
-static double mixing(const planning *p) {
+/* What a picture of both kinds takes more than its parts; clusters share tiles, of which there are no more than all. */
+static double mixing(const hybrid_planning *p) {
   double n_pixels = 0.0;
   for (size_t i = 0; i < p->n; i++)
     if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
-      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->patches[p->patches[i]]);
+      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->clusters[p->clusters[i]]);
   n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
   return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
 }
 
 /* What all takes; with what a picture of both kinds must promise to be preferred. */
-static double total(const planning *p) {
+static double total(const hybrid_planning *p) {
   int is_both = is_mixed(p);
   double sum = is_both ? mixing(p) : 0.0;
   for (size_t i = 0; i < p->n; i++) {
-    const candidate *c = &p->candidates[i];
+    const plan_candidate *c = &p->candidates[i];
     sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : c->offers[CONIC_HYBRID_TRIANGLES].amount;
     for (size_t k = 0; k < c->n_links && c->kind == CONIC_HYBRID_TRIANGLES; k++)
       if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
@@ -178,13 +178,13 @@ static double total(const planning *p) {
 }
 
 /* All of one kind, where that is good enough. */
-static void take_kind(planning *p, uint8_t kind) {
+static void take_kind(hybrid_planning *p, uint8_t kind) {
   for (size_t i = 0; i < p->n; i++)
     p->candidates[i].kind = p->candidates[i].offers[kind].amount < HUGE_VAL ? kind : !kind;
 }
 
-/* What each patch's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
-static void share(planning *p) {
+/* What each cluster's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
+static void share(hybrid_planning *p) {
   take_kind(p, CONIC_HYBRID_SURFELS);
   if (cut(p) > 0.0)
     for (size_t i = 0; i < p->hybrid->n_nodes; i++) {
@@ -196,15 +196,15 @@ static void share(planning *p) {
         sum += p->amounts[k];
       for (uint32_t k = node->begin; k < node->end; k++)
         if (p->amounts[k] > 0.0)
-          p->candidates[p->of_patch[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
+          p->candidates[p->of_cluster[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
     }
   for (size_t i = 0; i < p->n; i++) {
-    candidate *c = &p->candidates[i];
+    plan_candidate *c = &p->candidates[i];
     c->kind = c->offers[CONIC_HYBRID_SURFELS].amount < c->offers[CONIC_HYBRID_TRIANGLES].amount;
   }
 }
 
-static void keep_if_less(planning *p, double sum, double *least) {
+static void keep_if_less(hybrid_planning *p, double sum, double *least) {
   if (!(sum < *least))
     return;
   *least = sum;
@@ -213,7 +213,7 @@ static void keep_if_less(planning *p, double sum, double *least) {
 }
 
 /* From what each would be by itself; or triangles alone, or surfels wherever they are good enough. */
-static void settle(planning *p) {
+static void settle(hybrid_planning *p) {
   double least = HUGE_VAL;
   improve(p);
   keep_if_less(p, total(p), &least);
@@ -225,12 +225,12 @@ static void settle(planning *p) {
     p->candidates[i].kind = p->kinds[i];
 }
 
-/* Whether all of one kind takes hardly more than the cheaper of both for each patch: then no better one has to be
+/* Whether all of one kind takes hardly more than the cheaper of both for each cluster: then no better one has to be
  * looked for. */
-static int is_settled(planning *p) {
+static int is_settled(hybrid_planning *p) {
   double sums[2] = {0.0, 0.0}, least = 0.0;
   for (size_t i = 0; i < p->n; i++) {
-    const candidate *c = &p->candidates[i];
+    const plan_candidate *c = &p->candidates[i];
     least += c->offers[c->kind].amount;
     for (int kind = 0; kind < 2; kind++)
       sums[kind] += c->offers[kind].amount;
@@ -243,17 +243,17 @@ static int is_settled(planning *p) {
 }
 
 /* The kind that is asked for; where it is good enough nowhere, its finest. */
-static void obey(planning *p, int only_kind) {
+static void obey(hybrid_planning *p, int only_kind) {
   for (size_t i = 0; i < p->n; i++) {
-    const conic_hybrid_patch *patch = &p->hybrid->patches[p->patches[i]];
+    const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
     conic_hybrid_offer *offer = &p->candidates[i].offers[only_kind];
     p->candidates[i].kind = (uint8_t)only_kind;
     if (!(offer->amount < HUGE_VAL))
-      offer->level = conic_hybrid_finest(p->hybrid, patch, only_kind);
+      offer->level = conic_hybrid_finest(p->hybrid, cluster, only_kind);
   }
 }
 
-static conic_status plan_kinds(planning *p) {
+static conic_status plan_kinds(hybrid_planning *p) {
   share(p);
   if (is_settled(p))
     return CONIC_OK;
@@ -263,26 +263,26 @@ static conic_status plan_kinds(planning *p) {
   return status;
 }
 
-static conic_status begin(planning *p) {
+static conic_status begin(hybrid_planning *p) {
   conic_context *context = p->hybrid->context;
   p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
-  p->of_patch = conic_memory_allocate(context, p->hybrid->n_patches, sizeof *p->of_patch);
+  p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
   p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
-  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_patches, sizeof *p->amounts);
+  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
   p->below = conic_memory_allocate(context, p->hybrid->n_nodes, sizeof *p->below);
-  if (!p->candidates || !p->of_patch || !p->kinds || !p->amounts || !p->below)
+  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < p->hybrid->n_patches; i++)
-    p->of_patch[i] = (uint32_t)p->n;
+  for (size_t i = 0; i < p->hybrid->n_clusters; i++)
+    p->of_cluster[i] = (uint32_t)p->n;
   for (size_t i = 0; i < p->n; i++)
-    p->of_patch[p->patches[i]] = (uint32_t)i;
+    p->of_cluster[p->clusters[i]] = (uint32_t)i;
   return CONIC_OK;
 }
 
 conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes) {
+                               int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels, uint32_t *nodes) {
   conic_context *context = hybrid->context;
-  planning p = {.hybrid = hybrid, .n = n, .patches = patches, .view = view, .error_px = error_px};
+  hybrid_planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
   p.nodes = nodes;
   conic_status status = begin(&p);
   if (status == CONIC_OK) {
@@ -300,7 +300,7 @@ conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_ca
   conic_memory_release(context, p.below);
   conic_memory_release(context, p.amounts);
   conic_memory_release(context, p.kinds);
-  conic_memory_release(context, p.of_patch);
+  conic_memory_release(context, p.of_cluster);
   conic_memory_release(context, p.candidates);
   return status;
 }

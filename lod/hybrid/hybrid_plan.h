@@ -1,15 +1,15 @@
-/* The levels of all patches in sight together, and of nodes that stand for many of them: what one is drawn as changes
+/* The levels of all clusters in sight together, and of nodes that stand for many of them: what one is drawn as changes
  * what its neighbours take. */
 #ifndef CONIC_HYBRID_PLAN_H
 #define CONIC_HYBRID_PLAN_H
 
 #include "lod/hybrid/hybrid_cut.h"
 
-/* Gives each of n patches, those in sight, a level, from its first, whose error is at most error_px: triangles or
+/* Gives each of n clusters, those in sight, a level, from its first, whose error is at most error_px: triangles or
  * surfels, or the kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in
  * sight is surfels the level by which they stand for it, or NO_NODE; so that all together they take least, as far as a
  * few rounds find it. Errors: MEMORY. */
 conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               int only_kind, const uint32_t *patches, size_t n, uint32_t *levels, uint32_t *nodes);
+                               int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels, uint32_t *nodes);
 
 #endif

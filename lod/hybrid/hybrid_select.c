@@ -16,19 +16,19 @@ void conic_hybrid_view_init(conic_hybrid_view *view) {
   view->only_kind = -1;
 }
 
-/* A patch that is drawn, or, after all patches by its number, a node; and where its parts go. The level is among all of
- * the model's; a node's point is none of them. */
+/* A cluster that is drawn, or, after all clusters by its number, a node; and where its parts go. The level is among all
+ * of the model's; a node's point is none of them. */
 typedef struct choice {
-  uint32_t patch, level;
+  uint32_t cluster, level;
   size_t splat, triangle, vertex;
   size_t n_put; /* into the triangles, so that they fit their neighbours */
 } choice;
 
 /* What is kept from call to call. */
-typedef struct scratch {
+typedef struct hybrid_scratch {
   choice *choices;
   size_t n_choices, choices_room;
-  uint32_t *stages;   /* of each patch of the hybrid: that of its level */
+  uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
   uint32_t *standing; /* the node that stands for it */
   size_t stages_room;
   float *splats; /* arrays of splats_room each */
@@ -38,23 +38,23 @@ typedef struct scratch {
   size_t vertices_room;
   uint32_t *triangles; /* corners, clusters and materials of triangles_room triangles */
   size_t triangles_room;
-} scratch;
+} hybrid_scratch;
 
 /* The level of a choice that is a node's point. */
 #define CONIC_HYBRID_POINT UINT32_MAX
 
 enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
 
-typedef struct selecting {
+typedef struct hybrid_selecting {
   const conic_hybrid *hybrid;
   conic_hybrid_camera camera;
   const conic_hybrid_view *view;
   conic_hybrid_selection *selection;
-  scratch *scratch;
-} selecting;
+  hybrid_scratch *scratch;
+} hybrid_selecting;
 
 void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selection *selection) {
-  scratch *kept = selection->scratch;
+  hybrid_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
     conic_memory_release(context, kept->stages);
@@ -68,23 +68,23 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   memset(selection, 0, sizeof *selection);
 }
 
-static double reach_of(const conic_hybrid *h, const conic_hybrid_patch *patch) {
+static double reach_of(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
   float reach = 0.0f;
-  for (uint32_t k = 0; k < patch->n_levels; k++) {
-    float own = h->levels[patch->first_level + k].reach;
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
+    float own = h->levels[cluster->first_level + k].reach;
     reach = own > reach ? own : reach;
   }
   return (double)reach;
 }
 
-/* Whether the level of a patch depends on those of others. */
+/* Whether the level of a cluster depends on those of others. */
 static int is_together(const conic_hybrid_view *view) {
   return view->budget || view->error_px > 0.0;
 }
 
-static conic_status add_choice(selecting *s, uint32_t i_patch) {
-  scratch *kept = s->scratch;
-  const conic_hybrid_patch *patch = &s->hybrid->patches[i_patch];
+static conic_status add_choice(hybrid_selecting *s, uint32_t i_cluster) {
+  hybrid_scratch *kept = s->scratch;
+  const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
   if (kept->n_choices == kept->choices_room) {
     size_t room = 2 * kept->choices_room + 256;
     void *choices = kept->choices;
@@ -94,14 +94,14 @@ static conic_status add_choice(selecting *s, uint32_t i_patch) {
       return status;
     kept->choices_room = room;
   }
-  uint32_t level = patch->built;
+  uint32_t level = cluster->built;
   if (s->view->only_kind >= 0)
-    level = conic_hybrid_finest(s->hybrid, patch, s->view->only_kind);
-  kept->choices[kept->n_choices++] = (choice){.patch = i_patch, .level = patch->first_level + level};
+    level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);
+  kept->choices[kept->n_choices++] = (choice){.cluster = i_cluster, .level = cluster->first_level + level};
   return CONIC_OK;
 }
 
-static conic_status choose_all(selecting *s) {
+static conic_status choose_all(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   conic_status status = CONIC_OK;
   s->scratch->n_choices = 0;
@@ -113,7 +113,7 @@ static conic_status choose_all(selecting *s) {
       continue;
     }
     for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
-      if (conic_hybrid_is_hidden(&s->camera, &h->patches[k].bound, reach_of(h, &h->patches[k])))
+      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, reach_of(h, &h->clusters[k])))
         s->selection->n_culled++;
       else
         status = add_choice(s, k);
@@ -123,19 +123,19 @@ static conic_status choose_all(selecting *s) {
   return status;
 }
 
-/* A node's choice takes the place of the first of its patches; those that are left close up. */
-static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
+/* A node's choice takes the place of the first of its clusters; those that are left close up. */
+static void let_nodes_stand(hybrid_selecting *s, const uint32_t *nodes) {
   const conic_hybrid *h = s->hybrid;
-  scratch *kept = s->scratch;
+  hybrid_scratch *kept = s->scratch;
   uint32_t last = CONIC_HYBRID_NO_NODE;
   size_t n = 0;
   for (size_t i = 0; i < kept->n_choices; i++) {
-    uint32_t node = kept->standing[kept->choices[i].patch];
+    uint32_t node = kept->standing[kept->choices[i].cluster];
     if (node == CONIC_HYBRID_NO_NODE)
       kept->choices[n++] = kept->choices[i];
     else if (node != last)
       kept->choices[n++] =
-          (choice){.patch = (uint32_t)h->n_patches + node,
+          (choice){.cluster = (uint32_t)h->n_clusters + node,
                    .level = nodes[node] < h->nodes[node].n_levels ? h->nodes[node].first_level + nodes[node]
                                                                   : CONIC_HYBRID_POINT};
     s->selection->n_joined += node != CONIC_HYBRID_NO_NODE;
@@ -144,64 +144,64 @@ static void let_nodes_stand(selecting *s, const uint32_t *nodes) {
   kept->n_choices = n;
 }
 
-/* The stages of what was chosen; all else is hidden. Nodes have all of their patches' borders. */
-static void note_stages(selecting *s) {
-  scratch *kept = s->scratch;
-  for (size_t i = 0; i < s->hybrid->n_patches; i++) {
+/* The stages of what was chosen; all else is hidden. Nodes have all of their clusters' borders. */
+static void note_stages(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++) {
     kept->stages[i] = CONIC_HYBRID_HIDDEN;
     kept->standing[i] = CONIC_HYBRID_NO_NODE;
   }
   for (size_t i = 0; i < kept->n_choices; i++)
-    kept->stages[kept->choices[i].patch] = s->hybrid->levels[kept->choices[i].level].stage;
+    kept->stages[kept->choices[i].cluster] = s->hybrid->levels[kept->choices[i].level].stage;
 }
 
-/* Chooses for all patches in sight, for a budget or for the least time. */
-static conic_status choose_together(selecting *s) {
+/* Chooses for all clusters in sight, for a budget or for the least time. */
+static conic_status choose_together(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
   const conic_hybrid_view *view = s->view;
-  scratch *kept = s->scratch;
+  hybrid_scratch *kept = s->scratch;
   size_t n = kept->n_choices;
-  uint32_t *patches = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *patches);
-  if (!patches)
+  uint32_t *clusters = conic_memory_allocate(h->context, 2 * n + h->n_nodes, sizeof *clusters);
+  if (!clusters)
     return CONIC_ERROR_MEMORY;
-  uint32_t *levels = patches + n, *nodes = levels + n;
+  uint32_t *levels = clusters + n, *nodes = levels + n;
   for (size_t i = 0; i < n; i++)
-    patches[i] = kept->choices[i].patch;
+    clusters[i] = kept->choices[i].cluster;
   conic_status status =
-      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, patches, n, levels, nodes)
-                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, patches, n, levels, nodes);
+      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
+                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < n; i++)
-      kept->choices[i].level = h->patches[patches[i]].first_level + levels[i];
+      kept->choices[i].level = h->clusters[clusters[i]].first_level + levels[i];
     note_stages(s);
     conic_hybrid_find_standing(h, nodes, kept->standing);
     for (size_t i = 0; i < n; i++)
-      if (kept->standing[patches[i]] != CONIC_HYBRID_NO_NODE)
-        kept->stages[patches[i]] = 0;
+      if (kept->standing[clusters[i]] != CONIC_HYBRID_NO_NODE)
+        kept->stages[clusters[i]] = 0;
     let_nodes_stand(s, nodes);
   }
-  conic_memory_release(h->context, patches);
+  conic_memory_release(h->context, clusters);
   return status;
 }
 
-static const conic_hybrid_node *node_of(const selecting *s, const choice *c) {
-  return c->patch < s->hybrid->n_patches ? NULL : &s->hybrid->nodes[c->patch - s->hybrid->n_patches];
+static const conic_hybrid_node *node_of(const hybrid_selecting *s, const choice *c) {
+  return c->cluster < s->hybrid->n_clusters ? NULL : &s->hybrid->nodes[c->cluster - s->hybrid->n_clusters];
 }
 
-static void judge_patch(const selecting *s, const choice *c) {
-  const conic_hybrid_patch *patch = &s->hybrid->patches[c->patch];
-  s->selection->n_patches[s->hybrid->levels[c->level].kind]++;
-  s->selection->n_simpler += c->level != patch->first_level + patch->built;
+static void judge_cluster(const hybrid_selecting *s, const choice *c) {
+  const conic_hybrid_cluster *cluster = &s->hybrid->clusters[c->cluster];
+  s->selection->n_clusters[s->hybrid->levels[c->level].kind]++;
+  s->selection->n_simpler += c->level != cluster->first_level + cluster->built;
 }
 
 /* What the choices come to. */
-static void judge(const selecting *s) {
+static void judge(const hybrid_selecting *s) {
   conic_hybrid_selection *selection = s->selection;
   selection->n_simpler = selection->n_joined;
   for (size_t i = 0; i < s->scratch->n_choices; i++) {
     const choice *c = &s->scratch->choices[i];
     const conic_hybrid_node *node = node_of(s, c);
-    const conic_hybrid_bound *bound = node ? &node->bound : &s->hybrid->patches[c->patch].bound;
+    const conic_hybrid_bound *bound = node ? &node->bound : &s->hybrid->clusters[c->cluster].bound;
     double error_px = c->level == CONIC_HYBRID_POINT
                           ? conic_hybrid_point_error_px(&s->camera, node)
                           : conic_hybrid_error_px(&s->camera, bound, &s->hybrid->levels[c->level]);
@@ -209,14 +209,14 @@ static void judge(const selecting *s) {
     selection->n_nodes += node && c->level != CONIC_HYBRID_POINT;
     selection->n_points += c->level == CONIC_HYBRID_POINT;
     if (!node)
-      judge_patch(s, c);
+      judge_cluster(s, c);
   }
 }
 
-static conic_status make_stages(selecting *s) {
-  scratch *kept = s->scratch;
+static conic_status make_stages(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
   conic_context *context = s->hybrid->context;
-  size_t n = s->hybrid->n_patches;
+  size_t n = s->hybrid->n_clusters;
   if (kept->stages && kept->standing && n <= kept->stages_room)
     return CONIC_OK;
   conic_memory_release(context, kept->stages);
@@ -231,8 +231,8 @@ static conic_status make_stages(selecting *s) {
 }
 
 /* Where each choice's parts go, and how many there are of all. */
-static void place_parts(selecting *s) {
-  scratch *kept = s->scratch;
+static void place_parts(hybrid_selecting *s) {
+  hybrid_scratch *kept = s->scratch;
   size_t n_splats = 0, n_triangles = 0, n_vertices = 0;
   for (size_t i = 0; i < kept->n_choices; i++) {
     choice *c = &kept->choices[i];
@@ -253,7 +253,7 @@ static void place_parts(selecting *s) {
   s->selection->triangles.n_vertices = n_vertices;
 }
 
-static conic_status make_splats(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_splats(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->splats && kept->splat_cluster && n <= kept->splats_room)
     return CONIC_OK;
   conic_memory_release(context, kept->splats);
@@ -267,7 +267,7 @@ static conic_status make_splats(conic_context *context, scratch *kept, size_t n)
   return CONIC_OK;
 }
 
-static conic_status make_vertices(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_vertices(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->vertices && n <= kept->vertices_room)
     return CONIC_OK;
   conic_memory_release(context, kept->vertices);
@@ -277,7 +277,7 @@ static conic_status make_vertices(conic_context *context, scratch *kept, size_t 
   return kept->vertices ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static conic_status make_triangles(conic_context *context, scratch *kept, size_t n) {
+static conic_status make_triangles(conic_context *context, hybrid_scratch *kept, size_t n) {
   if (kept->triangles && n <= kept->triangles_room)
     return CONIC_OK;
   conic_memory_release(context, kept->triangles);
@@ -288,7 +288,7 @@ static conic_status make_triangles(conic_context *context, scratch *kept, size_t
 }
 
 /* Room for all parts of the choices. */
-static conic_status make_room(selecting *s) {
+static conic_status make_room(hybrid_selecting *s) {
   conic_context *context = s->hybrid->context;
   const conic_hybrid_selection *selection = s->selection;
   place_parts(s);
@@ -301,9 +301,9 @@ static conic_status make_room(selecting *s) {
 }
 
 /* Points the selection's arrays into what is kept. */
-static void attach(selecting *s) {
+static void attach(hybrid_selecting *s) {
   const conic_hybrid *h = s->hybrid;
-  const scratch *kept = s->scratch;
+  const hybrid_scratch *kept = s->scratch;
   conic_splats *splats = &s->selection->splats;
   conic_triangles *triangles = &s->selection->triangles;
   memcpy(splats->origin, h->origin, sizeof splats->origin);
@@ -327,22 +327,22 @@ static void attach(selecting *s) {
   triangles->materials = h->materials;
 }
 
-static void copy_surfels(const selecting *s, const choice *c, const conic_hybrid_level *level) {
-  const scratch *kept = s->scratch;
+static void copy_surfels(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
+  const hybrid_scratch *kept = s->scratch;
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
     memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
            level->count * sizeof(float));
   for (size_t i = 0; i < level->count; i++)
-    kept->splat_cluster[c->splat + i] = c->patch;
+    kept->splat_cluster[c->splat + i] = c->cluster;
 }
 
-static void put_point(const selecting *s, const choice *c) {
-  const scratch *kept = s->scratch;
+static void put_point(const hybrid_selecting *s, const choice *c) {
+  const hybrid_scratch *kept = s->scratch;
   float values[SPLAT_ARRAYS];
   conic_hybrid_point_splat(&s->camera, node_of(s, c), (double)s->hybrid->cutoff, values);
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
     kept->splats[k * kept->splats_room + c->splat] = values[k];
-  kept->splat_cluster[c->splat] = c->patch;
+  kept->splat_cluster[c->splat] = c->cluster;
 }
 
 static void gather(float *to, const float *from, const uint32_t *listed, size_t n) {
@@ -350,7 +350,7 @@ static void gather(float *to, const float *from, const uint32_t *listed, size_t 
     to[i] = from[listed[i]];
 }
 
-static void copy_triangles(const selecting *s, const choice *c, const conic_hybrid_level *level) {
+static void copy_triangles(const hybrid_selecting *s, const choice *c, const conic_hybrid_level *level) {
   const conic_hybrid *h = s->hybrid;
   const conic_triangles *to = &s->selection->triangles;
   const uint32_t *listed = h->listed + level->first_vertex;
@@ -366,7 +366,7 @@ static void copy_triangles(const selecting *s, const choice *c, const conic_hybr
   for (size_t i = 0; i < level->count; i++) {
     for (int corner = 0; corner < 3; corner++)
       to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + h->corners[level->first + i][corner];
-    to->cluster[c->triangle + i] = c->patch;
+    to->cluster[c->triangle + i] = c->cluster;
   }
   if (to->material)
     memcpy(to->material + c->triangle, h->material + level->first, level->count * sizeof *to->material);
@@ -383,7 +383,7 @@ static void copy_triangles(const selecting *s, const choice *c, const conic_hybr
 }
 
 static void copy_task(void *data, size_t i_task, int i_thread) {
-  const selecting *s = data;
+  const hybrid_selecting *s = data;
   size_t begin = i_task * CHOICES_A_TASK, end = begin + CHOICES_A_TASK;
   (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_choices; i++) {
@@ -409,8 +409,8 @@ static conic_status check_view(conic_context *context, const conic_hybrid_view *
 }
 
 /* On success there is scratch. */
-static conic_status begin(selecting *s, const conic_camera *camera, const conic_render_options *render) {
-  scratch *kept = s->selection->scratch;
+static conic_status begin(hybrid_selecting *s, const conic_camera *camera, const conic_render_options *render) {
+  hybrid_scratch *kept = s->selection->scratch;
   conic_render_options known = *render;
   conic_hybrid_info info;
   if (!kept) {
@@ -431,7 +431,7 @@ static conic_status begin(selecting *s, const conic_camera *camera, const conic_
 conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
                                  const conic_render_options *render, const conic_hybrid_view *view,
                                  conic_hybrid_selection *selection) {
-  selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
+  hybrid_selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
   conic_status status = check_view(hybrid->context, view);
   if (status == CONIC_OK)
     status = begin(&s, camera, render);

@@ -1,5 +1,5 @@
-/* Simpler triangles for all patches: in regions, of which each goes on to its next stage on one thread; then all
- * threads measure all their patches. */
+/* Simpler triangles for all clusters: in regions, of which each goes on to its next stage on one thread; then all
+ * threads measure all their clusters. */
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -8,22 +8,22 @@
 #include "lod/hybrid/hybrid_levels.h"
 #include "lod/hybrid/hybrid_tree.h"
 
-/* A region has no more faces than this, or but one patch. What lies between regions stays, so they are large. */
+/* A region has no more faces than this, or but one cluster. What lies between regions stays, so they are large. */
 enum { MOST_FACES = 250000 };
 
 /* A region that is worked on. */
 typedef struct work_place {
   conic_simplifier *simplifier;
   conic_status status;
-  uint32_t n_patches; /* to be measured */
+  uint32_t n_clusters; /* to be measured */
 } work_place;
 
 typedef struct regions_job {
   conic_ways_job *ways;
-  uint32_t *starts; /* of the regions' patches, and an end */
+  uint32_t *starts; /* of the regions' clusters, and an end */
   size_t n, first;
-  uint32_t *of_patch;
-  conic_patch_levels *levels;
+  uint32_t *of_cluster;
+  conic_cluster_levels *levels;
   work_place *places; /* as many as there are threads: regions first, first + 1 … */
 } regions_job;
 
@@ -37,7 +37,7 @@ static void part(regions_job *job, size_t begin, size_t end) {
     return;
   }
   for (size_t i = begin; i < end; i++)
-    job->of_patch[i] = (uint32_t)job->n;
+    job->of_cluster[i] = (uint32_t)job->n;
   job->starts[job->n++] = (uint32_t)begin;
   job->starts[job->n] = (uint32_t)end;
 }
@@ -58,33 +58,33 @@ static void begin_task(void *data, size_t i_place, int i_thread) {
 static void advance_task(void *data, size_t i_place, int i_thread) {
   work_place *place = &((regions_job *)data)->places[i_place];
   (void)i_thread;
-  place->n_patches = 0;
+  place->n_clusters = 0;
   if (place->status == CONIC_OK)
-    place->status = conic_region_advance(place->simplifier, &place->n_patches);
+    place->status = conic_region_advance(place->simplifier, &place->n_clusters);
 }
 
 /* Of all that are to be measured the i-th. */
 static void measure_task(void *data, size_t i, int i_thread) {
   const work_place *place = ((regions_job *)data)->places;
   (void)i_thread;
-  for (; i >= place->n_patches; place++)
-    i -= place->n_patches;
+  for (; i >= place->n_clusters; place++)
+    i -= place->n_clusters;
   conic_region_measure(place->simplifier, (uint32_t)i);
 }
 
 static conic_status simplify(regions_job *job, size_t n_now) {
   conic_context *context = job->ways->context;
   conic_status status = CONIC_OK;
-  size_t n_patches;
+  size_t n_clusters;
   conic_parallel_for(context, n_now, begin_task, job);
   do {
     conic_parallel_for(context, n_now, advance_task, job);
-    n_patches = 0;
+    n_clusters = 0;
     for (size_t i = 0; i < n_now; i++)
-      n_patches += job->places[i].n_patches;
+      n_clusters += job->places[i].n_clusters;
     double done = 0.5 + 0.5 * (double)job->first / (double)job->n;
-    status = conic_parallel_told(context, "sample", done, done, n_patches, measure_task, job);
-  } while (n_patches > 0 && status == CONIC_OK);
+    status = conic_parallel_told(context, "sample", done, done, n_clusters, measure_task, job);
+  } while (n_clusters > 0 && status == CONIC_OK);
   for (size_t i = 0; i < n_now; i++) {
     status = job->places[i].status != CONIC_OK ? job->places[i].status : status;
     if (job->places[i].simplifier)
@@ -114,20 +114,20 @@ conic_status conic_find_simpler(conic_ways_job *ways) {
   size_t n = ways->mesh->clusters->n_clusters, n_threads = (size_t)conic_context_threads(context);
   regions_job job = {.ways = ways};
   job.starts = conic_memory_allocate(context, n + 1, sizeof *job.starts);
-  job.of_patch = conic_memory_allocate(context, n, sizeof *job.of_patch);
+  job.of_cluster = conic_memory_allocate(context, n, sizeof *job.of_cluster);
   job.levels = conic_memory_allocate_zeroed(context, n, sizeof *job.levels);
   job.places = conic_memory_allocate_zeroed(context, n_threads, sizeof *job.places);
   conic_status status = CONIC_ERROR_MEMORY;
-  if (job.starts && job.of_patch && job.levels && job.places) {
+  if (job.starts && job.of_cluster && job.levels && job.places) {
     part(&job, 0, n);
-    status = conic_patch_chains_find(context, ways->mesh, job.of_patch, &ways->chains);
+    status = conic_cluster_chains_find(context, ways->mesh, job.of_cluster, &ways->chains);
     if (status == CONIC_OK)
       status = run(&job);
     for (size_t i = 0; i < n; i++)
       ways->ways[i].triangles = job.levels[i];
   }
   conic_memory_release(context, job.starts);
-  conic_memory_release(context, job.of_patch);
+  conic_memory_release(context, job.of_cluster);
   conic_memory_release(context, job.levels);
   conic_memory_release(context, job.places);
   return status;

@@ -1,7 +1,7 @@
 #include "lod/hybrid/hybrid_stitch.h"
 
-/* The next slot of a border after `slot` that the patch across still has, or the border's end. */
-static uint32_t next_slot(const conic_hybrid *h, const conic_hybrid_border *border, uint32_t stage, uint32_t slot) {
+/* The next slot of a border after `slot` that the cluster across still has, or the border's end. */
+static uint32_t next_slot(const conic_hybrid *h, const conic_cluster_border *border, uint32_t stage, uint32_t slot) {
   uint32_t step = border->from < border->to ? 1u : UINT32_MAX; /* backwards */
   do
     slot += step;
@@ -9,14 +9,14 @@ static uint32_t next_slot(const conic_hybrid *h, const conic_hybrid_border *bord
   return slot;
 }
 
-static int is_free(const conic_hybrid_border *border, uint32_t stage) {
+static int is_free(const conic_cluster_border *border, uint32_t stage) {
   return stage == CONIC_HYBRID_HIDDEN || border->from == border->to;
 }
 
 size_t conic_hybrid_count_stitches(const conic_hybrid *h, const conic_hybrid_level *level, const uint32_t *stages) {
   size_t n = 0;
   for (size_t i = 0; i < level->n_borders; i++) {
-    const conic_hybrid_border *border = &h->borders[level->first_border + i];
+    const conic_cluster_border *border = &h->borders[level->first_border + i];
     uint32_t stage = stages[border->across];
     if (is_free(border, stage))
       continue;
@@ -57,7 +57,7 @@ static size_t put_triangle(conic_hybrid_stitching *s, size_t from, uint32_t a, u
 
 /* Cuts the triangle `host` from its opposite corner to what is put into the edge that begins at `begin`. Returns the
  * piece at the edge's end; the host itself becomes that at its beginning. */
-static size_t cut(conic_hybrid_stitching *s, size_t host, uint32_t begin, const conic_hybrid_border *border) {
+static size_t cut(conic_hybrid_stitching *s, size_t host, uint32_t begin, const conic_cluster_border *border) {
   const uint32_t *corners = s->to->corners[host];
   uint32_t k = corners[0] == begin ? 0 : corners[1] == begin ? 1 : 2;
   uint32_t end = corners[(k + 1) % 3], opposite = corners[(k + 2) % 3], stage = s->stages[border->across];
@@ -72,7 +72,7 @@ static size_t cut(conic_hybrid_stitching *s, size_t host, uint32_t begin, const 
 }
 
 /* Up to three edges of one triangle. Which piece has an edge changes as those before it are cut. */
-static size_t stitch_triangle(conic_hybrid_stitching *s, const conic_hybrid_border *borders, size_t n) {
+static size_t stitch_triangle(conic_hybrid_stitching *s, const conic_cluster_border *borders, size_t n) {
   size_t triangle = s->first_triangle + borders[0].edge / 4, i = 0;
   size_t hosts[3] = {triangle, triangle, triangle};
   const uint32_t corners[3] = {s->to->corners[triangle][0], s->to->corners[triangle][1], s->to->corners[triangle][2]};
@@ -88,7 +88,7 @@ static size_t stitch_triangle(conic_hybrid_stitching *s, const conic_hybrid_bord
 }
 
 void conic_hybrid_stitch(conic_hybrid_stitching *s) {
-  const conic_hybrid_border *borders = s->hybrid->borders + s->level->first_border;
+  const conic_cluster_border *borders = s->hybrid->borders + s->level->first_border;
   for (size_t i = 0; i < s->level->n_borders;)
     i += stitch_triangle(s, borders + i, s->level->n_borders - i);
 }

@@ -6,7 +6,7 @@
 
 #include "core/base/memory.h"
 
-/* Where n patches are parted: the halves then need no more levels than they must. */
+/* Where n clusters are parted: the halves then need no more levels than they must. */
 size_t conic_hybrid_half(size_t n) {
   return (n + 1) / 2;
 }
@@ -17,16 +17,16 @@ size_t conic_hybrid_count_nodes(size_t n) {
   return 1 + conic_hybrid_count_nodes(conic_hybrid_half(n)) + conic_hybrid_count_nodes(n - conic_hybrid_half(n));
 }
 
-typedef struct place {
+typedef struct cluster_place {
   float at;
-  uint32_t patch;
-} place;
+  uint32_t cluster;
+} cluster_place;
 
 static int compare_places(const void *a, const void *b) {
-  const place *first = a, *second = b;
+  const cluster_place *first = a, *second = b;
   if (first->at != second->at)
     return first->at < second->at ? -1 : 1;
-  return (first->patch > second->patch) - (first->patch < second->patch);
+  return (first->cluster > second->cluster) - (first->cluster < second->cluster);
 }
 
 static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order, size_t n) {
@@ -47,27 +47,27 @@ static int longest_axis(const conic_hybrid_bound *bounds, const uint32_t *order,
   return longest;
 }
 
-static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_t n, place *places) {
+static void order_range(const conic_hybrid_bound *bounds, uint32_t *order, size_t n, cluster_place *places) {
   if (n <= CONIC_HYBRID_LEAF)
     return;
   int axis = longest_axis(bounds, order, n);
   for (size_t i = 0; i < n; i++)
-    places[i] = (place){bounds[order[i]].center[axis], order[i]};
+    places[i] = (cluster_place){bounds[order[i]].center[axis], order[i]};
   qsort(places, n, sizeof *places, compare_places);
   for (size_t i = 0; i < n; i++)
-    order[i] = places[i].patch;
+    order[i] = places[i].cluster;
   order_range(bounds, order, conic_hybrid_half(n), places);
   order_range(bounds, order + conic_hybrid_half(n), n - conic_hybrid_half(n), places);
 }
 
-conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_patches,
+conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_clusters,
                                 uint32_t *order) {
-  place *places = conic_memory_allocate(context, n_patches, sizeof *places);
+  cluster_place *places = conic_memory_allocate(context, n_clusters, sizeof *places);
   if (!places)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n_patches; i++)
+  for (size_t i = 0; i < n_clusters; i++)
     order[i] = (uint32_t)i;
-  order_range(bounds, order, n_patches, places);
+  order_range(bounds, order, n_clusters, places);
   conic_memory_release(context, places);
   return CONIC_OK;
 }
@@ -165,10 +165,10 @@ static uint32_t fill_node(filling *f, size_t begin, size_t end) {
   return own;
 }
 
-void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_patches,
+void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_clusters,
                              conic_hybrid_node *nodes) {
   filling f = {bounds, reach, nodes, 0};
-  memset(nodes, 0, conic_hybrid_count_nodes(n_patches) * sizeof *nodes);
-  if (n_patches > 0)
-    fill_node(&f, 0, n_patches);
+  memset(nodes, 0, conic_hybrid_count_nodes(n_clusters) * sizeof *nodes);
+  if (n_clusters > 0)
+    fill_node(&f, 0, n_clusters);
 }

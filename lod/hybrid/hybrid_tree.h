@@ -1,26 +1,26 @@
-/* The hierarchy over the patches. */
+/* The hierarchy over the clusters. */
 #ifndef CONIC_HYBRID_TREE_H
 #define CONIC_HYBRID_TREE_H
 
 #include "lod/hybrid/hybrid_model.h"
 
-/* The most patches in a node without children. */
+/* The most clusters in a node without children. */
 enum { CONIC_HYBRID_LEAF = 4 };
 
-/* Where n patches are parted, those in the first half. */
+/* Where n clusters are parted, those in the first half. */
 size_t conic_hybrid_half(size_t n);
 
-/* How many nodes there are over so many patches. */
-size_t conic_hybrid_count_nodes(size_t n_patches);
+/* How many nodes there are over so many clusters. */
+size_t conic_hybrid_count_nodes(size_t n_clusters);
 
-/* Brings patches with the given bounds in an order in which neighbours are near each other: order[k] is the number of
+/* Brings clusters with the given bounds in an order in which neighbours are near each other: order[k] is the number of
  * the k-th. Errors: MEMORY. */
-conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_patches,
+conic_status conic_hybrid_order(conic_context *context, const conic_hybrid_bound *bounds, size_t n_clusters,
                                 uint32_t *order);
 
-/* Fills in the nodes, without their levels and points, over ordered patches with the given bounds; reach[k] is how far
- * the surfels of patch k may stand out of its sphere. */
-void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_patches,
+/* Fills in the nodes, without their levels and points, over ordered clusters with the given bounds; reach[k] is how far
+ * the surfels of cluster k may stand out of its sphere. */
+void conic_hybrid_fill_nodes(const conic_hybrid_bound *bounds, const float *reach, size_t n_clusters,
                              conic_hybrid_node *nodes);
 
 /* A sphere and a cone that hold both; a cone of more than half of all directions becomes all of them, -1. */

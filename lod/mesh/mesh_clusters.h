@@ -1,4 +1,4 @@
-/* Clusters of faces: first what is flat together, then what is small is gathered into patches (HQP §3.2). */
+/* Clusters of faces: first what is flat together, then what is small is gathered (HQP §3.2). */
 #ifndef CONIC_MESH_CLUSTERS_H
 #define CONIC_MESH_CLUSTERS_H
 

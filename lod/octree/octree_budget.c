@@ -12,11 +12,11 @@ typedef struct opening {
 } opening;
 
 /* The way down to a node that is in sight. */
-typedef struct open_node {
+typedef struct budget_node {
   uint32_t end;
   float pixels;
   size_t i_opening;
-} open_node;
+} budget_node;
 
 static uint32_t bits_of(float value) {
   uint32_t bits;
@@ -26,7 +26,7 @@ static uint32_t bits_of(float value) {
 
 /* Every node in sight, in preorder. Returns how many there are. */
 static size_t list_openings(const conic_octree *octree, const conic_octree_view *view, opening *openings) {
-  open_node path[CONIC_OCTREE_DEPTH + 1];
+  budget_node path[CONIC_OCTREE_DEPTH + 1];
   conic_measured measured = {0};
   size_t n = 0;
   int depth = 0;
@@ -42,7 +42,7 @@ static size_t list_openings(const conic_octree *octree, const conic_octree_view 
     if (depth > 0)
       openings[path[depth - 1].i_opening].change++;
     openings[n] = (opening){bits_of(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
-    path[depth++] = (open_node){octree->end[i], least, n++};
+    path[depth++] = (budget_node){octree->end[i], least, n++};
     i++;
   }
   return n;

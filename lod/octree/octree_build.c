@@ -18,7 +18,7 @@ static float absolute(float x) {
   return x < 0.0f ? -x : x;
 }
 
-/* Whether the renderer could draw the splat from some side (docs/picture.md, "Skipped"). */
+/* Whether the renderer could draw the splat from some side (docs/reference/picture.md, "Skipped"). */
 static int is_drawable(const conic_splats *splats, size_t i) {
   float sum = 0.0f, u[3], v[3], uu = 0.0f, vv = 0.0f, nn = 0.0f;
   for (int axis = 0; axis < 3; axis++) {

@@ -1,5 +1,5 @@
 /* The inner nodes of a point-octree as they are kept: 19 bytes each. What is rounded is rounded to the side on which
- * the bounds hold, and every bound is found for the numbers that the bytes give back (docs/format-cot.md). */
+ * the bounds hold, and every bound is found for the numbers that the bytes give back (docs/reference/format-cot.md). */
 #ifndef CONIC_OCTREE_CODE_H
 #define CONIC_OCTREE_CODE_H
 

@@ -28,9 +28,9 @@ typedef struct error_pass {
   size_t n_tasks;
 } error_pass;
 
-typedef struct box {
+typedef struct error_box {
   float low[3], high[3];
-} box;
+} error_box;
 
 /* A node of the class. */
 typedef struct member {
@@ -58,7 +58,7 @@ static size_t count_leaves(const conic_octree *octree, size_t i) {
 }
 
 /* Whether disc k reaches into the box; a larger one that is quicker to tell. */
-static int is_in_box(const box *b, const conic_discs *discs, size_t k) {
+static int is_in_box(const error_box *b, const conic_discs *discs, size_t k) {
   int is_in = 1;
   for (int axis = 0; axis < 3; axis++) {
     float half = fabsf(discs->u[axis][k]) + fabsf(discs->v[axis][k]), center = discs->center[axis][k];
@@ -67,15 +67,15 @@ static int is_in_box(const box *b, const conic_discs *discs, size_t k) {
   return is_in;
 }
 
-static void add_to_box(float center, float half, int axis, box *b) {
+static void add_to_box(float center, float half, int axis, error_box *b) {
   float low = center - half, high = center + half;
   b->low[axis] = low < b->low[axis] ? low : b->low[axis];
   b->high[axis] = high > b->high[axis] ? high : b->high[axis];
 }
 
 /* Around the subtree's own discs and those of its nodes. */
-static box box_of_group(const neighbourhood *around) {
-  box b;
+static error_box box_of_group(const neighbourhood *around) {
+  error_box b;
   for (int axis = 0; axis < 3; axis++) {
     b.low[axis] = HUGE_VALF;
     b.high[axis] = -HUGE_VALF;
@@ -124,7 +124,7 @@ static void set_disc_of_leaf(const conic_octree *octree, size_t i, const conic_d
 }
 
 /* Whether subtree i reaches into the box. Reads of its code what no other thread writes. */
-static int is_near(const conic_octree *octree, size_t i, const box *b) {
+static int is_near(const conic_octree *octree, size_t i, const error_box *b) {
   float center[3], radius, apart2 = 0.0f;
   double first[3];
   conic_octree_place(octree, octree->first_leaf[i], first);
@@ -187,7 +187,7 @@ static void gather_own(neighbourhood *around, size_t root) {
 
 /* Takes the discs of the nodes begin … end that are in the box; while there is room and patience, for everything may be
  * near everything. What is left out makes errors larger than they are, which breaks no promise. */
-static void gather(neighbourhood *around, size_t begin, size_t end, const box *b, size_t room) {
+static void gather(neighbourhood *around, size_t begin, size_t end, const error_box *b, size_t room) {
   const conic_octree *octree = around->pass->octree;
   conic_discs *discs = &around->discs;
   size_t patience = 32 * around->room;
@@ -245,7 +245,7 @@ static void list_members(neighbourhood *around, size_t root) {
 static void find_near(neighbourhood *around, size_t begin, size_t end) {
   conic_near_discs *near = &around->near;
   for (int axis = 0; axis < 3; axis++) {
-    box b = {{0}, {0}};
+    error_box b = {{0}, {0}};
     b.low[axis] = HUGE_VALF;
     b.high[axis] = -HUGE_VALF;
     for (size_t k = begin; k < end; k++) {
@@ -378,7 +378,7 @@ static conic_status run_group(neighbourhood *around, size_t root) {
     return status;
   gather_own(around, root);
   list_members(around, root);
-  box b = box_of_group(around);
+  error_box b = box_of_group(around);
   gather(around, 0, root, &b, around->n_own + (around->room - around->n_own) / 2);
   gather(around, octree->end[root], octree->n_nodes, &b, around->room);
   conic_discs_set_half(&around->discs, around->n_own);

@@ -1,4 +1,4 @@
-/* .cot files: docs/format-cot.md. */
+/* .cot files: docs/reference/format-cot.md. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -213,12 +213,12 @@ static conic_status find_spreads(const conic_octree *octree, conic_octree_info *
 }
 
 /* A set of the two corners has the same box as the whole. */
-typedef struct box {
+typedef struct box_corners {
   conic_splats corners;
   float values[3][2];
-} box;
+} box_corners;
 
-static void make_box(const conic_octree *octree, box *b) {
+static void make_box(const conic_octree *octree, box_corners *b) {
   memset(b, 0, sizeof *b);
   b->corners.count = 2;
   for (int axis = 0; axis < 3; axis++) {
@@ -230,13 +230,13 @@ static void make_box(const conic_octree *octree, box *b) {
 }
 
 double conic_octree_near(const conic_octree *octree) {
-  box b;
+  box_corners b;
   make_box(octree, &b);
   return conic_default_near(&b.corners);
 }
 
 conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info) {
-  box b;
+  box_corners b;
   memset(info, 0, sizeof *info);
   info->n_points = octree->n_points;
   info->n_leaves = octree->n_leaves;

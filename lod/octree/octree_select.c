@@ -7,33 +7,33 @@
 #include "lod/octree/octree_kernels.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
-typedef struct piece {
+typedef struct selection_piece {
   uint32_t begin, end; /* nodes of a block that is yet to be looked at; or, of `kind`, leaves or one node */
   enum { PIECE_BLOCK, PIECE_LEAVES, PIECE_NODE } kind;
   size_t place, count, n_inner, n_culled; /* in the selection */
-} piece;
+} selection_piece;
 
 /* What is kept from call to call. */
-typedef struct scratch {
-  piece *pieces;
+typedef struct octree_scratch {
+  selection_piece *pieces;
   size_t n_pieces, pieces_room;
   uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or CONIC_NODE_BIT and a node */
   size_t sources_room;
   float *arrays; /* the selection's */
   conic_clip *clips;
   size_t clips_room;
-} scratch;
+} octree_scratch;
 
 enum { PIECES_A_TASK = 2 };
 
-typedef struct selecting {
+typedef struct octree_selecting {
   const conic_octree *octree;
   conic_octree_view view;
   float error_px;
   conic_selection *selection;
-  scratch *scratch;
+  octree_scratch *scratch;
   conic_put_function *put;
-} selecting;
+} octree_selecting;
 
 void conic_selection_options_init(conic_selection_options *options) {
   memset(options, 0, sizeof *options);
@@ -42,7 +42,7 @@ void conic_selection_options_init(conic_selection_options *options) {
 }
 
 void conic_selection_release(conic_context *context, conic_selection *selection) {
-  scratch *kept = selection->scratch;
+  octree_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->arrays);
     conic_memory_release(context, kept->clips);
@@ -53,8 +53,8 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
   memset(selection, 0, sizeof *selection);
 }
 
-static conic_status add_piece(selecting *s, piece added) {
-  scratch *kept = s->scratch;
+static conic_status add_piece(octree_selecting *s, selection_piece added) {
+  octree_scratch *kept = s->scratch;
   if (kept->n_pieces == kept->pieces_room) {
     size_t room = 2 * kept->pieces_room + 256;
     conic_status status =
@@ -68,18 +68,18 @@ static conic_status add_piece(selecting *s, piece added) {
 }
 
 /* Walks the nodes whose subtrees are larger than a block one by one; the blocks are left for later. */
-static conic_status list_pieces(selecting *s) {
+static conic_status list_pieces(octree_selecting *s) {
   const conic_octree *octree = s->octree;
   conic_status status = CONIC_OK;
   conic_measured measured = {0};
   s->scratch->n_pieces = 0;
   s->selection->n_culled = 0;
   if (octree->n_nodes == 0)
-    return add_piece(s, (piece){.begin = 0, .end = 1, .kind = PIECE_LEAVES, .count = 1});
+    return add_piece(s, (selection_piece){.begin = 0, .end = 1, .kind = PIECE_LEAVES, .count = 1});
   for (uint32_t i = 0; i < octree->n_nodes && status == CONIC_OK;) {
     uint32_t end = octree->end[i];
     if (end - i <= CONIC_OCTREE_BLOCK) {
-      status = add_piece(s, (piece){.begin = i, .end = end, .kind = PIECE_BLOCK});
+      status = add_piece(s, (selection_piece){.begin = i, .end = end, .kind = PIECE_BLOCK});
       i = end;
       continue;
     }
@@ -88,16 +88,17 @@ static conic_status list_pieces(selecting *s) {
     if (pixels < 0.0f)
       s->selection->n_culled++;
     else if (pixels <= s->error_px)
-      status = add_piece(s, (piece){.begin = i, .end = i + 1, .kind = PIECE_NODE, .count = 1, .n_inner = 1});
+      status = add_piece(s, (selection_piece){.begin = i, .end = i + 1, .kind = PIECE_NODE, .count = 1, .n_inner = 1});
     else if (last > first)
-      status = add_piece(s, (piece){.begin = first, .end = last, .kind = PIECE_LEAVES, .count = last - first});
+      status =
+          add_piece(s, (selection_piece){.begin = first, .end = last, .kind = PIECE_LEAVES, .count = last - first});
     i = pixels < 0.0f || pixels <= s->error_px ? end : i + 1;
   }
   return status;
 }
 
 /* Lists what a block gives, where its first leaf has its place: it gives no more than it has leaves. */
-static void walk_block(const selecting *s, piece *block) {
+static void walk_block(const octree_selecting *s, selection_piece *block) {
   const conic_octree *octree = s->octree;
   uint32_t *const sources = s->scratch->sources + octree->first_leaf[block->begin], *next = sources;
   conic_measured measured = {0};
@@ -121,29 +122,29 @@ static void walk_block(const selecting *s, piece *block) {
 }
 
 static void count_task(void *data, size_t i_task, int i_thread) {
-  selecting *s = data;
+  octree_selecting *s = data;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
   (void)i_thread;
   for (size_t i = begin; i < end && i < s->scratch->n_pieces; i++) {
-    piece *p = &s->scratch->pieces[i];
+    selection_piece *p = &s->scratch->pieces[i];
     if (p->kind == PIECE_BLOCK)
       walk_block(s, p);
   }
 }
 
 /* Puts n splats at `begin` of the selection. */
-static void put_splats(const selecting *s, const uint32_t *sources, size_t begin, size_t n) {
+static void put_splats(const octree_selecting *s, const uint32_t *sources, size_t begin, size_t n) {
   s->put(s->octree, sources, n, s->view.cull_back ? s->view.eye : NULL, &s->selection->splats, s->selection->ids,
          begin);
 }
 
 static void fill_task(void *data, size_t i_task, int i_thread) {
-  selecting *s = data;
-  scratch *kept = s->scratch;
+  octree_selecting *s = data;
+  octree_scratch *kept = s->scratch;
   size_t begin = i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
   (void)i_thread;
   for (size_t i = begin; i < end && i < kept->n_pieces; i++) {
-    const piece *p = &kept->pieces[i];
+    const selection_piece *p = &kept->pieces[i];
     if (p->kind == PIECE_BLOCK)
       put_splats(s, kept->sources + s->octree->first_leaf[p->begin], p->place, p->count);
     for (uint32_t k = p->begin; k < p->end && p->kind != PIECE_BLOCK; k++) {
@@ -155,7 +156,7 @@ static void fill_task(void *data, size_t i_task, int i_thread) {
 
 /* One block for all arrays, each a few lines of the cache further on in its page than the one before: at the same place
  * in theirs, they would drive each other out of the cache. */
-static conic_status make_room(selecting *s, size_t room) {
+static conic_status make_room(octree_selecting *s, size_t room) {
   enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 14 }; /* floats */
   conic_context *context = s->octree->context;
   conic_selection *selection = s->selection;
@@ -183,12 +184,12 @@ static conic_status make_room(selecting *s, size_t room) {
 }
 
 /* Gives every piece its place, and the selection room for all. */
-static conic_status place_pieces(selecting *s) {
+static conic_status place_pieces(octree_selecting *s) {
   conic_selection *selection = s->selection;
   size_t count = 0;
   selection->n_inner = 0;
   for (size_t i = 0; i < s->scratch->n_pieces; i++) {
-    piece *p = &s->scratch->pieces[i];
+    selection_piece *p = &s->scratch->pieces[i];
     p->place = count;
     count += p->count;
     selection->n_inner += p->n_inner;
@@ -215,7 +216,7 @@ static conic_status keep_room(conic_context *context, void **memory, size_t *roo
 }
 
 /* The clip lines of the leaves that were chosen, in their new order. */
-static conic_status take_clips(selecting *s) {
+static conic_status take_clips(octree_selecting *s) {
   const conic_octree *octree = s->octree;
   conic_selection *selection = s->selection;
   conic_splats *splats = &selection->splats;
@@ -238,7 +239,7 @@ static conic_status take_clips(selecting *s) {
   return CONIC_OK;
 }
 
-static conic_status select_splats(selecting *s) {
+static conic_status select_splats(octree_selecting *s) {
   conic_context *context = s->octree->context;
   conic_status status = list_pieces(s);
   if (status != CONIC_OK)
@@ -253,8 +254,8 @@ static conic_status select_splats(selecting *s) {
 
 static conic_status keep_scratch(const conic_octree *octree, conic_selection *selection) {
   if (!selection->scratch)
-    selection->scratch = conic_memory_allocate_zeroed(octree->context, 1, sizeof(scratch));
-  scratch *kept = selection->scratch;
+    selection->scratch = conic_memory_allocate_zeroed(octree->context, 1, sizeof(octree_scratch));
+  octree_scratch *kept = selection->scratch;
   if (!kept)
     return CONIC_ERROR_MEMORY;
   return keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
@@ -277,7 +278,7 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   const char *wrong = what_is_wrong(octree, camera, render, options);
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
-  selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
+  octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
   s.put = conic_octree_kernels_choose().put;
   conic_status status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)

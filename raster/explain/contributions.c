@@ -171,7 +171,7 @@ static void describe_ellipse(const conic_footprint *footprint, conic_projection 
 conic_status conic_contributions_project(const conic_contributions *c, size_t i, conic_projection *projection) {
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
   conic_chunk chunk = {.n_drawn = 0};

@@ -153,7 +153,7 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   census *c = data;
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected place = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
   conic_chunk *chunk = &c->chunks[i_item];

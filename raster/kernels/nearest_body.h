@@ -162,7 +162,7 @@ CONIC_INLINE void take_part(const conic_band *band, const sources *from, int str
   const conic_nearest *kept = band->nearest;
   const size_t of_strip = place_of_part(band, strip_rows, block, at);
   uint32_t footprint[CONIC_LANES];
-  lanes surface[8], scale = lanes_of(1.0f); /* the fields of conic_surface */
+  lanes surface[8], scale = lanes_of(1.0f); /* the fields of conic_projected_surface */
   part_sums to;
   clear_sums(&to);
   to.nearest = (index_lanes)load_part((const float *)(const void *)(kept->footprint + of_strip), strip_rows);

@@ -1,5 +1,6 @@
 /* Pass 3 in lanes: conic_band_resolve (raster/tiles/resolve.c) a part of a block at a time, with the same operations in
  * the same order. Included by tile_kernels_body.h. */
+#include "raster/kernels/shade_lanes.h"
 #include "raster/tiles/resolve.h"
 
 /* The finished pixels of one part of a block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
@@ -8,41 +9,11 @@ typedef struct finished {
   lanes rgba[4], normal[3], albedo[3], weight, z;
 } finished;
 
-CONIC_INLINE lanes dot_lanes(const lanes a[3], const lanes b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-/* conic_shade (raster/tiles/shade.c). */
-CONIC_INLINE void shade_lanes(const conic_finish *finish, const lanes albedo[3], const lanes normal[3],
-                              const lanes mean_normal[3], const lanes viewer[3], lanes shaded[3]) {
-  const conic_render_options *options = finish->options;
-  lanes zero = lanes_of(0.0f), light[3], glossy = zero;
-  for (int i = 0; i < 3; i++)
-    light[i] = options->has_light ? lanes_of(finish->light[i]) : viewer[i];
-  lanes towards_light = dot_lanes(normal, light);
-  lanes lit = CONIC_AMBIENT + CONIC_DIFFUSE * lanes_max(dot_lanes(mean_normal, light), zero);
-  if (options->shading == CONIC_SHADE_PHONG) {
-    lanes reflected[3];
-    for (int i = 0; i < 3; i++)
-      reflected[i] = 2.0f * towards_light * normal[i] - light[i];
-    lanes gloss = lanes_max(dot_lanes(reflected, viewer), zero);
-    for (int i = 0; i < 5; i++)
-      gloss *= gloss;
-    glossy = lanes_keep(lanes_less(zero, towards_light), CONIC_SPECULAR * gloss * dot_lanes(mean_normal, mean_normal));
-  }
-  for (int i = 0; i < 3; i++)
-    shaded[i] = albedo[i] * lit + glossy;
-}
-
 /* Of one part of the block in the given column and row of the tile's. */
 CONIC_INLINE void viewer_lanes(const conic_finish *finish, const conic_tile_rays *rays, int block, int i_row, size_t at,
                                lanes viewer[3]) {
-  lanes dx = lanes_load(rays->block_x[block] + at), dy = lanes_load(rays->block_y[i_row] + at);
-  lanes scale = -1.0f / lanes_sqrt((dx * dx + dy * dy) + 1.0f);
-  for (int i = 0; i < 3; i++) {
-    const float *m = finish->world_from_cam[i];
-    viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * scale;
-  }
+  look_back(finish->world_from_cam, lanes_load(rays->block_x[block] + at), lanes_load(rays->block_y[i_row] + at),
+            viewer);
 }
 
 /* Where the normals cancel, that of the heaviest splat. */

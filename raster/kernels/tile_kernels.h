@@ -26,7 +26,7 @@ typedef struct conic_tile_kernels {
   /* After conic_sorter_count: copies the sorter's records in the order of the tiles, to places from `first` of all on,
    * and makes the entries. Clip lines are left to the caller, who finds the order in the sorter. */
   void (*sort)(const conic_bins *bins, conic_sorter *sorter, size_t first, conic_tile_entry *entries,
-               conic_footprint *footprints, conic_surface *surfaces);
+               conic_footprint *footprints, conic_projected_surface *surfaces);
   /* The references whose word has a bit of the mask, in order: footprints and words apart. Returns how many. */
   size_t (*select)(const conic_tile_entry *references, size_t n, uint32_t mask, uint32_t *footprints, uint32_t *words);
   /* Pass 1: the band's kept fragments and thresholds, n_kept, not_kept, n_fragments. */

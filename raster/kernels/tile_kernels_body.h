@@ -1,19 +1,8 @@
 /* The body of a table of kernels, in lanes; included by one file an instruction set, which defines TABLE and NAME. */
 #include "core/lanes/lanes_store.h"
+#include "raster/kernels/coverage_lanes.h"
 #include "raster/kernels/tile_kernels.h"
-#include "raster/project/laplace_body.h"
 #include "raster/tiles/coverage.h"
-
-/* A block is so many vectors. */
-#define CONIC_PARTS (CONIC_BLOCK_PIXELS / CONIC_LANES)
-
-/* One splat's pixels in one part of a block, covered or not. */
-typedef struct fragments {
-  lanes_mask covered;
-  lanes q;
-  lanes iz, plane_iz; /* as in conic_fragment */
-  lanes scale;
-} fragments;
 
 /* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
  * outside the image: what is compared with it is not covered. */
@@ -102,96 +91,13 @@ static size_t select_references(const conic_tile_entry *references, size_t n, ui
   return n_selected;
 }
 
-/* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
- * every block would be most of what the loops read. */
-typedef struct splat_rows {
-  lanes dy, q_offset, q_rest, iz_offset, plane_offset;
-  lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
-} splat_rows;
-
-CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
-  splat_rows rows;
-  rows.dy = (y - footprint->y) + footprint->dy0;
-  lanes minor = footprint->s3 * rows.dy;
-  rows.q_offset = footprint->s2 * rows.dy;
-  rows.q_rest = minor * minor;
-  rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
-  rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
-  rows.x = lanes_of(footprint->x);
-  rows.dx0 = lanes_of(footprint->dx0);
-  rows.s1 = lanes_of(footprint->s1);
-  rows.iz_dx = lanes_of(footprint->iz_dx);
-  rows.plane_dx = lanes_of(footprint->plane_dx);
-  rows.iz_far = lanes_of(footprint->iz_far);
-  rows.iz_near = lanes_of(footprint->iz_near);
-  return rows;
-}
-
-/* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
-CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes dx, fragments *f) {
-  lanes major = rows->s1 * dx + rows->q_offset;
-  f->q = major * major + rows->q_rest;
-  f->covered = lanes_less(f->q, lanes_of(support));
-  f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
-  f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
-  f->scale = lanes_of(1.0f);
-}
-
-/* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
-CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
-                                lanes dx, lanes dy, fragments *f) {
-  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
-  f->covered = lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
-               lanes_at_least(lanes_of(ray->iz_high), iz);
-  f->covered &= lanes_at_least(dx, lanes_of(ray->dx_low)) & lanes_at_least(lanes_of(ray->dx_high), dx) &
-                lanes_at_least(dy, lanes_of(ray->dy_low)) & lanes_at_least(lanes_of(ray->dy_high), dy);
-  lanes r = 1.0f / iz;
-  lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
-  lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
-  lanes u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
-  lanes v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
-  float h = view->prefilter;
-  lanes s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
-  lanes s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
-  lanes s_uv = h * (u_x * v_x + u_y * v_y);
-  lanes area = u_x * v_y - u_y * v_x;
-  lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
-  lanes along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
-  f->q = ((u * u) * determinant + along * along) * inverse;
-  f->covered &= lanes_less(f->q, lanes_of(view->support));
-  f->iz = lanes_min(lanes_max(iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
-  f->plane_iz = iz;
-  f->scale = lanes_sqrt(s_uu * inverse);
-}
-
-/* conic_laplace_fragment of coverage.h, lane by lane. */
-CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
-                                    lanes dx, lanes dy, fragments *f) {
-  laplaces at = laplaces_at(view, footprint, ray, dx, dy);
-  f->covered = at.covered;
-  f->q = at.q;
-  f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
-  f->plane_iz = at.plane_iz;
-  f->scale = at.scale;
-}
-
-/* conic_clip_keeps, lane by lane. */
-CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
-  lanes zero = lanes_of(0.0f);
-  lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
-  lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
-  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
-                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
-  return (clip->is_or ? first | second : first & second) & within;
-}
-
 /* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
  * compiler can tell. */
 typedef struct sources {
   const conic_view *view;
   float support;
   const conic_footprint *footprints;
-  const conic_surface *surfaces;
+  const conic_projected_surface *surfaces;
   const conic_ray *rays;
   const conic_clip_record *clips;
   const uint32_t *indices, *words;
@@ -205,18 +111,12 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
                    band->indices,       band->words,         band->n};
 }
 
-/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. */
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
                            int is_special, fragments *f) {
-  lanes dx = (x - rows->x) + rows->dx0;
-  if (is_special && conic_is_laplace(footprint))
-    laplace_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
-  else if (is_special && footprint->s3 == 0.0f)
-    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
-  else
-    ellipse_fragments(rows, from->support, dx, f);
-  if (is_special && conic_is_clipped(footprint))
-    f->covered &= clip_keeps(&from->clips[footprint - from->footprints], dx, rows->dy);
+  const conic_ray *ray = is_special && footprint->s3 == 0.0f ? &from->rays[footprint->i_ray] : NULL;
+  const conic_clip_record *clip =
+      is_special && conic_is_clipped(footprint) ? &from->clips[footprint - from->footprints] : NULL;
+  fragments_at(from->view, from->support, footprint, ray, clip, rows, x, is_special, f);
 }
 
 /* What the splat after the next few is read from, in this pass and the next. */
@@ -329,42 +229,6 @@ static void visibility(conic_band *band) {
   band->n_fragments += p.n_fragments;
 }
 
-/* Which kernel a loop is made for. */
-typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER } kernel_kind;
-
-static kernel_kind kind_of(const conic_kernel *kernel) {
-  if (conic_kernel_is_narrow(kernel))
-    return KERNEL_NARROW_GAUSS;
-  return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
-}
-
-/* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
-CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
-  if (kernel->type == CONIC_KERNEL_HAT)
-    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
-  if (kernel->type == CONIC_KERNEL_BOX)
-    return lanes_of(1.0f);
-  lanes r = lanes_sqrt(q) / kernel->b, power = r;
-  for (int i = 1; i < kernel->n; i++)
-    power *= r;
-  lanes rest = 1.0f - power;
-  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
-}
-
-/* conic_final_weight in every lane; 0 in those that are not visible. */
-CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
-                         kernel_kind kind) {
-  lanes kernel;
-  if (kind == KERNEL_NARROW_GAUSS)
-    kernel = lanes_gauss_narrow(q);
-  else if (kind == KERNEL_GAUSS)
-    kernel = lanes_exp_negative(-0.5f * q);
-  else /* beyond the support, a kernel need not have a value */
-    kernel = other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
-  lanes weight = (amplitude * scale) * kernel;
-  return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
-}
-
 /* The sums of one part, in registers. */
 typedef struct part_sums {
   lanes weight, color[3], normal[3], heaviest_weight, nearest_iz;
@@ -386,7 +250,7 @@ CONIC_INLINE void keep_better(lanes *kept, index_lanes *whose, lanes_mask better
 
 /* Adds visible fragments: an invisible one adds 0, which changes no bit. Splats come in file order: sums keep it, and
  * the first of equals stays. */
-CONIC_INLINE void blend(const conic_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
+CONIC_INLINE void blend(const conic_projected_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
   to->weight += weight;
   for (int axis = 0; axis < 3; axis++) {
     to->color[axis] += weight * surface->color[axis];
@@ -410,7 +274,7 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
     if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
       scale = lanes_load(kept->scale[i] + at);
-    const conic_surface *surface = &from->surfaces[i_footprint];
+    const conic_projected_surface *surface = &from->surfaces[i_footprint];
     blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
   }
 }

@@ -103,7 +103,7 @@ static void visibility(conic_band *band) {
 static void blend(const conic_band *band, uint32_t i_footprint, int block, int l, const conic_fragment *fragment,
                   float *heaviest_weight) {
   conic_block_sums *sums = &band->sums[block];
-  const conic_surface *surface = &band->projected->surfaces[i_footprint];
+  const conic_projected_surface *surface = &band->projected->surfaces[i_footprint];
   const conic_footprint *footprint = &band->projected->footprints[i_footprint];
   float weight = conic_final_weight(band->view, footprint, fragment->q, fragment->scale);
   sums->weight[l] += weight;

@@ -1,4 +1,4 @@
-/* Clip lines on the screen: half-planes at whose borders a splat ends (docs/picture.md, Clip lines).
+/* Clip lines on the screen: half-planes at whose borders a splat ends (docs/reference/picture.md, Clip lines).
  *
  * A footprint that has some is marked by the sign of s3, which q does not see: s3 > 0 is an ellipse without lines,
  * s3 < 0 one with lines, +0 a ray without and -0 a ray with them. Its lines are clips[its index]. */

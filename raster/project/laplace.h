@@ -1,6 +1,6 @@
 /* The ray formula at the place that a pixel mostly sees: Laplace's method for the integral of kernel and filter
- * (docs/picture.md, Laplace). Rays of method `auto` whose perspective changes within a pixel's filter are drawn so;
- * s2, which rays have no other use for, is 1 for them. */
+ * (docs/reference/picture.md, Laplace). Rays of method `auto` whose perspective changes within a pixel's filter are
+ * drawn so; s2, which rays have no other use for, is 1 for them. */
 #ifndef CONIC_LAPLACE_H
 #define CONIC_LAPLACE_H
 

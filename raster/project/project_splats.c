@@ -23,7 +23,7 @@ typedef struct splat_setup {
   conic_footprint *footprint;
   conic_box *box;
   conic_ray *ray;
-  conic_surface *surface;
+  conic_projected_surface *surface;
 } splat_setup;
 
 static float finite_or(float value, float otherwise) {
@@ -71,7 +71,7 @@ static void pixel_range(double center, double reach, int size, uint16_t *begin, 
 }
 
 /* The variance of the projected kernel about its centre, and what else the dual conic gives (PAS §4 in dual form,
- * shifted so that p projects to the origin; docs/picture.md has the derivation). */
+ * shifted so that p projects to the origin; docs/reference/picture.md has the derivation). */
 typedef struct projected_kernel {
   float rxx, rxy, ryy;    /* px² */
   float root_determinant; /* √|R'|, not by rxx·ryy - rxy²: that cancels when edge-on */
@@ -201,7 +201,7 @@ static void set_laplace(const conic_view *view, const tangents *t, conic_footpri
 }
 
 /* About the projected p, U, V and iz are made of what shearing to it gave: no cancellation, so that float will do
- * (docs/picture.md). The box is the projected outline's, widened. */
+ * (docs/reference/picture.md). The box is the projected outline's, widened. */
 static conic_outcome project_ray_before_near(const splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
@@ -353,7 +353,7 @@ static int world_normal(const conic_splats *splats, size_t i, float normal[3], f
 
 static void set_surface(const splat_setup *s, const float normal[3]) {
   const conic_splats *splats = s->splats;
-  conic_surface *surface = s->surface;
+  conic_projected_surface *surface = s->surface;
   float sign = s->along_ray > 0.0f ? -1.0f : 1.0f;
   for (int axis = 0; axis < 3; axis++) {
     surface->normal[axis] = sign * normal[axis];
@@ -388,7 +388,8 @@ static int is_in_range(const conic_splats *splats, size_t i) {
 }
 
 /* Sums of x·0: NaN as soon as one of the record's fields is not finite. */
-static int is_finite_record(const conic_footprint *footprint, const conic_ray *ray, const conic_surface *surface) {
+static int is_finite_record(const conic_footprint *footprint, const conic_ray *ray,
+                            const conic_projected_surface *surface) {
   float sum = (footprint->dx0 + footprint->dy0) * 0.0f;
   if (footprint->s3 != 0.0f)
     sum += footprint->s1 * 0.0f + footprint->s2 * 0.0f + footprint->s3 * 0.0f;

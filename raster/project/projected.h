@@ -64,12 +64,12 @@ typedef struct conic_ray {
 } conic_ray;
 
 /* The part that blending and resolving read, half a cache line. */
-typedef struct conic_surface {
+typedef struct conic_projected_surface {
   float color[3];
   float normal[3]; /* world, unit, towards the viewer */
   uint32_t index;  /* in the splat set */
   float amplitude; /* the footprint's: blending need not read that */
-} conic_surface;
+} conic_projected_surface;
 
 /* A splat with more opacity, or a colour beyond this, is skipped: no sum of 2³² of them overflows. */
 #define CONIC_GREATEST_OPACITY 1e6f
@@ -92,7 +92,7 @@ typedef struct conic_projected {
   conic_chunk *chunks;
   conic_footprint *footprints;
   conic_box *boxes;
-  conic_surface *surfaces;
+  conic_projected_surface *surfaces;
   conic_ray *rays;
   struct conic_clip_record *clips; /* of the footprints that are marked; null where the set has no clip lines */
 } conic_projected;

@@ -12,8 +12,9 @@ static size_t rounded(size_t bytes) {
 
 size_t conic_sorter_bytes(const conic_bins *bins, size_t chunk_size, int has_clips) {
   size_t n = chunk_size + CONIC_PROJECT_SLACK;
-  return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_surface)) + rounded(n * sizeof(conic_box)) +
-         4 * rounded(n * sizeof(uint32_t)) + 2 * rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
+  return rounded(n * sizeof(conic_footprint)) + rounded(n * sizeof(conic_projected_surface)) +
+         rounded(n * sizeof(conic_box)) + 4 * rounded(n * sizeof(uint32_t)) +
+         2 * rounded((bins->n_tiles + 1) * sizeof(uint32_t)) +
          (has_clips ? rounded(chunk_size * sizeof(conic_clip_record)) : 0);
 }
 

@@ -53,8 +53,8 @@ static inline float conic_row_iz(const conic_footprint *footprint, const conic_r
   return conic_clamp_iz(footprint, row->iz_offset + footprint->iz_dx * dx);
 }
 
-/* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/picture.md): 1 where the pixel is
- * covered. */
+/* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/reference/picture.md): 1 where the
+ * pixel is covered. */
 static inline int conic_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
                                      float dx, float dy, conic_fragment *fragment) {
   float iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;

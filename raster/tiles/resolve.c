@@ -41,7 +41,7 @@ static void normal_of_sum(const conic_band *band, int block, int l, float mean[3
     mean[axis] = sums->normal[axis][l] * part;
   float norm = sqrtf((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
   float scale = 1.0f / norm;
-  const conic_surface *heaviest = &band->projected->surfaces[sums->heaviest[l]];
+  const conic_projected_surface *heaviest = &band->projected->surfaces[sums->heaviest[l]];
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = norm > 0.0f ? mean[axis] * scale : heaviest->normal[axis];
 }

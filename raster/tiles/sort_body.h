@@ -47,7 +47,7 @@ static void enter(const conic_bins *bins, const conic_sorter *sorter, size_t fir
 /* Past the caches: a frame's records are more than they hold. Footprints, whole cache lines, go wherever their place is
  * while entries are made; of surfaces two share a line, and follow in the order of their places. */
 static void sort(const conic_bins *bins, conic_sorter *sorter, size_t first, conic_tile_entry *entries,
-                 conic_footprint *footprints, conic_surface *surfaces) {
+                 conic_footprint *footprints, conic_projected_surface *surfaces) {
   enter(bins, sorter, first, entries, footprints);
   for (size_t i = 0, n = sorter->chunk.n_drawn; i < n; i++)
     stream_record(&surfaces[i], &sorter->projected.surfaces[sorter->order[i]], sizeof *surfaces);

@@ -1,5 +1,5 @@
 /* Triangles on the screen: what a frame keeps of each, and the arithmetic that says which samples it covers, shared by
- * all that must agree in every bit (docs/picture.md, Triangles).
+ * all that must agree in every bit (docs/reference/picture.md, Triangles).
  *
  * Vertices are snapped to 1/256 pixel; from there on coverage is exact, in integers. */
 #ifndef CONIC_TRIANGLE_H

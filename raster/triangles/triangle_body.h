@@ -1,6 +1,8 @@
 /* The triangles' slots in lanes: the operations of triangle_vertices.c and triangle_tile.c in the same order. Included
  * by tile_kernels_body.h. */
 #include "core/lanes/lanes_double.h"
+#include "raster/triangles/draw_lanes.h"
+#include "raster/triangles/look_lanes.h"
 #include "raster/triangles/texture_body.h"
 #include "raster/triangles/triangle_look.h"
 #include "raster/triangles/triangle_pixel.h"
@@ -68,102 +70,6 @@ static void triangle_vertices(const conic_triangle_frame *frame, size_t begin, s
   conic_triangle_vertices(frame, i, end, vertices);
 }
 
-/* A part's columns and rows of pixels. */
-CONIC_INLINE int_lanes part_columns(int part) {
-  return lanes_columns() + part * (CONIC_LANES / CONIC_BLOCK_EDGE);
-}
-
-/* A record, and what of it is the same in all blocks. */
-typedef struct drawing {
-  int_lanes within[3][CONIC_PARTS]; /* how far each edge's value is from that at the block's first pixel, in steps */
-  lanes iz_far, iz_near;
-  const conic_triangle_record *record;
-  conic_triangle_edges edges;
-  int32_t most[3]; /* the most that it gains */
-  uint32_t i_record;
-} drawing;
-
-CONIC_INLINE void begin_drawing(const conic_triangle_record *record, uint32_t i_record, drawing *d) {
-  d->record = record;
-  d->i_record = i_record;
-  conic_triangle_edges_of(record, &d->edges);
-  for (int k = 0; k < 3; k++) {
-    int32_t a = (int32_t)d->edges.a[k], b = (int32_t)d->edges.b[k];
-    d->most[k] = (CONIC_BLOCK_EDGE - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0));
-    for (int part = 0; part < CONIC_PARTS; part++)
-      d->within[k][part] = part_columns(part) * a + lanes_rows() * b;
-  }
-  d->iz_far = lanes_of(conic_triangle_far(record));
-  d->iz_near = lanes_of(conic_triangle_near(record));
-}
-
-/* The samples of a block from the values of the edges at its first; those beyond the image are none. */
-CONIC_INLINE unsigned draw_block(const drawing *d, const int64_t e[3], int columns_left, int rows_left,
-                                 conic_triangle_block *block) {
-  int32_t steps[3];
-  for (int k = 0; k < 3; k++) {
-    steps[k] = conic_triangle_steps(e[k] + d->edges.bias[k]);
-    if (steps[k] + d->most[k] < 0)
-      return 0;
-  }
-  conic_affine depth = conic_triangle_depth(d->record, &d->edges, e[1], e[2]);
-  unsigned n_covered = 0;
-  for (int part = 0; part < CONIC_PARTS; part++) {
-    size_t at = (size_t)part * CONIC_LANES;
-    int_lanes columns = part_columns(part), rows = lanes_rows();
-    int_lanes inside = (steps[0] + d->within[0][part]) | (steps[1] + d->within[1][part]) |
-                       (steps[2] + d->within[2][part]); /* its sign is set where any of theirs is */
-    lanes_mask covered = lanes_less_int(lanes_of_int(-1), inside);
-    if (columns_left < CONIC_BLOCK_EDGE || rows_left < CONIC_BLOCK_EDGE)
-      covered &= lanes_less_int(columns, lanes_of_int(columns_left)) & lanes_less_int(rows, lanes_of_int(rows_left));
-    lanes iz = (depth.at + depth.by_y * __builtin_convertvector(rows, lanes)) +
-               depth.by_x * __builtin_convertvector(columns, lanes);
-    iz = lanes_min(lanes_max(iz, d->iz_far), d->iz_near);
-    lanes kept = lanes_load(block->iz + at);
-    lanes_mask nearer = covered & lanes_less(kept, iz);
-    lanes_store(block->iz + at, lanes_select(nearer, iz, kept));
-    lanes_replace_indices(block->record + at, nearer, lanes_of_index(d->i_record));
-    n_covered += lanes_count(covered);
-  }
-  return n_covered;
-}
-
-/* A record of many samples, block by block. */
-static unsigned draw_blocks(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
-                            conic_triangle_tile *tile) {
-  const conic_triangle_record *record = &frame->records[i_record];
-  const conic_box *box = &record->box;
-  int first = box->x_begin > x ? (box->x_begin - x) / CONIC_BLOCK_EDGE : 0;
-  int first_row = box->y_begin > y ? (box->y_begin - y) / CONIC_BLOCK_EDGE : 0;
-  int x_end = box->x_end < x + frame->tile ? box->x_end : x + frame->tile;
-  int y_end = box->y_end < y + frame->tile ? box->y_end : y + frame->tile;
-  enum { BLOCK_STEP = CONIC_BLOCK_EDGE * CONIC_SUBPIXELS };
-  unsigned n_covered = 0;
-  int64_t of_row[3];
-  drawing d;
-  begin_drawing(record, i_record, &d);
-  for (int k = 0; k < 3; k++)
-    of_row[k] = conic_triangle_edge_at(&d.edges, k, x + first * CONIC_BLOCK_EDGE, y + first_row * CONIC_BLOCK_EDGE);
-  for (int i_row = first_row; y + i_row * CONIC_BLOCK_EDGE < y_end; i_row++) {
-    int64_t e[3] = {of_row[0], of_row[1], of_row[2]};
-    int rows_left = frame->view->height - (y + i_row * CONIC_BLOCK_EDGE);
-    for (int block = first; x + block * CONIC_BLOCK_EDGE < x_end; block++) {
-      int columns_left = frame->view->width - (x + block * CONIC_BLOCK_EDGE);
-      n_covered += draw_block(&d, e, columns_left, rows_left, &tile->blocks[i_row][block]);
-      for (int k = 0; k < 3; k++)
-        e[k] += d.edges.a[k] * BLOCK_STEP;
-    }
-    for (int k = 0; k < 3; k++)
-      of_row[k] += d.edges.b[k] * BLOCK_STEP;
-  }
-  return n_covered;
-}
-
-CONIC_INLINE int has_few_samples(const conic_box *box) {
-  enum { FEW = 3 };
-  return (box->x_end - box->x_begin) * (box->y_end - box->y_begin) <= FEW;
-}
-
 CONIC_INLINE uint32_t covered_bits(const conic_triangle_block *block) {
   uint32_t bits = 0;
   for (int part = 0; part < CONIC_PARTS; part++)
@@ -174,6 +80,7 @@ CONIC_INLINE uint32_t covered_bits(const conic_triangle_block *block) {
 
 static void triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile) {
   enum { AHEAD = 8 };
+  const conic_triangle_canvas canvas = conic_triangle_canvas_of(frame, x, y, tile);
   uint64_t n_fragments = 0;
   memset(tile->covered, 0, sizeof tile->covered);
   memset(tile->blocks, 0, sizeof tile->blocks);
@@ -183,10 +90,10 @@ static void triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int
     const uint32_t *entries = frame->entries + chunk->first_entry;
     for (uint32_t k = begin[0]; k < begin[1]; k++) {
       uint32_t i_record = (uint32_t)chunk->first_record + entries[k];
+      const conic_triangle_record *record = &frame->records[i_record];
       __builtin_prefetch(&frame->records[chunk->first_record + entries[k + AHEAD < begin[1] ? k + AHEAD : k]]);
-      n_fragments += has_few_samples(&frame->records[i_record].box)
-                         ? conic_triangle_draw_samples(frame, i_record, x, y, tile)
-                         : draw_blocks(frame, i_record, x, y, tile);
+      n_fragments += has_few_samples(&record->box) ? conic_triangle_draw_samples(record, i_record, &canvas)
+                                                   : draw_blocks(record, i_record, &canvas);
     }
   }
   tile->n_fragments = n_fragments;
@@ -213,35 +120,6 @@ static void triangles_hide(conic_band *band, const conic_tile_rays *rays) {
       lanes_store(band->kept[block].threshold + at, lanes_max(hides, threshold)); /* 0 where there is no triangle */
     }
     row->visible[block] &= visible;
-  }
-}
-
-/* A triangle's look at the pixels of a part. */
-typedef struct places {
-  lanes at[2], by_x[2], by_y[2];
-} places;
-
-CONIC_INLINE lanes affine_at(const conic_affine *f, lanes column, lanes row) {
-  return (f->at + f->by_y * row) + f->by_x * column;
-}
-
-CONIC_INLINE void find_places(const conic_triangle_look *look, lanes column, lanes row, places *p) {
-  lanes iz = affine_at(&look->iz, column, row), zero = lanes_of(0.0f), one = lanes_of(1.0f);
-  iz = lanes_min(lanes_max(iz, lanes_of(look->iz_far)), lanes_of(look->iz_near));
-  lanes z = 1.0f / iz;
-  const conic_affine *weights[2] = {&look->first, &look->second};
-  for (int i = 0; i < 2; i++) {
-    p->at[i] = lanes_min(lanes_max(affine_at(weights[i], column, row) * z, zero), one);
-    p->by_x[i] = (weights[i]->by_x - p->at[i] * look->iz.by_x) * z;
-    p->by_y[i] = (weights[i]->by_y - p->at[i] * look->iz.by_y) * z;
-  }
-  if (!look->is_piece)
-    return;
-  const places of_piece = *p;
-  for (int i = 0; i < 2; i++) {
-    p->at[i] = look->at[0][i] + (of_piece.at[0] * look->at[1][i] + of_piece.at[1] * look->at[2][i]);
-    p->by_x[i] = of_piece.by_x[0] * look->at[1][i] + of_piece.by_x[1] * look->at[2][i];
-    p->by_y[i] = of_piece.by_y[0] * look->at[1][i] + of_piece.by_y[1] * look->at[2][i];
   }
 }
 
@@ -274,13 +152,15 @@ CONIC_INLINE void turn_to_texture(const conic_texture *texture, textured_pixels 
   t->texture = texture;
 }
 
-CONIC_INLINE void note_part(const conic_triangle_look *look, const places *p, int part, lanes_mask mask,
+CONIC_INLINE void note_part(const conic_triangle_look *look, const look_places *p, int part, lanes_mask mask,
                             const lanes color[3], textured_pixels *t) {
   size_t at = (size_t)part * CONIC_LANES;
   for (int i = 0; i < 2; i++) {
-    lanes_replace(t->places.uv[i] + at, mask, look->uv[0][i] + (p->at[0] * look->uv[1][i] + p->at[1] * look->uv[2][i]));
-    lanes_replace(t->places.along[i] + at, mask, p->by_x[0] * look->uv[1][i] + p->by_x[1] * look->uv[2][i]);
-    lanes_replace(t->places.across[i] + at, mask, p->by_y[0] * look->uv[1][i] + p->by_y[1] * look->uv[2][i]);
+    lanes uv, along, across;
+    find_texture_places(look, p, i, &uv, &along, &across);
+    lanes_replace(t->places.uv[i] + at, mask, uv);
+    lanes_replace(t->places.along[i] + at, mask, along);
+    lanes_replace(t->places.across[i] + at, mask, across);
   }
   for (int channel = 0; channel < 3; channel++)
     lanes_replace(t->color[channel] + at, mask, color[channel]);
@@ -298,29 +178,6 @@ CONIC_INLINE void note_pixel(const conic_triangle_sight *sight, int l, textured_
   t->pixels |= 1u << l;
 }
 
-CONIC_INLINE void find_normals(const conic_triangle_look *look, const places *p, const conic_finish *finish, lanes dx,
-                               lanes dy, lanes normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = lanes_of(look->face[axis]);
-  if (look->has_normals) {
-    lanes mean[3];
-    for (int axis = 0; axis < 3; axis++)
-      mean[axis] = look->normal[0][axis] + (p->at[0] * look->normal[1][axis] + p->at[1] * look->normal[2][axis]);
-    lanes squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2], scale = 1.0f / lanes_sqrt(squared);
-    lanes_mask is_usable = lanes_less(lanes_of(1e-30f), squared) & lanes_less(squared, lanes_of(1e30f));
-    for (int axis = 0; axis < 3; axis++)
-      normal[axis] = lanes_select(is_usable, mean[axis] * scale, normal[axis]);
-  }
-  lanes away = lanes_of(0.0f);
-  for (int i = 0; i < 3; i++) {
-    const float *m = finish->world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
-  lanes_mask is_away = lanes_less(lanes_of(0.0f), away);
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = lanes_select(is_away, -normal[axis], normal[axis]);
-}
-
 CONIC_INLINE void add_colors(const lanes color[3], int part, lanes_mask mask, conic_block_sums *sums) {
   for (int channel = 0; channel < 3; channel++) {
     float *sum = sums->color[channel] + (size_t)part * CONIC_LANES;
@@ -332,17 +189,16 @@ CONIC_INLINE void add_colors(const lanes color[3], int part, lanes_mask mask, co
 CONIC_INLINE void add_part(const conic_triangle_look *look, const conic_finish *finish, lanes dx, lanes dy, int part,
                            lanes_mask mask, textured_pixels *textured, conic_block_sums *sums) {
   size_t at = (size_t)part * CONIC_LANES;
-  lanes columns = __builtin_convertvector(part_columns(part), lanes);
-  lanes rows = __builtin_convertvector(lanes_rows(), lanes), color[3], normal[3], sum[3], size = lanes_of(0.0f);
-  places p;
+  lanes columns = lanes_of_ints(part_columns(part)), rows = lanes_of_ints(lanes_rows()), color[3], normal[3], sum[3],
+        size = lanes_of(0.0f);
+  look_places p;
   find_places(look, columns, rows, &p);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = look->color[0][channel] + (p.at[0] * look->color[1][channel] + p.at[1] * look->color[2][channel]);
+  find_colors(look, &p, color);
   if (look->texture)
     note_part(look, &p, part, mask, color, textured);
   else
     add_colors(color, part, mask, sums);
-  find_normals(look, &p, finish, dx, dy, normal);
+  find_normals(look, &p, finish->world_from_cam, dx, dy, normal);
   lanes_replace(sums->weight + at, mask, lanes_load(sums->weight + at) + 1.0f);
   lanes_store_indices(sums->count + at, lanes_increment(mask, lanes_load_indices(sums->count + at)));
   for (int axis = 0; axis < 3; axis++) {

@@ -6,7 +6,7 @@
 
 #include "conic/triangles.h"
 #include "raster/tiles/band.h"
-#include "raster/triangles/triangle.h"
+#include "raster/triangles/triangle_samples.h"
 
 struct conic_tile_kernels;
 
@@ -33,12 +33,6 @@ typedef struct conic_triangle_chunk {
   size_t first_record, first_piece, first_entry;
   size_t n_culled, n_skipped, n_drawn; /* triangles */
 } conic_triangle_chunk;
-
-/* What a pixel of a tile knows of triangles: the nearest one's depth, 0 where there is none, and its record. */
-typedef struct conic_triangle_block {
-  float iz[CONIC_BLOCK_PIXELS];
-  uint32_t record[CONIC_BLOCK_PIXELS];
-} conic_triangle_block;
 
 /* What the triangles are to the pixels of a row of blocks, as bits by the order of a block's pixels. */
 typedef struct conic_triangle_row {

@@ -21,33 +21,14 @@ void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_t
   memcpy(tile->row.covered, tile->covered[i_row], sizeof tile->row.covered);
 }
 
-unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
-                                     conic_triangle_tile *tile) {
-  const conic_triangle_record *record = &frame->records[i_record];
-  const conic_box *box = &record->box;
-  int x_begin = box->x_begin > x ? box->x_begin : x, y_begin = box->y_begin > y ? box->y_begin : y;
-  int x_end = box->x_end < x + frame->tile ? box->x_end : x + frame->tile;
-  int y_end = box->y_end < y + frame->tile ? box->y_end : y + frame->tile;
-  unsigned n_covered = 0;
-  conic_triangle_edges edges;
-  conic_triangle_edges_of(record, &edges);
-  for (int j = y_begin; j < y_end; j++)
-    for (int i = x_begin; i < x_end; i++) {
-      float iz;
-      if (!conic_triangle_sample(record, &edges, i, j, &iz))
-        continue;
-      conic_triangle_block *block = &tile->blocks[(j - y) / CONIC_BLOCK_EDGE][(i - x) / CONIC_BLOCK_EDGE];
-      int l = i % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + j % CONIC_BLOCK_EDGE;
-      n_covered++;
-      if (!(block->iz[l] < iz))
-        continue;
-      block->iz[l] = iz;
-      block->record[l] = i_record;
-    }
-  return n_covered;
+conic_triangle_canvas conic_triangle_canvas_of(const conic_triangle_frame *frame, int x, int y,
+                                               conic_triangle_tile *tile) {
+  return (conic_triangle_canvas){tile->blocks[0],    CONIC_BAND_BLOCKS,  x, y, frame->tile,
+                                 frame->view->width, frame->view->height};
 }
 
 void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile) {
+  const conic_triangle_canvas canvas = conic_triangle_canvas_of(frame, x, y, tile);
   tile->n_fragments = 0;
   memset(tile->covered, 0, sizeof tile->covered);
   memset(tile->blocks, 0, sizeof tile->blocks);
@@ -55,8 +36,10 @@ void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int 
     const conic_triangle_chunk *chunk = &frame->chunks[i];
     const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
     const uint32_t *entries = frame->entries + chunk->first_entry;
-    for (uint32_t k = begin[0]; k < begin[1]; k++)
-      tile->n_fragments += conic_triangle_draw_samples(frame, (uint32_t)chunk->first_record + entries[k], x, y, tile);
+    for (uint32_t k = begin[0]; k < begin[1]; k++) {
+      uint32_t i_record = (uint32_t)chunk->first_record + entries[k];
+      tile->n_fragments += conic_triangle_draw_samples(&frame->records[i_record], i_record, &canvas);
+    }
   }
   for (int i_row = 0; i_row < CONIC_BAND_BLOCKS; i_row++)
     for (int block = 0; block < CONIC_BAND_BLOCKS; block++)

@@ -8,10 +8,9 @@
 /* Points the band to the tile's row; null where no triangle is in it. */
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row, conic_band *band);
 
-/* A record in a tile, sample by sample; returns how many it covers. For those of a few samples, and the plain C
- * reference for all. */
-unsigned conic_triangle_draw_samples(const conic_triangle_frame *frame, uint32_t i_record, int x, int y,
-                                     conic_triangle_tile *tile);
+/* The tile whose first pixel is (x, y), to draw in. */
+conic_triangle_canvas conic_triangle_canvas_of(const conic_triangle_frame *frame, int x, int y,
+                                               conic_triangle_tile *tile);
 
 /* Finds out where visible triangles of a block are the heaviest and the nearest of what is visible, before they are
  * added to its sums. */

@@ -20,7 +20,7 @@ static inline int conic_method_has_ellipses(conic_method method) {
 }
 
 /* The error in a weight (of a kernel of peak 1) at which `auto` hands over from conic to ray, and the bound of conic's,
- * 0.68·A·√q for a centre that is √q standard deviations from where it should be (docs/picture.md, Auto). */
+ * 0.68·A·√q for a centre that is √q standard deviations from where it should be (docs/reference/picture.md, Auto). */
 #define CONIC_AUTO_ERROR 4e-3f
 #define CONIC_AUTO_STEEPNESS 0.68f
 /* By how much of itself inverse depth may change over the filter's standard deviation where `ray` is still good. */

@@ -23,8 +23,8 @@ conic_status conic_render_window(conic_renderer *renderer, const conic_splats *s
                                  conic_render_statistics *statistics);
 
 /* Raises hiding[y·width + x] to the inverse depth that the splats hide all beyond of at that pixel: the greatest
- * s_k·min(iz_k, iz_plane,k) of docs/picture.md. No splat whose iz and iz_plane stay below it there is visible in a
- * picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_window. */
+ * s_k·min(iz_k, iz_plane,k) of docs/reference/picture.md. No splat whose iz and iz_plane stay below it there is visible
+ * in a picture that these splats are part of, nor hides, nor is the nearest. Errors: as conic_render_window. */
 conic_status conic_render_hiding(conic_renderer *renderer, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, float *hiding);
 

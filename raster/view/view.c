@@ -58,7 +58,7 @@ static const char *what_is_wrong(const conic_splats *splats, const conic_camera 
 }
 
 /* Half a pixel a standard deviation; for `auto`, whose other formula follows thin splats further, an eighth
- * (docs/picture.md, Auto). */
+ * (docs/reference/picture.md, Auto). */
 static float thin_variance(const conic_render_options *options) {
   float h = options->prefilter;
   if (options->method != CONIC_METHOD_AUTO)

@@ -44,14 +44,14 @@ size_t conic_grid_count(const conic_grid_part *part) {
 }
 
 /* A polynomial in one variable, and how it goes on from place to place. */
-typedef struct walk {
+typedef struct polynomial_walk {
   double differences[N_DIFFERENCES];
-} walk;
+} polynomial_walk;
 
 /* The differences of Σ a_i x^i at `from`, for steps of `step`. */
-static walk walk_from(const double a[N_DIFFERENCES], double from, double step) {
+static polynomial_walk walk_from(const double a[N_DIFFERENCES], double from, double step) {
   double b[N_DIFFERENCES], scale = 1.0;
-  walk w;
+  polynomial_walk w;
   for (int i = 0; i < N_DIFFERENCES; i++)
     b[i] = a[i];
   for (int i = 0; i < N_DIFFERENCES - 1; i++) /* Horner's scheme, over and over: the polynomial about `from` */
@@ -67,7 +67,7 @@ static walk walk_from(const double a[N_DIFFERENCES], double from, double step) {
   return w;
 }
 
-static inline double walk_on(walk *w) {
+static inline double walk_on(polynomial_walk *w) {
   double here = w->differences[0];
   for (int i = 0; i < N_DIFFERENCES - 1; i++)
     w->differences[i] += w->differences[i + 1];
@@ -128,7 +128,8 @@ size_t conic_grid_sample(const conic_patch *patch, int degree, double cutoff, co
     double from = (double)(2 * first + 1 - part->n) / (double)part->n;
     double t = (double)(2 * row + 1 - part->n) / (double)part->n;
     collapse(patch, degree, t, height, along, across);
-    walk walks[3] = {walk_from(height, from, step), walk_from(along, from, step), walk_from(across, from, step)};
+    polynomial_walk walks[3] = {walk_from(height, from, step), walk_from(along, from, step),
+                                walk_from(across, from, step)};
     for (size_t i = 0; i < n; i++) {
       s[i] = (double)(2 * (first + (int64_t)i) + 1 - part->n) / (double)part->n;
       for (int k = 0; k < 3; k++)

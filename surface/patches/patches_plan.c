@@ -15,12 +15,12 @@ static const double LEAST_RADIUS_PX = 4.0, SURE_RADIUS_PX = 6.0;
 /* No grid need be so fine that its samples are nearer to the surface, or to its slope, than this; nor coarser. */
 static const double OFF_PX = 0.25, OFF_SLOPE = 0.01, LEAST_ROWS = 6.0;
 
-typedef struct planning {
+typedef struct patches_planning {
   conic_patches *patches;
   const conic_patches_view *view;
   uint8_t *plans;
   size_t first_subtree;
-} planning;
+} patches_planning;
 
 /* So many that samples are a step apart on the screen, or so many that they are as good as nearer ones. */
 double conic_patch_rows(const conic_patches_view *view, const conic_patch *patch, const double p[3], double around) {
@@ -67,7 +67,7 @@ double conic_patches_share(const conic_patches *patches, const conic_patches_vie
   return (radius_px - LEAST_RADIUS_PX) / (SURE_RADIUS_PX - LEAST_RADIUS_PX);
 }
 
-static uint8_t plan_slot(const planning *work, size_t slot) {
+static uint8_t plan_slot(const patches_planning *work, size_t slot) {
   const conic_patch *patch = &work->patches->patches[slot];
   double p[3], reach = place_of(work->patches, work->view, slot, p);
   if (!conic_patches_sees(work->view, p, reach))
@@ -96,14 +96,14 @@ static void leaves_of(const conic_neighbours *tree, size_t i_node, size_t *begin
   *end = last - (tree->n_leaves - 1) + 1;
 }
 
-static uint32_t deep_count(const planning *work, size_t slot) {
+static uint32_t deep_count(const patches_planning *work, size_t slot) {
   const conic_patches *patches = work->patches;
   size_t n = conic_patch_sample_deep(work->view, &patches->patches[slot], patches->options.surface.degree,
                                      (double)patches->options.cutoff, NULL);
   return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; /* which is too many, and will be told */
 }
 
-static void plan_all(planning *work, size_t i_node, int is_splat) {
+static void plan_all(patches_planning *work, size_t i_node, int is_splat) {
   const conic_neighbours *tree = &work->patches->surface->tree;
   size_t begin, end;
   leaves_of(tree, i_node, &begin, &end);
@@ -116,7 +116,7 @@ static void plan_all(planning *work, size_t i_node, int is_splat) {
   }
 }
 
-static void plan_node(planning *work, size_t i_node) {
+static void plan_node(patches_planning *work, size_t i_node) {
   const conic_patches *patches = work->patches;
   const conic_neighbours *tree = &patches->surface->tree;
   const float *box = tree->boxes[i_node];
@@ -141,7 +141,7 @@ static void plan_node(planning *work, size_t i_node) {
 }
 
 static void plan_subtree(void *data, size_t i_item, int i_thread) {
-  planning *work = data;
+  patches_planning *work = data;
   (void)i_thread;
   plan_node(work, work->first_subtree + i_item);
 }
@@ -151,7 +151,7 @@ void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, 
   size_t n = 1;
   while (n < tree->n_leaves && n < N_SUBTREES)
     n *= 2;
-  planning work = {patches, view, plans, n - 1};
+  patches_planning work = {patches, view, plans, n - 1};
   memset(plans, CONIC_PLAN_CULLED, tree->n_slots);
   conic_parallel_for(patches->context, n, plan_subtree, &work);
 }

@@ -10,7 +10,7 @@
 
 enum { CHUNK = 256 };
 
-typedef struct selecting {
+typedef struct patches_selecting {
   conic_patches *patches;
   conic_patches_view view;
   conic_patches_frame *frame;
@@ -19,9 +19,9 @@ typedef struct selecting {
   size_t n_chunks;
   size_t *chunk_starts; /* where each chunk of points begins among the samples; one more than there are chunks */
   size_t *chunk_kept;   /* by chunk: samples taken over */
-} selecting;
+} patches_selecting;
 
-static size_t count_of(const selecting *work, uint32_t slot) {
+static size_t count_of(const patches_selecting *work, uint32_t slot) {
   uint8_t plan = work->frame->plans[slot];
   if (plan <= CONIC_PLAN_SPLAT)
     return plan;
@@ -32,7 +32,7 @@ static size_t count_of(const selecting *work, uint32_t slot) {
 }
 
 static void count_chunk(void *data, size_t i_item, int i_thread) {
-  selecting *work = data;
+  patches_selecting *work = data;
   const conic_neighbours *tree = &work->patches->surface->tree;
   size_t end = (i_item + 1) * CHUNK < tree->n_points ? (i_item + 1) * CHUNK : tree->n_points, n = 0;
   (void)i_thread;
@@ -58,7 +58,7 @@ static void copy_samples(const conic_splats *from, size_t first, const conic_spl
     to->opacity[at] = 1.0f;
 }
 
-static void make_grid(const selecting *work, uint32_t slot, size_t at) {
+static void make_grid(const patches_selecting *work, uint32_t slot, size_t at) {
   const conic_patches *patches = work->patches;
   const conic_splats *splats = &work->frame->splats;
   const conic_patch *patch = &patches->patches[slot];
@@ -80,7 +80,7 @@ static void make_grid(const selecting *work, uint32_t slot, size_t at) {
 }
 
 /* The samples of a point's patch, with the point's colour and opacity. */
-static void put_grid(const selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
+static void put_grid(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *from = work->patches->splats;
   const conic_splats *to = &work->frame->splats;
   make_grid(work, slot, at);
@@ -92,7 +92,7 @@ static void put_grid(const selecting *work, size_t point, uint32_t slot, size_t 
 }
 
 /* A patch that comes in beside its splat, which is the last of the n. */
-static void put_fading(const selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
+static void put_fading(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
   const conic_splats *to = &work->frame->splats;
   double share = conic_patches_share(work->patches, &work->view, slot);
   put_grid(work, point, slot, at, n - 1);
@@ -103,14 +103,14 @@ static void put_fading(const selecting *work, size_t point, uint32_t slot, size_
 }
 
 /* Whether the last picture has the very grid. Points that coincide with another are made anew: they have no start. */
-static int is_kept(const selecting *work, size_t point, uint32_t slot) {
+static int is_kept(const patches_selecting *work, size_t point, uint32_t slot) {
   uint8_t plan = work->frame->plans[slot];
   return plan >= CONIC_PLAN_GRID && plan < CONIC_PLAN_FADING && work->last->plans[slot] == plan &&
          work->patches->surface->tree.point_of_slot[slot] == point;
 }
 
 /* The samples of a point; those that are not finite are handed on too, so that the renderer counts them. */
-static size_t put_point(const selecting *work, size_t point, size_t at, size_t *n_kept) {
+static size_t put_point(const patches_selecting *work, size_t point, size_t at, size_t *n_kept) {
   uint32_t slot = work->patches->surface->tree.slot_of_point[point];
   size_t n = slot == CONIC_NO_SLOT ? 1 : count_of(work, slot);
   if (n == 0)
@@ -132,7 +132,7 @@ static size_t put_point(const selecting *work, size_t point, size_t at, size_t *
 }
 
 static void fill_chunk(void *data, size_t i_item, int i_thread) {
-  selecting *work = data;
+  patches_selecting *work = data;
   size_t n_points = work->patches->surface->tree.n_points, at = work->chunk_starts[i_item], n_kept = 0;
   size_t end = (i_item + 1) * CHUNK < n_points ? (i_item + 1) * CHUNK : n_points;
   (void)i_thread;
@@ -142,7 +142,7 @@ static void fill_chunk(void *data, size_t i_item, int i_thread) {
 }
 
 /* The clip lines of the splats that are drawn as such. */
-static void put_clips(const selecting *work, size_t n) {
+static void put_clips(const patches_selecting *work, size_t n) {
   const conic_splats *from = work->patches->splats;
   conic_splats *to = &work->frame->splats;
   const uint32_t *points = work->frame->points;
@@ -180,7 +180,7 @@ void conic_patches_release_frames(conic_patches *patches) {
   }
 }
 
-static conic_status reserve(const selecting *work, size_t n) {
+static conic_status reserve(const patches_selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
   unsigned fields = conic_splats_fields(work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
@@ -200,7 +200,7 @@ static conic_status reserve(const selecting *work, size_t n) {
 }
 
 /* Counts everyone's samples. */
-static conic_status count_samples(selecting *work) {
+static conic_status count_samples(patches_selecting *work) {
   conic_context *context = work->patches->context;
   for (int i = 0; i < CONIC_N_GRIDS; i++) {
     conic_grid_part part = conic_grid_whole(conic_grid_sizes[i]);
@@ -216,7 +216,7 @@ static conic_status count_samples(selecting *work) {
 }
 
 /* By point, as points at one place are drawn each. */
-static void describe(const selecting *work, conic_patch_selection *selection) {
+static void describe(const patches_selecting *work, conic_patch_selection *selection) {
   const conic_neighbours *tree = &work->patches->surface->tree;
   memset(selection, 0, sizeof *selection);
   selection->splats = work->frame->splats;
@@ -233,7 +233,7 @@ static void describe(const selecting *work, conic_patch_selection *selection) {
     selection->n_kept += work->chunk_kept[i];
 }
 
-static conic_status select_samples(selecting *work, conic_patch_selection *selection) {
+static conic_status select_samples(patches_selecting *work, conic_patch_selection *selection) {
   conic_patches *patches = work->patches;
   conic_patches_plan(patches, &work->view, work->frame->plans);
   conic_status status = count_samples(work);
@@ -254,7 +254,7 @@ conic_status conic_patches_select(conic_patches *patches, const conic_camera *ca
   conic_context *context = patches->context;
   const conic_neighbours *tree = &patches->surface->tree;
   double diagonal2 = 0.0;
-  selecting work = {.patches = patches, .n_chunks = (tree->n_points + CHUNK - 1) / CHUNK};
+  patches_selecting work = {.patches = patches, .n_chunks = (tree->n_points + CHUNK - 1) / CHUNK};
   memset(selection, 0, sizeof *selection);
   if (!(camera->fx > 0.0 && camera->fy > 0.0 && camera->width > 0 && camera->height > 0) ||
       render->kernel.cutoff != patches->options.cutoff || !(render->prefilter >= 0.0f))

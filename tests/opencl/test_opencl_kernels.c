@@ -16,14 +16,16 @@ static const char added_text[] =
     "  lanes all;\n"
     "  for (size_t i = 0; i < 16; i++) {\n"
     "    float v = x[16 * item + i], w = x[16 * item + 15 - i], a = fabs(v);\n"
-    "    float y[8] = {conic_exp_negative(-a), conic_gauss_narrow(v), conic_kernel_value(&view.reconstruction, a),\n"
+    "    float b = a < view.support ? a : 0.0f;\n"
+    "    float y[8] = {conic_exp_negative(-a), conic_gauss_narrow(v), conic_kernel_value(&view.reconstruction, b),\n"
     "                  sqrt(a), 1.0f / v, v / w, v * w + w, (v - w) * v};\n"
     "    for (size_t k = 0; k < 8; k++)\n"
     "      plain[k * n + 16 * item + i] = y[k];\n"
     "    ((float *)&all)[i] = v;\n"
     "  }\n"
     "  lanes a = fabs(all), w = all.sfedcba9876543210;\n"
-    "  lanes y[8] = {lanes_exp_negative(-a), lanes_gauss_narrow(all), lanes_kernel_value(&view.reconstruction, a),\n"
+    "  lanes y[8] = {lanes_exp_negative(-a), lanes_gauss_narrow(all), \n"
+    "                kernel_value(&view, a < view.support ? a : 0.0f, kind_of(&view.reconstruction)),\n"
     "                sqrt(a), 1.0f / all, all / w, all * w + w, (all - w) * all};\n"
     "  for (size_t k = 0; k < 8; k++)\n"
     "    vstore16(y[k], 0, in_lanes + k * n + 16 * item);\n"
@@ -33,11 +35,13 @@ static const char added_text[] =
     "                            __global float *plain, __global float *in_lanes) {\n"
     "  conic_view view = *frame_view;\n"
     "  size_t item = get_global_id(0);\n"
-    "  __global const conic_footprint *global_footprint = &footprints[item];\n"
     "  conic_footprint footprint = footprints[item];\n"
-    "  lanes_row row = lanes_row_begin(global_footprint, 8);\n"
-    "  lanes_fragment f;\n"
-    "  lanes_fragment_at(&view, global_footprint, &rays[item], &clips[item], &row, 12, &f);\n"
+    "  conic_ray ray = rays[item];\n"
+    "  conic_clip_record clip = clips[item];\n"
+    "  splat_rows row = begin_rows(&footprint, rows_from(8));\n"
+    "  fragments f;\n"
+    "  fragments_at(&view, view.support, &footprint, &ray, &clip, &row, columns_from(12), !(footprint.s3 > 0.0f), "
+    "&f);\n"
     "  for (int lane = 0; lane < 16; lane++) {\n"
     "    gather_pixel p;\n"
     "    conic_fragment g = {0, 0, 0, 0};\n"
@@ -49,7 +53,7 @@ static const char added_text[] =
     "    to[2] = g.iz;\n"
     "    to[3] = g.plane_iz;\n"
     "    to[4] = g.scale;\n"
-    "    to_lanes[0] = ((int *)&f.is_covered)[lane] ? 1.0f : 0.0f;\n"
+    "    to_lanes[0] = ((int *)&f.covered)[lane] ? 1.0f : 0.0f;\n"
     "    to_lanes[1] = ((float *)&f.q)[lane];\n"
     "    to_lanes[2] = ((float *)&f.iz)[lane];\n"
     "    to_lanes[3] = ((float *)&f.plane_iz)[lane];\n"
@@ -149,7 +153,7 @@ static size_t try_functions(workbench *d, const conic_view *view, uint64_t *stat
     volatile float v = x[i], w = x[i / 16 * 16 + 15 - i % 16], a = fabsf(v), product = v * w, difference = v - w;
     const float expected[N_ANSWERS] = {conic_exp_negative(-a),
                                        conic_gauss_narrow(v),
-                                       conic_kernel_value(&view->kernel, a),
+                                       conic_kernel_value(&view->kernel, a < view->support ? a : 0.0f),
                                        sqrtf(a),
                                        1.0f / v,
                                        v / w,

@@ -53,7 +53,7 @@ static int covers(const expectation *e, size_t i, int x, int y, conic_fragment *
          conic_fragment_at(&e->view, &e->projected, &e->projected.footprints[i], x, y, fragment);
 }
 
-/* By the definition (docs/picture.md, Visible and Planes), in file order. */
+/* By the definition (docs/reference/picture.md, Visible and Planes), in file order. */
 static void expect_pixel(expectation *e, int x, int y) {
   size_t at = (size_t)y * (size_t)e->view.width + (size_t)x;
   conic_fragment g;
@@ -67,7 +67,7 @@ static void expect_pixel(expectation *e, int x, int y) {
   e->thresholds[at] = threshold;
   for (size_t i = 0; i < e->chunk.n_drawn; i++) {
     const conic_footprint *footprint = &e->projected.footprints[i];
-    const conic_surface *surface = &e->projected.surfaces[i];
+    const conic_projected_surface *surface = &e->projected.surfaces[i];
     if (!covers(e, i, x, y, &g) || !(larger(g.plane_iz, g.iz) >= threshold))
       continue;
     float weight = conic_final_weight(&e->view, footprint, g.q, g.scale);
@@ -129,7 +129,7 @@ static void check_setup(const expectation *e, const conic_frame *frame) {
   uint32_t *order = download(frame, CONIC_BUFFER_ORDER, frame->n_drawn, sizeof *order);
   conic_footprint *footprints = download(frame, CONIC_BUFFER_FOOTPRINTS, n, sizeof *footprints);
   conic_box *boxes = download(frame, CONIC_BUFFER_BOXES, n, sizeof *boxes);
-  conic_surface *surfaces = download(frame, CONIC_BUFFER_SURFACES, n, sizeof *surfaces);
+  conic_projected_surface *surfaces = download(frame, CONIC_BUFFER_SURFACES, n, sizeof *surfaces);
   conic_ray *rays = download(frame, CONIC_BUFFER_RAYS, n, sizeof *rays);
   conic_clip_record *clips =
       e->f->splats.n_clips ? download(frame, CONIC_BUFFER_CLIP_RECORDS, n, sizeof *clips) : zeroed(n, sizeof *clips);

@@ -160,7 +160,7 @@ static int covers(fixture *f, size_t i, double x_px, double y_px) {
   conic_view view;
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_fragment fragment;
   conic_chunk chunk = {.n_drawn = 0};

@@ -1,5 +1,6 @@
-/* Perspective Accurate Splatting as printed and as corrected: each row of docs/errata.md is shown to be wrong as
- * printed and right as corrected, against sampled contours and a numerical convolution. Independent of the renderer. */
+/* Perspective Accurate Splatting as printed and as corrected: each row of docs/reference/errata.md is shown to be wrong
+ * as printed and right as corrected, against sampled contours and a numerical convolution. Independent of the renderer.
+ */
 #include "tests/support/check.h"
 
 typedef double matrix3[3][3];

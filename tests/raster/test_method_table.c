@@ -1,6 +1,6 @@
 /* The largest weight error of the methods' bare formulas (no hand-overs) within the footprint, against the exactly
  * projected kernel, numerically convolved with the pixel's Gaussian of 1 px². All in double, apart from the renderer:
- * this is about the methods, not about their implementation. The figures are those of docs/accuracy.md. */
+ * this is about the methods, not about their implementation. The figures are those of docs/reference/accuracy.md. */
 #include "raster/tiles/coverage.h"
 #include "tests/support/fixture.h"
 
@@ -303,7 +303,7 @@ static void check_choice(fixture *f, const setting *s) {
   conic_chunk chunk;
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected projected = {1, 1, &chunk, &footprint, &box, &surface, &ray, NULL};
   double thinness = smaller_variance(s) / thin_variance - 1.0, error = conic_bound(s) / 4e-3 - 1.0;

@@ -34,7 +34,7 @@ static contour sample_contour(const fixture *f, const conic_footprint *footprint
 static int project_one(fixture *f, conic_footprint *footprint, conic_box *box) {
   conic_view view;
   conic_chunk chunk;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected projected = {1, 1, &chunk, footprint, box, &surface, &ray};
   f->options.prefilter = 0.0f;

@@ -1,5 +1,5 @@
-/* The splats that break other renderers (docs/stability.md), each against the oracle and against what can be said of it
- * beforehand. */
+/* The splats that break other renderers (docs/reference/stability.md), each against the oracle and against what can be
+ * said of it beforehand. */
 #include "tests/support/stability.h"
 
 static void straight(fixture *f, int width, int height, double focal_px) {

@@ -52,7 +52,7 @@ typedef struct layers_sample {
 } layers_sample;
 
 typedef struct layers_all {
-  conic_layers_view view;
+  conic_layers_file view;
   size_t n;
   layers_sample *samples;
 } layers_all;
@@ -60,7 +60,7 @@ typedef struct layers_all {
 static inline void layers_read(conic_context *context, const char *path, layers_all *all) {
   conic_layers_decoder *decoder;
   memset(all, 0, sizeof *all);
-  if (conic_layers_view_open(context, path, &all->view) != CONIC_OK ||
+  if (conic_layers_file_open(context, path, &all->view) != CONIC_OK ||
       conic_layers_decoder_create(context, &all->view.header, &decoder) != CONIC_OK)
     exit(1);
   all->samples = calloc((size_t)all->view.header.n_samples, sizeof *all->samples);
@@ -86,7 +86,7 @@ static inline void layers_read(conic_context *context, const char *path, layers_
 
 static inline void layers_release(layers_all *all) {
   free(all->samples);
-  conic_layers_view_close(&all->view);
+  conic_layers_file_close(&all->view);
 }
 
 /* Whether a build without zstd is why a test cannot run. */

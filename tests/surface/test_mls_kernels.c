@@ -119,7 +119,8 @@ static void sums_at(conic_near *near, const conic_weighing *weighing, double a, 
   conic_surface_kernels_scalar.plane(near, weighing, tilted, t, sums);
 }
 
-/* The derivative by t is Eq. 6 as corrected (docs/errata.md): with the printed sign and exponent this fails. */
+/* The derivative by t is Eq. 6 as corrected (docs/reference/errata.md): with the printed sign and exponent this fails.
+ */
 static void check_derivatives(void) {
   conic_near near = allocate();
   const double t = 0.15, d = 1e-5;

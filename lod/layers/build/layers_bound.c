@@ -13,7 +13,7 @@ enum { N_PROBES = 32, N_NEAREST = 8, LEAST_TO_TELL = 32 };
 static const double outline_over_spacing = 1.5;
 
 /* A leaf's samples are drawn alike. One that is many times larger than most is not let to blow up the others, as the
- * automatic ε does it (docs/picture.md). */
+ * automatic ε does it (docs/reference/picture.md). */
 static const double most_over_median = 4.0;
 
 static double size_of(uint16_t code) {

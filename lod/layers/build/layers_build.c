@@ -1,5 +1,5 @@
 /* Building a layered point cloud in bounded memory: samples are put aside as they come, sorted roughly by where they
- * are, grown into a tree piece by piece, and written (docs/layers.md). */
+ * are, grown into a tree piece by piece, and written (docs/reference/layers.md). */
 #include <math.h>
 #include <string.h>
 

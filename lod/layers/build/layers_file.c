@@ -44,13 +44,13 @@ static void order_nodes(const conic_layers_forest *forest, plan *p) {
   }
 }
 
-typedef struct outline {
+typedef struct node_outline {
   float radius;
   uint64_t n_samples;
-} outline;
+} node_outline;
 
 static int compare_outlines(const void *a, const void *b) {
-  float first = ((const outline *)a)->radius, second = ((const outline *)b)->radius;
+  float first = ((const node_outline *)a)->radius, second = ((const node_outline *)b)->radius;
   return (first > second) - (first < second);
 }
 
@@ -59,12 +59,12 @@ static conic_status median_outline(conic_context *context, const conic_layers_he
                                    const conic_layers_entry *entries, double *median) {
   uint64_t before = 0;
   size_t n = 0;
-  outline *outlines = conic_memory_allocate(context, header->n_clouds, sizeof *outlines);
+  node_outline *outlines = conic_memory_allocate(context, header->n_clouds, sizeof *outlines);
   if (!outlines)
     return CONIC_ERROR_MEMORY;
   for (uint32_t i = 0; i < header->n_clouds; i++)
     if (entries[i].child == 0)
-      outlines[n++] = (outline){entries[i].radius, entries[i].n_place};
+      outlines[n++] = (node_outline){entries[i].radius, entries[i].n_place};
   qsort(outlines, n, sizeof *outlines, compare_outlines);
   for (size_t i = 0; i < n && before <= (header->n_samples - 1) / 2; i++) {
     *median = (double)outlines[i].radius;

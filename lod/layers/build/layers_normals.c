@@ -16,12 +16,12 @@ static const double first_reach = 2.5;
 #define NO_SAMPLE UINT32_MAX
 
 /* Samples in cells, chained by the hash of their cell. */
-typedef struct grid {
+typedef struct sample_grid {
   size_t n, n_chains;
   float (*at)[3];
   uint32_t *first, *next;
   float reach; /* as wide as a cell */
-} grid;
+} sample_grid;
 
 typedef struct neighbours {
   int n;
@@ -29,19 +29,19 @@ typedef struct neighbours {
   uint32_t sample[MOST_NEIGHBOURS];
 } neighbours;
 
-static uint32_t *chain_of(const grid *g, int32_t x, int32_t y, int32_t z) {
+static uint32_t *chain_of(const sample_grid *g, int32_t x, int32_t y, int32_t z) {
   uint64_t mixed = (uint64_t)(uint32_t)x * UINT64_C(0x9e3779b97f4a7c15) ^
                    (uint64_t)(uint32_t)y * UINT64_C(0xc2b2ae3d27d4eb4f) ^
                    (uint64_t)(uint32_t)z * UINT64_C(0x165667b19e3779f9);
   return &g->first[(mixed ^ mixed >> 32) & (g->n_chains - 1)];
 }
 
-static void cell_of(const grid *g, const float at[3], int32_t cell[3]) {
+static void cell_of(const sample_grid *g, const float at[3], int32_t cell[3]) {
   for (int axis = 0; axis < 3; axis++)
     cell[axis] = (int32_t)(at[axis] / g->reach);
 }
 
-static void fill_grid(grid *g, float reach) {
+static void fill_grid(sample_grid *g, float reach) {
   g->reach = reach;
   memset(g->first, 0xff, g->n_chains * sizeof *g->first);
   for (uint32_t i = 0; i < g->n; i++) {
@@ -69,7 +69,7 @@ static void keep(neighbours *found, float distance2, uint32_t i_sample) {
   found->n += found->n < MOST_NEIGHBOURS;
 }
 
-static void look_into(const grid *g, const int32_t cell[3], const float at[3], neighbours *found) {
+static void look_into(const sample_grid *g, const int32_t cell[3], const float at[3], neighbours *found) {
   for (uint32_t i = *chain_of(g, cell[0], cell[1], cell[2]); i != NO_SAMPLE; i = g->next[i]) {
     int32_t own[3];
     cell_of(g, g->at[i], own);
@@ -79,7 +79,7 @@ static void look_into(const grid *g, const int32_t cell[3], const float at[3], n
   }
 }
 
-static void find_neighbours(const grid *g, const float at[3], neighbours *found) {
+static void find_neighbours(const sample_grid *g, const float at[3], neighbours *found) {
   int32_t cell[3];
   found->n = 0;
   for (int i = 0; i < MOST_NEIGHBOURS; i++) {
@@ -94,7 +94,7 @@ static void find_neighbours(const grid *g, const float at[3], neighbours *found)
 }
 
 /* The direction of least spread; whether there is one. */
-static int fit_plane(const grid *g, const neighbours *found, float normal[3]) {
+static int fit_plane(const sample_grid *g, const neighbours *found, float normal[3]) {
   double mean[3] = {0.0, 0.0, 0.0}, covariance[6] = {0.0}, values[3], vectors[3][3];
   for (int i = 0; i < found->n; i++)
     for (int axis = 0; axis < 3; axis++)
@@ -135,7 +135,7 @@ static void place_samples(const conic_layers_sample *samples, size_t n, float (*
 }
 
 /* One pass over those that still have none; returns how many are left. */
-static size_t pass(const grid *g, conic_layers_sample *samples, int is_last) {
+static size_t pass(const sample_grid *g, conic_layers_sample *samples, int is_last) {
   size_t n_left = 0;
   for (size_t i = 0; i < g->n; i++) {
     neighbours found;
@@ -154,7 +154,7 @@ static size_t pass(const grid *g, conic_layers_sample *samples, int is_last) {
 
 conic_status conic_layers_find_normals(const conic_layers_plan *plan, conic_layers_sample *samples, size_t n) {
   conic_context *context = plan->context;
-  grid g = {.n = n, .n_chains = 64};
+  sample_grid g = {.n = n, .n_chains = 64};
   while (g.n_chains < n)
     g.n_chains *= 2;
   g.at = conic_memory_allocate(context, n, sizeof *g.at);

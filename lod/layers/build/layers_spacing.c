@@ -13,30 +13,30 @@ enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };
 #define NO_PLACE UINT32_MAX
 
 /* A place in whose neighbourhood samples are counted. */
-typedef struct place {
+typedef struct spacing_place {
   double at[3];
   double nearest2[N_NEAREST + 1]; /* ascending; the first is the place's own sample */
-} place;
+} spacing_place;
 
 typedef struct mark {
   uint32_t place, next;
 } mark;
 
 /* Which cells of a grid have a place in or beside them, as chains of marks by the cell's hash. */
-typedef struct search {
+typedef struct spacing_search {
   double low[3], edge;
   size_t n_places, n_marks;
-  place places[N_PLACES];
+  spacing_place places[N_PLACES];
   mark marks[27 * N_PLACES];
   uint32_t first[N_CELLS];
-} search;
+} spacing_search;
 
 static int compare_doubles(const void *a, const void *b) {
   double first = *(const double *)a, second = *(const double *)b;
   return (first > second) - (first < second);
 }
 
-static int64_t cell_on(const search *s, int axis, double position) {
+static int64_t cell_on(const spacing_search *s, int axis, double position) {
   return (int64_t)floor((position - s->low[axis]) / s->edge);
 }
 
@@ -46,7 +46,7 @@ static size_t hash(int64_t x, int64_t y, int64_t z) {
   return (size_t)((mixed ^ mixed >> 29) * UINT64_C(0xbf58476d1ce4e5b9) >> 50);
 }
 
-static void mark_cells(search *s, uint32_t i_place) {
+static void mark_cells(spacing_search *s, uint32_t i_place) {
   const double *at = s->places[i_place].at;
   int64_t cell[3];
   for (int axis = 0; axis < 3; axis++)
@@ -60,7 +60,7 @@ static void mark_cells(search *s, uint32_t i_place) {
   }
 }
 
-static void lay_out(const conic_layers_intake *intake, double edge, search *s) {
+static void lay_out(const conic_layers_intake *intake, double edge, spacing_search *s) {
   s->edge = edge;
   s->n_marks = 0;
   s->n_places = intake->n_some < N_PLACES ? intake->n_some : N_PLACES;
@@ -74,18 +74,18 @@ static void lay_out(const conic_layers_intake *intake, double edge, search *s) {
   }
 }
 
-static void keep(place *p, double distance2) {
+static void keep(spacing_place *p, double distance2) {
   int i = N_NEAREST;
   for (; i > 0 && p->nearest2[i - 1] > distance2; i--)
     p->nearest2[i] = p->nearest2[i - 1];
   p->nearest2[i] = distance2;
 }
 
-static void look_at(search *s, const double position[3]) {
+static void look_at(spacing_search *s, const double position[3]) {
   double edge2 = s->edge * s->edge;
   uint32_t i = s->first[hash(cell_on(s, 0, position[0]), cell_on(s, 1, position[1]), cell_on(s, 2, position[2]))];
   for (; i != NO_PLACE; i = s->marks[i].next) {
-    place *p = &s->places[s->marks[i].place];
+    spacing_place *p = &s->places[s->marks[i].place];
     double x = position[0] - p->at[0], y = position[1] - p->at[1], z = position[2] - p->at[2];
     double distance2 = x * x + y * y + z * z;
     if (distance2 <= edge2 && distance2 < p->nearest2[N_NEAREST])
@@ -93,7 +93,7 @@ static void look_at(search *s, const double position[3]) {
   }
 }
 
-static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_raw *samples, search *s) {
+static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_raw *samples, spacing_search *s) {
   uint64_t offset = 0, n_done = 0;
   conic_layers_block block;
   int is_there = 1;
@@ -114,7 +114,7 @@ static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_
 }
 
 /* The lower median over the places that have neighbours enough; 0 where fewer than half have. */
-static double median_spacing(const search *s) {
+static double median_spacing(const spacing_search *s) {
   double spacings[N_PLACES];
   size_t n = 0;
   for (size_t i = 0; i < s->n_places; i++)
@@ -148,7 +148,7 @@ conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *sp
   if (status != CONIC_OK || !(*spacing > 0.0) || intake->n_some == intake->n_samples)
     return status; /* the few are all */
   double edge = 6.0 * *spacing, guess = *spacing;
-  search *s = conic_memory_allocate(intake->context, 1, sizeof *s);
+  spacing_search *s = conic_memory_allocate(intake->context, 1, sizeof *s);
   conic_layers_raw *samples = conic_memory_allocate(intake->context, CONIC_LAYERS_BLOCK, sizeof *samples);
   status = s && samples ? CONIC_OK : CONIC_ERROR_MEMORY;
   *spacing = 0.0;

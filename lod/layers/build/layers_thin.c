@@ -12,10 +12,10 @@ typedef struct point {
 } point;
 
 /* A point that was chosen, in its cell's chain. */
-typedef struct link {
+typedef struct chosen_point {
   point at;
   uint32_t next;
-} link;
+} chosen_point;
 
 /* A cell of the grid that holds points. */
 typedef struct cell {
@@ -32,9 +32,9 @@ struct conic_thinner {
   uint32_t *order; /* in which they are looked at */
   size_t n_ordered;
   size_t n_chosen;
-  uint32_t *chosen; /* which, and */
-  link *links;      /* where */
-  size_t n_cells;   /* a power of two, over twice the chosen */
+  uint32_t *chosen;    /* which, and */
+  chosen_point *links; /* where */
+  size_t n_cells;      /* a power of two, over twice the chosen */
   cell *cells;
   float edge, cells_a_step;
   point last; /* the last chosen point that was found near */
@@ -182,7 +182,7 @@ static void insert(conic_thinner *thinner, uint32_t i_point) {
   cell *found = find_cell(thinner, place);
   uint32_t i = (uint32_t)thinner->n_chosen++;
   thinner->chosen[i] = i_point;
-  thinner->links[i] = (link){thinner->points[i_point], found->place == place ? found->first : NO_POINT};
+  thinner->links[i] = (chosen_point){thinner->points[i_point], found->place == place ? found->first : NO_POINT};
   found->place = place;
   found->first = i;
 }

@@ -1,5 +1,5 @@
 /* From sorted samples to a tree of clouds: bottom up, every node takes from its children the samples that stand for
- * all of its place, and what is left of the children's is their clouds (docs/layers.md). */
+ * all of its place, and what is left of the children's is their clouds (docs/reference/layers.md). */
 #ifndef CONIC_LAYERS_TREE_H
 #define CONIC_LAYERS_TREE_H
 

@@ -131,7 +131,7 @@ static void recount_piece(void *data, size_t i_piece, int i_thread) {
   conic_chunk *sum = &r->chunks[i_thread];
   conic_footprint footprint;
   conic_box box;
-  conic_surface surface;
+  conic_projected_surface surface;
   conic_ray ray;
   conic_projected at = {.footprints = &footprint, .boxes = &box, .surfaces = &surface, .rays = &ray};
   if (is_first(&place->sight.pixels, r->window))

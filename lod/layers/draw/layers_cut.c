@@ -7,18 +7,18 @@
 #include "core/base/message.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
-typedef struct walk {
+typedef struct tree_walk {
   const conic_layers *layers;
   const conic_layers_view *view;
   const conic_layers_wish *wish;
   uint32_t open[CONIC_LAYERS_MOST_LEVELS + 2];
   int n_open;
-} walk;
+} tree_walk;
 
 /* Why a node is not refined. */
 typedef enum verdict { VERDICT_REFINE, VERDICT_FINE, VERDICT_STUCK } verdict;
 
-static verdict judge(const walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
+static verdict judge(const tree_walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
   const unsigned char *is_in = w->wish->is_in;
   if (entry->child == 0 || sight->error_px <= w->wish->error_px)
     return VERDICT_FINE;
@@ -27,13 +27,13 @@ static verdict judge(const walk *w, const conic_layers_entry *entry, const conic
   return !is_in || (is_in[entry->child] && is_in[entry->child + 1]) ? VERDICT_REFINE : VERDICT_STUCK;
 }
 
-static void begin_walk(walk *w) {
+static void begin_walk(tree_walk *w) {
   w->open[0] = 0;
   w->n_open = 1;
 }
 
 /* The next node of the cut: 1, or 0 at the end. */
-static int next_place(walk *w, uint32_t *node, conic_layers_sight *sight, verdict *why) {
+static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, verdict *why) {
   while (w->n_open > 0) {
     *node = w->open[--w->n_open];
     const conic_layers_entry *entry = &w->layers->entries[*node];
@@ -62,7 +62,7 @@ static conic_status add_place(const conic_layers *layers, conic_layers_cut *cut,
 
 conic_status conic_layers_find_cut(const conic_layers *layers, const conic_layers_view *view,
                                    const conic_layers_wish *wish, conic_layers_cut *cut) {
-  walk w = {.layers = layers, .view = view, .wish = wish};
+  tree_walk w = {.layers = layers, .view = view, .wish = wish};
   conic_layers_place place;
   verdict why;
   cut->n = 0;
@@ -91,7 +91,7 @@ void conic_layers_cut_release(conic_context *context, conic_layers_cut *cut) {
 /* Splats of the cut for an error, counted up to a little over `most`. */
 static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *view, const conic_layers_wish *wish,
                           uint64_t most) {
-  walk w = {.layers = layers, .view = view, .wish = wish};
+  tree_walk w = {.layers = layers, .view = view, .wish = wish};
   conic_layers_sight sight;
   uint64_t n = 0;
   uint32_t node;

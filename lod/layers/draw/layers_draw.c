@@ -12,7 +12,7 @@
 /* Where fewer surfaces than this lie behind each other, finding out what is hidden takes longer than drawing it. */
 static const double deep = 4.0;
 
-typedef struct drawing {
+typedef struct layers_drawing {
   conic_layers *layers;
   const conic_camera *camera;
   conic_render_options render; /* near_z and splat_length given */
@@ -25,7 +25,7 @@ typedef struct drawing {
   uint32_t *held; /* clouds that are kept until the picture is drawn */
   conic_layers_loading holding;
   conic_layers_drawn drawn;
-} drawing;
+} layers_drawing;
 
 void conic_layers_draw_options_init(conic_layers_draw_options *options) {
   memset(options, 0, sizeof *options);
@@ -46,12 +46,12 @@ static const char *what_is_wrong(const conic_camera *camera, const conic_render_
   return NULL;
 }
 
-static conic_status choose(drawing *d, const unsigned char *is_in) {
+static conic_status choose(layers_drawing *d, const unsigned char *is_in) {
   conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options->most_levels, .is_in = is_in};
   return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
 }
 
-static conic_status choose_first(drawing *d) {
+static conic_status choose_first(layers_drawing *d) {
   conic_status status = CONIC_OK;
   d->drawn.error_px = d->options->error_px;
   if (d->options->budget)
@@ -61,7 +61,7 @@ static conic_status choose_first(drawing *d) {
 }
 
 /* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
-static conic_status make_do(drawing *d, double until_s) {
+static conic_status make_do(layers_drawing *d, double until_s) {
   conic_layers *layers = d->layers;
   size_t n = 0;
   conic_layers_needed(layers, &d->cut, CONIC_PLACE_SHOWN, d->needed);
@@ -88,14 +88,14 @@ static conic_status make_do(drawing *d, double until_s) {
   return choose(d, d->needed);
 }
 
-static int wants_hiding(const drawing *d) {
+static int wants_hiding(const layers_drawing *d) {
   if (d->options->samples > 1 || d->options->occlusion == CONIC_OCCLUSION_OFF || d->cut.n < 2)
     return 0;
   return d->options->occlusion == CONIC_OCCLUSION_ON ||
          conic_layers_depth_complexity(d->layers, &d->view, &d->cut) >= deep;
 }
 
-static void count_up(drawing *d, const conic_render_statistics *statistics) {
+static void count_up(layers_drawing *d, const conic_render_statistics *statistics) {
   conic_layers_drawn *drawn = &d->drawn;
   uint64_t n_splats = 0;
   drawn->n_places = d->cut.n;
@@ -116,7 +116,7 @@ static void count_up(drawing *d, const conic_render_statistics *statistics) {
       drawn->n_levels = d->layers->entries[i].level + 1;
 }
 
-static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *image,
+static conic_status draw_all(layers_drawing *d, conic_renderer *renderer, conic_image *image,
                              conic_render_statistics *statistics) {
   double start = conic_seconds_now();
   conic_status status = choose_first(d);
@@ -144,7 +144,7 @@ static conic_status draw_all(drawing *d, conic_renderer *renderer, conic_image *
   return CONIC_OK;
 }
 
-static void begin(drawing *d, const conic_render_options *render) {
+static void begin(layers_drawing *d, const conic_render_options *render) {
   conic_layers_scale scale;
   conic_layers_measure(d->layers, render->kernel.cutoff, &scale);
   d->render = *render;
@@ -155,7 +155,7 @@ static void begin(drawing *d, const conic_render_options *render) {
   conic_layers_view_init(&d->layers->header, d->camera, &d->render, d->render.near_z, &d->view);
 }
 
-static void end(drawing *d) {
+static void end(layers_drawing *d) {
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
@@ -174,7 +174,7 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
     layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
   if (!layers->set)
     return CONIC_ERROR_MEMORY;
-  drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
+  layers_drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
   uint64_t n_read = layers->store.n_read;
   begin(&d, render);
   d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);

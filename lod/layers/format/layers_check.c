@@ -11,30 +11,30 @@
 #include "lod/layers/format/layers_read.h"
 
 /* A sample as it would be drawn. */
-typedef struct sample {
+typedef struct drawn_sample {
   uint64_t key;
   float position[3], normal[3];
-} sample;
+} drawn_sample;
 
 /* What is drawn in a node's place, and which of the node's bounds have been found broken. */
 typedef struct stage {
   const conic_layers_entry *entry;
   size_t n;
-  sample *samples;
+  drawn_sample *samples;
   uint32_t *first, *next; /* chains of samples by the hash of their cell, which is as wide as the covering radius */
   size_t n_cells;
   int is_bare, is_outside, is_turned;
 } stage;
 
-typedef struct checking {
+typedef struct layers_checking {
   conic_context *context;
-  const conic_layers_view *view;
+  const conic_layers_file *file;
   conic_layers_decoder *decoder;
   conic_layers_defects *defects;
   uint64_t n_seen;
   int n_stages;
   stage stages[CONIC_LAYERS_MOST_LEVELS];
-} checking;
+} layers_checking;
 
 #define NO_SAMPLE UINT32_MAX
 
@@ -104,7 +104,7 @@ static int is_facing(const conic_layers_entry *entry, const float normal[3]) {
 /* All that is in a leaf's place, against one of the nodes whose place it is too. */
 static void hold_against(const stage *leaf, stage *above) {
   for (size_t i = 0; i < leaf->n; i++) {
-    const sample *one = &leaf->samples[i];
+    const drawn_sample *one = &leaf->samples[i];
     above->is_bare = above->is_bare || !is_covered(above, one->position);
     above->is_outside = above->is_outside || !is_inside(above->entry, one->position);
     above->is_turned = above->is_turned || !is_facing(above->entry, one->normal);
@@ -120,7 +120,7 @@ static void release_stage(conic_context *context, stage *s) {
 
 static void append_cloud(const conic_layers_cloud *cloud, stage *s) {
   for (size_t i = 0; i < cloud->count; i++) {
-    sample *to = &s->samples[s->n++];
+    drawn_sample *to = &s->samples[s->n++];
     to->key = cloud->keys[i];
     for (int axis = 0; axis < 3; axis++) {
       to->position[axis] = cloud->position[axis][i];
@@ -130,28 +130,29 @@ static void append_cloud(const conic_layers_cloud *cloud, stage *s) {
 }
 
 /* What the nodes above draw in this place. */
-static void append_inherited(const checking *c, const stage *above, stage *s) {
-  uint64_t last = conic_layers_last_key(&c->view->header, s->entry);
+static void append_inherited(const layers_checking *c, const stage *above, stage *s) {
+  uint64_t last = conic_layers_last_key(&c->file->header, s->entry);
   for (size_t i = 0; i < above->n; i++)
     if (above->samples[i].key >= s->entry->key && above->samples[i].key <= last)
       s->samples[s->n++] = above->samples[i];
 }
 
 /* Decodes the node's cloud behind what the stage has; says what is wrong with it, or null. */
-static conic_status append_own(checking *c, stage *s, const char **wrong) {
+static conic_status append_own(layers_checking *c, stage *s, const char **wrong) {
   conic_layers_cloud cloud;
-  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->view->header, s->entry), 1);
+  void *block = conic_memory_allocate(c->context, conic_layers_cloud_bytes(&c->file->header, s->entry), 1);
   if (!block)
     return CONIC_ERROR_MEMORY;
-  conic_layers_cloud_place(&c->view->header, s->entry, block, &cloud);
-  *wrong = conic_layers_decode(c->decoder, s->entry, c->view->mapping.bytes + s->entry->offset, &cloud);
+  conic_layers_cloud_place(&c->file->header, s->entry, block, &cloud);
+  *wrong = conic_layers_decode(c->decoder, s->entry, c->file->mapping.bytes + s->entry->offset, &cloud);
   if (!*wrong)
     append_cloud(&cloud, s);
   conic_memory_release(c->context, block);
   return CONIC_OK;
 }
 
-static conic_status make_stage(const checking *c, const stage *above, const conic_layers_entry *entry, stage *s) {
+static conic_status make_stage(const layers_checking *c, const stage *above, const conic_layers_entry *entry,
+                               stage *s) {
   size_t room = (above ? above->n : 0) + entry->n_samples;
   memset(s, 0, sizeof *s);
   s->entry = entry;
@@ -163,26 +164,26 @@ static conic_status make_stage(const checking *c, const stage *above, const coni
   return s->samples && s->next && s->first ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void count_defects(const checking *c, const stage *s) {
+static void count_defects(const layers_checking *c, const stage *s) {
   c->defects->coverage += s->is_bare != 0;
   c->defects->spheres += s->is_outside != 0;
   c->defects->cones += s->is_turned != 0;
 }
 
 /* Coincident samples that have been parted have one place. */
-static int is_parted(const checking *c, const conic_layers_entry *entry) {
-  return entry->depth == 3 * c->view->header.bits;
+static int is_parted(const layers_checking *c, const conic_layers_entry *entry) {
+  return entry->depth == 3 * c->file->header.bits;
 }
 
-static conic_status check_node(checking *c, uint32_t i_node);
+static conic_status check_node(layers_checking *c, uint32_t i_node);
 
-static conic_status check_below(checking *c, stage *s, const char *wrong, uint32_t i_node) {
+static conic_status check_below(layers_checking *c, stage *s, const char *wrong, uint32_t i_node) {
   const conic_layers_entry *entry = s->entry;
   conic_status status = CONIC_OK;
   if (!wrong && s->n != entry->n_drawn && !is_parted(c, entry))
     wrong = "what is drawn in its place is not as much as it says";
   if (wrong) {
-    conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->view->name, i_node, wrong,
+    conic_log(c->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu)", c->file->name, i_node, wrong,
               (unsigned long long)entry->offset);
     c->defects->clouds++;
   }
@@ -196,8 +197,8 @@ static conic_status check_below(checking *c, stage *s, const char *wrong, uint32
   return status;
 }
 
-static conic_status check_node(checking *c, uint32_t i_node) {
-  const conic_layers_entry *entry = &c->view->entries[i_node];
+static conic_status check_node(layers_checking *c, uint32_t i_node) {
+  const conic_layers_entry *entry = &c->file->entries[i_node];
   const stage *above = c->n_stages ? &c->stages[c->n_stages - 1] : NULL;
   stage *s = &c->stages[c->n_stages];
   const char *wrong = NULL;
@@ -214,27 +215,27 @@ static conic_status check_node(checking *c, uint32_t i_node) {
   release_stage(c->context, s);
   c->n_seen += entry->n_samples;
   if (status == CONIC_OK)
-    status = conic_progress(c->context, "check", (double)c->n_seen / (double)c->view->header.n_samples);
+    status = conic_progress(c->context, "check", (double)c->n_seen / (double)c->file->header.n_samples);
   return status;
 }
 
 conic_status conic_layers_check(conic_context *context, const char *path, conic_layers_defects *defects) {
-  conic_layers_view view;
+  conic_layers_file file;
   memset(defects, 0, sizeof *defects);
-  conic_status status = conic_layers_view_open(context, path, &view);
+  conic_status status = conic_layers_file_open(context, path, &file);
   if (status != CONIC_OK)
     return status;
-  checking *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
-  status = c ? conic_layers_decoder_create(context, &view.header, &c->decoder) : CONIC_ERROR_MEMORY;
+  layers_checking *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
+  status = c ? conic_layers_decoder_create(context, &file.header, &c->decoder) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     c->context = context;
-    c->view = &view;
+    c->file = &file;
     c->defects = defects;
     status = check_node(c, 0);
   }
   if (c)
     conic_layers_decoder_destroy(c->decoder);
   conic_memory_release(context, c);
-  conic_layers_view_close(&view);
+  conic_layers_file_close(&file);
   return status;
 }

@@ -1,4 +1,4 @@
-/* The streams of a cloud: what the builder packs and the decoder unpacks (docs/format-lpc.md). */
+/* The streams of a cloud: what the builder packs and the decoder unpacks (docs/reference/format-lpc.md). */
 #ifndef CONIC_LAYERS_CODE_H
 #define CONIC_LAYERS_CODE_H
 

@@ -1,4 +1,5 @@
-/* .lpc files: header and index as they are in memory, and how they come from and go to bytes (docs/format-lpc.md). */
+/* .lpc files: header and index as they are in memory, and how they come from and go to bytes
+ * (docs/reference/format-lpc.md). */
 #ifndef CONIC_LAYERS_FORMAT_H
 #define CONIC_LAYERS_FORMAT_H
 

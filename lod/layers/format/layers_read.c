@@ -6,40 +6,40 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
-static conic_status read_view(conic_layers_view *view) {
+static conic_status read_tables(conic_layers_file *file) {
   conic_status status =
-      conic_layers_read_header(view->context, view->name, view->mapping.bytes, view->mapping.n_bytes, &view->header);
+      conic_layers_read_header(file->context, file->name, file->mapping.bytes, file->mapping.n_bytes, &file->header);
   if (status != CONIC_OK)
     return status;
-  if (view->header.file_bytes != view->mapping.n_bytes)
-    return conic_fail(view->context, CONIC_ERROR_INPUT, "%s: %zu bytes, where the header tells of %llu (at byte %zu)",
-                      view->name, view->mapping.n_bytes, (unsigned long long)view->header.file_bytes,
-                      view->mapping.n_bytes);
-  view->entries = conic_memory_allocate(view->context, view->header.n_clouds, sizeof *view->entries);
-  if (!view->entries)
+  if (file->header.file_bytes != file->mapping.n_bytes)
+    return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: %zu bytes, where the header tells of %llu (at byte %zu)",
+                      file->name, file->mapping.n_bytes, (unsigned long long)file->header.file_bytes,
+                      file->mapping.n_bytes);
+  file->entries = conic_memory_allocate(file->context, file->header.n_clouds, sizeof *file->entries);
+  if (!file->entries)
     return CONIC_ERROR_MEMORY;
-  return conic_layers_read_index(view->context, view->name, &view->header,
-                                 view->mapping.bytes + CONIC_LAYERS_HEADER_BYTES, view->entries);
+  return conic_layers_read_index(file->context, file->name, &file->header,
+                                 file->mapping.bytes + CONIC_LAYERS_HEADER_BYTES, file->entries);
 }
 
-conic_status conic_layers_view_open(conic_context *context, const char *path, conic_layers_view *view) {
-  memset(view, 0, sizeof *view);
-  view->context = context;
-  view->name = strcmp(path, "-") == 0 ? "standard input" : path;
-  conic_status status = conic_mapping_open(context, path, &view->mapping);
+conic_status conic_layers_file_open(conic_context *context, const char *path, conic_layers_file *file) {
+  memset(file, 0, sizeof *file);
+  file->context = context;
+  file->name = strcmp(path, "-") == 0 ? "standard input" : path;
+  conic_status status = conic_mapping_open(context, path, &file->mapping);
   if (status == CONIC_OK)
-    status = read_view(view);
+    status = read_tables(file);
   if (status != CONIC_OK)
-    conic_layers_view_close(view);
+    conic_layers_file_close(file);
   return status;
 }
 
-void conic_layers_view_close(conic_layers_view *view) {
-  if (!view->context)
+void conic_layers_file_close(conic_layers_file *file) {
+  if (!file->context)
     return;
-  conic_memory_release(view->context, view->entries);
-  conic_mapping_close(view->context, &view->mapping);
-  memset(view, 0, sizeof *view);
+  conic_memory_release(file->context, file->entries);
+  conic_mapping_close(file->context, &file->mapping);
+  memset(file, 0, sizeof *file);
 }
 
 static double bits_a_sample(uint64_t n_bytes, const conic_layers_header *header) {
@@ -70,11 +70,11 @@ static void describe(const conic_layers_header *header, conic_layers_info *info)
 }
 
 conic_status conic_layers_describe(conic_context *context, const char *path, conic_layers_info *info) {
-  conic_layers_view view;
-  conic_status status = conic_layers_view_open(context, path, &view);
+  conic_layers_file file;
+  conic_status status = conic_layers_file_open(context, path, &file);
   if (status != CONIC_OK)
     return status;
-  describe(&view.header, info);
-  conic_layers_view_close(&view);
+  describe(&file.header, info);
+  conic_layers_file_close(&file);
   return CONIC_OK;
 }

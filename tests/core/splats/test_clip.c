@@ -1,4 +1,5 @@
-/* Clip lines: kept with their splats, read and written, drawn as docs/picture.md says, and verified by the oracle. */
+/* Clip lines: kept with their splats, read and written, drawn as docs/reference/picture.md says, and verified by the
+ * oracle. */
 #include "conic/conic.h"
 #include "tests/support/files.h"
 #include "tests/support/solid.h"

@@ -1,4 +1,4 @@
-/* Patches at any levels side by side fit to the bit: each edge of the triangles that are drawn has its like on the
+/* Clusters at any levels side by side fit to the bit: each edge of the triangles that are drawn has its like on the
  * other side, or is the mesh's own border; and no place of the mesh is farther from them than their errors allow, nor
  * they from it. */
 #include "lod/hybrid/hybrid_stitch.h"
@@ -18,7 +18,7 @@ typedef struct borders_scene {
   conic_triangles mesh;
   uint32_t *place;          /* of each vertex of the hybrid: the first that lies there */
   unsigned char *is_border; /* of each place: it is on an edge of the mesh that has not two faces */
-  uint32_t *levels;         /* of each patch: the one that is drawn, from its first */
+  uint32_t *levels;         /* of each cluster: the one that is drawn, from its first */
   uint32_t *stages;
   conic_triangles drawn;
   uint32_t *drawn_place;
@@ -84,25 +84,25 @@ static size_t count_alike(const edge *edges, size_t i, size_t n) {
 
 /* --- what is drawn --- */
 
-/* A level for each patch; one in four is surfels, which cover its faces as the mesh has them. */
+/* A level for each cluster; one in four is surfels, which cover its faces as the mesh has them. */
 static void choose(borders_scene *s, uint64_t *state) {
-  for (size_t i = 0; i < s->hybrid->n_patches; i++) {
-    const conic_hybrid_patch *patch = &s->hybrid->patches[i];
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i];
     uint32_t n = 0;
-    while (n < patch->n_levels && s->hybrid->levels[patch->first_level + n].kind == CONIC_HYBRID_TRIANGLES)
+    while (n < cluster->n_levels && s->hybrid->levels[cluster->first_level + n].kind == CONIC_HYBRID_TRIANGLES)
       n++;
     s->levels[i] = random_unit(state) < 0.25 ? 0 : (uint32_t)(random_unit(state) * (double)n);
-    s->stages[i] = s->hybrid->levels[patch->first_level + s->levels[i]].stage;
+    s->stages[i] = s->hybrid->levels[cluster->first_level + s->levels[i]].stage;
   }
 }
 
-static const conic_hybrid_level *level_of(const borders_scene *s, size_t patch) {
-  return &s->hybrid->levels[s->hybrid->patches[patch].first_level + s->levels[patch]];
+static const conic_hybrid_level *level_of(const borders_scene *s, size_t cluster) {
+  return &s->hybrid->levels[s->hybrid->clusters[cluster].first_level + s->levels[cluster]];
 }
 
-static void put_patch(borders_scene *s, size_t patch) {
+static void put_cluster(borders_scene *s, size_t cluster) {
   const conic_hybrid *h = s->hybrid;
-  const conic_hybrid_level *level = level_of(s, patch);
+  const conic_hybrid_level *level = level_of(s, cluster);
   conic_triangles *to = &s->drawn;
   size_t n_put = conic_hybrid_count_stitches(h, level, s->stages);
   conic_hybrid_stitching stitching = {.hybrid = h,
@@ -116,7 +116,7 @@ static void put_patch(borders_scene *s, size_t patch) {
     for (int axis = 0; axis < 3; axis++)
       to->position[axis][to->n_vertices + i] = h->position[axis][h->listed[level->first_vertex + i]];
   for (size_t i = 0; i < level->count; i++) {
-    to->cluster[to->count + i] = (uint32_t)patch;
+    to->cluster[to->count + i] = (uint32_t)cluster;
     for (int k = 0; k < 3; k++)
       to->corners[to->count + i][k] = (uint32_t)to->n_vertices + h->corners[level->first + i][k];
   }
@@ -182,7 +182,7 @@ static double distance_of(const borders_scene *s, const double at[3]) {
 /* Some vertices of the mesh, by the greatest error that is drawn. */
 static void check_distances(borders_scene *s, uint64_t *state) {
   double most = 0.0;
-  for (size_t i = 0; i < s->hybrid->n_patches; i++)
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++)
     most = (double)level_of(s, i)->error > most ? (double)level_of(s, i)->error : most;
   for (int run = 0; run < 200 && most > 0.0; run++) {
     size_t i = (size_t)(random_unit(state) * (double)s->hybrid->n_listed);
@@ -212,19 +212,19 @@ static void check_triangle(borders_scene *s, const conic_hybrid_level *level, si
   }
 }
 
-/* Nor are simpler triangles farther from the mesh, to which all patches are drawn, than their errors. */
+/* Nor are simpler triangles farther from the mesh, to which all clusters are drawn, than their errors. */
 static void check_back(borders_scene *s, size_t room) {
   const conic_hybrid *h = s->hybrid;
   size_t n = 0;
   CHECK_OK(conic_triangles_allocate(s->context, room, 3 * room, CONIC_TRIANGLES_CLUSTERS, &s->drawn));
   s->drawn.count = s->drawn.n_vertices = 0;
-  for (size_t i = 0; i < h->n_patches; i++)
+  for (size_t i = 0; i < h->n_clusters; i++)
     s->levels[i] = s->stages[i] = 0;
-  for (size_t i = 0; i < h->n_patches; i++)
-    put_patch(s, i);
-  for (size_t i = 0; i < h->n_patches; i++)
-    for (uint32_t k = 1; k < h->patches[i].n_levels; k++) {
-      const conic_hybrid_level *level = &h->levels[h->patches[i].first_level + k];
+  for (size_t i = 0; i < h->n_clusters; i++)
+    put_cluster(s, i);
+  for (size_t i = 0; i < h->n_clusters; i++)
+    for (uint32_t k = 1; k < h->clusters[i].n_levels; k++) {
+      const conic_hybrid_level *level = &h->levels[h->clusters[i].first_level + k];
       for (size_t t = 0; t < level->count && level->kind == CONIC_HYBRID_TRIANGLES; t++)
         if (n++ % 16 == 0)
           check_triangle(s, level, t);
@@ -236,15 +236,15 @@ static void find_border(borders_scene *s) {
   const conic_hybrid *h = s->hybrid;
   size_t n = 0;
   uint32_t(*corners)[3];
-  for (size_t i = 0; i < h->n_patches; i++)
-    n += h->levels[h->patches[i].first_level].count;
+  for (size_t i = 0; i < h->n_clusters; i++)
+    n += h->levels[h->clusters[i].first_level].count;
   corners = malloc((n + 1) * sizeof *corners);
   s->is_border = calloc(h->n_vertices, 1);
   if (!corners || !s->is_border)
     exit(1);
   n = 0;
-  for (size_t i = 0; i < h->n_patches; i++) {
-    const conic_hybrid_level *level = &h->levels[h->patches[i].first_level];
+  for (size_t i = 0; i < h->n_clusters; i++) {
+    const conic_hybrid_level *level = &h->levels[h->clusters[i].first_level];
     for (size_t t = 0; t < level->count; t++, n++)
       for (int k = 0; k < 3; k++)
         corners[n][k] = h->listed[level->first_vertex + h->corners[level->first + t][k]];
@@ -260,15 +260,15 @@ static void find_border(borders_scene *s) {
   free(corners);
 }
 
-/* Patches at levels by chance; with `is_alone` as if each had nothing beside it. */
+/* Clusters at levels by chance; with `is_alone` as if each had nothing beside it. */
 static void draw_and_check(borders_scene *s, uint64_t *state, size_t room, int is_alone) {
   CHECK_OK(conic_triangles_allocate(s->context, room, 3 * room, CONIC_TRIANGLES_CLUSTERS, &s->drawn));
   s->drawn.count = s->drawn.n_vertices = 0;
   choose(s, state);
-  for (size_t i = 0; i < s->hybrid->n_patches && is_alone; i++)
+  for (size_t i = 0; i < s->hybrid->n_clusters && is_alone; i++)
     s->stages[i] = CONIC_HYBRID_HIDDEN;
-  for (size_t i = 0; i < s->hybrid->n_patches; i++)
-    put_patch(s, i);
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++)
+    put_cluster(s, i);
   check_edges(s);
   if (!is_alone)
     check_distances(s, state);
@@ -283,12 +283,12 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   conic_hybrid_options_init(&options);
   hybrid_mesh(context, path, 48, &mesh);
   CHECK_OK(conic_hybrid_build(context, &mesh, &options, &s.hybrid, NULL));
-  size_t n_patches = s.hybrid->n_patches, room = 0;
-  for (size_t i = 0; i < n_patches; i++)
-    room += s.hybrid->levels[s.hybrid->patches[i].first_level].count;
+  size_t n_clusters = s.hybrid->n_clusters, room = 0;
+  for (size_t i = 0; i < n_clusters; i++)
+    room += s.hybrid->levels[s.hybrid->clusters[i].first_level].count;
   room += 2 * s.hybrid->n_slots;
-  s.levels = malloc((n_patches + 1) * sizeof *s.levels);
-  s.stages = malloc((n_patches + 1) * sizeof *s.stages);
+  s.levels = malloc((n_clusters + 1) * sizeof *s.levels);
+  s.stages = malloc((n_clusters + 1) * sizeof *s.stages);
   s.drawn_place = malloc((3 * room + 1) * sizeof *s.drawn_place);
   if (!s.levels || !s.stages || !s.drawn_place)
     exit(1);
@@ -299,7 +299,7 @@ static void test_mesh(conic_context *context, const char *name, const char *path
   check_back(&s, room);
   CHECK(s.farthest_back > 0.5); /* errors are no larger than need be */
   fprintf(stderr, "%s: %zu patches, %zu edges, %zu vertices put in, farthest %.2f of the error, back %.2f\n", name,
-          n_patches, s.n_edges, s.n_put, s.farthest, s.farthest_back);
+          n_clusters, s.n_edges, s.n_put, s.farthest, s.farthest_back);
   CHECK(s.n_put > 100);
   CHECK(s.n_single == 0);
   draw_and_check(&s, &state, room, 1);

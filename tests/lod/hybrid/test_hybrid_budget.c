@@ -12,11 +12,11 @@ typedef struct spending {
   conic_camera camera;
   conic_render_options options;
   conic_hybrid_selection selection;
-  unsigned char *is_seen;            /* patch by patch */
-  const conic_hybrid_level **chosen; /* what the fewest are, patch by patch; null where it is not seen or a node stands
-                                        for it */
+  unsigned char *is_seen;            /* cluster by cluster */
+  const conic_hybrid_level **chosen; /* what the fewest are, cluster by cluster; null where it is not seen or a node
+                                        stands for it */
   uint32_t *stages;                  /* theirs */
-  size_t *counts;                    /* patch by patch, of the fewest by themselves */
+  size_t *counts;                    /* cluster by cluster, of the fewest by themselves */
 } spending;
 
 static void look(spending *s, double azimuth, double zoom) {
@@ -29,7 +29,7 @@ static void look(spending *s, double azimuth, double zoom) {
   CHECK_OK(conic_camera_frame(s->context, &framing, s->info.minimum, s->info.maximum, &s->camera));
 }
 
-/* So near that patches reach the near plane, where pixels have no bound. */
+/* So near that clusters reach the near plane, where pixels have no bound. */
 static void look_from_within(spending *s) {
   look(s, 30.0, 1.0);
   for (int row = 0; row < 3; row++) {
@@ -53,11 +53,11 @@ static size_t n_selected(const spending *s) {
   return s->selection.splats.count + s->selection.triangles.count;
 }
 
-/* The patches that are drawn, by what the selection says of its parts where no node stands for any. */
+/* The clusters that are drawn, by what the selection says of its parts where no node stands for any. */
 static void mark_seen(spending *s) {
   CHECK_OK(select_with(s, -1, 0.0, 0));
   CHECK(s->selection.n_joined == 0);
-  memset(s->is_seen, 0, s->info.n_patches);
+  memset(s->is_seen, 0, s->info.n_clusters);
   for (size_t i = 0; i < s->selection.splats.count; i++)
     s->is_seen[s->selection.splat_cluster[i]] = 1;
   for (size_t i = 0; i < s->selection.triangles.count; i++)
@@ -68,7 +68,7 @@ static void note(double error, double error_px, double *next) {
   *next = error > error_px && error < *next ? error : *next;
 }
 
-/* How few the patches below a node are, one by one or by nodes that stand for them. */
+/* How few the clusters below a node are, one by one or by nodes that stand for them. */
 static size_t fewest_below(const spending *s, const conic_hybrid_camera *view, uint32_t i, double error_px,
                            double *next) {
   const conic_hybrid_node *node = &s->hybrid->nodes[i];
@@ -94,20 +94,20 @@ static size_t fewest_below(const spending *s, const conic_hybrid_camera *view, u
   return own;
 }
 
-/* How few primitives, with those that fit them to each other, keep every seen patch's error on the screen at or below
+/* How few primitives, with those that fit them to each other, keep every seen cluster's error on the screen at or below
  * `error_px`; where surfels alone are asked for and none are good enough, the finest count. `next` becomes the least
  * error above it that any level has. */
 static size_t fewest(const spending *s, const conic_hybrid_camera *view, int only_kind, double error_px, double *next) {
   size_t count = 0;
   *next = HUGE_VAL;
-  for (size_t i = 0; i < s->info.n_patches; i++) {
-    const conic_hybrid_patch *patch = &s->hybrid->patches[i];
+  for (size_t i = 0; i < s->info.n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i];
     size_t least = SIZE_MAX, finest = 0;
     double least_error = HUGE_VAL;
     const conic_hybrid_level *chosen = NULL, *first = NULL;
-    for (uint32_t k = patch->n_levels; s->is_seen[i] && k-- > 0;) {
-      const conic_hybrid_level *level = &s->hybrid->levels[patch->first_level + k];
-      double error = conic_hybrid_error_px(view, &patch->bound, level);
+    for (uint32_t k = cluster->n_levels; s->is_seen[i] && k-- > 0;) {
+      const conic_hybrid_level *level = &s->hybrid->levels[cluster->first_level + k];
+      double error = conic_hybrid_error_px(view, &cluster->bound, level);
       if (only_kind >= 0 && level->kind != (uint32_t)only_kind)
         continue;
       finest = level->count;
@@ -128,7 +128,7 @@ static size_t fewest(const spending *s, const conic_hybrid_camera *view, int onl
   }
   if (only_kind != CONIC_HYBRID_TRIANGLES)
     count = fewest_below(s, view, 0, error_px, next);
-  for (size_t i = 0; i < s->info.n_patches; i++)
+  for (size_t i = 0; i < s->info.n_clusters; i++)
     count += s->chosen[i] ? conic_hybrid_count_stitches(s->hybrid, s->chosen[i], s->stages) : 0;
   return count;
 }
@@ -152,12 +152,12 @@ static double floor_error(const spending *s, int only_kind) {
   conic_hybrid_camera view;
   double greatest = 0.0;
   conic_hybrid_camera_init(s->hybrid, &s->camera, &s->options, &view);
-  for (size_t i = 0; i < s->info.n_patches; i++) {
-    const conic_hybrid_patch *patch = &s->hybrid->patches[i];
+  for (size_t i = 0; i < s->info.n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i];
     uint32_t k = 0;
-    while (only_kind >= 0 && s->hybrid->levels[patch->first_level + k].kind != (uint32_t)only_kind)
+    while (only_kind >= 0 && s->hybrid->levels[cluster->first_level + k].kind != (uint32_t)only_kind)
       k++;
-    double error = conic_hybrid_error_px(&view, &patch->bound, &s->hybrid->levels[patch->first_level + k]);
+    double error = conic_hybrid_error_px(&view, &cluster->bound, &s->hybrid->levels[cluster->first_level + k]);
     greatest = s->is_seen[i] && error > greatest ? error : greatest;
   }
   return greatest;
@@ -177,10 +177,10 @@ static void check_budget(spending *s, int only_kind, size_t budget) {
     is_counted |= !isnan(least) && fewest(s, &view, kind, least, &next) == n_selected(s);
   }
   CHECK(n_selected(s) > 0 && n_selected(s) <= budget && is_counted);
-  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_joined + s->selection.n_culled ==
-        s->info.n_patches);
+  CHECK(s->selection.n_clusters[0] + s->selection.n_clusters[1] + s->selection.n_joined + s->selection.n_culled ==
+        s->info.n_clusters);
   if (only_kind >= 0)
-    CHECK(s->selection.n_patches[1 - only_kind] == 0);
+    CHECK(s->selection.n_clusters[1 - only_kind] == 0);
   if (!(s->selection.error_px == expected))
     fprintf(stderr, "budget %zu: error %.17g, and %.17g could be had\n", budget, s->selection.error_px, expected);
   CHECK(s->selection.error_px == expected);
@@ -207,15 +207,15 @@ static void check_view(spending *s, int only_kind) {
   CHECK(isnan(least_error(s, only_kind, budget)));
 }
 
-/* Nodes stand for patches where that is cheaper, in no more places than the error allows. */
+/* Nodes stand for clusters where that is cheaper, in no more places than the error allows. */
 static void check_nodes(spending *s) {
   CHECK_OK(select_with(s, -1, 40.0, 0));
   CHECK(s->selection.n_joined > 1 && s->selection.n_nodes + s->selection.n_points > 0);
   CHECK(s->selection.error_px <= 40.0);
-  CHECK(s->selection.n_patches[0] + s->selection.n_patches[1] + s->selection.n_joined + s->selection.n_culled ==
-        s->info.n_patches);
+  CHECK(s->selection.n_clusters[0] + s->selection.n_clusters[1] + s->selection.n_joined + s->selection.n_culled ==
+        s->info.n_clusters);
   for (size_t i = 0; i < s->selection.splats.count; i++)
-    CHECK(s->selection.splat_cluster[i] < s->info.n_patches + s->info.n_nodes);
+    CHECK(s->selection.splat_cluster[i] < s->info.n_clusters + s->info.n_nodes);
   size_t n = n_selected(s);
   CHECK_OK(select_with(s, CONIC_HYBRID_TRIANGLES, 40.0, 0));
   CHECK(s->selection.n_joined == 0 && s->selection.splats.count == 0);
@@ -310,7 +310,7 @@ static void check_within(spending *s) {
   CHECK(n_kept > 0);
   for (int only_kind = -1; only_kind < 2; only_kind += 2) {
     CHECK_OK(select_with(s, only_kind, HUGE_VAL, 0));
-    CHECK(n_selected(s) > 0 && s->selection.n_joined < s->info.n_patches);
+    CHECK(n_selected(s) > 0 && s->selection.n_joined < s->info.n_clusters);
     check_numbers(s);
   }
 }
@@ -330,7 +330,7 @@ static void check_without_points(conic_context *context) {
   look(&s, 30.0, 1.0);
   for (int only_kind = -1; only_kind < 2; only_kind += 2) {
     CHECK_OK(select_with(&s, only_kind, HUGE_VAL, 0));
-    CHECK(s.selection.n_joined == 0 && s.selection.n_points == 0 && n_selected(&s) >= s.info.n_patches);
+    CHECK(s.selection.n_joined == 0 && s.selection.n_points == 0 && n_selected(&s) >= s.info.n_clusters);
   }
   conic_hybrid_selection_release(context, &s.selection);
   conic_hybrid_destroy(s.hybrid);
@@ -353,10 +353,10 @@ int main(void) {
   CHECK_OK(conic_hybrid_build(s.context, &mesh, &how, &s.hybrid, NULL));
   CHECK_OK(conic_hybrid_describe(s.hybrid, &s.info));
   s.options.near_z = s.info.near_z;
-  s.is_seen = malloc(s.info.n_patches);
-  s.chosen = malloc(s.info.n_patches * sizeof *s.chosen); /* NOLINT(bugprone-sizeof-expression): pointers */
-  s.stages = malloc(s.info.n_patches * sizeof *s.stages);
-  s.counts = malloc(s.info.n_patches * sizeof *s.counts);
+  s.is_seen = malloc(s.info.n_clusters);
+  s.chosen = malloc(s.info.n_clusters * sizeof *s.chosen); /* NOLINT(bugprone-sizeof-expression): pointers */
+  s.stages = malloc(s.info.n_clusters * sizeof *s.stages);
+  s.counts = malloc(s.info.n_clusters * sizeof *s.counts);
   if (!s.is_seen || !s.chosen || !s.stages || !s.counts)
     exit(1);
   look(&s, 30.0, 1.0);

@@ -124,19 +124,19 @@ static double off_mesh_px(const comparison *c) {
   return farthest_px;
 }
 
-/* What the file says that its patches, as built, are off at most, in pixels of this picture. */
+/* What the file says that its clusters, as built, are off at most, in pixels of this picture. */
 static double stated_px(const comparison *c) {
   const conic_hybrid *h = c->hybrid;
   double worst = 0.0;
-  for (size_t i = 0; i < h->n_patches; i++) {
-    const conic_hybrid_patch *patch = &h->patches[i];
-    const conic_hybrid_level *built = &h->levels[patch->first_level + patch->built];
-    double at[3], around = (double)(patch->bound.radius + built->reach);
+  for (size_t i = 0; i < h->n_clusters; i++) {
+    const conic_hybrid_cluster *cluster = &h->clusters[i];
+    const conic_hybrid_level *built = &h->levels[cluster->first_level + cluster->built];
+    double at[3], around = (double)(cluster->bound.radius + built->reach);
     for (int row = 0; row < 3; row++) {
       const double *m = c->camera.cam_from_world[row];
       at[row] = m[3];
       for (int axis = 0; axis < 3; axis++)
-        at[row] += m[axis] * (h->origin[axis] + (double)patch->bound.center[axis]);
+        at[row] += m[axis] * (h->origin[axis] + (double)cluster->bound.center[axis]);
     }
     double front = at[2] - around, far = sqrt(conic_hybrid_dot(at, at)) + around;
     worst = fmax(worst, (double)built->error * c->camera.fx * far / (front * front));
@@ -218,7 +218,7 @@ static void check_direction(comparison *c, const limits *limit, int direction) {
   }
 }
 
-/* Where nodes stand for patches, by surfels or as points, they too keep what they promise. */
+/* Where nodes stand for clusters, by surfels or as points, they too keep what they promise. */
 static void check_nodes(comparison *c, const char *name) {
   static const double far_px[] = {12.0, 40.0};
   for (int i = 0; i < 2; i++) {
@@ -283,7 +283,7 @@ static double vertices_off(const conic_hybrid *h, const conic_hybrid_node *node,
                            long counts[2]) {
   double farthest = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++) {
-    const conic_hybrid_level *faces = &h->levels[h->patches[i].first_level];
+    const conic_hybrid_level *faces = &h->levels[h->clusters[i].first_level];
     for (uint32_t k = 0; k < faces->n_vertices; k += 1 + faces->n_vertices / 20) {
       uint32_t vertex = h->listed[faces->first_vertex + k];
       const double at[3] = {(double)h->position[0][vertex], (double)h->position[1][vertex],
@@ -316,13 +316,13 @@ static void check_colors(const conic_hybrid *h, const conic_hybrid_node *node) {
   }
 }
 
-/* The greatest error of the finest surfels of a node's patches. */
+/* The greatest error of the finest surfels of a node's clusters. */
 static double finest_error(const conic_hybrid *h, const conic_hybrid_node *node) {
   double greatest = 0.0;
   for (uint32_t i = node->begin; i < node->end; i++) {
-    const conic_hybrid_patch *patch = &h->patches[i];
-    for (uint32_t k = 0, is_found = 0; k < patch->n_levels && !is_found; k++) {
-      const conic_hybrid_level *level = &h->levels[patch->first_level + k];
+    const conic_hybrid_cluster *cluster = &h->clusters[i];
+    for (uint32_t k = 0, is_found = 0; k < cluster->n_levels && !is_found; k++) {
+      const conic_hybrid_level *level = &h->levels[cluster->first_level + k];
       is_found = level->kind == CONIC_HYBRID_SURFELS;
       greatest = is_found ? fmax(greatest, (double)level->error) : greatest;
     }

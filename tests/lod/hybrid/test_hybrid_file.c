@@ -55,7 +55,7 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   hybrid_look(context, 17, 120, 1.0, info.minimum, info.maximum, &camera);
   CHECK_OK(conic_hybrid_select(hybrid, &camera, &options, &view, &selection));
-  CHECK(selection.n_patches[0] + selection.n_patches[1] + selection.n_joined + selection.n_culled == info.n_patches);
+  CHECK(selection.n_clusters[0] + selection.n_clusters[1] + selection.n_joined + selection.n_culled == info.n_clusters);
   CHECK_OK(conic_image_allocate(context, 120, 120, CONIC_DRAWN_PLANES | 1u << CONIC_PLANE_CLUSTER, &image));
   CHECK_OK(conic_renderer_create(context, &renderer));
   const conic_drawing drawing = {&selection.splats, &selection.triangles};
@@ -65,7 +65,7 @@ static uint64_t picture(conic_context *context, const conic_hybrid *hybrid, doub
   size_t n_covered = 0;
   for (size_t i = 0; i < 120 * 120; i++) {
     CHECK((id[i] == CONIC_NO_ID) == (cluster[i] == CONIC_NO_ID));
-    CHECK(id[i] == CONIC_NO_ID || cluster[i] < info.n_patches + info.n_nodes);
+    CHECK(id[i] == CONIC_NO_ID || cluster[i] < info.n_clusters + info.n_nodes);
     n_covered += id[i] != CONIC_NO_ID;
   }
   CHECK(n_covered > 2000);
@@ -94,8 +94,8 @@ static void test_there_and_back(conic_context *context, double phase2, int with_
   CHECK_OK(conic_hybrid_describe(hybrid, &info));
   CHECK_OK(conic_hybrid_describe(back, &info_back));
   CHECK(memcmp(&info, &info_back, sizeof info) == 0);
-  CHECK(info.n_triangles + info.n_surfels > 0 && info.n_patches >= 1);
-  CHECK((info.n_surfel_patches > 0) == (phase2 > -2.0));
+  CHECK(info.n_triangles + info.n_surfels > 0 && info.n_clusters >= 1);
+  CHECK((info.n_surfel_clusters > 0) == (phase2 > -2.0));
   check_sound(hybrid);
   check_sound(back);
   CHECK(picture(context, hybrid, 0.0) == picture(context, back, 0.0));
@@ -131,7 +131,7 @@ static void test_threads(void) {
   CHECK(sums[0] == sums[1]);
 }
 
-/* A model with vertices left out along its patches' borders. */
+/* A model with vertices left out along its clusters' borders. */
 static void add_hill(seed_set *set, conic_context *context) {
   const char *path = files_path("hill.chy");
   conic_hybrid *hybrid = build(context, 24, -2.0, 0);
@@ -154,7 +154,8 @@ static size_t place_to_change(uint64_t *state, const unsigned char *bytes, size_
   size_t from = 8;
   if (random_unit(state) < 0.5) {
     conic_chy_header h = {.n_slots = conic_file_get(bytes + 160, 8), .n_borders = conic_file_get(bytes + 168, 8)};
-    size_t n_chains = (size_t)h.n_slots * sizeof(conic_hybrid_slot) + (size_t)h.n_borders * sizeof(conic_hybrid_border);
+    size_t n_chains =
+        (size_t)h.n_slots * sizeof(conic_cluster_slot) + (size_t)h.n_borders * sizeof(conic_cluster_border);
     from = n_chains < n_bytes - 8 ? n_bytes - n_chains - 8 : 8;
   }
   return from + (size_t)(random_unit(state) * (double)(n_bytes - from));

@@ -11,8 +11,8 @@
 typedef struct sound_file {
   unsigned char *bytes;
   size_t n_bytes;
-  size_t nodes, patches, levels, corners, listed, materials, material_list;
-  size_t n_vertices, n_listed, n_triangles, n_surfels, n_levels, n_patches, n_nodes, n_materials, n_texels;
+  size_t nodes, clusters, levels, corners, listed, materials, material_list;
+  size_t n_vertices, n_listed, n_triangles, n_surfels, n_levels, n_clusters, n_nodes, n_materials, n_texels;
 } sound_file;
 
 enum { SIDE = 14 };
@@ -53,7 +53,7 @@ static size_t offset_of(const conic_hybrid *hybrid, const void *array) {
 static void find_arrays(const conic_hybrid *h, sound_file *sound) {
   *sound = (sound_file){.n_bytes = (size_t)conic_hybrid_file_bytes(h),
                         .nodes = offset_of(h, h->nodes),
-                        .patches = offset_of(h, h->patches),
+                        .clusters = offset_of(h, h->clusters),
                         .levels = offset_of(h, h->levels),
                         .corners = offset_of(h, h->corners),
                         .listed = offset_of(h, h->listed),
@@ -64,7 +64,7 @@ static void find_arrays(const conic_hybrid *h, sound_file *sound) {
                         .n_triangles = h->n_triangles,
                         .n_surfels = h->n_surfels,
                         .n_levels = h->n_levels,
-                        .n_patches = h->n_patches,
+                        .n_clusters = h->n_clusters,
                         .n_nodes = h->n_nodes,
                         .n_materials = h->n_materials,
                         .n_texels = h->n_texels};
@@ -89,7 +89,7 @@ static sound_file make_sound(conic_context *context) {
   conic_hybrid_destroy(hybrid);
   CHECK_OK(conic_hybrid_read(context, made, &hybrid));
   CHECK(hybrid->n_nodes >= 3 && hybrid->material && hybrid->n_materials == 3 && hybrid->n_texels == 12);
-  CHECK(hybrid->patches[0].n_levels >= 2 && hybrid->n_surfels > 0);
+  CHECK(hybrid->clusters[0].n_levels >= 2 && hybrid->n_surfels > 0);
   find_arrays(hybrid, &sound);
   conic_hybrid_destroy(hybrid);
   CHECK(unlink(made) == 0 && unlink(path) == 0);
@@ -141,7 +141,7 @@ static void check_f32(conic_context *context, const sound_file *sound, size_t at
   check_u32(context, sound, at, bits, wrong);
 }
 
-/* Where things are in the header: format-chy.md. */
+/* Where things are in the header: docs/reference/format-chy.md. */
 enum {
   VERSION = 8,
   FLAGS = 12,
@@ -153,7 +153,7 @@ enum {
   CUTOFF = 144,
   ZERO = 148
 };
-enum { VERTICES, TRIANGLES, LISTED, SURFELS, LEVELS, PATCHES, NODES, MATERIALS, TEXELS };
+enum { VERTICES, TRIANGLES, LISTED, SURFELS, LEVELS, CLUSTERS, NODES, MATERIALS, TEXELS };
 
 static void test_header(conic_context *context, const sound_file *sound) {
   static const char counts[] = "the header has counts that do not go together (at byte 8)";
@@ -174,10 +174,10 @@ static void test_header(conic_context *context, const sound_file *sound) {
       {ZERO, &(uint32_t){1}, 4, flags},
       {COUNTS + 8 * VERTICES, &(uint64_t){UINT64_C(1) << 32}, 8, counts},
       {COUNTS + 8 * SURFELS, &(uint64_t){UINT64_MAX}, 8, counts},
-      {COUNTS + 8 * LEVELS, &(uint64_t){sound->n_patches - 1}, 8, counts},
-      {COUNTS + 8 * PATCHES, &(uint64_t){0}, 8, counts},
+      {COUNTS + 8 * LEVELS, &(uint64_t){sound->n_clusters - 1}, 8, counts},
+      {COUNTS + 8 * CLUSTERS, &(uint64_t){0}, 8, counts},
       {COUNTS + 8 * NODES, &(uint64_t){0}, 8, counts},
-      {COUNTS + 8 * NODES, &(uint64_t){2 * sound->n_patches}, 8, counts},
+      {COUNTS + 8 * NODES, &(uint64_t){2 * sound->n_clusters}, 8, counts},
       {COUNTS + 8 * MATERIALS, &(uint64_t){0}, 8, counts},
       {CUTOFF, &small, 4, range},
       {CUTOFF, &large, 4, range},
@@ -207,7 +207,7 @@ static void test_damage(conic_context *context, const sound_file *sound) {
   check_edit(context, sound, sound->levels + offsetof(conic_hybrid_level, error), "error", 4, 0,
              "is damaged: its sum is not that of its header (at byte 256)");
   size_t after_nodes = sound->nodes + sound->n_nodes * sizeof(conic_hybrid_node);
-  CHECK(after_nodes < sound->patches); /* 48 bytes each, and of a tree of pairs an odd number */
+  CHECK(after_nodes < sound->clusters); /* 48 bytes each, and of a tree of pairs an odd number */
   snprintf(wanted, sizeof wanted, "is damaged (at byte %zu)", after_nodes);
   check_edit(context, sound, after_nodes, &one, 1, 1, wanted);
   memcpy(longer, sound->bytes, sound->n_bytes);
@@ -226,7 +226,7 @@ static void test_damage(conic_context *context, const sound_file *sound) {
 
 #define RECORD(array, i, type, member) (sound->array + (i) * sizeof(type) + offsetof(type, member))
 #define LEVEL(i, member) RECORD(levels, i, conic_hybrid_level, member)
-#define PATCH(i, member) RECORD(patches, i, conic_hybrid_patch, member)
+#define CLUSTER(i, member) RECORD(clusters, i, conic_hybrid_cluster, member)
 #define NODE(i, member) RECORD(nodes, i, conic_hybrid_node, member)
 #define MATERIAL(i, member) RECORD(material_list, i, conic_chy_material, member)
 
@@ -259,27 +259,27 @@ static void test_levels(conic_context *context, const sound_file *sound) {
   check_f32(context, sound, LEVEL(sound->n_levels - 1, reach), NAN, range);
 }
 
-static void test_patches(conic_context *context, const sound_file *sound) {
+static void test_clusters(conic_context *context, const sound_file *sound) {
   static const char no_levels[] = "a patch without its levels", range[] = "a patch's bounds out of range";
-  size_t last = sound->n_patches - 1;
-  uint32_t n_levels = u32_at(sound, PATCH(last, n_levels));
-  check_u32(context, sound, PATCH(0, first_level), 1, no_levels);
-  check_u32(context, sound, PATCH(1, first_level), 0, no_levels); /* whose levels are another's, too */
-  check_u32(context, sound, PATCH(0, n_levels), 0, no_levels);
-  check_u32(context, sound, PATCH(0, n_levels), sound->n_levels + 1, no_levels);
-  check_u32(context, sound, PATCH(last, n_levels), n_levels + 1, "a node without its levels");
-  check_u32(context, sound, PATCH(0, built), u32_at(sound, PATCH(0, n_levels)), no_levels);
-  if (u32_at(sound, PATCH(last, built)) + 1 < n_levels)
-    check_u32(context, sound, PATCH(last, n_levels), n_levels - 1, "a node without its levels");
-  check_f32(context, sound, PATCH(0, bound.center[1]), NAN, range);
-  check_f32(context, sound, PATCH(0, bound.center[2]), INFINITY, range);
-  check_f32(context, sound, PATCH(0, bound.axis[0]), 1.5f, range);
-  check_f32(context, sound, PATCH(0, bound.radius), -1.0f, range);
-  check_f32(context, sound, PATCH(0, bound.cone), -1.5f, range);
-  check_f32(context, sound, PATCH(0, area), NAN, range);
+  size_t last = sound->n_clusters - 1;
+  uint32_t n_levels = u32_at(sound, CLUSTER(last, n_levels));
+  check_u32(context, sound, CLUSTER(0, first_level), 1, no_levels);
+  check_u32(context, sound, CLUSTER(1, first_level), 0, no_levels); /* whose levels are another's, too */
+  check_u32(context, sound, CLUSTER(0, n_levels), 0, no_levels);
+  check_u32(context, sound, CLUSTER(0, n_levels), sound->n_levels + 1, no_levels);
+  check_u32(context, sound, CLUSTER(last, n_levels), n_levels + 1, "a node without its levels");
+  check_u32(context, sound, CLUSTER(0, built), u32_at(sound, CLUSTER(0, n_levels)), no_levels);
+  if (u32_at(sound, CLUSTER(last, built)) + 1 < n_levels)
+    check_u32(context, sound, CLUSTER(last, n_levels), n_levels - 1, "a node without its levels");
+  check_f32(context, sound, CLUSTER(0, bound.center[1]), NAN, range);
+  check_f32(context, sound, CLUSTER(0, bound.center[2]), INFINITY, range);
+  check_f32(context, sound, CLUSTER(0, bound.axis[0]), 1.5f, range);
+  check_f32(context, sound, CLUSTER(0, bound.radius), -1.0f, range);
+  check_f32(context, sound, CLUSTER(0, bound.cone), -1.5f, range);
+  check_f32(context, sound, CLUSTER(0, area), NAN, range);
 }
 
-/* Nodes have the levels after those of the patches, one node after the other. */
+/* Nodes have the levels after those of the clusters, one node after the other. */
 static void test_joined(conic_context *context, const sound_file *sound) {
   static const char no_levels[] = "a node without its levels", range[] = "a node's point out of range";
   size_t last = sound->n_nodes - 1, with = 0;
@@ -313,13 +313,13 @@ static void test_nodes(conic_context *context, const sound_file *sound) {
   check_u32(context, sound, NODE(last, next), last - 1, none);
   check_u32(context, sound, NODE(last, next), sound->n_nodes + 1, none);
   check_u32(context, sound, NODE(1, end), 0, none);
-  check_u32(context, sound, NODE(0, end), sound->n_patches + 1, none);
-  check_u32(context, sound, NODE(last, end), sound->n_patches + 1, within);
+  check_u32(context, sound, NODE(0, end), sound->n_clusters + 1, none);
+  check_u32(context, sound, NODE(last, end), sound->n_clusters + 1, within);
   check_f32(context, sound, NODE(0, bound.radius), NAN, none);
   check_u32(context, sound, NODE(last, begin), u32_at(sound, NODE(last, begin)) - 1, order);
   check_u32(context, sound, NODE(0, begin), 1, order);
   check_u32(context, sound, NODE(0, next), sound->n_nodes - 1, within);
-  check_u32(context, sound, NODE(0, end), sound->n_patches - 1, within);
+  check_u32(context, sound, NODE(0, end), sound->n_clusters - 1, within);
   check_u32(context, sound, NODE(last, end), u32_at(sound, NODE(last, end)) - 1, within);
   check_u32(context, sound, NODE(0, next), 1, order); /* a root without children, and more nodes */
   uint32_t i = 1;                                     /* a node that ends where its first child's first child begins */
@@ -374,8 +374,8 @@ static void test_defects(conic_context *context, const sound_file *sound) {
       check_defect(context, sound, LEVEL(i + 1, error), 9.0f, ERRORS); /* levels out of order */
       n++;
     }
-  check_defect(context, sound, PATCH(0, bound.cone), 1.0f, CONES);
-  check_defect(context, sound, PATCH(0, bound.radius), 0.0f, SPHERES);
+  check_defect(context, sound, CLUSTER(0, bound.cone), 1.0f, CONES);
+  check_defect(context, sound, CLUSTER(0, bound.radius), 0.0f, SPHERES);
   check_defect(context, sound, NODE(1, bound.radius), 0.0f, SPHERES);
   check_defect(context, sound, NODE(0, point.color[1]), NAN, VALUES);
   check_defect(context, sound, NODE(0, point.error), 0.0f, ERRORS);
@@ -388,7 +388,7 @@ int main(void) {
   test_header(context, &sound);
   test_damage(context, &sound);
   test_levels(context, &sound);
-  test_patches(context, &sound);
+  test_clusters(context, &sound);
   test_nodes(context, &sound);
   test_joined(context, &sound);
   test_attributes(context, &sound);

@@ -77,8 +77,8 @@ static int compare_doubles(const void *a, const void *b) {
 
 /* Surfels are half an edge apart, and their error half of that at most as it is found where they are laid, at twenty
  * places each; as it is stated, measured at forty, it may be a seventh more. */
-static double greatest_error_allowed(const conic_hybrid *h, const conic_hybrid_patch *patch) {
-  const conic_hybrid_level *whole = &h->levels[patch->first_level];
+static double greatest_error_allowed(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
+  const conic_hybrid_level *whole = &h->levels[cluster->first_level];
   double edges = 0.0;
   for (uint32_t i = 0; i < whole->count; i++)
     for (int corner = 0; corner < 3; corner++) {
@@ -94,16 +94,16 @@ static double greatest_error_allowed(const conic_hybrid *h, const conic_hybrid_p
   return 8.0 / 7.0 * 0.5 * 0.5 * edges / (3.0 * (double)whole->count);
 }
 
-/* Prints, of the patches that are surfels as built, the errors in pixels, and returns the greatest. */
+/* Prints, of the clusters that are surfels as built, the errors in pixels, and returns the greatest. */
 static double judge_errors(const outlines *o) {
   const conic_hybrid *h = o->hybrid;
-  double *errors = malloc((h->n_patches + 1) * sizeof *errors);
+  double *errors = malloc((h->n_clusters + 1) * sizeof *errors);
   size_t n = 0;
-  for (size_t i = 0; i < h->n_patches && errors; i++) {
-    const conic_hybrid_level *level = &h->levels[h->patches[i].first_level + h->patches[i].built];
+  for (size_t i = 0; i < h->n_clusters && errors; i++) {
+    const conic_hybrid_level *level = &h->levels[h->clusters[i].first_level + h->clusters[i].built];
     if (level->kind != CONIC_HYBRID_SURFELS)
       continue;
-    CHECK((double)level->error <= greatest_error_allowed(h, &h->patches[i]) * (1.0 + 1e-5));
+    CHECK((double)level->error <= greatest_error_allowed(h, &h->clusters[i]) * (1.0 + 1e-5));
     errors[n++] = (double)level->error * o->scale_px;
   }
   CHECK(n > 0);
@@ -114,7 +114,7 @@ static double judge_errors(const outlines *o) {
   qsort(errors, n, sizeof *errors, compare_doubles);
   double greatest = errors[n - 1];
   fprintf(stderr, "  %zu of %zu patches are %zu surfels, the others %zu triangles; quarters of errors px:", n,
-          h->n_patches, o->info.n_surfels, o->info.n_triangles);
+          h->n_clusters, o->info.n_surfels, o->info.n_triangles);
   for (size_t quarter = 0; quarter <= 4; quarter++)
     fprintf(stderr, " %.2f", errors[(n - 1) * quarter / 4]);
   fprintf(stderr, "\n");

@@ -1,4 +1,4 @@
-/* Sampling a patch in passes: what one keeps from the last is what it would have found, errors are the same however
+/* Sampling a cluster in passes: what one keeps from the last is what it would have found, errors are the same however
  * much of them is known before, and where wider spacings are said to give the same they do. */
 #include "core/base/memory.h"
 #include "lod/clusters/cluster_error.h"
@@ -6,18 +6,18 @@
 #include "lod/clusters/cluster_shape.h"
 #include "tests/support/hybrid_fixture.h"
 
-/* A terrain that is one patch. */
-typedef struct one_patch {
+/* A terrain that is one cluster. */
+typedef struct one_cluster {
   conic_triangles triangles;
   conic_adjacency adjacency;
   conic_mesh_clusters clusters;
   conic_face_tree tree;
-  conic_patch_mesh mesh;
+  conic_clustered_mesh mesh;
   uint32_t *faces;
   size_t starts[2];
-} one_patch;
+} one_cluster;
 
-static void make_patch(conic_context *context, size_t side, one_patch *p) {
+static void make_cluster(conic_context *context, size_t side, one_cluster *p) {
   static uint32_t no_clusters[1 << 12];
   static uint8_t gathered = 1;
   memset(p, 0, sizeof *p);
@@ -31,11 +31,11 @@ static void make_patch(conic_context *context, size_t side, one_patch *p) {
   p->clusters.n_clusters = 1;
   p->clusters.of_face = no_clusters;
   p->clusters.is_gathered = &gathered;
-  p->mesh = (conic_patch_mesh){.triangles = &p->triangles,
-                               .adjacency = &p->adjacency,
-                               .clusters = &p->clusters,
-                               .faces = p->faces,
-                               .starts = p->starts};
+  p->mesh = (conic_clustered_mesh){.triangles = &p->triangles,
+                                   .adjacency = &p->adjacency,
+                                   .clusters = &p->clusters,
+                                   .faces = p->faces,
+                                   .starts = p->starts};
   conic_mesh *mesh = &p->mesh.mesh;
   *mesh = (conic_mesh){
       .n_vertices = p->triangles.n_vertices, .n_faces = n, .faces = (const uint32_t(*)[3])p->triangles.corners};
@@ -45,14 +45,14 @@ static void make_patch(conic_context *context, size_t side, one_patch *p) {
   CHECK_OK(conic_face_tree_build(context, mesh, &p->adjacency, &p->tree));
 }
 
-static void release_patch(conic_context *context, one_patch *p) {
+static void release_cluster(conic_context *context, one_cluster *p) {
   conic_face_tree_release(context, &p->tree);
   conic_adjacency_release(context, &p->adjacency);
   conic_memory_release(context, p->faces);
   conic_triangles_release(context, &p->triangles);
 }
 
-static conic_sampling_job job_of(const one_patch *p, double spacing, double tolerance) {
+static conic_sampling_job job_of(const one_cluster *p, double spacing, double tolerance) {
   return (conic_sampling_job){.mesh = &p->mesh,
                               .tree = &p->tree,
                               .spacing = spacing,
@@ -78,8 +78,8 @@ static void check_settled(conic_context *context, conic_sampler *s, size_t *n_ke
   CHECK(sites && s->finest > 0);
   memcpy(sites, s->sites, n * sizeof *sites);
   s->n_supports = s->n_sorted = 0;
-  CHECK_OK(conic_patch_find_sites(s));
-  CHECK_OK(conic_patch_shape_sites(s));
+  CHECK_OK(conic_cluster_find_sites(s));
+  CHECK_OK(conic_cluster_shape_sites(s));
   CHECK(s->n_sites == n);
   for (size_t i = 0; i < n; i++) {
     CHECK(is_same(&sites[i], &s->sites[i]));
@@ -106,13 +106,13 @@ static void check_errors(const conic_sampler *s) {
   CHECK(n_larger > 10);
 }
 
-static void check_passes(conic_context *context, const one_patch *p, double tolerance, size_t *n_kept) {
+static void check_passes(conic_context *context, const one_cluster *p, double tolerance, size_t *n_kept) {
   conic_sampler *s;
   conic_surfels surfels = {0};
   CHECK_OK(conic_sampler_create(context, &s));
-  conic_sampling_job job = job_of(p, 0.5 * conic_patch_edge_length(&p->mesh, 0), tolerance);
+  conic_sampling_job job = job_of(p, 0.5 * conic_cluster_edge_length(&p->mesh, 0), tolerance);
   for (int level = 0; level < 4; level++) { /* the others begin where the one before ended */
-    CHECK_OK(conic_patch_sample(s, &job, &surfels));
+    CHECK_OK(conic_cluster_sample(s, &job, &surfels));
     if (level == 1)
       check_errors(s);
     check_settled(context, s, n_kept);
@@ -125,31 +125,31 @@ static void check_passes(conic_context *context, const one_patch *p, double tole
 }
 
 static int owns_some(const conic_sampler *s, uint32_t site, size_t lattice) {
-  const conic_lattice *l = &s->lattices[lattice];
+  const conic_face_lattice *l = &s->lattices[lattice];
   int is_any = 0;
-  for (uint32_t i = 0; i < conic_lattice_places(l->sides); i++)
+  for (uint32_t i = 0; i < conic_face_lattice_places(l->sides); i++)
     is_any |= s->owner[l->first + i] == site;
   return is_any;
 }
 
 /* As if one place had been another site's in the last pass: neither that nor who has a place of that face is settled.
  */
-static void check_gains(conic_context *context, const one_patch *p) {
+static void check_gains(conic_context *context, const one_cluster *p) {
   conic_sampler *s;
   conic_surfels surfels = {0};
-  conic_sampling_job job = job_of(p, 0.5 * conic_patch_edge_length(&p->mesh, 0), 0.5);
+  conic_sampling_job job = job_of(p, 0.5 * conic_cluster_edge_length(&p->mesh, 0), 0.5);
   job.most = 0;
   CHECK_OK(conic_sampler_create(context, &s));
-  CHECK_OK(conic_patch_sample(s, &job, &surfels));
-  conic_patch_end_pass(s);
+  CHECK_OK(conic_cluster_sample(s, &job, &surfels));
+  conic_cluster_end_pass(s);
   for (size_t k = 10; k < 30; k++) {
-    CHECK_OK(conic_patch_find_sites(s));
+    CHECK_OK(conic_cluster_find_sites(s));
     uint32_t place = s->lattices[k].first, loser = (uint32_t)(s->n_sites - k);
     place += s->sites[s->owner[place]].place == place; /* one at which no site is */
     uint32_t own = s->owner[place];
     CHECK(s->last.owner[place] == own && s->sites[own].place != place && !owns_some(s, loser, k));
     s->last.owner[place] = loser;
-    conic_patch_settle_sites(s);
+    conic_cluster_settle_sites(s);
     for (uint32_t i = 0; i < s->n_sites; i++)
       CHECK(s->sites[i].is_settled == (i != loser && !owns_some(s, i, k)));
     s->last.owner[place] = own;
@@ -158,14 +158,14 @@ static void check_gains(conic_context *context, const one_patch *p) {
   conic_sampler_destroy(s);
 }
 
-static void check_coarsest(conic_context *context, const one_patch *p) {
+static void check_coarsest(conic_context *context, const one_cluster *p) {
   conic_sampler *s;
   conic_surfels narrow = {0}, wide = {0}, wider = {0};
   CHECK_OK(conic_sampler_create(context, &s));
   conic_sampling_job jobs[3] = {job_of(p, 0.3, 0.5), job_of(p, 3.0, 0.5), job_of(p, 6.0, 0.5)};
-  CHECK_OK(conic_patch_sample(s, &jobs[0], &narrow));
-  CHECK_OK(conic_patch_sample(s, &jobs[1], &wide));
-  CHECK_OK(conic_patch_sample(s, &jobs[2], &wider));
+  CHECK_OK(conic_cluster_sample(s, &jobs[0], &narrow));
+  CHECK_OK(conic_cluster_sample(s, &jobs[1], &wide));
+  CHECK_OK(conic_cluster_sample(s, &jobs[2], &wider));
   CHECK(!narrow.is_coarsest && wide.is_coarsest && wider.is_coarsest);
   CHECK(wide.n > 0 && wide.n == wider.n);
   CHECK(memcmp(wide.items, wider.items, wide.n * sizeof *wide.items) == 0);
@@ -188,7 +188,7 @@ static void release_any(void *cookie, void *pointer) {
 }
 
 /* Memory that runs out anywhere is told, and nothing is lost. */
-static void check_memory(const one_patch *p) {
+static void check_memory(const one_cluster *p) {
   conic_context_options options;
   conic_context *context;
   conic_context_options_init(&options);
@@ -202,11 +202,11 @@ static void check_memory(const one_patch *p) {
   for (; status == CONIC_ERROR_MEMORY; n_failed++) {
     conic_sampler *s = NULL;
     conic_surfels surfels = {0};
-    conic_sampling_job job = job_of(p, 0.5 * conic_patch_edge_length(&p->mesh, 0), 0.3);
+    conic_sampling_job job = job_of(p, 0.5 * conic_cluster_edge_length(&p->mesh, 0), 0.3);
     n_left = n_failed;
     status = conic_sampler_create(context, &s);
     if (status == CONIC_OK)
-      status = conic_patch_sample(s, &job, &surfels);
+      status = conic_cluster_sample(s, &job, &surfels);
     conic_surfels_release(context, &surfels);
     conic_sampler_destroy(s);
   }
@@ -216,18 +216,18 @@ static void check_memory(const one_patch *p) {
 
 int main(void) {
   conic_context *context = check_context(1);
-  one_patch p;
+  one_cluster p;
   size_t n_kept = 0;
-  make_patch(context, 32, &p);
+  make_cluster(context, 32, &p);
   for (int i = 0; i < 3; i++)
     check_passes(context, &p, 0.15 + 0.15 * i, &n_kept);
   CHECK(n_kept > 5000);
   check_gains(context, &p);
   check_coarsest(context, &p);
-  release_patch(context, &p);
-  make_patch(context, 8, &p);
+  release_cluster(context, &p);
+  make_cluster(context, 8, &p);
   check_memory(&p);
-  release_patch(context, &p);
+  release_cluster(context, &p);
   conic_context_destroy(context);
   return check_result();
 }

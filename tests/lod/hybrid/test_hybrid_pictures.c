@@ -13,7 +13,7 @@ typedef struct watching {
   conic_render_options options;
   const char *name;
   long n_pictures, n_covered, n_holes, n_deep;
-  size_t n_joined; /* patches for which nodes stood */
+  size_t n_joined; /* clusters for which nodes stood */
 } watching;
 
 static void draw(watching *w, const conic_drawing *drawing, const conic_camera *camera, conic_image *image) {
@@ -72,7 +72,7 @@ static void watch(watching *w, int direction, const conic_camera *camera, const 
   conic_image_release(w->context, &image);
 }
 
-/* The largest errors, at which nodes stand for patches, only in the smallest pictures, if not for all. */
+/* The largest errors, at which nodes stand for clusters, only in the smallest pictures, if not for all. */
 static void watch_direction(watching *w, int direction, int size, int is_all) {
   static const double errors[] = {0.0, 0.5, 1.0, 3.0, 6.0, 16.0};
   size_t n_errors = is_all ? 6 : size > 64 ? 4 : 5;

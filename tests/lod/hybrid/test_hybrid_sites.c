@@ -209,9 +209,9 @@ static conic_hybrid_level finest_of_sheet(conic_context *context, int has_colors
   conic_hybrid_options_init(&options);
   options.phase2 = 1e6;
   CHECK_OK(conic_hybrid_build(context, &mesh, &options, &hybrid, NULL));
-  CHECK(hybrid->n_patches == 1 && hybrid->patches[0].built > 0);
-  if (hybrid->n_patches == 1)
-    found = hybrid->levels[hybrid->patches[0].first_level + hybrid->patches[0].built];
+  CHECK(hybrid->n_clusters == 1 && hybrid->clusters[0].built > 0);
+  if (hybrid->n_clusters == 1)
+    found = hybrid->levels[hybrid->clusters[0].first_level + hybrid->clusters[0].built];
   CHECK(found.kind == CONIC_HYBRID_SURFELS);
   conic_hybrid_destroy(hybrid);
   return found;

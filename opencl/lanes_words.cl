@@ -1,0 +1,99 @@
+/* The words of core/lanes in OpenCL C, so that what is written in them compiles for devices too: 16 lanes, a block's
+ * pixels or as many splats. */
+#define CONIC_LANES_H
+#define CONIC_LANES_DOUBLE_H
+#define CONIC_LANES 16
+#define CONIC_HALF_LANES 8
+#define CONIC_INLINE static inline
+#define CONIC_OUTLINE static
+/* A block of 4 × 4 pixels is one vector, column by column. */
+#define CONIC_PARTS 1
+
+typedef float16 lanes;
+typedef int16 int_lanes;
+typedef uint16 index_lanes;
+typedef int16 lanes_mask;
+
+#define lanes_of(value) ((lanes)(value))
+#define lanes_of_index(value) ((index_lanes)(value))
+#define lanes_of_int(value) ((int_lanes)(value))
+#define lanes_of_ints(value) convert_float16((int_lanes)(value))
+#define lanes_to_ints(value) convert_int16_rtz((lanes)(value))
+#define lanes_of_bits(bits) as_float16((index_lanes)(bits))
+#define lanes_to_bits(value) as_uint16((lanes)(value))
+#define ints_of_indices(value) as_int16((index_lanes)(value))
+#define indices_of_ints(value) as_uint16((int_lanes)(value))
+#define lanes_columns() ((int_lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
+#define lanes_rows() ((int_lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+#define lanes_load(from) vload16(0, from)
+#define lanes_store(to, value) vstore16(value, 0, to)
+#define lanes_sqrt(value) sqrt((lanes)(value))
+#define lanes_absolute(value) fabs((lanes)(value))
+
+CONIC_INLINE lanes_mask lanes_less(lanes a, lanes b) {
+  return a < b;
+}
+
+CONIC_INLINE lanes_mask lanes_at_least(lanes a, lanes b) {
+  return a >= b;
+}
+
+CONIC_INLINE lanes_mask lanes_less_int(int_lanes a, int_lanes b) {
+  return a < b;
+}
+
+CONIC_INLINE lanes_mask lanes_not(lanes_mask mask) {
+  return ~mask;
+}
+
+CONIC_INLINE lanes lanes_select(lanes_mask mask, lanes yes, lanes no) {
+  return mask ? yes : no;
+}
+
+CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, index_lanes no) {
+  return mask ? yes : no;
+}
+
+CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {
+  return mask ? yes : no;
+}
+
+CONIC_INLINE void lanes_replace_indices(uint *to, lanes_mask mask, index_lanes value) {
+  vstore16(mask ? value : vload16(0, to), 0, to);
+}
+
+CONIC_INLINE lanes lanes_keep(lanes_mask mask, lanes value) {
+  return mask ? value : (lanes)0.0f;
+}
+
+CONIC_INLINE index_lanes lanes_increment(lanes_mask mask, index_lanes value) {
+  return value - as_uint16(mask);
+}
+
+CONIC_INLINE lanes_mask lanes_has_bits(index_lanes value, uint mask) {
+  return (value & mask) != 0u;
+}
+
+CONIC_INLINE lanes lanes_max(lanes a, lanes b) {
+  return a > b ? a : b;
+}
+
+CONIC_INLINE lanes lanes_min(lanes a, lanes b) {
+  return a < b ? a : b;
+}
+
+CONIC_INLINE int lanes_any(lanes_mask mask) {
+  int8 a = mask.lo | mask.hi;
+  int4 b = a.lo | a.hi;
+  long2 c = as_long2(b);
+  return (c.x | c.y) != 0;
+}
+
+CONIC_INLINE uint lanes_count(lanes_mask mask) {
+  int8 a = mask.lo + mask.hi;
+  int4 b = a.lo + a.hi;
+  int2 c = b.lo + b.hi;
+  return (uint)-(c.x + c.y);
+}
+
+#include "core/lanes/lanes_exponential.h"

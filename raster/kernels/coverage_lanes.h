@@ -1,0 +1,156 @@
+/* Whether a splat covers pixels, with what weight, and how deep: raster/tiles/coverage.h and core/splats/kernel.h lane
+ * by lane, with the same operations in the same order. C and OpenCL C share this text; records are in private memory.
+ */
+#ifndef CONIC_COVERAGE_LANES_H
+#define CONIC_COVERAGE_LANES_H
+
+#include "core/lanes/lanes.h"
+#include "raster/project/laplace_body.h"
+#include "raster/tiles/coverage.h"
+
+/* One splat's pixels in one part of a block, covered or not. */
+typedef struct fragments {
+  lanes_mask covered;
+  lanes q;
+  lanes iz, plane_iz; /* as in conic_fragment */
+  lanes scale;
+} fragments;
+
+/* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
+ * every block would be most of what the loops read. */
+typedef struct splat_rows {
+  lanes dy, q_offset, q_rest, iz_offset, plane_offset;
+  lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
+} splat_rows;
+
+CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
+  splat_rows rows;
+  rows.dy = (y - footprint->y) + footprint->dy0;
+  lanes minor = footprint->s3 * rows.dy;
+  rows.q_offset = footprint->s2 * rows.dy;
+  rows.q_rest = minor * minor;
+  rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
+  rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
+  rows.x = lanes_of(footprint->x);
+  rows.dx0 = lanes_of(footprint->dx0);
+  rows.s1 = lanes_of(footprint->s1);
+  rows.iz_dx = lanes_of(footprint->iz_dx);
+  rows.plane_dx = lanes_of(footprint->plane_dx);
+  rows.iz_far = lanes_of(footprint->iz_far);
+  rows.iz_near = lanes_of(footprint->iz_near);
+  return rows;
+}
+
+/* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
+CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes dx, fragments *f) {
+  lanes major = rows->s1 * dx + rows->q_offset;
+  f->q = major * major + rows->q_rest;
+  f->covered = lanes_less(f->q, lanes_of(support));
+  f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
+  f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
+  f->scale = lanes_of(1.0f);
+}
+
+/* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
+CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                lanes dx, lanes dy, fragments *f) {
+  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  f->covered = lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
+               lanes_at_least(lanes_of(ray->iz_high), iz);
+  f->covered &= lanes_at_least(dx, lanes_of(ray->dx_low)) & lanes_at_least(lanes_of(ray->dx_high), dx) &
+                lanes_at_least(dy, lanes_of(ray->dy_low)) & lanes_at_least(lanes_of(ray->dy_high), dy);
+  lanes r = 1.0f / iz;
+  lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
+  lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;
+  lanes u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
+  lanes v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
+  float h = view->prefilter;
+  lanes s_uu = 1.0f + h * (u_x * u_x + u_y * u_y);
+  lanes s_vv = 1.0f + h * (v_x * v_x + v_y * v_y);
+  lanes s_uv = h * (u_x * v_x + u_y * v_y);
+  lanes area = u_x * v_y - u_y * v_x;
+  lanes determinant = (s_uu + s_vv - 1.0f) + (h * area) * (h * area);
+  lanes along = u * s_uv - v * s_uu, inverse = 1.0f / (s_uu * determinant);
+  f->q = ((u * u) * determinant + along * along) * inverse;
+  f->covered &= lanes_less(f->q, lanes_of(view->support));
+  f->iz = lanes_min(lanes_max(iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = iz;
+  f->scale = lanes_sqrt(s_uu * inverse);
+}
+
+/* conic_laplace_fragment of coverage.h, lane by lane. */
+CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
+                                    lanes dx, lanes dy, fragments *f) {
+  laplaces at = laplaces_at(view, footprint, ray, dx, dy);
+  f->covered = at.covered;
+  f->q = at.q;
+  f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
+  f->plane_iz = at.plane_iz;
+  f->scale = at.scale;
+}
+
+/* conic_clip_keeps, lane by lane. */
+CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
+  lanes zero = lanes_of(0.0f);
+  lanes_mask first = lanes_at_least((clip->d0[0] + clip->by_y[0] * dy) + clip->by_x[0] * dx, zero);
+  lanes_mask second = lanes_at_least((clip->d0[1] + clip->by_y[1] * dy) + clip->by_x[1] * dx, zero);
+  lanes_mask within = lanes_at_least(dx, lanes_of(clip->dx_low)) & lanes_at_least(lanes_of(clip->dx_high), dx) &
+                      lanes_at_least(dy, lanes_of(clip->dy_low)) & lanes_at_least(lanes_of(clip->dy_high), dy);
+  return (clip->is_or ? first | second : first & second) & within;
+}
+
+/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. `ray` and
+ * `clip` are only looked at where there is one. */
+CONIC_INLINE void fragments_at(const conic_view *view, float support, const conic_footprint *footprint,
+                               const conic_ray *ray, const conic_clip_record *clip, const splat_rows *rows, lanes x,
+                               int is_special, fragments *f) {
+  lanes dx = (x - rows->x) + rows->dx0;
+  if (is_special && conic_is_laplace(footprint))
+    laplace_fragments(view, footprint, ray, dx, rows->dy, f);
+  else if (is_special && footprint->s3 == 0.0f)
+    ray_fragments(view, footprint, ray, dx, rows->dy, f);
+  else
+    ellipse_fragments(rows, support, dx, f);
+  if (is_special && conic_is_clipped(footprint))
+    f->covered &= clip_keeps(clip, dx, rows->dy);
+}
+
+/* Which kernel a loop is made for. */
+typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER } kernel_kind;
+
+static kernel_kind kind_of(const conic_kernel *kernel) {
+  if (conic_kernel_is_narrow(kernel))
+    return KERNEL_NARROW_GAUSS;
+  return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
+}
+
+/* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
+CONIC_INLINE lanes other_kernel(const conic_kernel *kernel, lanes q) {
+  if (kernel->type == CONIC_KERNEL_HAT)
+    return 1.0f - lanes_sqrt(q) / kernel->cutoff;
+  if (kernel->type == CONIC_KERNEL_BOX)
+    return lanes_of(1.0f);
+  lanes r = lanes_sqrt(q) / kernel->b, power = r;
+  for (int i = 1; i < kernel->n; i++)
+    power *= r;
+  lanes rest = 1.0f - power;
+  return lanes_keep(lanes_less(lanes_of(0.0f), rest), lanes_exp_negative(-kernel->a * power / rest));
+}
+
+/* conic_kernel_value in every lane below the support; beyond it, a kernel need not have a value. */
+CONIC_INLINE lanes kernel_value(const conic_view *view, lanes q, kernel_kind kind) {
+  if (kind == KERNEL_NARROW_GAUSS)
+    return lanes_gauss_narrow(q);
+  if (kind == KERNEL_GAUSS)
+    return lanes_exp_negative(-0.5f * q);
+  return other_kernel(&view->kernel, lanes_keep(lanes_less(q, lanes_of(view->support)), q));
+}
+
+/* conic_final_weight in every lane; 0 in those that are not visible. */
+CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
+                         kernel_kind kind) {
+  lanes weight = (amplitude * scale) * kernel_value(view, q, kind);
+  return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
+}
+
+#endif
