@@ -2,7 +2,6 @@
 
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The powers of ten that a double holds exactly. */
@@ -18,29 +17,139 @@ typedef struct decimal {
   int64_t n_digits;
 } decimal;
 
-/* More digits than these can only break a tie. */
-enum { MAX_DIGITS = 800 };
+/* A natural number, least significant word first. 800 digits shifted by 4100 bits fit. */
+enum { MAX_WORDS = 256, MAX_DIGITS = 800 };
 
-static double infinity(void) {
-  return 0x1p1023 * 2.0;
+typedef struct natural {
+  uint32_t words[MAX_WORDS];
+  int n;
+} natural;
+
+static void multiply_add(natural *number, uint32_t factor, uint32_t addend) {
+  uint64_t carry = addend;
+  for (int i = 0; i < number->n; i++) {
+    carry += (uint64_t)number->words[i] * factor;
+    number->words[i] = (uint32_t)carry;
+    carry >>= 32;
+  }
+  if (carry)
+    number->words[number->n++] = (uint32_t)carry;
 }
 
-/* Exact for any number of digits: the C library rounds once, and reads whole numbers with an exponent the same in every
- * locale. */
+/* Returns whether there was a remainder. */
+static int divide(natural *number, uint32_t divisor) {
+  uint64_t rest = 0;
+  for (int i = number->n - 1; i >= 0; i--) {
+    rest = rest << 32 | number->words[i];
+    number->words[i] = (uint32_t)(rest / divisor);
+    rest %= divisor;
+  }
+  while (number->n > 0 && !number->words[number->n - 1])
+    number->n--;
+  return rest != 0;
+}
+
+static void shift_left_words(natural *number, int n_words) {
+  memmove(number->words + n_words, number->words, (size_t)number->n * sizeof *number->words);
+  memset(number->words, 0, (size_t)n_words * sizeof *number->words);
+  number->n += n_words;
+}
+
+/* The number's most significant 64 bits, the highest of them set, and how many bits lie below them (negative where
+ * there are fewer than 64); *has_rest where a bit below is set. */
+static uint64_t leading_bits(const natural *number, int *n_below, int *has_rest) {
+  uint64_t bits = 0;
+  int taken = 0, i_word = number->n - 1, shift = 0;
+  while (!(number->words[i_word] << shift & 0x80000000u))
+    shift++;
+  for (; taken < 64 && i_word >= 0; i_word--) {
+    uint64_t word = number->words[i_word];
+    int room = 64 - taken, width = taken == 0 ? 32 - shift : 32;
+    if (room >= width)
+      bits |= word << (room - width);
+    else {
+      bits |= word >> (width - room);
+      *has_rest |= (word << (64 - (width - room))) != 0;
+    }
+    taken += width;
+  }
+  for (; i_word >= 0; i_word--)
+    *has_rest |= number->words[i_word] != 0;
+  *n_below = 32 * number->n - shift - 64;
+  return bits;
+}
+
+static double power_of_two(int exponent) {
+  uint64_t bits = exponent >= -1022 ? (uint64_t)(exponent + 1023) << 52 : UINT64_C(1) << (exponent + 1074);
+  double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+static double infinity(void) {
+  return power_of_two(1023) * 2.0;
+}
+
+/* (bits + a little, where has_rest) × 2^exponent, rounded to the 53 bits of a double or the fewer of a subnormal one.
+ */
+static double round_to_double(uint64_t bits, int exponent, int has_rest) {
+  int dropped = exponent + 11 < -1074 ? -1074 - exponent : 11;
+  if (dropped > 64)
+    return 0.0;
+  uint64_t kept = dropped == 64 ? 0 : bits >> dropped;
+  uint64_t rest = bits << (64 - dropped), half = UINT64_C(1) << 63;
+  if (dropped == 64)
+    rest = bits;
+  if (rest > half || (rest == half && (has_rest || (kept & 1))))
+    kept++;
+  if (exponent + dropped > 971)
+    return infinity();
+  return (double)kept * power_of_two(exponent + dropped);
+}
+
+static natural natural_of_digits(const decimal *source, int64_t *n_digits) {
+  natural number = {.n = 0};
+  *n_digits = 0;
+  for (const char *c = source->digits; c < source->end; c++) {
+    if (*c == '.')
+      continue;
+    if (*n_digits == MAX_DIGITS) { /* what follows can only break a tie */
+      if (*c == '0')
+        continue;
+      multiply_add(&number, 10, 1);
+      ++*n_digits;
+      break;
+    }
+    multiply_add(&number, 10, (uint32_t)(*c - '0'));
+    ++*n_digits;
+  }
+  return number;
+}
+
+/* Exact for any number of digits: as a quotient of natural numbers, rounded once. */
 static double convert_exactly(const decimal *source) {
-  char text[MAX_DIGITS + 32];
-  int n = 0;
+  int64_t n_digits;
+  int n_below, has_rest = 0, n_shifted_words = 0;
   if (source->magnitude > 310)
     return infinity();
   if (source->magnitude < -330)
     return 0.0;
-  for (const char *c = source->digits; c < source->end && n <= MAX_DIGITS; c++)
-    if (*c != '.' && n < MAX_DIGITS)
-      text[n++] = *c;
-    else if (*c != '.' && *c != '0')
-      text[n++] = '1';
-  snprintf(text + n, 16, "e%d", (int)source->magnitude - n);
-  return strtod(text, NULL);
+  natural number = natural_of_digits(source, &n_digits);
+  int exponent10 = (int)(source->magnitude - n_digits);
+  for (; exponent10 >= 9; exponent10 -= 9)
+    multiply_add(&number, 1000000000u, 0);
+  for (; exponent10 > 0; exponent10--)
+    multiply_add(&number, 10, 0);
+  if (exponent10 < 0) { /* 3.33 bits for each power of ten, and 70 to spare for the quotient */
+    n_shifted_words = (-exponent10 * 10 / 3 + 70) / 32 + 1;
+    shift_left_words(&number, n_shifted_words);
+  }
+  for (; exponent10 <= -9; exponent10 += 9)
+    has_rest |= divide(&number, 1000000000u);
+  for (; exponent10 < 0; exponent10++)
+    has_rest |= divide(&number, 10);
+  uint64_t bits = leading_bits(&number, &n_below, &has_rest);
+  return round_to_double(bits, n_below - 32 * n_shifted_words, has_rest);
 }
 
 static double convert(const decimal *source) {

@@ -1,4 +1,4 @@
-/* Decimal numbers to doubles and back, correctly rounded, whatever the locale. */
+/* Decimal numbers to doubles and back, correctly rounded, whatever the locale and the C library. */
 #ifndef CONIC_NUMBER_H
 #define CONIC_NUMBER_H
 
