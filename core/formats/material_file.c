@@ -44,9 +44,7 @@ static conic_status read_color(material_reader *reader) {
       return CONIC_OK;
     }
     if (conic_number_parse(word, length, &value) != length || length == 0 || !(value >= 0.0 && value <= 1e6))
-      return conic_fail(reader->input.context, CONIC_ERROR_INPUT,
-                        "%s: a colour's value is no number in range (line %llu)", reader->input.name,
-                        (unsigned long long)reader->input.line);
+      return conic_input_wrong(&reader->input, "a colour's value is no number in range");
     if (reader->current)
       reader->current->color[channel] = (float)value;
   }
@@ -73,12 +71,8 @@ static conic_status read_map(material_reader *reader) {
   }
   if (!file[0] || !reader->current || reader->current->texture)
     return CONIC_OK;
-  const char *slash = strrchr(reader->input.name, '/');
-  int folder = slash && file[0] != '/' ? (int)(slash + 1 - reader->input.name) : 0;
-  int n = snprintf(path, sizeof path, "%.*s%s", folder, reader->input.name, file);
-  if (n < 0 || (size_t)n >= sizeof path)
-    return conic_fail(reader->input.context, CONIC_ERROR_INPUT, "%s: a picture's name is too long (line %llu)",
-                      reader->input.name, (unsigned long long)reader->input.line);
+  if (!conic_input_beside(&reader->input, file, strlen(file), path, sizeof path))
+    return conic_input_wrong(&reader->input, "a picture's name is too long");
   if (!conic_file_is_there(path)) {
     conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
               reader->input.name, path, (unsigned long long)reader->input.line);

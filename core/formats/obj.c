@@ -1,7 +1,6 @@
 #include "core/formats/obj.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -44,11 +43,6 @@ typedef struct obj_reader {
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
 typedef uint32_t face_corner[3];
 
-static conic_status wrong(const obj_reader *reader, const char *what) {
-  return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
-                    (unsigned long long)reader->input->line);
-}
-
 /* Room for one more in an array that grows by half. */
 static conic_status make_room(const obj_reader *reader, void **array, size_t n, size_t *capacity, size_t size) {
   size_t larger = *capacity + *capacity / 2 + 1024;
@@ -72,9 +66,9 @@ static conic_status read_numbers(const obj_reader *reader, double *numbers, int 
     if (length == 0 || word[0] == '#')
       return CONIC_OK;
     if (conic_number_parse(word, length, &value) != length)
-      return wrong(reader, "a value is not a number");
+      return conic_input_wrong(reader->input, "a value is not a number");
     if (*n == room)
-      return wrong(reader, "too many values");
+      return conic_input_wrong(reader->input, "too many values");
     numbers[(*n)++] = value;
   }
 }
@@ -100,9 +94,10 @@ static conic_status read_vertex(obj_reader *reader) {
   if (status != CONIC_OK)
     return status;
   if (n < 3 || n == 5)
-    return wrong(reader, "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
+    return conic_input_wrong(reader->input,
+                             "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
   if (points->count >= CONIC_MAX_POINTS)
-    return wrong(reader, "too many vertices");
+    return conic_input_wrong(reader->input, "too many vertices");
   status = conic_builder_reserve_points(&reader->builder, points->count + 1);
   if (status == CONIC_OK && n >= 6)
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
@@ -122,9 +117,9 @@ static conic_status read_normal(obj_reader *reader) {
   void *normals = reader->normals;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n != 3)
-    status = wrong(reader, "a normal has 3 values");
+    status = conic_input_wrong(reader->input, "a normal has 3 values");
   if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
-    status = wrong(reader, "too many normals");
+    status = conic_input_wrong(reader->input, "too many normals");
   if (status == CONIC_OK)
     status = make_room(reader, &normals, reader->counts[NORMAL], &reader->normal_capacity, sizeof *reader->normals);
   reader->normals = normals;
@@ -141,9 +136,9 @@ static conic_status read_texture(obj_reader *reader) {
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n < 1)
-    return wrong(reader, "a texture coordinate has 1 to 3 values");
+    return conic_input_wrong(reader->input, "a texture coordinate has 1 to 3 values");
   if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)
-    return wrong(reader, "too many texture coordinates");
+    return conic_input_wrong(reader->input, "too many texture coordinates");
   if (status == CONIC_OK && reader->faces)
     status = conic_faces_add_coordinate(reader->input->context, reader->faces, values);
   reader->counts[TEXTURE]++;
@@ -170,15 +165,12 @@ static const char *parse_index(const char *text, const char *end, int64_t *index
 /* From the file's numbering, from 1 or back from the last, to indices from 0. */
 static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, uint32_t *resolved) {
   uint64_t count = reader->counts[kind];
-  char what[96];
-  if (index < 0 && (uint64_t)-index > count) {
-    snprintf(what, sizeof what, "index %lld, but there are only %llu %s so far", (long long)index,
-             (unsigned long long)count, kind_names[kind]);
-    return wrong(reader, what);
-  }
+  if (index < 0 && (uint64_t)-index > count)
+    return conic_input_wrong(reader->input, "index %lld, but there are only %llu %s so far", (long long)index,
+                             (unsigned long long)count, kind_names[kind]);
   uint64_t found = index < 0 ? count - (uint64_t)-index : (uint64_t)index - 1;
   if (found >= CONIC_MAX_POINTS)
-    return wrong(reader, "an index is out of range");
+    return conic_input_wrong(reader->input, "an index is out of range");
   if (found >= count && found + 1 > reader->used[kind].index) {
     reader->used[kind].index = found + 1;
     reader->used[kind].line = reader->input->line;
@@ -197,7 +189,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
       if (c == end)
         break;
       if (*c++ != '/')
-        return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+        return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
       if (kind == TEXTURE && c < end && *c == '/')
         continue;
       if (kind == NORMAL && c == end) /* v/t/ is written, too */
@@ -205,13 +197,13 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     }
     c = parse_index(c, end, &index);
     if (!c)
-      return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+      return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
     conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
     if (status != CONIC_OK)
       return status;
   }
   if (c != end)
-    return wrong(reader, "a face's corner is v, v/t, v//n or v/t/n");
+    return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
   void *corners = reader->corners;
@@ -241,7 +233,7 @@ static conic_status read_face(obj_reader *reader) {
     if (status != CONIC_OK)
       return status;
     if (length == 0 || word[0] == '#')
-      return n < 3 ? wrong(reader, "a face has at least 3 corners") : CONIC_OK;
+      return n < 3 ? conic_input_wrong(reader->input, "a face has at least 3 corners") : CONIC_OK;
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
       status = add_triangle(reader, first, previous, current);
@@ -261,25 +253,23 @@ static conic_status read_material(obj_reader *reader) {
   if (status != CONIC_OK || !reader->faces)
     return status;
   if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
-    return wrong(reader, "too many materials");
+    return conic_input_wrong(reader->input, "too many materials");
   return conic_faces_use_material(reader->input->context, reader->faces, word, length);
 }
 
 /* mtllib FILE …: paths are relative to the model's folder. */
 static conic_status read_libraries(obj_reader *reader) {
-  const char *word, *name = reader->input->name, *slash = strrchr(name, '/');
+  const char *word;
   char path[2 * CONIC_INPUT_LONGEST_WORD];
   size_t length;
   for (;;) {
     conic_status status = conic_input_word(reader->input, &word, &length);
     if (status != CONIC_OK || length == 0 || !reader->faces)
       return status;
-    size_t folder = slash && word[0] != '/' ? (size_t)(slash + 1 - name) : 0;
-    if (folder + length > sizeof path || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
-      return wrong(reader, "a material file's name is too long, or there are too many");
-    memcpy(path, name, folder);
-    memcpy(path + folder, word, length);
-    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, folder + length);
+    size_t n = conic_input_beside(reader->input, word, length, path, sizeof path);
+    if (n == 0 || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
+      return conic_input_wrong(reader->input, "a material file's name is too long, or there are too many");
+    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, n);
     if (status != CONIC_OK)
       return status;
   }
@@ -311,7 +301,7 @@ static conic_status check_indices(const obj_reader *reader) {
                         (unsigned long long)reader->used[kind].index, (unsigned long long)reader->counts[kind],
                         kind_names[kind], (unsigned long long)reader->used[kind].line);
   if (reader->counts[VERTEX] == 0)
-    return wrong(reader, "the file ends without a vertex");
+    return conic_input_wrong(reader->input, "the file ends without a vertex");
   return CONIC_OK;
 }
 

@@ -8,7 +8,6 @@
 
 #include "core/base/memory.h"
 #include "core/files/file.h"
-#include "core/image/image_exr_attributes.h"
 #include "core/image/image_exr_stream.h"
 
 struct conic_deep_writer {

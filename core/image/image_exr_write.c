@@ -9,7 +9,6 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
-#include "core/image/image_exr_attributes.h"
 #include "core/image/image_exr_stream.h"
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
