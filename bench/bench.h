@@ -1,5 +1,5 @@
-/* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath. docs/benchmark.md
- * has the definitions. */
+/* What the parts of `conic bench` share: scenes, the lines that are measured, the machine beneath.
+ * docs/reference/benchmark.md has the definitions. */
 #ifndef CONIC_BENCH_H
 #define CONIC_BENCH_H
 

@@ -8,6 +8,7 @@
 #include "cli/render/render_job.h"
 #include "cli/suggest.h"
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 
 /* The camera of the rates that are quoted: the unit sphere from a little above, some 900 pixels across. */
 static const double focal_px = 1406.708438760767; /* for 1024 pixels */
@@ -53,30 +54,25 @@ static double halvings(double value) {
   return t + (value - 1.0);
 }
 
-static double norm(const double v[3]) {
-  return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-}
-
 /* Evenly in the unit ball, but not at its very centre. */
 static void place_in_ball(uint64_t i, uint64_t dimension, double p[3]) {
   do {
     for (int axis = 0; axis < 3; axis++)
       p[axis] = 2.0 * conic_random_uniform(1, i, dimension++) - 1.0;
-  } while (norm(p) > 1.0 || norm(p) < 1e-3);
+  } while (conic_length(p) > 1.0 || conic_length(p) < 1e-3);
 }
 
 /* Two perpendicular unit directions. */
 static void point_axes(uint64_t i, double u[3], double v[3]) {
   double other[3], length;
   place_in_ball(i, 1000, u);
-  length = norm(u);
+  length = conic_length(u);
   for (int axis = 0; axis < 3; axis++)
     u[axis] /= length;
   for (uint64_t dimension = 2000;; dimension += 1000) {
     place_in_ball(i, dimension, other);
-    for (int axis = 0; axis < 3; axis++)
-      v[axis] = u[(axis + 1) % 3] * other[(axis + 2) % 3] - u[(axis + 2) % 3] * other[(axis + 1) % 3];
-    length = norm(v);
+    conic_cross(u, other, v);
+    length = conic_length(v);
     if (length > 1e-3)
       break;
   }

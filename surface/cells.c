@@ -63,7 +63,7 @@ static void fill_table(conic_cells *cells) {
 static conic_status grow(conic_cells *cells) {
   uint32_t *table = conic_memory_allocate(cells->context, 2 * cells->table_size, sizeof *table);
   conic_status status =
-      table ? conic_memory_grow(cells->context, (void **)&cells->cells, cells->n, 2 * cells->room, sizeof *cells->cells)
+      table ? conic_memory_grow(cells->context, &cells->cells, cells->n, 2 * cells->room, sizeof *cells->cells)
             : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     conic_memory_release(cells->context, table);

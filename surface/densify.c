@@ -108,7 +108,7 @@ static conic_status reserve(densifying *work) {
     return CONIC_OK;
   conic_status status = conic_splats_resize(context, work->points, capacity, conic_splats_fields(work->points));
   if (status == CONIC_OK)
-    status = conic_memory_grow(context, (void **)&work->sites, n, capacity, sizeof *work->sites);
+    status = conic_memory_grow(context, &work->sites, n, capacity, sizeof *work->sites);
   if (status == CONIC_OK)
     work->capacity = capacity;
   return status;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "core/splats/voronoi_cell.h"
 
 enum { N_NEIGHBOURS = 32 };
@@ -31,8 +32,7 @@ static void make_axes(const double n[3], double u[3], double v[3]) {
   }
   for (int axis = 0; axis < 3; axis++)
     u[axis] /= sqrt(length2);
-  for (int axis = 0; axis < 3; axis++)
-    v[axis] = n[(axis + 1) % 3] * u[(axis + 2) % 3] - n[(axis + 2) % 3] * u[(axis + 1) % 3];
+  conic_cross(n, u, v);
 }
 
 /* Neighbours as they lie in the plane, at their distance in space: those on the other side of a bend or of a thin part

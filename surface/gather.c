@@ -61,16 +61,12 @@ static int reserve_near(conic_workspace *workspace, size_t n) {
 }
 
 static int reserve_candidates(conic_workspace *workspace, conic_candidates *candidates, size_t n) {
-  if (n <= candidates->capacity)
+  if (!workspace->is_out_of_memory &&
+      conic_memory_reserve(workspace->context, &candidates->sources, candidates->n, n, &candidates->capacity,
+                           sizeof *candidates->sources) == CONIC_OK)
     return 1;
-  size_t capacity = n + n / 2 + 256;
-  if (workspace->is_out_of_memory || conic_memory_grow(workspace->context, (void **)&candidates->sources, candidates->n,
-                                                       capacity, sizeof *candidates->sources) != CONIC_OK) {
-    workspace->is_out_of_memory = 1;
-    return 0;
-  }
-  candidates->capacity = capacity;
-  return 1;
+  workspace->is_out_of_memory = 1;
+  return 0;
 }
 
 /* The squared distance between two boxes. */

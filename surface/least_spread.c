@@ -3,20 +3,12 @@
 #include <math.h>
 
 #include "core/base/eigen.h"
+#include "core/base/vectors.h"
 
 enum { MAX_STEPS = 24 };
 
 /* The eigenvalues' gaps multiplied, with their sum as unit: below this, the cross products lose too many digits. */
 static const double LEAST_GAPS = 1e-5;
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    c[axis] = a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3];
-}
-
-static double square(const double v[3]) {
-  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-}
 
 /* The least root of the characteristic polynomial of a matrix with trace 1: from 0 on, Newton's steps climb to it and
  * never pass it, as the polynomial is convex there. */
@@ -43,8 +35,8 @@ static int find_normal(const double m[6], double normal[3]) {
   int is_found = 0;
   for (int i = 0; i < 3; i++) {
     double across[3];
-    cross(rows[i], rows[(i + 1) % 3], across);
-    double length2 = square(across);
+    conic_cross(rows[i], rows[(i + 1) % 3], across);
+    double length2 = conic_dot(across, across);
     if (!(length2 > best2))
       continue;
     best2 = length2;
@@ -61,7 +53,7 @@ void conic_least_spread(const double covariance[6], double frame[3][3]) {
     m[i] = covariance[i] / trace;
   if (!find_normal(m, frame[2])) {
     conic_eigen3(covariance, values, frame);
-    cross(frame[2], frame[0], frame[1]);
+    conic_cross(frame[2], frame[0], frame[1]);
     return;
   }
   const double *n = frame[2];
@@ -70,5 +62,5 @@ void conic_least_spread(const double covariance[6], double frame[3][3]) {
   double along = n[least], inverse = 1.0 / sqrt(1.0 - along * along);
   for (int axis = 0; axis < 3; axis++)
     frame[0][axis] = ((axis == least ? 1.0 : 0.0) - along * n[axis]) * inverse;
-  cross(frame[2], frame[0], frame[1]);
+  conic_cross(frame[2], frame[0], frame[1]);
 }

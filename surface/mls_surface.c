@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 #include "surface/clusters.h"
 #include "surface/kernels/weight.h"
 
@@ -44,17 +45,16 @@ static conic_status check_options(conic_context *context, const conic_surface_op
 }
 
 void conic_surface_unit_normal(const conic_splats *points, size_t i, double normal[3]) {
-  double n[3];
+  double u[3], v[3];
   for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    n[axis] = points->tangent_u[0] ? (double)points->tangent_u[next][i] * (double)points->tangent_v[last][i] -
-                                         (double)points->tangent_u[last][i] * (double)points->tangent_v[next][i]
-                                   : (double)points->normal[axis][i];
+    u[axis] = (double)(points->tangent_u[0] ? points->tangent_u : points->normal)[axis][i];
+    v[axis] = points->tangent_u[0] ? (double)points->tangent_v[axis][i] : 0.0;
   }
-  double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  int is_sound = length > 0.0 && length - length == 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = is_sound ? n[axis] / length : 0.0;
+  if (points->tangent_u[0])
+    conic_cross(u, v, normal);
+  else
+    memcpy(normal, u, sizeof u);
+  conic_normalize(normal);
 }
 
 static conic_status copy_points(conic_context *context, const conic_splats *from, conic_splats *to) {

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "surface/least_spread.h"
 #include "surface/mls_surface.h"
 
@@ -18,11 +19,6 @@ enum { MAX_STEPS = 40, MAX_TURNS = 30, MAX_SEARCH = 40 };
 /* In units of h: a Newton step shorter than the first is the last, as the next would square what is left; one longer
  * than the second is not trusted; a search along the normal ends at the third. */
 static const double LAST_STEP = 1e-6, LONGEST_STEP = 0.25, SEARCHED = 1e-3;
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    c[axis] = a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3];
-}
 
 conic_surface_outcome conic_surface_first_plane(const conic_surface *surface, size_t n_least,
                                                 conic_workspace *workspace, double frame[3][3], double *height) {
@@ -78,7 +74,7 @@ static int newton_step(const well *here, double step[3]) {
   const double(*m)[3] = here->slope;
   double minors[3][3], determinant = 0.0;
   for (int i = 0; i < 3; i++)
-    cross(m[(i + 1) % 3], m[(i + 2) % 3], minors[i]);
+    conic_cross(m[(i + 1) % 3], m[(i + 2) % 3], minors[i]);
   for (int axis = 0; axis < 3; axis++)
     determinant += m[0][axis] * minors[0][axis];
   if (!(fabs(determinant) > 1e-12 * fabs(m[0][0] * m[1][1] * m[2][2])))
@@ -90,26 +86,22 @@ static int newton_step(const well *here, double step[3]) {
   return 1;
 }
 
-static double length_of(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Tilts n by a and b towards the other two axes. */
 static void tilt(double frame[3][3], double a, double b) {
   double n[3], along = 0.0;
   for (int axis = 0; axis < 3; axis++)
     n[axis] = frame[2][axis] + a * frame[0][axis] + b * frame[1][axis];
-  double inverse = 1.0 / length_of(n);
+  double inverse = 1.0 / conic_length(n);
   for (int axis = 0; axis < 3; axis++) {
     frame[2][axis] = n[axis] * inverse;
     along += frame[0][axis] * frame[2][axis];
   }
   for (int axis = 0; axis < 3; axis++)
     n[axis] = frame[0][axis] - along * frame[2][axis];
-  inverse = 1.0 / length_of(n);
+  inverse = 1.0 / conic_length(n);
   for (int axis = 0; axis < 3; axis++)
     frame[0][axis] = n[axis] * inverse;
-  cross(frame[2], frame[0], frame[1]);
+  conic_cross(frame[2], frame[0], frame[1]);
 }
 
 /* The local minimum along n that is downhill from t, within the margin: Newton's steps, halvings where those leave what
@@ -163,7 +155,7 @@ static int take_turns(const conic_surface *surface, double h, double margin, con
     if (agreed < 0.0) { /* the same line, looked at from the other end */
       for (int axis = 0; axis < 3; axis++)
         frame[2][axis] = -frame[2][axis];
-      cross(frame[2], frame[0], frame[1]);
+      conic_cross(frame[2], frame[0], frame[1]);
     }
     for (int axis = 0; axis < 3; axis++)
       changed += (before[axis] - frame[2][axis]) * (before[axis] - frame[2][axis]);
@@ -182,7 +174,7 @@ static conic_surface_outcome close_in(const conic_surface *surface, double h, do
     well here = look(surface, workspace, h, frame, *t);
     if (!is_hollow(&here) || !newton_step(&here, step))
       return CONIC_SURFACE_NO_MINIMUM;
-    double length = length_of(step) / h;
+    double length = conic_length(step) / h;
     if (!(length <= before) || !(fabs(*t + step[2]) <= margin))
       return CONIC_SURFACE_NO_MINIMUM;
     *t += step[2];

@@ -2,6 +2,7 @@
  * places and normals, on which the point finds its foot; weights about the foot, until both agree. */
 #include <math.h>
 
+#include "core/base/vectors.h"
 #include "surface/mls_surface.h"
 
 enum { MAX_ROUNDS = 100, LEAST_SAMPLES = 4 };
@@ -14,29 +15,25 @@ typedef struct fitted_sphere {
   double constant, linear[3], square; /* about the place of its weights */
 } fitted_sphere;
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The sphere whose gradient is nearest to the normals, through the samples' mean. 0 where the normals cancel. */
 static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], fitted_sphere *s) {
   double w = sums[0], inverse = 1.0 / w;
   const double *places = sums + 1, *normals = sums + 4;
-  double spread = sums[7] - dot(places, places) * inverse;
-  double turn = sums[8] - dot(places, normals) * inverse;
+  double spread = sums[7] - conic_dot(places, places) * inverse;
+  double turn = sums[8] - conic_dot(places, normals) * inverse;
   s->square = spread > 0.0 ? 0.5 * turn / spread : 0.0;
   for (int axis = 0; axis < 3; axis++)
     s->linear[axis] = (normals[axis] - 2.0 * s->square * places[axis]) * inverse;
-  s->constant = -(dot(s->linear, places) + s->square * sums[7]) * inverse;
-  return dot(s->linear, s->linear) - 4.0 * s->constant * s->square > 0.0;
+  s->constant = -(conic_dot(s->linear, places) + s->square * sums[7]) * inverse;
+  return conic_dot(s->linear, s->linear) - 4.0 * s->constant * s->square > 0.0;
 }
 
 /* From `from` along the sphere's gradient to its surface; 0 where there is none. */
 static int drop(const fitted_sphere *s, const double from[3], double foot[3], double normal[3]) {
-  double gradient[3], value = s->constant + dot(s->linear, from) + s->square * dot(from, from);
+  double gradient[3], value = s->constant + conic_dot(s->linear, from) + s->square * conic_dot(from, from);
   for (int axis = 0; axis < 3; axis++)
     gradient[axis] = s->linear[axis] + 2.0 * s->square * from[axis];
-  double length2 = dot(gradient, gradient), root2 = length2 - 4.0 * s->square * value;
+  double length2 = conic_dot(gradient, gradient), root2 = length2 - 4.0 * s->square * value;
   if (!(length2 > 0.0 && root2 >= 0.0))
     return 0;
   double length = sqrt(length2), along = -2.0 * value / (length + sqrt(root2));
@@ -44,7 +41,7 @@ static int drop(const fitted_sphere *s, const double from[3], double foot[3], do
     foot[axis] = from[axis] + along * gradient[axis] / length;
     normal[axis] = s->linear[axis] + 2.0 * s->square * foot[axis];
   }
-  length = sqrt(dot(normal, normal));
+  length = conic_length(normal);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = length > 0.0 ? normal[axis] / length : 0.0;
   return length > 0.0;
@@ -63,13 +60,13 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
       from[axis] = -foot[axis]; /* the point itself, seen from the foot */
     if (!fit_sphere(sums, &s) || !drop(&s, from, step, normal))
       return CONIC_SURFACE_NO_MINIMUM;
-    double moved = sqrt(dot(step, step));
+    double moved = conic_length(step);
     for (int axis = 0; axis < 3; axis++)
       foot[axis] += step[axis];
-    if (!(dot(foot, foot) <= margin * margin))
+    if (!(conic_dot(foot, foot) <= margin * margin))
       return CONIC_SURFACE_NO_MINIMUM;
     if (moved <= SETTLED * h) {
-      if (dot(sums + 1, sums + 1) > (FARTHEST_MEAN * h * sums[0]) * (FARTHEST_MEAN * h * sums[0]))
+      if (conic_dot(sums + 1, sums + 1) > (FARTHEST_MEAN * h * sums[0]) * (FARTHEST_MEAN * h * sums[0]))
         return CONIC_SURFACE_ILL_CONDITIONED;
       for (int axis = 0; axis < 3; axis++) {
         projection->offset[axis] = projection->foot[axis] = foot[axis];

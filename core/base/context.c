@@ -102,15 +102,27 @@ void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t 
   return pointer;
 }
 
-conic_status conic_memory_grow(conic_context *context, void **pointer, size_t used, size_t count, size_t size) {
-  void *larger = conic_memory_allocate(context, count, size);
+conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size) {
+  void *smaller, *larger = conic_memory_allocate(context, count, size);
   if (!larger)
     return CONIC_ERROR_MEMORY;
-  if (*pointer && used)
-    memcpy(larger, *pointer, used * size);
-  conic_memory_release(context, *pointer);
-  *pointer = larger;
+  memcpy(&smaller, array, sizeof smaller);
+  if (smaller && used)
+    memcpy(larger, smaller, used * size);
+  conic_memory_release(context, smaller);
+  memcpy(array, &larger, sizeof larger);
   return CONIC_OK;
+}
+
+conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
+                                  size_t size) {
+  if (wanted <= *room)
+    return CONIC_OK;
+  size_t larger = wanted + wanted / 2 + 64;
+  conic_status status = conic_memory_grow(context, array, used, larger, size);
+  if (status == CONIC_OK)
+    *room = larger;
+  return status;
 }
 
 void conic_memory_release(conic_context *context, void *pointer) {

@@ -13,9 +13,14 @@ void *conic_memory_allocate(conic_context *context, size_t count, size_t size);
 /* The same, all bytes zero. */
 void *conic_memory_allocate_zeroed(conic_context *context, size_t count, size_t size);
 
-/* Moves `used` elements of *pointer into room for `count` (not below `used`) and releases the old. On failure *pointer
- * stays as it was. */
-conic_status conic_memory_grow(conic_context *context, void **pointer, size_t used, size_t count, size_t size);
+/* Moves `used` elements of an array into room for `count` (not below `used`) and releases the old; `array` is the
+ * address of the pointer to it. On failure the array stays as it was. */
+conic_status conic_memory_grow(conic_context *context, void *array, size_t used, size_t count, size_t size);
+
+/* The same for an array that has room for *room elements, where `wanted` are more: it becomes larger by half than that,
+ * so that adding one by one takes little time. On failure the array and *room stay as they were. */
+conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
+                                  size_t size);
 
 /* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be
  * used from end to end. Where the system has none, nothing happens. Thread-safe. */

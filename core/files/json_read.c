@@ -12,7 +12,6 @@ static const size_t largest_file = 16u << 20;
 static conic_status read_all(conic_json *json, conic_input *input) {
   size_t n = 0, capacity = 0;
   for (;;) {
-    void *text = json->text;
     conic_status status = conic_input_fill(input, 1);
     size_t available = conic_input_available(input);
     if (status != CONIC_OK)
@@ -21,8 +20,7 @@ static conic_status read_all(conic_json *json, conic_input *input) {
       return conic_fail(json->context, CONIC_ERROR_INPUT, "%s: too long for such a file (at byte %zu)", json->name, n);
     if (n + available >= capacity) {
       capacity = 2 * (n + available) + 4096;
-      status = conic_memory_grow(json->context, &text, n, capacity, 1);
-      json->text = text;
+      status = conic_memory_grow(json->context, &json->text, n, capacity, 1);
       if (status != CONIC_OK)
         return status;
     }

@@ -17,7 +17,7 @@ static conic_status read_all(conic_context *context, const char *name, int descr
   for (;;) {
     if (mapping->n_bytes == room) {
       room = 2 * room + 65536;
-      conic_status status = conic_memory_grow(context, (void **)&mapping->bytes, mapping->n_bytes, room, 1);
+      conic_status status = conic_memory_grow(context, &mapping->bytes, mapping->n_bytes, room, 1);
       if (status != CONIC_OK)
         return status;
     }

@@ -92,14 +92,9 @@ static conic_status flush(conic_spool *spool) {
 }
 
 static conic_status add_slab(conic_spool *spool) {
-  if (spool->n_slabs == spool->slab_room) {
-    size_t room = 2 * spool->slab_room + 16;
-    conic_status status =
-        conic_memory_grow(spool->context, (void **)&spool->held, spool->n_slabs, room, sizeof *spool->held);
-    if (status != CONIC_OK)
-      return status;
-    spool->slab_room = room;
-  }
+  if (conic_memory_reserve(spool->context, &spool->held, spool->n_slabs, spool->n_slabs + 1, &spool->slab_room,
+                           sizeof *spool->held) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   unsigned char *slab = conic_memory_allocate(spool->context, CONIC_SPOOL_SLAB, 1);
   if (!slab)
     return CONIC_ERROR_MEMORY;

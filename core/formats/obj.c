@@ -6,6 +6,7 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
@@ -42,17 +43,6 @@ typedef struct obj_reader {
 
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
 typedef uint32_t face_corner[3];
-
-/* Room for one more in an array that grows by half. */
-static conic_status make_room(const obj_reader *reader, void **array, size_t n, size_t *capacity, size_t size) {
-  size_t larger = *capacity + *capacity / 2 + 1024;
-  if (n < *capacity)
-    return CONIC_OK;
-  conic_status status = conic_memory_grow(reader->input->context, array, n, larger, size);
-  if (status == CONIC_OK)
-    *capacity = larger;
-  return status;
-}
 
 /* The numbers up to the end of the line; more than `room` of them are wrong. */
 static conic_status read_numbers(const obj_reader *reader, double *numbers, int room, int *n) {
@@ -114,15 +104,14 @@ static conic_status read_vertex(obj_reader *reader) {
 static conic_status read_normal(obj_reader *reader) {
   double values[3];
   int n;
-  void *normals = reader->normals;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n != 3)
     status = conic_input_wrong(reader->input, "a normal has 3 values");
   if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
     status = conic_input_wrong(reader->input, "too many normals");
   if (status == CONIC_OK)
-    status = make_room(reader, &normals, reader->counts[NORMAL], &reader->normal_capacity, sizeof *reader->normals);
-  reader->normals = normals;
+    status = conic_memory_reserve(reader->input->context, &reader->normals, reader->counts[NORMAL],
+                                  reader->counts[NORMAL] + 1, &reader->normal_capacity, sizeof *reader->normals);
   if (status == CONIC_OK)
     memcpy(reader->normals[reader->counts[NORMAL]++], values, sizeof values);
   if (status == CONIC_OK && reader->faces)
@@ -206,10 +195,8 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
-  void *corners = reader->corners;
-  conic_status status =
-      make_room(reader, &corners, reader->n_corners, &reader->corner_capacity, sizeof *reader->corners);
-  reader->corners = corners;
+  conic_status status = conic_memory_reserve(reader->input->context, &reader->corners, reader->n_corners,
+                                             reader->n_corners + 1, &reader->corner_capacity, sizeof *reader->corners);
   if (status == CONIC_OK)
     reader->corners[reader->n_corners++] = (obj_corner){resolved[VERTEX], resolved[NORMAL]};
   return status;
@@ -305,12 +292,6 @@ static conic_status check_indices(const obj_reader *reader) {
   return CONIC_OK;
 }
 
-static void normalize(double vector[3]) {
-  double length = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
-  for (int axis = 0; axis < 3; axis++)
-    vector[axis] = length > 0.0 && length - length == 0.0 ? vector[axis] / length : 0.0;
-}
-
 /* A vertex's normal is the sum over all corners, in the file's order, made unit; zero where no corner names one. */
 static conic_status gather_normals(obj_reader *reader) {
   conic_splats *points = &reader->builder.model->points;
@@ -326,7 +307,7 @@ static conic_status gather_normals(obj_reader *reader) {
     for (int axis = 0; axis < 3; axis++)
       sums[reader->corners[i].i_vertex][axis] += reader->normals[reader->corners[i].i_normal][axis];
   for (size_t i = 0; i < points->count; i++) {
-    normalize(sums[i]);
+    conic_normalize(sums[i]);
     for (int axis = 0; axis < 3; axis++)
       points->normal[axis][i] = (float)sums[i][axis];
   }

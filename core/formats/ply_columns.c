@@ -6,6 +6,7 @@
 #include "core/base/color.h"
 #include "core/base/gaussian.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 
 /* What properties are called, those of consecutive columns in their order. Where a file has several names of one
@@ -193,10 +194,7 @@ static void store_circles(const conic_ply_layout *layout, const conic_ply_block 
   for (size_t i = 0; i < n; i++) {
     double tangent_u[3], tangent_v[3], sigma = block[CONIC_PLY_RADIUS][i] / (double)layout->cutoff;
     double normal[3] = {block[CONIC_PLY_NORMAL][i], block[CONIC_PLY_NORMAL + 1][i], block[CONIC_PLY_NORMAL + 2][i]};
-    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    int is_usable = length > 0.0 && length - length == 0.0 && sigma > 0.0 && sigma - sigma == 0.0;
-    for (int axis = 0; axis < 3; axis++)
-      normal[axis] = is_usable ? normal[axis] / length : 0.0;
+    int is_usable = conic_normalize(normal) && sigma > 0.0 && sigma - sigma == 0.0;
     conic_tangent_basis(normal, tangent_u, tangent_v);
     for (int axis = 0; axis < 3; axis++) {
       tangent_u[axis] = is_usable ? tangent_u[axis] * sigma : 0.0;

@@ -146,27 +146,15 @@ static int parse_count(const char *text, uint64_t *count) {
   return *text != 0;
 }
 
-/* Room for one more in an array that doubles. */
-static conic_status make_room(conic_context *context, void **array, size_t n, size_t *capacity, size_t size) {
-  if (n < *capacity)
-    return CONIC_OK;
-  conic_status status = conic_memory_grow(context, array, n, *capacity * 2 + 8, size);
-  if (status == CONIC_OK)
-    *capacity = *capacity * 2 + 8;
-  return status;
-}
-
 static conic_status parse_element(conic_input *input, const header_line *line, conic_ply_header *header) {
   conic_ply_element element = {.line = line->line, .first_property = header->n_properties};
-  void *elements = header->elements;
   if (line->n_words != 3 || !parse_count(line->words[2], &element.count))
     return wrong(input, line, "an element line is 'element NAME COUNT'", NULL);
   copy_word(element.name, sizeof element.name, line->words[1], strlen(line->words[1]));
   if (conic_ply_find_element(header, element.name))
     return wrong(input, line, "a second element", element.name);
-  conic_status status =
-      make_room(input->context, &elements, header->n_elements, &header->element_capacity, sizeof element);
-  header->elements = elements;
+  conic_status status = conic_memory_reserve(input->context, &header->elements, header->n_elements,
+                                             header->n_elements + 1, &header->element_capacity, sizeof element);
   if (status == CONIC_OK)
     header->elements[header->n_elements++] = element;
   return status;
@@ -183,7 +171,6 @@ static conic_status parse_type(conic_input *input, const header_line *line, int 
 
 static conic_status parse_property(conic_input *input, const header_line *line, conic_ply_header *header) {
   conic_ply_property property = {.is_list = is_word(line, 1, "list")};
-  void *properties = header->properties;
   int n_words = property.is_list ? 5 : 3;
   conic_status status = CONIC_OK;
   if (header->n_elements == 0)
@@ -197,8 +184,8 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
   if (status == CONIC_OK)
     status = parse_type(input, line, n_words - 2, &property.type);
   if (status == CONIC_OK)
-    status = make_room(input->context, &properties, header->n_properties, &header->property_capacity, sizeof property);
-  header->properties = properties;
+    status = conic_memory_reserve(input->context, &header->properties, header->n_properties, header->n_properties + 1,
+                                  &header->property_capacity, sizeof property);
   if (status != CONIC_OK)
     return status;
   conic_ply_element *element = &header->elements[header->n_elements - 1];

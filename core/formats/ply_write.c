@@ -7,6 +7,7 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
 
@@ -195,14 +196,11 @@ static void put_circle(row_cursor *row, const conic_splats *batch, size_t i, flo
     u[axis] = (double)batch->tangent_u[axis][i];
     v[axis] = (double)batch->tangent_v[axis][i];
   }
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    normal[axis] = u[next] * v[last] - u[last] * v[next];
-  }
-  double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  conic_cross(u, v, normal);
+  double length = conic_length(normal);
   for (int axis = 0; axis < 3; axis++)
     put_float(row, (float)(length > 0.0 ? normal[axis] / length : normal[axis]));
-  put_float(row, (float)(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (double)cutoff));
+  put_float(row, (float)(conic_length(u) * (double)cutoff));
 }
 
 /* The two lists of splat i's clip lines: one of them is empty, if not both. */

@@ -5,6 +5,7 @@
 
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 
 void conic_framing_init(conic_framing *framing) {
   memset(framing, 0, sizeof *framing);
@@ -49,8 +50,7 @@ conic_status conic_camera_frame(conic_context *context, const conic_framing *fra
   if (!framing || !camera || !framing_makes_sense(framing))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the framing makes no sense");
   double up[3], rotation[3][3], center[3], diagonal_squared = 0.0;
-  double up_length =
-      sqrt(framing->up[0] * framing->up[0] + framing->up[1] * framing->up[1] + framing->up[2] * framing->up[2]);
+  double up_length = conic_length(framing->up);
   for (int i = 0; i < 3; i++) {
     up[i] = framing->up[i] / up_length;
     center[i] = 0.5 * minimum[i] + 0.5 * maximum[i];

@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/scenes/scene_kind.h"
 
 /* The trefoil: a curve that goes twice around the y axis while it goes three times around the ring it lies on. */
@@ -65,16 +66,6 @@ typedef struct curve_frame {
   double position[3], bend[3], across[3], curvature;
 } curve_frame;
 
-static void cross(const double a[3], const double b[3], double product[3]) {
-  product[0] = a[1] * b[2] - a[2] * b[1];
-  product[1] = a[2] * b[0] - a[0] * b[2];
-  product[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double length_of(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static void frame_at(double parameter, curve_frame *frame) {
   double c2 = conic_cos(2.0 * parameter), s2 = conic_sin(2.0 * parameter);
   double c3 = conic_cos(3.0 * parameter), s3 = conic_sin(3.0 * parameter);
@@ -84,14 +75,14 @@ static void frame_at(double parameter, curve_frame *frame) {
   double first[3] = {r1 * s2 + 2.0 * r * c2, y1, r1 * c2 - 2.0 * r * s2};
   double second[3] = {r2 * s2 + 4.0 * r1 * c2 - 4.0 * r * s2, y2, r2 * c2 - 4.0 * r1 * s2 - 4.0 * r * c2};
   double along[3], binormal[3];
-  double pace = length_of(first);
-  cross(first, second, binormal);
-  double turning = length_of(binormal);
+  double pace = conic_length(first);
+  conic_cross(first, second, binormal);
+  double turning = conic_length(binormal);
   for (int axis = 0; axis < 3; axis++) {
     along[axis] = first[axis] / pace;
     frame->across[axis] = binormal[axis] / turning;
   }
-  cross(frame->across, along, frame->bend);
+  conic_cross(frame->across, along, frame->bend);
   frame->position[0] = r * s2;
   frame->position[1] = y;
   frame->position[2] = r * c2;

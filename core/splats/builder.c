@@ -54,29 +54,21 @@ conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field 
 
 conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip) {
   conic_splats *points = &builder->model->points;
-  if (points->n_clips == builder->clip_capacity) {
-    void *clips = points->clips;
-    size_t capacity = points->n_clips + points->n_clips / 2 + 256;
-    conic_status status = conic_memory_grow(builder->context, &clips, points->n_clips, capacity, sizeof *points->clips);
-    if (status != CONIC_OK)
-      return status;
-    points->clips = clips;
-    builder->clip_capacity = capacity;
-  }
+  conic_status status = conic_memory_reserve(builder->context, &points->clips, points->n_clips, points->n_clips + 1,
+                                             &builder->clip_capacity, sizeof *points->clips);
+  if (status != CONIC_OK)
+    return status;
   points->clips[points->n_clips++] = *clip;
   return CONIC_OK;
 }
 
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
   conic_model *model = builder->model;
-  if (model->n_triangles == builder->triangle_capacity) {
-    size_t capacity = model->n_triangles + model->n_triangles / 2 + 1024;
-    conic_status status = conic_memory_grow(builder->context, (void **)&model->triangles, model->n_triangles, capacity,
-                                            sizeof *model->triangles);
-    if (status != CONIC_OK)
-      return status;
-    builder->triangle_capacity = capacity;
-  }
+  conic_status status =
+      conic_memory_reserve(builder->context, &model->triangles, model->n_triangles, model->n_triangles + 1,
+                           &builder->triangle_capacity, sizeof *model->triangles);
+  if (status != CONIC_OK)
+    return status;
   const uint32_t triangle[3] = {a, b, c};
   memcpy(model->triangles[model->n_triangles++], triangle, sizeof triangle);
   return CONIC_OK;

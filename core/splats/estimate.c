@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "core/splats/clip.h"
 #include "core/splats/features.h"
 #include "core/splats/normals.h"
@@ -20,12 +21,9 @@ void conic_estimate_options_init(conic_estimate_options *options) {
 }
 
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
-  const double v[3] = {(double)arrays[0][i], (double)arrays[1][i], (double)arrays[2][i]};
-  double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  int is_good = length > 0.0 && length * 0.0 == 0.0;
   for (int axis = 0; axis < 3; axis++)
-    unit[axis] = is_good ? v[axis] / length : 0.0;
-  return is_good;
+    unit[axis] = (double)arrays[axis][i];
+  return conic_normalize(unit);
 }
 
 static int is_finite(float value) {
@@ -34,15 +32,11 @@ static int is_finite(float value) {
 
 /* The unit normal of tangent axes; 0 where they span no ellipse. */
 static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], size_t point, double normal[3]) {
-  double u[3], v[3], cross[3];
+  double u[3], v[3];
   if (!conic_unit_vector(tangent_u, point, u) || !conic_unit_vector(tangent_v, point, v))
     return 0;
-  for (int axis = 0; axis < 3; axis++)
-    cross[axis] = u[(axis + 1) % 3] * v[(axis + 2) % 3] - u[(axis + 2) % 3] * v[(axis + 1) % 3];
-  double length = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = length > 0.0 ? cross[axis] / length : 0.0;
-  return length > 0.0;
+  conic_cross(u, v, normal);
+  return conic_normalize(normal);
 }
 
 /* Axes that span no ellipse but are not zero, such as two parallel ones, are the file's own and kept: the renderer

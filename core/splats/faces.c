@@ -31,31 +31,16 @@ void conic_faces_destroy(conic_context *context, conic_faces *faces) {
   conic_memory_release(context, faces);
 }
 
-/* Room for one more in an array of `used`, which grows by half to *room; several arrays may share a room, which is then
- * set by the last. */
-static conic_status make_room(conic_context *context, void *array_of_pointers, size_t used, size_t larger,
-                              size_t size) {
-  void *array;
-  memcpy(&array, array_of_pointers, sizeof array);
-  conic_status status = conic_memory_grow(context, &array, used, larger, size);
-  memcpy(array_of_pointers, &array, sizeof array);
-  return status;
-}
-
-static size_t more_than(size_t room) {
-  return room + room / 2 + 1024;
-}
-
 conic_status conic_faces_add(conic_context *context, conic_faces *faces, const uint32_t normals[3],
                              const uint32_t coordinates[3]) {
   size_t n = faces->count;
   if (n == faces->room) {
-    size_t larger = more_than(faces->room);
-    conic_status status = make_room(context, &faces->normal_corners, n, larger, sizeof *faces->normal_corners);
+    size_t larger = n + n / 2 + 1024;
+    conic_status status = conic_memory_grow(context, &faces->normal_corners, n, larger, sizeof *faces->normal_corners);
     if (status == CONIC_OK)
-      status = make_room(context, &faces->texture_corners, n, larger, sizeof *faces->texture_corners);
+      status = conic_memory_grow(context, &faces->texture_corners, n, larger, sizeof *faces->texture_corners);
     if (status == CONIC_OK)
-      status = make_room(context, &faces->material, n, larger, sizeof *faces->material);
+      status = conic_memory_grow(context, &faces->material, n, larger, sizeof *faces->material);
     if (status != CONIC_OK)
       return status;
     faces->room = larger;
@@ -72,13 +57,9 @@ conic_status conic_faces_add(conic_context *context, conic_faces *faces, const u
 }
 
 conic_status conic_faces_add_normal(conic_context *context, conic_faces *faces, const double normal[3]) {
-  if (faces->n_normals == faces->normal_room) {
-    size_t larger = more_than(faces->normal_room);
-    conic_status status = make_room(context, &faces->normals, faces->n_normals, larger, sizeof *faces->normals);
-    if (status != CONIC_OK)
-      return status;
-    faces->normal_room = larger;
-  }
+  if (conic_memory_reserve(context, &faces->normals, faces->n_normals, faces->n_normals + 1, &faces->normal_room,
+                           sizeof *faces->normals) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   for (int axis = 0; axis < 3; axis++)
     faces->normals[faces->n_normals][axis] = (float)normal[axis];
   faces->n_normals++;
@@ -86,14 +67,9 @@ conic_status conic_faces_add_normal(conic_context *context, conic_faces *faces, 
 }
 
 conic_status conic_faces_add_coordinate(conic_context *context, conic_faces *faces, const double coordinate[2]) {
-  if (faces->n_coordinates == faces->coordinate_room) {
-    size_t larger = more_than(faces->coordinate_room);
-    conic_status status =
-        make_room(context, &faces->coordinates, faces->n_coordinates, larger, sizeof *faces->coordinates);
-    if (status != CONIC_OK)
-      return status;
-    faces->coordinate_room = larger;
-  }
+  if (conic_memory_reserve(context, &faces->coordinates, faces->n_coordinates, faces->n_coordinates + 1,
+                           &faces->coordinate_room, sizeof *faces->coordinates) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   faces->coordinates[faces->n_coordinates][0] = (float)coordinate[0];
   faces->coordinates[faces->n_coordinates][1] = (float)coordinate[1];
   faces->n_coordinates++;
@@ -119,13 +95,9 @@ conic_status conic_faces_use_material(conic_context *context, conic_faces *faces
 }
 
 conic_status conic_texts_add(conic_context *context, conic_texts *texts, const char *text, size_t length) {
-  if (texts->room_bytes - texts->used_bytes < length + 1) {
-    size_t larger = more_than(texts->room_bytes) + length;
-    conic_status status = make_room(context, &texts->bytes, texts->used_bytes, larger, 1);
-    if (status != CONIC_OK)
-      return status;
-    texts->room_bytes = larger;
-  }
+  if (conic_memory_reserve(context, &texts->bytes, texts->used_bytes, texts->used_bytes + length + 1,
+                           &texts->room_bytes, 1) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   memcpy(texts->bytes + texts->used_bytes, text, length);
   texts->bytes[texts->used_bytes + length] = '\0';
   texts->used_bytes += length + 1;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "core/splats/features.h"
 #include "core/splats/incidence.h"
 
@@ -19,10 +20,6 @@ typedef struct vertex_axes {
   double p[3], u[3], v[3], n[3]; /* the axes, and u × v as a unit vector */
 } vertex_axes;
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Returns 0 where the axes span no plane. */
 static int read_axes(const conic_splats *points, size_t i, vertex_axes *at) {
   for (int axis = 0; axis < 3; axis++) {
@@ -30,14 +27,8 @@ static int read_axes(const conic_splats *points, size_t i, vertex_axes *at) {
     at->u[axis] = (double)points->tangent_u[axis][i];
     at->v[axis] = (double)points->tangent_v[axis][i];
   }
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, after = (axis + 2) % 3;
-    at->n[axis] = at->u[next] * at->v[after] - at->u[after] * at->v[next];
-  }
-  double length = sqrt(dot(at->n, at->n));
-  for (int axis = 0; axis < 3; axis++)
-    at->n[axis] /= length;
-  return length > 0.0 && length * 0.0 == 0.0;
+  conic_cross(at->u, at->v, at->n);
+  return conic_normalize(at->n);
 }
 
 /* The line in which the splat's plane meets that of the crease's mate, keeping the side of `inside`. */
@@ -52,9 +43,9 @@ static void add_line(const conic_splats *points, const vertex_axes *at, const co
     side += mate.n[axis] * ((double)points->position[axis][crease->inside] - mate.p[axis]);
   }
   side = side < 0.0 ? -1.0 : 1.0;
-  line[0] = side * dot(mate.n, at->u);
-  line[1] = side * dot(mate.n, at->v);
-  line[2] = side * dot(mate.n, from_mate);
+  line[0] = side * conic_dot(mate.n, at->u);
+  line[1] = side * conic_dot(mate.n, at->v);
+  line[2] = side * conic_dot(mate.n, from_mate);
   conic_clip_choice_add(choice, line, REACH * cutoff);
 }
 
@@ -67,7 +58,7 @@ static void add_creases_of(const conic_splats *points, const conic_creases *crea
 /* The corners of the vertex's share of a triangle, in units of its axes. */
 static size_t add_places(const conic_model *model, const uint32_t triangle[3], size_t vertex, const vertex_axes *at,
                          double (*places)[2]) {
-  double edges[2][3], uu = dot(at->u, at->u), vv = dot(at->v, at->v);
+  double edges[2][3], uu = conic_dot(at->u, at->u), vv = conic_dot(at->v, at->v);
   int corner = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
   for (int i = 0; i < 2; i++)
     for (int axis = 0; axis < 3; axis++)
@@ -76,8 +67,8 @@ static size_t add_places(const conic_model *model, const uint32_t triangle[3], s
     double offset[3];
     for (int axis = 0; axis < 3; axis++)
       offset[axis] = k < 2 ? 0.5 * edges[k][axis] : (edges[0][axis] + edges[1][axis]) / 3.0;
-    places[k][0] = dot(offset, at->u) / uu;
-    places[k][1] = dot(offset, at->v) / vv;
+    places[k][0] = conic_dot(offset, at->u) / uu;
+    places[k][1] = conic_dot(offset, at->v) / vv;
   }
   return PLACES_A_TRIANGLE;
 }
@@ -114,12 +105,8 @@ conic_status conic_creases_clip(conic_context *context, const conic_creases *cre
     conic_clip clip;
     if (!clip_vertex(split, creases, &ring, cutoff, vertex, &clip))
       continue;
-    if (points->n_clips == capacity) {
-      void *clips = points->clips;
-      capacity += capacity / 2 + 1024;
-      status = conic_memory_grow(context, &clips, points->n_clips, capacity, sizeof *points->clips);
-      points->clips = clips;
-    }
+    status = conic_memory_reserve(context, &points->clips, points->n_clips, points->n_clips + 1, &capacity,
+                                  sizeof *points->clips);
     if (status == CONIC_OK)
       points->clips[points->n_clips++] = clip;
   }

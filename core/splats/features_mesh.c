@@ -7,6 +7,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 #include "core/splats/features.h"
 #include "core/splats/incidence.h"
 #include "core/splats/splats_gather.h"
@@ -35,20 +36,13 @@ typedef struct splitting {
 } splitting;
 
 static void find_normal(const conic_model *model, const uint32_t triangle[3], double normal[3]) {
-  double edges[2][3], squared = 0.0;
+  double edges[2][3];
   for (int i = 0; i < 2; i++)
     for (int axis = 0; axis < 3; axis++)
       edges[i][axis] =
           (double)model->points.position[axis][triangle[i + 1]] - (double)model->points.position[axis][triangle[0]];
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, after = (axis + 2) % 3;
-    normal[axis] = edges[0][next] * edges[1][after] - edges[0][after] * edges[1][next];
-    squared += normal[axis] * normal[axis];
-  }
-  double length = sqrt(squared);
-  int is_good = length > 0.0 && length * 0.0 == 0.0;
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = is_good ? normal[axis] / length : 0.0;
+  conic_cross(edges[0], edges[1], normal);
+  conic_normalize(normal);
 }
 
 /* The way there is halved each time, so that long chains do not stay long. */
@@ -108,15 +102,9 @@ static size_t run_of(const spoke *spokes, size_t i, size_t n) {
 }
 
 static conic_status add_crease(splitting *s, uint32_t wedge, uint32_t mate, uint32_t inside) {
-  if (s->n_creases == s->crease_capacity) {
-    void *creases = s->creases;
-    size_t capacity = s->n_creases + s->n_creases / 2 + 1024;
-    conic_status status = conic_memory_grow(s->context, &creases, s->n_creases, capacity, sizeof *s->creases);
-    if (status != CONIC_OK)
-      return status;
-    s->creases = creases;
-    s->crease_capacity = capacity;
-  }
+  if (conic_memory_reserve(s->context, &s->creases, s->n_creases, s->n_creases + 1, &s->crease_capacity,
+                           sizeof *s->creases) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   s->creases[s->n_creases++] = (conic_crease){wedge, mate, inside};
   return CONIC_OK;
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "core/splats/clip.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/features.h"
@@ -39,10 +40,6 @@ typedef struct feature_search {
   slot_plane *small, *final;
   conic_clip *clips; /* by slot, those of its point; n_lines 0: none */
 } feature_search;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void normal_of(const slot_plane *plane, double normal[3]) {
   for (int axis = 0; axis < 3; axis++)
@@ -84,7 +81,7 @@ static void fit_small(const feature_search *s, size_t slot, slot_plane *plane) {
   for (int axis = 0; axis < 3; axis++)
     plane->normal[axis] = (float)vectors[2][axis];
   plane->roughness = rest > 0.0 ? (float)sqrt(least / rest) : 1.0f;
-  plane->spacing = n ? (float)sqrt(dot(d[n - 1], d[n - 1]) * 3.14159265358979323846 / (double)(n + 1)) : 0.0f;
+  plane->spacing = n ? (float)sqrt(conic_dot(d[n - 1], d[n - 1]) * 3.14159265358979323846 / (double)(n + 1)) : 0.0f;
   plane->is_turned = 0;
 }
 
@@ -98,7 +95,7 @@ static void fit_slots(void *data, size_t begin, size_t end) {
 static double height_over(const slot_plane *plane, const double d[3]) {
   double normal[3];
   normal_of(plane, normal);
-  return fabs(dot(normal, d));
+  return fabs(conic_dot(normal, d));
 }
 
 /* Whether that place lies in the plane. */
@@ -116,8 +113,8 @@ static double wide_roughness(const feature_search *s, size_t slot, const double 
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double d[3];
     from_to(s, slot, list[i], d);
-    across += dot(normal, d) * dot(normal, d);
-    all += dot(d, d);
+    across += conic_dot(normal, d) * conic_dot(normal, d);
+    all += conic_dot(d, d);
   }
   return all > 0.0 ? sqrt(across / all) : 0.0;
 }
@@ -147,7 +144,7 @@ static void choose_plane(const feature_search *s, size_t slot, slot_plane *plane
     memcpy(plane->normal, flattest->normal, sizeof plane->normal);
     plane->roughness = flattest->roughness;
     plane->is_turned = 1;
-  } else if (dot(own, own) > 0.0)
+  } else if (conic_dot(own, own) > 0.0)
     memcpy(plane->normal, s->neighbourhood->normals[slot], sizeof plane->normal);
   normal_of(plane, best);
   if (best[0] * (double)outward[0] + best[1] * (double)outward[1] + best[2] * (double)outward[2] < 0.0)
@@ -194,11 +191,11 @@ static int meet(const feature_search *s, const slot_splat *p, size_t mate, doubl
   double normal[3], d[3];
   normal_of(&s->final[mate], normal);
   from_to(s, mate, p->slot, d);
-  if (fabs(dot(normal, p->normal)) >= s->cosine)
+  if (fabs(conic_dot(normal, p->normal)) >= s->cosine)
     return 0;
-  line[0] = dot(normal, p->u);
-  line[1] = dot(normal, p->v);
-  line[2] = dot(normal, d);
+  line[0] = conic_dot(normal, p->u);
+  line[1] = conic_dot(normal, p->v);
+  line[2] = conic_dot(normal, d);
   if (line[0] * p->middle[0] + line[1] * p->middle[1] + line[2] < 0.0)
     for (int i = 0; i < 3; i++)
       line[i] = -line[i];
@@ -218,7 +215,7 @@ static double find_lines(const feature_search *s, const slot_splat *p, double re
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
     double line[3], d[3];
     from_to(s, p->slot, list[i], d);
-    if (s->final[list[i]].roughness > 0.25f || !meet(s, p, list[i], line) || fabs(line[2]) > sqrt(dot(d, d)))
+    if (s->final[list[i]].roughness > 0.25f || !meet(s, p, list[i], line) || fabs(line[2]) > conic_length(d))
       continue;
     nearest = line[2] < nearest ? line[2] : nearest;
     conic_clip_choice_add(choice, line, reach);
@@ -234,12 +231,12 @@ static void find_places(const feature_search *s, slot_splat *p) {
     double d[3], normal[3];
     from_to(s, p->slot, list[i], d);
     normal_of(&s->final[list[i]], normal);
-    if (fabs(dot(normal, p->normal)) < s->cosine || !is_in_plane(&s->final[p->slot], d) ||
-        dot(d, d) > 6.25 * p->spacing * p->spacing)
+    if (fabs(conic_dot(normal, p->normal)) < s->cosine || !is_in_plane(&s->final[p->slot], d) ||
+        conic_dot(d, d) > 6.25 * p->spacing * p->spacing)
       continue;
     double *at = p->places[p->n_places++];
-    at[0] = 0.5 * dot(d, p->u);
-    at[1] = 0.5 * dot(d, p->v);
+    at[0] = 0.5 * conic_dot(d, p->u);
+    at[1] = 0.5 * conic_dot(d, p->v);
     for (int k = 0; k < 2; k++)
       p->middle[k] += at[k] / (double)s->neighbourhood->n_neighbours;
   }
@@ -302,16 +299,16 @@ static void clip_slots(void *data, size_t begin, size_t end) {
 static void set_normals(const conic_splats *splats, conic_neighbourhood *neighbourhood) {
   for (size_t slot = 0; slot < neighbourhood->tree.n_slots; slot++) {
     size_t i = neighbourhood->tree.point_of_slot[slot];
-    double n[3];
+    double u[3], v[3], n[3];
     for (int axis = 0; axis < 3; axis++) {
-      int next = (axis + 1) % 3, after = (axis + 2) % 3;
-      n[axis] = (double)splats->tangent_u[next][i] * (double)splats->tangent_v[after][i] -
-                (double)splats->tangent_u[after][i] * (double)splats->tangent_v[next][i];
+      u[axis] = (double)splats->tangent_u[axis][i];
+      v[axis] = (double)splats->tangent_v[axis][i];
     }
-    double length = sqrt(dot(n, n));
+    conic_cross(u, v, n);
+    conic_normalize(n);
     neighbourhood->flags[slot] |= CONIC_SLOT_WANTED;
     for (int axis = 0; axis < 3; axis++)
-      neighbourhood->normals[slot][axis] = length > 0.0 && length * 0.0 == 0.0 ? (float)(n[axis] / length) : 0.0f;
+      neighbourhood->normals[slot][axis] = (float)n[axis];
   }
 }
 

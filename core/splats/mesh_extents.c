@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/estimate.h"
 #include "core/splats/incidence.h"
@@ -35,17 +36,9 @@ static int view_corner(const conic_model *model, const uint32_t triangle[3], siz
     for (int axis = 0; axis < 3; axis++)
       c->edges[i][axis] = (double)model->points.position[axis][triangle[(at + 1 + i) % 3]] -
                           (double)model->points.position[axis][vertex];
-  c->cross2 = 0.0;
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, after = (axis + 2) % 3;
-    c->cross[axis] = c->edges[0][next] * c->edges[1][after] - c->edges[0][after] * c->edges[1][next];
-    c->cross2 += c->cross[axis] * c->cross[axis];
-  }
+  conic_cross(c->edges[0], c->edges[1], c->cross);
+  c->cross2 = conic_dot(c->cross, c->cross);
   return c->cross2 > 0.0 && c->cross2 * 0.0 == 0.0;
-}
-
-static double square(const double v[3]) {
-  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
 /* The faces' normals, each weighted by sine over the product of the edges' lengths: exact on a sphere (Max 1999), and
@@ -56,34 +49,30 @@ static int face_normal(const spreading *in, size_t vertex, double normal[3]) {
   vertex_triangle c;
   for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
     if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
-      double weight = 1.0 / (square(c.edges[0]) * square(c.edges[1]));
+      double weight = 1.0 / (conic_dot(c.edges[0], c.edges[0]) * conic_dot(c.edges[1], c.edges[1]));
       for (int axis = 0; axis < 3; axis++)
         sum[axis] += c.cross[axis] * weight;
     }
-  double length = sqrt(square(sum));
+  double length = conic_length(sum);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = sum[axis] / length;
   return length > 0.0 && length * 0.0 == 0.0;
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Where the tip of `d` comes to lie in the tangent plane (u, v). Along the face's normal, so that what is seen straight
  * on the face is covered; from a face steeper than 60° as if it had 60°; or else straight down. */
 static void meet_plane(const vertex_triangle *c, const double d[3], const double normal[3], const double u[3],
                        const double v[3], int is_straight, double met[2]) {
-  double length = sqrt(c->cross2), cosine = dot(c->cross, normal) / length, way = 0.0;
+  double length = sqrt(c->cross2), cosine = conic_dot(c->cross, normal) / length, way = 0.0;
   double sign = cosine < 0.0 ? -1.0 : 1.0;
   if (!is_straight)
-    way = dot(d, normal) / (cosine * sign > STEEP ? cosine : sign * STEEP) / length;
-  met[0] = dot(d, u) - way * dot(c->cross, u);
-  met[1] = dot(d, v) - way * dot(c->cross, v);
+    way = conic_dot(d, normal) / (cosine * sign > STEEP ? cosine : sign * STEEP) / length;
+  met[0] = conic_dot(d, u) - way * conic_dot(c->cross, u);
+  met[1] = conic_dot(d, v) - way * conic_dot(c->cross, v);
 }
 
 static int is_steep(const spreading *in, const vertex_triangle *c, int i) {
-  return fabs(dot(c->cross, in->normals[c->vertices[i]])) < STEEP * sqrt(c->cross2);
+  return fabs(conic_dot(c->cross, in->normals[c->vertices[i]])) < STEEP * sqrt(c->cross2);
 }
 
 enum { MAX_SUPPORT = 5 };
@@ -123,7 +112,7 @@ static void spread_vertex(const spreading *in, size_t vertex) {
       for (int j = 0; j < n; j++)
         conic_ellipse_add(covariance, support[j][0], support[j][1]);
       area += sqrt(c.cross2) / 6.0;
-      double cosine = fabs(dot(c.cross, in->normals[vertex])) / sqrt(c.cross2);
+      double cosine = fabs(conic_dot(c.cross, in->normals[vertex])) / sqrt(c.cross2);
       flatness = cosine < flatness ? cosine : flatness;
     }
   conic_ellipse ellipse = conic_ellipse_shape(covariance, CONIC_OUTLINE_RATIO);

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/vectors.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
   for (int i = 0; i < n; i++) {
@@ -156,14 +157,11 @@ static void face_normal(const conic_triangles *t, size_t i, double normal[3]) {
   for (int k = 0; k < 2; k++)
     for (int axis = 0; axis < 3; axis++)
       side[k][axis] = (double)t->position[axis][corner[k + 1]] - (double)t->position[axis][corner[0]];
-  for (int axis = 0; axis < 3; axis++) {
-    int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    normal[axis] = side[0][b] * side[1][c] - side[0][c] * side[1][b];
-  }
+  conic_cross(side[0], side[1], normal);
 }
 
 static void store_unit(const double sum[3], float *const normal[3], size_t i) {
-  double length = sqrt((sum[0] * sum[0] + sum[1] * sum[1]) + sum[2] * sum[2]);
+  double length = conic_length(sum);
   for (int axis = 0; axis < 3; axis++)
     normal[axis][i] = length > 0.0 ? (float)(sum[axis] / length) : 0.0f;
 }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
+
 double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t cluster) {
   size_t begin = mesh->starts[cluster], end = mesh->starts[cluster + 1];
   double sum = 0.0;
@@ -13,7 +15,7 @@ double conic_cluster_edge_length(const conic_clustered_mesh *mesh, uint32_t clus
       conic_mesh_corner(&mesh->mesh, mesh->faces[i], (corner + 1) % 3, b);
       for (int axis = 0; axis < 3; axis++)
         b[axis] -= a[axis];
-      sum += sqrt(conic_dot(b, b));
+      sum += conic_length(b);
     }
   return end > begin ? sum / (3.0 * (double)(end - begin)) : 0.0;
 }
@@ -33,7 +35,7 @@ void conic_cluster_face_normal(const conic_clustered_mesh *mesh, uint32_t face, 
   double sides[2][3];
   sides_of(mesh, face, sides);
   conic_cross(sides[0], sides[1], normal);
-  double length = sqrt(conic_dot(normal, normal));
+  double length = conic_length(normal);
   double factor = length > 0.0 ? (double)mesh->adjacency->side[face] / length : 0.0;
   for (int axis = 0; axis < 3; axis++)
     normal[axis] *= factor;
@@ -61,12 +63,12 @@ void conic_cluster_normal(const conic_clustered_mesh *mesh, uint32_t face, const
   for (int corner = 0; corner < 3 && is_good; corner++) {
     uint32_t i = t->normal_corners ? t->normal_corners[face][corner] : t->corners[face][corner];
     const double n[3] = {(double)t->normal[0][i], (double)t->normal[1][i], (double)t->normal[2][i]};
-    double length = sqrt(conic_dot(n, n));
+    double length = conic_length(n);
     is_good = length > 0.0 && length - length == 0.0;
     for (int axis = 0; axis < 3 && is_good; axis++)
       sum[axis] += bary[corner] * n[axis] / length;
   }
-  double length = sqrt(conic_dot(sum, sum)), along = conic_dot(sum, facing);
+  double length = conic_length(sum), along = conic_dot(sum, facing);
   is_good = is_good && length > 0.0;
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = !is_good ? facing[axis] : (along < 0.0 ? -sum[axis] : sum[axis]) / length;
@@ -111,7 +113,7 @@ void conic_cluster_texel(const conic_clustered_mesh *mesh, uint32_t face, const 
   }
   /* In the face, x along the first side: the second is (x₁, y₁). A step of one along x or y in texture coordinates. */
   sides_of(mesh, face, sides);
-  double x0 = sqrt(conic_dot(sides[0], sides[0])), x1 = conic_dot(sides[0], sides[1]) / x0;
+  double x0 = conic_length(sides[0]), x1 = conic_dot(sides[0], sides[1]) / x0;
   double y2 = conic_dot(sides[1], sides[1]) - x1 * x1, y1 = y2 > 0.0 ? sqrt(y2) : 0.0;
   int has_area = x0 > 0.0 && y1 > 0.0;
   for (int k = 0; k < 2; k++) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
+
 enum { N_ENDS = 20 };
 
 /* Where a surfel is measured, in its half axes: sixteen places of its outline in turn, and four within. */
@@ -106,7 +108,7 @@ static double measure(const conic_sampler *s, const conic_site *site, const doub
 /* That of any place of the ellipse from the site's foot. */
 static double greatest_way(const conic_site *site) {
   const double d[3] = {site->at[0] - site->foot[0], site->at[1] - site->foot[1], site->at[2] - site->foot[2]};
-  return (sqrt(conic_dot(d, d)) + site->ellipse.reach) * rounding;
+  return (conic_length(d) + site->ellipse.reach) * rounding;
 }
 
 /* What is known without a look at the mesh: the foot lies on it, and so do the supports, of which nobody asks where the
@@ -162,7 +164,7 @@ typedef struct measured {
 
 static double farther_at(const conic_sampler *s, const double at[3], measured *last, double known) {
   const double way[3] = {at[0] - last->at[0], at[1] - last->at[1], at[2] - last->at[2]};
-  if ((last->bound + sqrt(conic_dot(way, way))) * rounding <= known)
+  if ((last->bound + conic_length(way)) * rounding <= known)
     return known;
   memcpy(last->at, at, sizeof last->at);
   last->bound = conic_face_tree_bound(s->job->tree, at, &last->near, known);

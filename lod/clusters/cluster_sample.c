@@ -41,15 +41,8 @@ void conic_sampler_destroy(conic_sampler *sampler) {
 }
 
 conic_status conic_surfels_reserve(conic_context *context, conic_surfels *surfels) {
-  if (surfels->n < surfels->room)
-    return CONIC_OK;
-  size_t larger = surfels->n + surfels->n / 2 + 64;
-  void *items = surfels->items;
-  conic_status status = conic_memory_grow(context, &items, surfels->n, larger, sizeof *surfels->items);
-  surfels->items = items;
-  if (status == CONIC_OK)
-    surfels->room = larger;
-  return status;
+  return conic_memory_reserve(context, &surfels->items, surfels->n, surfels->n + 1, &surfels->room,
+                              sizeof *surfels->items);
 }
 
 void conic_surfels_release(conic_context *context, conic_surfels *surfels) {
@@ -83,9 +76,8 @@ static conic_status emit(conic_sampler *s, conic_site *site, conic_surfels *surf
 /* The sites that are drawn and may err by more than is known, the one that may by the most first: in the place of the
  * candidates, which have had their turn. */
 static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
-  void *candidates = s->candidates;
-  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
-  s->candidates = candidates;
+  conic_status status =
+      conic_memory_reserve(s->context, &s->candidates, 0, s->n_sites, &s->candidates_room, sizeof *s->candidates);
   *n = 0;
   for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
     float bound = (float)s->sites[i].error_bound;
@@ -167,9 +159,7 @@ static int refine_faces(conic_sampler *s, double limit) {
 /* Where spacings begin: as wide as wanted; after a finer level of the same cluster a step wider than that needed. */
 static conic_status begin_depths(conic_sampler *s) {
   size_t n = s->job->mesh->starts[s->job->cluster + 1] - s->job->mesh->starts[s->job->cluster];
-  void *depth = s->depth;
-  conic_status status = conic_sampler_grow(s, &depth, 0, n, &s->depth_room, sizeof *s->depth);
-  s->depth = depth;
+  conic_status status = conic_memory_reserve(s->context, &s->depth, 0, n, &s->depth_room, sizeof *s->depth);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < n; i++)

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/least_ellipse.h"
@@ -83,7 +85,7 @@ static conic_status add_to_sums(conic_sampler *s, const small_triangle *t) {
     sides[1][axis] = t->at[2][axis] - t->at[0][axis];
   }
   conic_cross(sides[0], sides[1], cross);
-  double share = sqrt(conic_dot(cross, cross)) / 6.0;
+  double share = conic_length(cross) / 6.0;
   for (int corner = 0; corner < 3; corner++) {
     conic_site *site = &s->sites[t->owners[corner]];
     if (site->is_settled)
@@ -106,7 +108,7 @@ void conic_cluster_settle_planes(conic_sampler *s) {
     conic_site *site = &s->sites[i];
     if (site->is_settled)
       continue;
-    double length = sqrt(conic_dot(site->normal, site->normal));
+    double length = conic_length(site->normal);
     for (int axis = 0; axis < 3; axis++)
       site->normal[axis] = length > 0.0 ? site->normal[axis] / length : site->facing[axis];
     if (!(conic_dot(site->normal, site->normal) > 0.0))
@@ -118,10 +120,8 @@ void conic_cluster_settle_planes(conic_sampler *s) {
 /* --- what must be covered --- */
 
 static conic_status grow_supports(conic_sampler *s) {
-  void *supports = s->supports;
-  conic_status status =
-      conic_sampler_grow(s, &supports, s->n_supports, s->n_supports + 1, &s->supports_room, sizeof *s->supports);
-  s->supports = supports;
+  conic_status status = conic_memory_reserve(s->context, &s->supports, s->n_supports, s->n_supports + 1,
+                                             &s->supports_room, sizeof *s->supports);
   return status;
 }
 
@@ -204,7 +204,6 @@ static conic_status cover_small_triangle(conic_sampler *s, const small_triangle 
 
 /* Lists the supports of this pass site by site, what was noted last first. */
 static conic_status sort_supports(conic_sampler *s) {
-  void *of_sites = s->of_sites;
   size_t begin = s->n_sorted, most = 0;
   for (size_t i = 0; i < s->n_sites; i++) {
     conic_site *site = &s->sites[i];
@@ -214,15 +213,12 @@ static conic_status sort_supports(conic_sampler *s) {
     begin += site->n_supports;
     site->first_support = begin;
   }
-  conic_status status =
-      conic_sampler_grow(s, &of_sites, s->n_sorted, s->n_supports, &s->of_sites_room, sizeof *s->of_sites);
-  s->of_sites = of_sites;
+  conic_status status = conic_memory_reserve(s->context, &s->of_sites, s->n_sorted, s->n_supports, &s->of_sites_room,
+                                             sizeof *s->of_sites);
   size_t points_room = s->points_room;
   for (int i = 0; i < 2 && status == CONIC_OK; i++) {
-    void *points = s->points[i];
     s->points_room = points_room;
-    status = conic_sampler_grow(s, &points, 0, most, &s->points_room, sizeof *s->points[i]);
-    s->points[i] = points;
+    status = conic_memory_reserve(s->context, &s->points[i], 0, most, &s->points_room, sizeof *s->points[i]);
   }
   for (; s->n_sorted < s->n_supports && status == CONIC_OK; s->n_sorted++)
     s->of_sites[--s->sites[s->supports[s->n_sorted].site].first_support] = (uint32_t)s->n_sorted;

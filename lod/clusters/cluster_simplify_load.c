@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */
@@ -121,7 +122,7 @@ static void stand_on_edge(const conic_simplifier_triangle *t, conic_simplifier_v
   for (int axis = 0; axis < 3; axis++)
     side[axis] = ends[1]->at[axis] - ends[0]->at[axis];
   conic_cross(side, t->normal, upright);
-  double length = sqrt(conic_dot(upright, upright));
+  double length = conic_length(upright);
   if (!(length > 0.0))
     return;
   for (int axis = 0; axis < 3; axis++)
@@ -155,7 +156,7 @@ static void add_planes(conic_simplifier *s, const conic_simplifier_triangle *t) 
     for (int axis = 0; axis < 3; axis++)
       sides[k][axis] = s->vertices[t->corners[k + 1]].at[axis] - s->vertices[t->corners[0]].at[axis];
   conic_cross(sides[0], sides[1], cross);
-  double d = -conic_dot(t->normal, s->vertices[t->corners[0]].at), area2 = sqrt(conic_dot(cross, cross));
+  double d = -conic_dot(t->normal, s->vertices[t->corners[0]].at), area2 = conic_length(cross);
   for (int corner = 0; corner < 3; corner++)
     conic_quadric_add_plane(&s->vertices[t->corners[corner]].quadric, t->normal, d, area2);
 }

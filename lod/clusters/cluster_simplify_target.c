@@ -1,6 +1,7 @@
 /* What a vertex is best drawn onto, of its neighbours that it may be drawn onto. */
 #include <math.h>
 
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_simplifier.h"
 
 /* The least cosine by which a face may turn. */
@@ -94,7 +95,7 @@ static double area2_of(const conic_simplifier *s, const uint32_t corners[3], dou
     for (int axis = 0; axis < 3; axis++)
       sides[k][axis] = s->vertices[corners[k + 1]].at[axis] - s->vertices[corners[0]].at[axis];
   conic_cross(sides[0], sides[1], cross);
-  return sqrt(conic_dot(cross, cross));
+  return conic_length(cross);
 }
 
 /* Whether no triangle that stays turns over or loses its area when the vertex goes to v. */

@@ -5,21 +5,11 @@
 
 #include "core/base/memory.h"
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 
 /* A step of the lattices, in spacings: fine enough that what a site stands for is round. */
 static const double lattice_step = 0.9;
 enum { MOST_SIDES = 32 };
-
-conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
-                                size_t size) {
-  if (count <= *room)
-    return CONIC_OK;
-  size_t larger = count + count / 2 + 64;
-  conic_status status = conic_memory_grow(sampler->context, array, used, larger, size);
-  if (status == CONIC_OK)
-    *room = larger;
-  return status;
-}
 
 /* --- lattices --- */
 
@@ -31,7 +21,7 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
     conic_mesh_corner(&s->job->mesh->mesh, face, (corner + 1) % 3, b);
     for (int axis = 0; axis < 3; axis++)
       b[axis] -= a[axis];
-    double length = sqrt(conic_dot(b, b));
+    double length = conic_length(b);
     longest = length > longest ? length : longest;
   }
   double sides = longest / (lattice_step * conic_spacing_at(s, depth));
@@ -41,12 +31,9 @@ static int sides_of_face(const conic_sampler *s, uint32_t face, int depth) {
 static conic_status lay_lattices(conic_sampler *s) {
   const conic_clustered_mesh *mesh = s->job->mesh;
   size_t begin = mesh->starts[s->job->cluster], n = mesh->starts[s->job->cluster + 1] - begin;
-  void *lattices = s->lattices, *facing = s->facing;
-  conic_status status = conic_sampler_grow(s, &lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
-  s->lattices = lattices;
+  conic_status status = conic_memory_reserve(s->context, &s->lattices, 0, n, &s->lattices_room, sizeof *s->lattices);
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &facing, 0, n, &s->facing_room, sizeof *s->facing);
-  s->facing = facing;
+    status = conic_memory_reserve(s->context, &s->facing, 0, n, &s->facing_room, sizeof *s->facing);
   if (status != CONIC_OK)
     return status;
   s->n_lattices = n;
@@ -63,15 +50,11 @@ static conic_status lay_lattices(conic_sampler *s) {
     conic_cluster_face_normal(mesh, face, s->facing[i]);
   }
   size_t lattice_room = s->places_room;
-  void *owner = s->owner, *places = s->places, *lattice_of = s->lattice_of;
-  status = conic_sampler_grow(s, &owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
-  s->owner = owner;
+  status = conic_memory_reserve(s->context, &s->owner, 0, s->n_places, &s->owner_room, sizeof *s->owner);
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
-  s->lattice_of = lattice_of;
+    status = conic_memory_reserve(s->context, &s->lattice_of, 0, s->n_places, &lattice_room, sizeof *s->lattice_of);
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &places, 0, s->n_places, &s->places_room, sizeof *s->places);
-  s->places = places;
+    status = conic_memory_reserve(s->context, &s->places, 0, s->n_places, &s->places_room, sizeof *s->places);
   return status;
 }
 
@@ -138,12 +121,10 @@ static void add_candidate(conic_sampler *s, uint32_t i_lattice, int i, int j, in
 }
 
 static conic_status make_room_for_candidates(conic_sampler *s) {
-  void *candidates = s->candidates, *seeds = s->seeds;
-  conic_status status = conic_sampler_grow(s, &candidates, 0, s->n_places, &s->candidates_room, sizeof *s->candidates);
-  s->candidates = candidates;
+  conic_status status =
+      conic_memory_reserve(s->context, &s->candidates, 0, s->n_places, &s->candidates_room, sizeof *s->candidates);
   if (status == CONIC_OK)
-    status = conic_sampler_grow(s, &seeds, 0, s->n_places, &s->seeds_room, sizeof *s->seeds);
-  s->seeds = seeds;
+    status = conic_memory_reserve(s->context, &s->seeds, 0, s->n_places, &s->seeds_room, sizeof *s->seeds);
   return status;
 }
 
@@ -170,9 +151,8 @@ static conic_status add_site(conic_sampler *s, uint32_t i_lattice, int i, int j,
   const conic_face_lattice *l = &s->lattices[i_lattice];
   uint32_t place = conic_face_lattice_place(l, i, j);
   const double *at = s->places[place];
-  void *sites = s->sites;
-  conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
-  s->sites = sites;
+  conic_status status =
+      conic_memory_reserve(s->context, &s->sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   if (status != CONIC_OK)
     return status;
   conic_site *site = &s->sites[s->n_sites];

@@ -104,8 +104,4 @@ int conic_face_lattice_is_own(const conic_clustered_mesh *mesh, const conic_face
 /* Fills in lattices, sites and owners. Errors: MEMORY. */
 conic_status conic_cluster_find_sites(conic_sampler *sampler);
 
-/* Room for `count` in an array of the sampler's that grows by half. Errors: MEMORY. */
-conic_status conic_sampler_grow(conic_sampler *sampler, void **array, size_t used, size_t count, size_t *room,
-                                size_t size);
-
 #endif

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_model.h"
 
 /* What floats lose between the finding of a bound and its use. */
@@ -15,7 +16,7 @@ static double distance_of(const conic_hybrid_bound *bound, const double at[3]) {
   double way[3];
   for (int axis = 0; axis < 3; axis++)
     way[axis] = at[axis] - (double)bound->center[axis];
-  return sqrt(conic_hybrid_dot(way, way));
+  return conic_length(way);
 }
 
 static void corners_of(const conic_hybrid *h, const conic_hybrid_level *level, size_t i, double at[3][3]) {
@@ -33,10 +34,9 @@ static int faces_within(const conic_hybrid_bound *bound, double at[3][3]) {
     sides[1][k] = at[2][k] - at[0][k];
     axis[k] = (double)bound->axis[k];
   }
-  for (int k = 0; k < 3; k++)
-    normal[k] = sides[0][(k + 1) % 3] * sides[1][(k + 2) % 3] - sides[0][(k + 2) % 3] * sides[1][(k + 1) % 3];
-  double length = sqrt(conic_hybrid_dot(normal, normal));
-  return bound->cone <= -1.0f || conic_hybrid_dot(normal, axis) >= ((double)bound->cone - hair) * length;
+  conic_cross(sides[0], sides[1], normal);
+  double length = conic_length(normal);
+  return bound->cone <= -1.0f || conic_dot(normal, axis) >= ((double)bound->cone - hair) * length;
 }
 
 /* The faces themselves: the first level. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_point.h"
 
 /* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
@@ -27,7 +28,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   memset(view, 0, sizeof *view);
   for (int row = 0; row < 3; row++) {
     const double *m = camera->cam_from_world[row];
-    view->translation[row] = conic_hybrid_dot(m, hybrid->origin) + m[3];
+    view->translation[row] = conic_dot(m, hybrid->origin) + m[3];
     memcpy(view->rotation[row], m, sizeof view->rotation[row]);
   }
   for (int axis = 0; axis < 3; axis++)
@@ -47,7 +48,7 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
 static void to_camera(const conic_hybrid_camera *view, const float center[3], double at[3]) {
   const double from[3] = {(double)center[0], (double)center[1], (double)center[2]};
   for (int row = 0; row < 3; row++)
-    at[row] = conic_hybrid_dot(view->rotation[row], from) + view->translation[row];
+    at[row] = conic_dot(view->rotation[row], from) + view->translation[row];
 }
 
 /* Away is where the angle between the ray and the axis, half the angle under which the sphere is seen, and half the
@@ -58,13 +59,13 @@ static int faces_away(const conic_hybrid_camera *view, const conic_hybrid_bound 
     ray[k] = (double)bound->center[k] - view->eye[k];
     axis[k] = (double)bound->axis[k];
   }
-  double distance = sqrt(conic_hybrid_dot(ray, ray)), cone = (double)bound->cone;
+  double distance = conic_length(ray), cone = (double)bound->cone;
   if (!(cone > 0.0) || !(radius < distance))
     return 0;
   double sin_a = radius / distance, cos_a = sqrt(1.0 - sin_a * sin_a),
          sin_c = sqrt(cone < 1.0 ? 1.0 - cone * cone : 0.0);
   double cos_both = cos_a * cone - sin_a * sin_c, sin_both = sin_a * cone + cos_a * sin_c;
-  return cos_both > 0.0 && conic_hybrid_dot(ray, axis) > distance * (sin_both + 1e-5);
+  return cos_both > 0.0 && conic_dot(ray, axis) > distance * (sin_both + 1e-5);
 }
 
 int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
@@ -73,7 +74,7 @@ int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_b
   if (at[2] + radius < view->near_z)
     return 1;
   for (int k = 0; k < 4; k++)
-    if (conic_hybrid_dot(view->side[k], at) < -radius)
+    if (conic_dot(view->side[k], at) < -radius)
       return 1;
   return view->cull_back && faces_away(view, bound, radius);
 }
@@ -88,7 +89,7 @@ typedef struct sight {
 static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
   double at[3];
   to_camera(view, bound->center, at);
-  return (sight){.z = at[2], .distance = sqrt(conic_hybrid_dot(at, at)), .radius = (double)bound->radius};
+  return (sight){.z = at[2], .distance = conic_length(at), .radius = (double)bound->radius};
 }
 
 /* The most pixels that a displacement of one can be, anywhere in the sphere: the greatest factor of the projection's

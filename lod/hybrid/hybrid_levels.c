@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/radix.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_nodes.h"
 
 void conic_cluster_ways_release(conic_context *context, conic_cluster_ways *ways) {
@@ -55,7 +56,7 @@ static void bound_cone(const conic_clustered_mesh *mesh, uint32_t cluster, conic
       along = conic_dot(normal, axis);
       least = pass && conic_dot(normal, normal) > 0.0 && along < least ? along : least;
     }
-    double length = sqrt(conic_dot(axis, axis));
+    double length = conic_length(axis);
     for (int k = 0; k < 3 && !pass; k++)
       axis[k] = length > 0.0 ? axis[k] / length : (double)(k == 2);
   }
@@ -82,7 +83,7 @@ static double cluster_area(const conic_clustered_mesh *mesh, uint32_t cluster) {
       sides[1][axis] = at[2][axis] - at[0][axis];
     }
     conic_cross(sides[0], sides[1], cross);
-    area += 0.5 * sqrt(conic_dot(cross, cross));
+    area += 0.5 * conic_length(cross);
   }
   return area;
 }

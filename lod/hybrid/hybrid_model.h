@@ -3,6 +3,7 @@
 #define CONIC_HYBRID_MODEL_H
 
 #include "conic/hybrid.h"
+#include "core/base/vectors.h"
 #include "core/files/mapping.h"
 #include "lod/clusters/cluster_border.h"
 
@@ -76,10 +77,6 @@ struct conic_hybrid {
   void *owned;
   conic_mapping mapping;
 };
-
-static inline double conic_hybrid_dot(const double a[3], const double b[3]) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
 
 /* The size of the file that holds it. */
 uint64_t conic_hybrid_file_bytes(const conic_hybrid *hybrid);

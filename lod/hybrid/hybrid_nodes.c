@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 #include "lod/clusters/cluster_contrast.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/cluster_shape.h"
@@ -44,10 +45,8 @@ typedef struct nodes_pass {
 /* --- pieces --- */
 
 static conic_status add_piece(const nodes_pass *pass, node_worker *w, const conic_surfel *surfel) {
-  void *pieces = w->pieces;
   conic_status status =
-      conic_sampler_grow(w->sampler, &pieces, w->n_pieces, w->n_pieces + 1, &w->room, sizeof *w->pieces);
-  w->pieces = pieces;
+      conic_memory_reserve(w->sampler->context, &w->pieces, w->n_pieces, w->n_pieces + 1, &w->room, sizeof *w->pieces);
   if (status != CONIC_OK)
     return status;
   surfel_piece *p = &w->pieces[w->n_pieces];
@@ -58,7 +57,7 @@ static conic_status add_piece(const nodes_pass *pass, node_worker *w, const coni
     v[axis] = (double)surfel->tangent_v[axis];
   }
   conic_cross(u, v, p->normal);
-  double length = sqrt(conic_dot(p->normal, p->normal));
+  double length = conic_length(p->normal);
   for (int axis = 0; axis < 3; axis++)
     p->normal[axis] /= length;
   p->area = CONIC_PI * cutoff * cutoff * length;
@@ -117,9 +116,8 @@ static uint32_t nearest_alike(const conic_sampler *s, const surfel_piece *p, dou
 }
 
 static conic_status add_site(conic_sampler *s, const surfel_piece *p, double spacing) {
-  void *sites = s->sites;
-  conic_status status = conic_sampler_grow(s, &sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
-  s->sites = sites;
+  conic_status status =
+      conic_memory_reserve(s->context, &s->sites, s->n_sites, s->n_sites + 1, &s->sites_room, sizeof *s->sites);
   if (status != CONIC_OK)
     return status;
   conic_site *site = &s->sites[s->n_sites++];

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 
 /* The way from the eye to the centre, and the radius of the disc there that hides the sphere: where the rays that touch
@@ -11,7 +12,7 @@ static double radius_of_disc(const conic_hybrid_camera *view, const conic_hybrid
   double radius = (double)node->point.radius;
   for (int axis = 0; axis < 3; axis++)
     way[axis] = (double)node->bound.center[axis] - view->eye[axis];
-  *distance = sqrt(conic_hybrid_dot(way, way));
+  *distance = conic_length(way);
   return *distance > radius ? radius * *distance / sqrt(*distance * *distance - radius * radius) : HUGE_VAL;
 }
 

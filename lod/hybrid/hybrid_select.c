@@ -85,15 +85,9 @@ static int is_together(const conic_hybrid_view *view) {
 static conic_status add_choice(hybrid_selecting *s, uint32_t i_cluster) {
   hybrid_scratch *kept = s->scratch;
   const conic_hybrid_cluster *cluster = &s->hybrid->clusters[i_cluster];
-  if (kept->n_choices == kept->choices_room) {
-    size_t room = 2 * kept->choices_room + 256;
-    void *choices = kept->choices;
-    conic_status status = conic_memory_grow(s->hybrid->context, &choices, kept->n_choices, room, sizeof *kept->choices);
-    kept->choices = choices;
-    if (status != CONIC_OK)
-      return status;
-    kept->choices_room = room;
-  }
+  if (conic_memory_reserve(s->hybrid->context, &kept->choices, kept->n_choices, kept->n_choices + 1,
+                           &kept->choices_room, sizeof *kept->choices) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   uint32_t level = cluster->built;
   if (s->view->only_kind >= 0)
     level = conic_hybrid_finest(s->hybrid, cluster, s->view->only_kind);

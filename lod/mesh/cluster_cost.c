@@ -5,6 +5,7 @@
 
 #include "core/base/eigen.h"
 #include "core/base/trigonometry.h"
+#include "core/base/vectors.h"
 
 conic_unit_box conic_unit_box_of(const conic_mesh *mesh, const conic_adjacency *adjacency) {
   double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, longest = 0.0;
@@ -49,10 +50,10 @@ conic_face_sums conic_face_sums_of(const conic_mesh *mesh, const conic_adjacency
   for (int corner = 0; corner < 3; corner++) {
     for (int axis = 0; axis < 3; axis++)
       edges[corner][axis] = at[(corner + 1) % 3][axis] - at[corner][axis];
-    sums.outline += sqrt(conic_dot(edges[corner], edges[corner]));
+    sums.outline += conic_length(edges[corner]);
   }
   conic_cross(edges[0], edges[1], cross);
-  double length = sqrt(conic_dot(cross, cross));
+  double length = conic_length(cross);
   if (!(length > 0.0))
     return sums;
   sums.area = 0.5 * length;
@@ -103,7 +104,7 @@ static double form(const double m[6], const double n[3]) {
 void conic_face_sums_plane(const conic_face_sums *sums, double normal[3], double *d) {
   static const double open = 1e-9; /* eigenvalues that differ by less say nothing of a direction */
   double mean[3] = {0.0, 0.0, 0.0}, covariance[6] = {0}, values[3] = {0}, vectors[3][3] = {{0}};
-  double length = sqrt(conic_dot(sums->normal, sums->normal));
+  double length = conic_length(sums->normal);
   if (sums->area > 0.0) {
     covariance_of(sums, mean, covariance);
     conic_eigen3(covariance, values, vectors);

@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
+#include "core/base/vectors.h"
 
 static const uint32_t none = UINT32_MAX;
 
@@ -100,7 +101,7 @@ static double edge_length(const conic_mesh *mesh, uint32_t half_edge) {
   conic_mesh_corner(mesh, half_edge / 3, (int)(half_edge + 1) % 3, b);
   for (int axis = 0; axis < 3; axis++)
     b[axis] -= a[axis];
-  return sqrt(conic_dot(b, b));
+  return conic_length(b);
 }
 
 static uint32_t start_of(const conic_mesh *mesh, const conic_adjacency *adjacency, uint32_t half_edge) {

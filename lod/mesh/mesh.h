@@ -59,14 +59,4 @@ static inline void conic_mesh_corner(const conic_mesh *mesh, size_t i_face, int 
     at[axis] = (double)mesh->position[axis][mesh->faces[i_face][corner]];
 }
 
-static inline void conic_cross(const double a[3], const double b[3], double c[3]) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static inline double conic_dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 #endif

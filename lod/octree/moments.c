@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
+
 /* The symmetric product a·bᵀ, b being a multiple of a, into the six. */
 static void add_outer(double scatter[6], const double a[3], const double b[3]) {
   scatter[0] += a[0] * b[0];
@@ -14,7 +16,7 @@ static void add_outer(double scatter[6], const double a[3], const double b[3]) {
 }
 
 void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments *moments) {
-  double u[3], v[3], area2 = 0.0;
+  double u[3], v[3];
   memset(moments, 0, sizeof *moments);
   moments->count = 1.0;
   for (int axis = 0; axis < 3; axis++) {
@@ -22,15 +24,11 @@ void conic_moments_of_splat(const conic_splats *splats, size_t i, conic_moments 
     u[axis] = (double)splats->tangent_u[axis][i];
     v[axis] = (double)splats->tangent_v[axis][i];
   }
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    moments->normal[axis] = u[next] * v[last] - u[last] * v[next];
-    area2 += moments->normal[axis] * moments->normal[axis];
-  }
+  conic_cross(u, v, moments->normal);
   add_outer(moments->scatter, u, u);
   add_outer(moments->scatter, v, v);
   double opacity = splats->opacity ? (double)splats->opacity[i] : 1.0;
-  moments->area = sqrt(area2);
+  moments->area = conic_length(moments->normal);
   moments->weight = opacity > 0.0 ? opacity * moments->area : 0.0;
   for (int axis = 0; axis < 3; axis++)
     moments->color[axis] = moments->weight * (splats->color[axis] ? (double)splats->color[axis][i] : 1.0);

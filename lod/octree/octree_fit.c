@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 #include "lod/octree/octree_kernels.h"
 
 /* Subtrees up to this size are fitted side by side; the leaves of the nodes above are scanned in such chunks. */
@@ -29,10 +30,6 @@ typedef struct fitter {
   size_t n_tasks, next_task;
   conic_octree_kernels kernels;
 } fitter;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 typedef struct scan {
   const fitter *fitter;
@@ -75,7 +72,7 @@ static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const
 /* The mean normal, weighed by area; where normals cancel, the direction in which the points spread least. */
 static void find_normal(const conic_moments *moments, double normal[3]) {
   double values[3], vectors[3][3];
-  if (dot(moments->normal, moments->normal) > 1e-4 * moments->area * moments->area) {
+  if (conic_dot(moments->normal, moments->normal) > 1e-4 * moments->area * moments->area) {
     memcpy(normal, moments->normal, 3 * sizeof *normal);
     return;
   }

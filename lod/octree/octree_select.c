@@ -55,14 +55,9 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
 
 static conic_status add_piece(octree_selecting *s, selection_piece added) {
   octree_scratch *kept = s->scratch;
-  if (kept->n_pieces == kept->pieces_room) {
-    size_t room = 2 * kept->pieces_room + 256;
-    conic_status status =
-        conic_memory_grow(s->octree->context, (void **)&kept->pieces, kept->n_pieces, room, sizeof *kept->pieces);
-    if (status != CONIC_OK)
-      return status;
-    kept->pieces_room = room;
-  }
+  if (conic_memory_reserve(s->octree->context, &kept->pieces, kept->n_pieces, kept->n_pieces + 1, &kept->pieces_room,
+                           sizeof *kept->pieces) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   kept->pieces[kept->n_pieces++] = added;
   return CONIC_OK;
 }

@@ -145,13 +145,8 @@ static size_t split_subtree(splitter *s, size_t begin, size_t end, int depth, ui
 }
 
 static conic_status add_top(conic_context *context, splitter *s, const top_item *item) {
-  if (s->n_top == s->top_room) {
-    size_t room = 2 * s->top_room + 64;
-    conic_status status = conic_memory_grow(context, (void **)&s->top, s->n_top, room, sizeof *s->top);
-    if (status != CONIC_OK)
-      return status;
-    s->top_room = room;
-  }
+  if (conic_memory_reserve(context, &s->top, s->n_top, s->n_top + 1, &s->top_room, sizeof *s->top) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   s->top[s->n_top++] = *item;
   return CONIC_OK;
 }

@@ -47,13 +47,9 @@ static void take(conic_range_queue *queue, size_t i, conic_queued_range *item) {
 }
 
 conic_status conic_range_queue_push(conic_context *context, conic_range_queue *queue, const conic_queued_range *item) {
-  if (queue->n == queue->room) {
-    size_t room = 2 * queue->room + 64;
-    conic_status status = conic_memory_grow(context, (void **)&queue->items, queue->n, room, sizeof *queue->items);
-    if (status != CONIC_OK)
-      return status;
-    queue->room = room;
-  }
+  if (conic_memory_reserve(context, &queue->items, queue->n, queue->n + 1, &queue->room, sizeof *queue->items) !=
+      CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   queue->items[queue->n++] = *item;
   rise(queue, queue->n - 1);
   return CONIC_OK;

@@ -90,7 +90,7 @@ static int keep(http_ranges *http, body *to, const char *data, size_t n, size_t 
   if (n > to->room - to->n) {
     size_t room = 2 * to->room + n + PROBE_BYTES;
     room = room < most ? room : most;
-    if (conic_memory_grow(http->base.context, (void **)&to->bytes, to->n, room, 1) != CONIC_OK)
+    if (conic_memory_grow(http->base.context, &to->bytes, to->n, room, 1) != CONIC_OK)
       return 0;
     to->room = room;
   }
@@ -258,13 +258,9 @@ static int is_stalled(transfer *t) {
 static ready_answer *add_ready(http_ranges *http) {
   if (http->first_ready == http->n_ready)
     http->first_ready = http->n_ready = 0;
-  if (http->n_ready == http->ready_room) {
-    size_t room = 2 * http->ready_room + 64;
-    if (conic_memory_grow(http->base.context, (void **)&http->ready, http->n_ready, room, sizeof *http->ready) !=
-        CONIC_OK)
-      return NULL;
-    http->ready_room = room;
-  }
+  if (conic_memory_reserve(http->base.context, &http->ready, http->n_ready, http->n_ready + 1, &http->ready_room,
+                           sizeof *http->ready) != CONIC_OK)
+    return NULL;
   ready_answer *added = &http->ready[http->n_ready++];
   memset(added, 0, sizeof *added);
   return added;
@@ -350,13 +346,10 @@ static int gather_parts(http_ranges *http, transfer *t, double *wait_s) {
         http->base.n_pending--;
       continue;
     }
-    if (t->n_parts == t->parts_room) {
-      size_t room = 2 * t->parts_room + 16;
-      if (conic_memory_grow(http->base.context, (void **)&t->parts, t->n_parts, room, sizeof *t->parts) != CONIC_OK) {
-        give_up(http, &item.range, "out of memory");
-        break;
-      }
-      t->parts_room = room;
+    if (conic_memory_reserve(http->base.context, &t->parts, t->n_parts, t->n_parts + 1, &t->parts_room,
+                             sizeof *t->parts) != CONIC_OK) {
+      give_up(http, &item.range, "out of memory");
+      break;
     }
     if (t->n_parts == 0)
       t->offset = item.range.offset;

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "core/splats/clip.h"
 #include "raster/project/clip_box.h"
 #include "raster/view/method.h"
@@ -13,12 +14,6 @@ static double row_times(const double m[3], const float *const v[3], size_t i) {
   return (m[0] * (double)v[0][i] + m[1] * (double)v[1][i]) + m[2] * (double)v[2][i];
 }
 
-static void cross(const double a[3], const double b[3], double result[3]) {
-  result[0] = a[1] * b[2] - a[2] * b[1];
-  result[1] = a[2] * b[0] - a[0] * b[2];
-  result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* A splat in camera space, in double from the splat itself. */
 static conic_disc disc_of(const conic_view *view, const conic_splats *splats, size_t i) {
   conic_disc disc;
@@ -28,15 +23,15 @@ static conic_disc disc_of(const conic_view *view, const conic_splats *splats, si
     disc.tu[row] = row_times(m, (const float *const *)splats->tangent_u, i);
     disc.tv[row] = row_times(m, (const float *const *)splats->tangent_v, i);
   }
-  cross(disc.tu, disc.tv, disc.n);
+  conic_cross(disc.tu, disc.tv, disc.n);
   disc.determinant = (disc.p[0] * disc.n[0] + disc.p[1] * disc.n[1]) + disc.p[2] * disc.n[2];
   return disc;
 }
 
 /* The columns of M's adjugate, t_v × p, p × t_u, t_u × t_v; returns the sign of |M|. */
 static double adjugate(const conic_disc *disc, double columns[3][3]) {
-  cross(disc->tv, disc->p, columns[0]);
-  cross(disc->p, disc->tu, columns[1]);
+  conic_cross(disc->tv, disc->p, columns[0]);
+  conic_cross(disc->p, disc->tu, columns[1]);
   for (int axis = 0; axis < 3; axis++)
     columns[2][axis] = disc->n[axis];
   return disc->determinant > 0.0 ? 1.0 : disc->determinant < 0.0 ? -1.0 : 0.0;

@@ -1,16 +1,11 @@
 #include <math.h>
 
+#include "core/base/vectors.h"
 #include "raster/project/clip_disc.h"
 #include "raster/project/projected.h"
 
 /* The functions here take the few splats that come near the camera (or all of method `ray`), so they compute in double:
  * p may be behind the eye, and M's adjugate has to hold. */
-
-static void cross(const double a[3], const double b[3], double result[3]) {
-  result[0] = a[1] * b[2] - a[2] * b[1];
-  result[1] = a[2] * b[0] - a[0] * b[2];
-  result[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static double length_z(const conic_disc *disc) {
   return sqrt(disc->tu[2] * disc->tu[2] + disc->tv[2] * disc->tv[2]);
@@ -81,8 +76,8 @@ conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, 
     return outcome;
   set_range(view, disc, footprint);
   /* M⁻¹ has the columns t_v × p, p × t_u, t_u × t_v over the determinant. */
-  cross(disc->tv, disc->p, m_u);
-  cross(disc->p, disc->tu, m_v);
+  conic_cross(disc->tv, disc->p, m_u);
+  conic_cross(disc->p, disc->tu, m_v);
   set_affine(view, footprint, m_u, disc->determinant, &ray->u0, &ray->u_dx, &ray->u_dy);
   set_affine(view, footprint, m_v, disc->determinant, &ray->v0, &ray->v_dx, &ray->v_dy);
   set_affine(view, footprint, disc->n, disc->determinant, &footprint->iz0, &footprint->iz_dx, &footprint->iz_dy);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "core/base/vectors.h"
+
 static conic_affine weight_of(const conic_triangle_record *record, const conic_triangle_edges *edges, int k,
                               int64_t e) {
   double scale = record->part * (double)record->iz[k], step = scale * (double)CONIC_SUBPIXELS;
@@ -52,12 +54,8 @@ static void find_face(const conic_triangle_frame *frame, const uint32_t corners[
   for (int k = 0; k < 2; k++)
     for (int axis = 0; axis < 3; axis++)
       side[k][axis] = (double)t->position[axis][corners[k + 1]] - (double)t->position[axis][corners[0]];
-  for (int axis = 0; axis < 3; axis++) {
-    int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    normal[axis] = side[0][b] * side[1][c] - side[0][c] * side[1][b];
-  }
-  double length = sqrt((normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2]);
-  double scale = 1.0 / length;
+  conic_cross(side[0], side[1], normal);
+  double length = conic_length(normal), scale = 1.0 / length;
   for (int axis = 0; axis < 3; axis++)
     face[axis] = length > 0.0 ? (float)(normal[axis] * scale) : -frame->view->rotation_float[2][axis];
 }

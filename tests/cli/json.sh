@@ -1,97 +1,142 @@
 #!/usr/bin/env bash
-# Runs the commands of docs/json.md: each must give the keys of the sample below it, no more and no fewer; and among
-# them are those that scripts rely on.
-set -euo pipefail
+# Every command's JSON is as docs/reference/json.schema.json says, and has the keys that scripts rely on; no fault in it
+# would go unseen. The checks themselves stand in json_schema.py.
+set -uo pipefail
 
-source_folder=$1
-program=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
+source "$1/tests/support/program.bash"
+schema=$1/docs/reference/json.schema.json
+check=$1/tests/cli/json_schema.py
+mkdir runs
 
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
+python=
+for candidate in python3 /usr/bin/python3; do
+  "$candidate" -c 'import jsonschema; jsonschema.Draft202012Validator' 2> /dev/null && python=$candidate && break
+done
+if [[ -z $python ]]; then
+  echo "skipped: python3-jsonschema is not installed"
+  exit 77
+fi
+if ! "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
+  echo "skipped: the runs draw EXR files, which this build does not write"
+  exit 77
+fi
+has_zstd=0
+if "$conic" --version | grep -q '^In this build:.*zstd'; then
+  has_zstd=1
+fi
+
+# write NAME DEFINITION ARGUMENTS …: what a run writes goes to runs/NAME.json.
+write() {
+  local name=$1 definition=$2 exit_code=0
+  shift 2
+  if [[ $name == diff* ]]; then
+    exit_code=1
+  fi
+  run $exit_code "$@" --json -
+  cp out "runs/$name.json"
+  echo "$definition" > "runs/$name.definition"
 }
 
-conic() {
-  "$program" "$@"
-}
-
-# The paths of all keys of a JSON text on standard input that is laid out as conic does: `ms.read` …
-keys() {
-  perl -ne '
-    next unless /^( *)"([^"]+)": (.*)/;
-    my $depth = length($1) / 2 - 1;
-    @path = (@path[0 .. $depth - 1], $2);
-    print join(".", @path), "\n";' | sort
-}
-
-# Splits the page: N.sh is the command of a section, N.json its sample, N.name its heading.
-perl -ne '
-  if (/^## (.*)/) { $n++; open $to, ">", "$n.name"; print $to "$1\n"; close $to; }
-  elsif (/^```(sh|json)/) { open $to, ">", "$n.$1"; $is_open = 1; }
-  elsif (/^```/) { close $to; $is_open = 0; }
-  elsif ($is_open) { print $to $_; }' "$source_folder/docs/json.md"
-
+# The keys that scripts rely on.
+builder="points_in points_out seconds.read seconds.work seconds.write seconds.total points_per_s peak_rss_bytes
+  skipped.nan skipped.zero skipped.duplicate skipped.isolated skipped.failed"
+render="splats_in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered overdraw method
+  device isa threads tile epsilon_mode epsilon near primitives.splats clouds_culled hash.rgba hash.Z
+  ms.read ms.estimate ms.lod ms.setup ms.bin ms.visibility ms.accumulate ms.resolve ms.write ms.frame ms.total
+  ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes"
 declare -A wanted=(
-  [make]="points_in points_out seconds.read seconds.work seconds.write seconds.total points_per_s peak_rss_bytes
-    skipped.nan skipped.zero skipped.duplicate skipped.isolated skipped.failed"
-  [render]="splats_in splats_culled splats_skipped splats_drawn splats_fallback fragments pixels_covered overdraw method
-    methods.conic device isa threads tile epsilon_mode epsilon near primitives.splats clouds_culled hash.rgba hash.Z
-    ms.read ms.estimate ms.lod ms.setup ms.bin ms.visibility ms.accumulate ms.resolve ms.write ms.frame ms.total
-    ms_first msplats_per_s drawn_msplats_per_s mfragments_per_s peak_rss_bytes"
-  [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs planes.rgba.rmse"
+  [make]=$builder
+  [prepare]=$builder
+  [octree]="$builder bytes_per_point inner_nodes levels"
+  [hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
+  [layer]="$builder clouds levels bytes bits_per_sample spacing quantum"
+  [mls-project]="$builder type plane weight h outcomes.done outcomes.too_few moved.rms moved.max"
+  [mls-thin]="$builder error hausdorff to_thinned.max from_thinned.max"
+  [mls-densify]=$builder
+  [render]="$render methods.conic"
+  [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px"
+  [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
+    triangle_fragments mtriangles_per_s"
+  [render-patches]="$render methods.conic primitives.patches primitives.samples"
+  [render-hybrid]="$render methods.conic triangles_drawn? primitives.triangles? primitives.surfel_patches error_px"
+  [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
+  [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
+    planes.rgba.rmse"
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z compared_pixels
     unstable_pixels covered_pixels undecided_ids unstable_limit unstable_by_reason.cutoff unstable_by_reason.visibility
     ms.render ms.oracle pass"
+  [explain]="method pixel? planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
+  [explain-hybrid]="method pixel? planes.rgba planes.cluster threshold contributions blended? triangles?"
   [chart]="scenes methods points seconds"
-  [explain]="method pixel planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
-  [bench]="lines wrong_pictures peak_rss_bytes machine"
-  [info]="kind points bytes bytes_per_point bounds.min bounds.max sound"
+  [bench]="lines wrong_pictures peak_rss_bytes machine?"
+  [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
+  [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
+  [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
+  [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
+    bits.index bounds.min bounds.max sound?"
 )
-wanted[prepare]=${wanted[make]}
-wanted[octree]="${wanted[make]} bytes_per_point inner_nodes levels"
-wanted["mls project"]="${wanted[make]} type plane weight h degree outcomes.done outcomes.too_few moved.rms moved.max"
-wanted["mls thin"]="${wanted[make]} error hausdorff to_thinned.max from_thinned.max"
-wanted["mls densify"]=${wanted[make]}
-wanted["info of an octree"]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound"
-wanted["render of a mesh"]="${wanted[render]/methods.conic /} primitives.triangles triangles_in triangles_culled triangles_skipped
-  triangles_drawn triangle_fragments mtriangles_per_s"
-wanted[layer]="${wanted[make]} clouds levels bytes bits_per_sample spacing quantum"
-wanted["info of a layered cloud"]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
-  bits.index bounds.min bounds.max sound"
-wanted["render of an octree"]="${wanted[render]} primitives.inner_nodes primitives.leaves error_px"
-wanted["render of a layered cloud"]="${wanted[render]} error_px layers.clouds layers.places_coarser layers.clouds_missing"
-wanted["render of patches"]="${wanted[render]} primitives.patches primitives.samples"
 
-wanted[hybrid]="triangles surfels clusters seconds.read seconds.work seconds.write seconds.total peak_rss_bytes skipped.nan"
-wanted["render of a hybrid"]="${wanted[render]} triangles_drawn primitives.triangles primitives.surfel_patches error_px"
-wanted["explain of a hybrid"]="method pixel planes.rgba planes.cluster threshold contributions blended triangles"
-wanted["info of a hybrid"]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound"
+printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' '.5 .5 .5' '4 0 0' '4 0 1' > tent.obj
+printf 'f %s\n' '1 5 2' '2 5 3' '3 5 4' '4 5 1' '2 3 7 6' >> tent.obj
+printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > triangle.obj
+printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
 
-if ! "$program" --version | grep -q '^In this build:.*OpenEXR'; then
-  echo "skipped: the samples are of EXR files, which this build has not"
-  exit 77
+write make make make knot -n 50k -o knot.ply
+write prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
+write octree octree octree knot.ply -o knot.cot
+write hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
+write mls-project mls_project mls project knot.ply -o clean.ply
+write mls-spheres mls_project mls project thin.ply -o clean.ply --type apss
+write mls-thin mls_thin mls thin thin.ply -o thinner.ply --count 10k
+write mls-densify mls_densify mls densify thinner.ply -o dense.ply --spacing 0.7x
+write render render render knot.ply -o knot.exr --aov all --size 512x512
+write render-octree render_octree render knot.cot -o lod.exr --error 2 --size 512x512
+write render-mesh render_mesh render triangle.obj --as mesh --size 256x256 -o triangle.exr
+write render-patches render_patches render thin.ply -o patches.exr --method patch --zoom 4 --size 256x256
+write render-hybrid render_hybrid render tent.chy -o tent.exr
+write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
+write render-auto render render knot.ply -o auto.exr --method auto --zoom 20 --size 256x256
+write render-other render render thin.ply -o other.exr --size 256x256 --method disc --samples 2 --epsilon 2x
+write diff diff diff knot.exr lod.exr
+write diff-sizes diff diff knot.exr triangle.exr
+write verify verify verify thinner.ply --size 160x120
+write verify-samples verify verify thinner.ply --size 40x30 --samples 2
+write make-one make make plane -n 1 -o one.ply
+write verify-exact verify verify one.ply --size 12x9 --against exact
+write explain explain explain one.ply --size 64x48 --pixel 30,20
+write explain-splat explain explain one.ply --size 64x48 --splat 0
+write explain-octree explain explain knot.cot --size 64x48 --error 1 --splat 9 --pixel 32,24
+write explain-leaf explain explain knot.cot --size 2048x2048 --error 0.5 --splat 9
+write explain-hybrid explain explain tent.chy --size 64x48 --pixel 30,25 --only triangles
+write explain-mixed explain explain tent.chy --size 64x48 --pixel 14,24 --splat 9
+write chart chart chart -o chart --quick --only representations
+write bench-old bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5
+cp runs/bench-old.json old.json
+write bench bench bench --scenes sphere-20k --size 256x256 --isa scalar --threads 1 --repeat 5 --floor --compare old.json
+write info info_model info knot.ply --check
+write info-mesh info_model info triangle.obj
+write info-far info_model info far.xyz --check
+write info-image info_image info knot.exr --check
+write info-octree info_octree info knot.cot --check
+write info-hybrid info_hybrid info tent.chy --check
+write devices devices devices
+# What no run above writes, or not on every machine.
+unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double
+  device.rounds_correctly device.compute_units device.memory_bytes"
+if [[ $has_zstd -eq 1 ]]; then
+  write layer layer layer knot.ply -o knot.lpc
+  write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
+  write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
+  write info-layers info_layers info knot.lpc --check
+else
+  unset "wanted[layer]" "wanted[render-layers]" "wanted[info-layers]"
+  unseen+=" layer.* layers_drawn.* info_layers.* render.layers"
 fi
-for ((n = 1; ; n++)); do
-  [[ -e $n.sh ]] || break
-  name=$(cat $n.name)
-  if grep -q 'lpc' $n.sh && ! "$program" --version | grep -q '^In this build:.*zstd'; then
-    unset "wanted[$name]"
-    continue
-  fi
-  # shellcheck disable=SC1090 # the command of the page
-  source $n.sh > $n.out 2> err < /dev/null || [[ $? -eq 1 && $name == diff ]] || fail "$name: $(cat err)"
-  keys < $n.json > $n.sample
-  keys < $n.out > $n.keys
-  [[ $(wc -l < $n.sample) -ge 5 ]] || fail "$name: no sample"
-  diff $n.sample $n.keys || fail "$name: the page's keys (<) are not those of the run (>)"
-  for key in ${wanted[$name]:-}; do
-    grep -qxF "$key" $n.keys || fail "$name: no $key"
-  done
-  unset "wanted[$name]"
-done
-[[ ${#wanted[@]} -eq 0 ]] || fail "no sample of ${!wanted[*]}"
-[[ $failures -eq 0 ]]
+
+for name in "${!wanted[@]}"; do
+  # shellcheck disable=SC2086 # the keys are words
+  echo "$name" ${wanted[$name]}
+done > runs/wanted
+echo "$unseen" > runs/unseen
+[[ $failures -eq 0 ]] || exit 1
+"$python" "$check" "$schema" runs

@@ -1,5 +1,5 @@
-/* The projected outline and box against sampled contours, through the projection stage itself, from frontal to edge-on.
- */
+/* The projected outline, box and normal against sampled contours and the splat's axes, through the projection stage
+ * itself, from frontal to edge-on. */
 #include "raster/project/projected.h"
 #include "tests/support/fixture.h"
 
@@ -30,6 +30,23 @@ static contour sample_contour(const fixture *f, const conic_footprint *footprint
   return c;
 }
 
+/* The unit normal of the splat's axes, on the side of the viewer. */
+static void check_normal(const fixture *f, const conic_projected_surface *surface) {
+  double u[3], v[3], n[3], length2 = 0.0, away = 0.0;
+  for (int axis = 0; axis < 3; axis++) {
+    u[axis] = (double)f->splats.tangent_u[axis][0];
+    v[axis] = (double)f->splats.tangent_v[axis][0];
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    n[axis] = u[next] * v[last] - u[last] * v[next];
+    length2 += n[axis] * n[axis];
+    away += n[axis] * (double)f->splats.position[axis][0];
+  }
+  for (int axis = 0; axis < 3; axis++)
+    CHECK_NEAR((double)surface->normal[axis], (away > 0.0 ? -n[axis] : n[axis]) / sqrt(length2), 2e-5);
+}
+
 /* One splat without prefilter, so that the footprint is the outline itself. */
 static int project_one(fixture *f, conic_footprint *footprint, conic_box *box) {
   conic_view view;
@@ -40,6 +57,8 @@ static int project_one(fixture *f, conic_footprint *footprint, conic_box *box) {
   f->options.prefilter = 0.0f;
   CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 1.0, &view));
   conic_project_chunk(&view, &f->splats, 0, &projected);
+  if (chunk.n_drawn == 1)
+    check_normal(f, &surface);
   return chunk.n_drawn == 1 && chunk.n_rays == 0;
 }
 

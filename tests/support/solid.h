@@ -32,13 +32,13 @@ static inline int solid_is_hit(const conic_camera *camera, int lacks_octant, dou
   return outer[0] < inner[0] - 1e-9 || inner[1] + 1e-9 < outer[1];
 }
 
-/* How many of the places `reach_px` around the pixel's centre meet the solid, of nine. */
-static inline int solid_hits(const conic_camera *camera, int lacks_octant, int x, int y, double reach_px) {
-  int n = 0;
-  for (int i = -1; i <= 1; i++)
-    for (int j = -1; j <= 1; j++)
-      n += solid_is_hit(camera, lacks_octant, x + 0.5 + reach_px * i, y + 0.5 + reach_px * j);
-  return n;
+/* Whether one of the nine places `reach_px` around the pixel's centre meets the solid, or, asked for `all`, all do. */
+static inline int solid_hits(const conic_camera *camera, int lacks_octant, int x, int y, double reach_px, int all) {
+  int is_hit = all;
+  for (int i = 0; i < 9 && is_hit == all; i++) /* the centre first, which tells most */
+    is_hit = solid_is_hit(camera, lacks_octant, x + 0.5 + reach_px * ((i + 4) / 3 % 3 - 1),
+                          y + 0.5 + reach_px * ((i + 1) % 3 - 1));
+  return is_hit;
 }
 
 typedef struct solid_verdict {
@@ -54,9 +54,9 @@ static inline solid_verdict solid_judge(const fixture *f, int lacks_octant, doub
       int is_covered = fixture_index(f, CONIC_PLANE_ID, x, y) != CONIC_NO_ID;
       verdict.n_covered += is_covered;
       if (is_covered)
-        verdict.n_outside += solid_hits(&f->camera, lacks_octant, x, y, outside_px) == 0;
+        verdict.n_outside += !solid_hits(&f->camera, lacks_octant, x, y, outside_px, 0);
       else
-        verdict.n_holes += solid_hits(&f->camera, lacks_octant, x, y, hole_px) == 9;
+        verdict.n_holes += solid_hits(&f->camera, lacks_octant, x, y, hole_px, 1);
     }
   return verdict;
 }

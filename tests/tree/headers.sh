@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every header compiles alone, the public ones as C11 and as C++17; what libconic exports is what the headers declare;
+# Every header compiles alone, and all of them together; the public ones as C11 and as C++17; what libconic exports is what the headers declare;
 # every global name has the project's prefix.
 set -euo pipefail
 
@@ -22,20 +22,34 @@ library_folder=$(dirname "$(find "$build_folder" -name libconic.a)")
 c_compiler=$(setting CMAKE_C_COMPILER)
 cpp_compiler=$(setting CMAKE_CXX_COMPILER)
 
+compiles_c() { # FILE
+  echo 'typedef int not_empty;' >> "$1"
+  "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. "$1"
+}
+compiles_cpp() { # FILE; true where there is no compiler for it
+  [[ ! -x $cpp_compiler ]] ||
+    "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude "$1"
+}
+
 for header in $(find include core raster oracle lod surface opencl bench cli -name '*.h' | sort); do
   [[ -e $header && $header != *_body.h ]] || continue # a body is included by what sets its types
   [[ $header != opencl/shared.h ]] || continue          # stands before what OpenCL C compiles
   [[ $header != opencl/c_library/* ]] || continue       # stands for the C library where there is none
   [[ $header != opencl/*.h || -e $build_folder/opencl ]] || continue # a build without OpenCL
-  printf '#include "%s"\ntypedef int not_empty;\n' "${header#include/}" > "$work/alone.c"
-  "$c_compiler" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude -I. \
-    "$work/alone.c" || fail "$header does not compile alone as C11"
+  printf '#include "%s"\n' "${header#include/}" | tee "$work/alone.c" >> "$work/together.c"
+  compiles_c "$work/alone.c" || fail "$header does not compile alone as C11"
 done
+compiles_c "$work/together.c" || fail "the headers do not compile together as C11"
 for header in include/conic/*.h; do
-  printf '#include "%s"\n' "${header#include/}" > "$work/alone.cpp"
-  [[ ! -x $cpp_compiler ]] || "$cpp_compiler" -std=c++17 -Wall -Wextra -Werror -pedantic -fsyntax-only -Iinclude \
-    "$work/alone.cpp" || fail "$header does not compile alone as C++17"
+  printf '#include "%s"\n' "${header#include/}" | tee "$work/alone.cpp" >> "$work/together.cpp"
+  compiles_cpp "$work/alone.cpp" || fail "$header does not compile alone as C++17"
 done
+compiles_cpp "$work/together.cpp" || fail "the public headers do not compile together as C++17"
+
+# Two headers that are sound by themselves, but not together.
+printf 'struct one {\n  int a;\n};\n' | tee "$work/first.h" > "$work/second.h"
+printf '#include "%s"\n' first.h second.h > "$work/together.c"
+! compiles_c "$work/together.c" 2> /dev/null || fail "sees no type that is defined twice"
 
 perl -0777 -ne 's{/\*.*?\*/}{}gs; s{^\s*#.*$}{}gm; print "$1\n" while /\bCONIC_API\b[^;(]*?(\w+)\s*\(/g' \
   include/conic/*.h | sort -u > "$work/declared"

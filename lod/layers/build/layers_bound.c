@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/vectors.h"
 #include "lod/layers/build/layers_branch.h"
 #include "lod/layers/format/layers_key.h"
 
@@ -149,10 +150,6 @@ static void find_axis(conic_layers_branch *branch) {
     branch->axis[axis] = length > 0.0 ? (double)(float)(sum[axis] / length) : axis == 2;
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The cosine of the sum of two angles, given theirs; −1 where it is more than a half turn. */
 static double cosine_of_sum(double a, double b) {
   a = a > 1.0 ? 1.0 : a < -1.0 ? -1.0 : a;
@@ -176,7 +173,7 @@ conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers
     float normal[3];
     conic_layers_normal_of(leaf->samples[i].normal, normal);
     const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-    double cosine = dot(n, leaf->axis);
+    double cosine = conic_dot(n, leaf->axis);
     leaf->cone = cosine < leaf->cone ? cosine : leaf->cone;
   }
   return status;
@@ -206,7 +203,7 @@ static void reach_out(void *data, const conic_layers_branch *below) {
 
 static void widen_cone(void *data, const conic_layers_branch *below) {
   bounding *b = data;
-  double cosine = cosine_of_sum(dot(b->node->axis, below->axis), below->cone);
+  double cosine = cosine_of_sum(conic_dot(b->node->axis, below->axis), below->cone);
   b->node->cone = cosine < b->node->cone ? cosine : b->node->cone;
 }
 

@@ -30,14 +30,9 @@ void conic_layers_buckets_end(conic_layers_buckets *buckets) {
 static conic_status close_block(conic_layers_buckets *all, conic_layers_bucket *bucket) {
   if (bucket->n_open == 0)
     return CONIC_OK;
-  if (bucket->n_blocks == bucket->block_room) {
-    size_t room = 2 * bucket->block_room + 4;
-    conic_status status =
-        conic_memory_grow(all->context, (void **)&bucket->blocks, bucket->n_blocks, room, sizeof *bucket->blocks);
-    if (status != CONIC_OK)
-      return status;
-    bucket->block_room = room;
-  }
+  if (conic_memory_reserve(all->context, &bucket->blocks, bucket->n_blocks, bucket->n_blocks + 1, &bucket->block_room,
+                           sizeof *bucket->blocks) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   bucket->blocks[bucket->n_blocks++] = conic_spool_bytes(&all->spool);
   size_t n_bytes = bucket->n_open * sizeof *bucket->open;
   bucket->n_open = 0;
@@ -86,11 +81,9 @@ static conic_status end_split(conic_layers_buckets *all, split *parts, size_t at
     cell->open = NULL;
     n_new += cell->count > 0;
   }
-  if (status == CONIC_OK && all->n + n_new > all->room) {
-    size_t room = all->n + n_new + 64;
-    status = conic_memory_grow(all->context, (void **)&all->buckets, all->n, room, sizeof *all->buckets);
-    all->room = status == CONIC_OK ? room : all->room;
-  }
+  if (status == CONIC_OK)
+    status =
+        conic_memory_reserve(all->context, &all->buckets, all->n, all->n + n_new, &all->room, sizeof *all->buckets);
   if (status != CONIC_OK)
     return status;
   if (n_dropped)

@@ -35,13 +35,9 @@ void conic_layers_forest_end(conic_layers_forest *forest) {
 
 static conic_status add_chunk(growing *g, size_t first, size_t end, uint64_t n_samples) {
   conic_context *context = g->plan->context;
-  if (g->n_chunks == g->chunk_room) {
-    size_t room = 2 * g->chunk_room + 16;
-    conic_status status = conic_memory_grow(context, (void **)&g->chunks, g->n_chunks, room, sizeof *g->chunks);
-    if (status != CONIC_OK)
-      return status;
-    g->chunk_room = room;
-  }
+  if (conic_memory_reserve(context, &g->chunks, g->n_chunks, g->n_chunks + 1, &g->chunk_room, sizeof *g->chunks) !=
+      CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   g->chunks[g->n_chunks++] = (chunk){.first = first, .end = end, .n_samples = n_samples, .shelf = {.context = context}};
   return CONIC_OK;
 }
@@ -94,13 +90,8 @@ static conic_status collect(growing *g, chunk *c) {
   uint32_t n_before = (uint32_t)all->n_nodes;
   uint64_t offset = conic_spool_bytes(&g->forest->spool);
   size_t n = all->n_nodes + c->shelf.n_nodes;
-  if (n > all->node_room) {
-    size_t room = n + n / 2;
-    conic_status status = conic_memory_grow(all->context, (void **)&all->nodes, all->n_nodes, room, sizeof *all->nodes);
-    if (status != CONIC_OK)
-      return status;
-    all->node_room = room;
-  }
+  if (conic_memory_reserve(all->context, &all->nodes, all->n_nodes, n, &all->node_room, sizeof *all->nodes) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < c->shelf.n_nodes; i++) {
     conic_layers_node node = c->shelf.nodes[i];
     node.entry.offset += offset;

@@ -163,17 +163,6 @@ conic_status conic_layers_grow(conic_layers_worker *worker, conic_layers_sample 
   return grow(worker, samples, n, worker->plan.is_unoriented, shelf, branch);
 }
 
-static conic_status reserve(conic_context *context, void **array, size_t used, size_t needed, size_t size,
-                            size_t *room) {
-  size_t larger = needed + needed / 2 + 64;
-  if (needed <= *room)
-    return CONIC_OK;
-  conic_status status = conic_memory_grow(context, array, used, larger, size);
-  if (status == CONIC_OK)
-    *room = larger;
-  return status;
-}
-
 /* Packs samples as the branch's cloud and puts its node on the shelf. */
 static conic_status shelve(conic_layers_worker *worker, const conic_layers_branch *branch,
                            const conic_layers_sample *samples, size_t n, conic_layers_shelf *shelf) {
@@ -187,9 +176,10 @@ static conic_status shelve(conic_layers_worker *worker, const conic_layers_branc
   node.entry.offset = shelf->n_bytes;
   node.entry.sum = conic_checksum(bytes, n_bytes);
   conic_status status =
-      reserve(context, (void **)&shelf->nodes, shelf->n_nodes, shelf->n_nodes + 1, sizeof node, &shelf->node_room);
+      conic_memory_reserve(context, &shelf->nodes, shelf->n_nodes, shelf->n_nodes + 1, &shelf->node_room, sizeof node);
   if (status == CONIC_OK)
-    status = reserve(context, (void **)&shelf->bytes, shelf->n_bytes, shelf->n_bytes + n_bytes, 1, &shelf->byte_room);
+    status =
+        conic_memory_reserve(context, &shelf->bytes, shelf->n_bytes, shelf->n_bytes + n_bytes, &shelf->byte_room, 1);
   if (status != CONIC_OK)
     return status;
   memcpy(shelf->bytes + shelf->n_bytes, bytes, n_bytes);

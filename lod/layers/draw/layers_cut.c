@@ -49,13 +49,9 @@ static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, v
 }
 
 static conic_status add_place(const conic_layers *layers, conic_layers_cut *cut, const conic_layers_place *place) {
-  if (cut->n == cut->room) {
-    size_t room = 2 * cut->room + 256;
-    conic_status status = conic_memory_grow(layers->context, (void **)&cut->places, cut->n, room, sizeof *cut->places);
-    if (status != CONIC_OK)
-      return status;
-    cut->room = room;
-  }
+  if (conic_memory_reserve(layers->context, &cut->places, cut->n, cut->n + 1, &cut->room, sizeof *cut->places) !=
+      CONIC_OK)
+    return CONIC_ERROR_MEMORY;
   cut->places[cut->n++] = *place;
   return CONIC_OK;
 }

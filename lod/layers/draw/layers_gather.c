@@ -48,7 +48,7 @@ static conic_status make_room(const conic_layers *layers, conic_layers_set *set,
     memcpy(arrays + i * room, (float *)set->arrays + i * set->room, used * sizeof *arrays);
   conic_memory_release(context, set->arrays);
   set->arrays = arrays;
-  conic_status status = conic_memory_grow(context, (void **)&set->ids, used, room, sizeof *set->ids);
+  conic_status status = conic_memory_grow(context, &set->ids, used, room, sizeof *set->ids);
   if (status != CONIC_OK)
     set->room = 0; /* nothing is kept of it */
   else
@@ -97,7 +97,7 @@ static conic_status list_pieces(gather *g) {
   }
   conic_status status = CONIC_OK;
   if (n > set->pieces_room) {
-    status = conic_memory_grow(layers->context, (void **)&set->pieces, 0, n, sizeof *set->pieces);
+    status = conic_memory_grow(layers->context, &set->pieces, 0, n, sizeof *set->pieces);
     set->pieces_room = status == CONIC_OK ? n : set->pieces_room;
   }
   if (status == CONIC_OK) {

@@ -60,7 +60,7 @@ static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n
     size_t piece = n_bytes - done < PIECE_BYTES ? (size_t)(n_bytes - done) : PIECE_BYTES;
     if (room - done < piece) {
       room = 2 * room + piece < n_bytes ? 2 * room + piece : (size_t)n_bytes;
-      status = conic_memory_grow(layers->context, (void **)bytes, done, room, 1);
+      status = conic_memory_grow(layers->context, bytes, done, room, 1);
     }
     if (status == CONIC_OK)
       status = read_piece(layers, offset + done, *bytes + done, piece);

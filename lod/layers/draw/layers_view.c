@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
+
 /* Bounds are computed in double and kept apart by this share, which is more than all that drawing, in floats, rounds.
  */
 static const double slack = 1e-4;
@@ -70,13 +72,9 @@ static void move_center(const conic_layers_view *view, const conic_layers_entry 
   }
 }
 
-static double length_of(const double v[3]) {
-  return sqrt((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
-}
-
 /* The sphere's radius, and more for what the renderer rounds. */
 static double padded_radius(const conic_layers_entry *entry, const double p[3]) {
-  return (double)entry->sphere * (1.0 + slack) + 1e-6 * length_of(p);
+  return (double)entry->sphere * (1.0 + slack) + 1e-6 * conic_length(p);
 }
 
 /* Where the sphere, all of it before the eye, ends on the screen along an axis: the tangents from the eye to the circle
@@ -103,7 +101,7 @@ static int set_pixels(const conic_layers_view *view, const conic_layers_entry *e
   project_sphere(p[0], p[2], radius, view->fx, view->cx, &low[0], &high[0]);
   project_sphere(p[1], p[2], radius, view->fy, view->cy, &low[1], &high[1]);
   if (!view->is_exact_outline)
-    margin += most_px(view, (double)entry->sphere, length_of(p) + radius, front);
+    margin += most_px(view, (double)entry->sphere, conic_length(p) + radius, front);
   clamp_range(low[0] - margin, high[0] + margin, view->width, &sight->pixels.x_begin, &sight->pixels.x_end);
   clamp_range(low[1] - margin, high[1] + margin, view->height, &sight->pixels.y_begin, &sight->pixels.y_end);
   return sight->pixels.x_begin < sight->pixels.x_end && sight->pixels.y_begin < sight->pixels.y_end;
@@ -124,7 +122,7 @@ static int cone_angles(const conic_layers_view *view, const conic_layers_entry *
   double to[3], along = 0.0;
   for (int axis = 0; axis < 3; axis++)
     to[axis] = (double)entry->center[axis] - view->eye[axis];
-  double distance = length_of(to), sin_a = (double)entry->sphere / distance * (1.0 + slack) + slack;
+  double distance = conic_length(to), sin_a = (double)entry->sphere / distance * (1.0 + slack) + slack;
   double cos_c = (double)entry->cone - slack;
   if (!(sin_a < 1.0) || !(cos_c > 0.0))
     return 0;
@@ -148,7 +146,7 @@ static int is_turned_away(const conic_layers_view *view, const conic_layers_entr
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight) {
   double p[3];
   move_center(view, entry, p);
-  double radius = padded_radius(entry, p), front = p[2] - radius, distance = length_of(p);
+  double radius = padded_radius(entry, p), front = p[2] - radius, distance = conic_length(p);
   memset(sight, 0, sizeof *sight);
   if (is_outside(view, p, radius) || (view->cull_back && is_turned_away(view, entry)))
     return 0;
@@ -178,7 +176,7 @@ int conic_layers_narrow(const conic_layers_view *view, const float position[3], 
     p[row] = ((m[0] * (double)position[0] + m[1] * (double)position[1]) + m[2] * (double)position[2]) +
              view->translation[row];
   }
-  double distance = length_of(p), front = p[2] - radius * (1.0 + slack) - 1e-6 * distance;
+  double distance = conic_length(p), front = p[2] - radius * (1.0 + slack) - 1e-6 * distance;
   if (!(front > view->near_z))
     return 1;
   double reach = most_px(view, radius * (1.0 + slack), distance + radius, front) + view->growth_px;
@@ -191,7 +189,7 @@ double conic_layers_least_offset(const conic_layers_view *view, const conic_laye
   double cosine[2], sine[2], to[3];
   for (int axis = 0; axis < 3; axis++)
     to[axis] = (double)entry->center[axis] - view->eye[axis];
-  double nearest = length_of(to) - (double)entry->sphere * (1.0 + slack);
+  double nearest = conic_length(to) - (double)entry->sphere * (1.0 + slack);
   if (!(nearest > 0.0) || !cone_angles(view, entry, cosine, sine))
     return 0.0;
   /* The normals are within both angles together of the axis, turned to the viewer or from it. */

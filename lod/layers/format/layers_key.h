@@ -14,7 +14,7 @@ static inline uint64_t conic_layers_spread(uint64_t bits) {
 }
 
 /* And back; the bits between are passed over. */
-static inline uint32_t conic_layers_gather(uint64_t bits) {
+static inline uint32_t conic_layers_gather_bits(uint64_t bits) {
   bits &= UINT64_C(0x1249249249249249);
   bits = (bits | bits >> 2) & UINT64_C(0x10c30c30c30c30c3);
   bits = (bits | bits >> 4) & UINT64_C(0x100f00f00f00f00f);
@@ -29,7 +29,7 @@ static inline uint64_t conic_layers_key(uint32_t x, uint32_t y, uint32_t z) {
 
 /* The step of the grid on an axis: 0 for x. */
 static inline uint32_t conic_layers_step(uint64_t key, int axis) {
-  return conic_layers_gather(key >> (2 - axis));
+  return conic_layers_gather_bits(key >> (2 - axis));
 }
 
 #endif

@@ -318,16 +318,17 @@ static void test_isas(fixture *f, conic_method method, int passes) {
   f->options.isa = CONIC_ISA_AUTO;
 }
 
+/* What is exact is asked of a picture of half the size: its integrals take most of the time. */
 static void test_oracle(fixture *f, conic_method method) {
   uint64_t state = 11;
   fill_wild(f, &state, 300);
-  fixture_camera(f, 120, 90, 80.0);
   f->options.method = method;
   f->options.near_z = 0.05;
-  fixture_render(f);
   for (int question = 0; question < 2; question++) {
     conic_reference reference;
     conic_oracle_verdict verdict;
+    fixture_camera(f, 120 >> question, 90 >> question, 80.0 / (1 + question));
+    fixture_render(f);
     CHECK_OK(conic_oracle_render(f->context, &f->splats, &f->camera, &f->options, (conic_oracle_question)question,
                                  &reference));
     CHECK_OK(conic_oracle_compare(f->context, &reference, &f->image, &verdict));
@@ -338,7 +339,7 @@ static void test_oracle(fixture *f, conic_method method) {
                 reference.unstable_pixels);
       CHECK(verdict.planes[plane].max_abs <= verdict.planes[plane].bound);
     }
-    CHECK(reference.covered_pixels > (method == CONIC_METHOD_POINT ? 50 : 2000));
+    CHECK(reference.covered_pixels > (size_t)(method == CONIC_METHOD_POINT ? 50 : 2000) >> 2 * question);
     CHECK(reference.unstable_pixels < reference.covered_pixels / 5);
     conic_reference_release(f->context, &reference);
   }

@@ -1,6 +1,7 @@
 /* Hybrid models under a budget: never more primitives than that, and no smaller error could have been had. */
 #include <stdatomic.h>
 
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 #include "tests/support/hybrid_fixture.h"
@@ -240,12 +241,12 @@ static void check_points(const spending *s) {
       way[k] = (double)node->bound.center[k] - view.eye[k];
       axis[k] = cutoff * (double)values[3 + k];
     }
-    double distance2 = conic_hybrid_dot(way, way), disc2 = conic_hybrid_dot(axis, axis);
-    CHECK(distance2 > radius * radius && fabs(conic_hybrid_dot(way, axis)) < 1e-6 * distance2);
+    double distance2 = conic_dot(way, way), disc2 = conic_dot(axis, axis);
+    CHECK(distance2 > radius * radius && fabs(conic_dot(way, axis)) < 1e-6 * distance2);
     CHECK(disc2 * distance2 >= radius * radius * (distance2 + disc2) * (1.0 - 1e-6));
     CHECK(conic_hybrid_point_error_px(&view, node) < HUGE_VAL);
     conic_hybrid_camera near = view;
-    near.near_z = conic_hybrid_dot(view.rotation[2], way) - 0.9 * (double)node->bound.radius;
+    near.near_z = conic_dot(view.rotation[2], way) - 0.9 * (double)node->bound.radius;
     CHECK(conic_hybrid_point_error_px(&near, node) == HUGE_VAL);
     if (node->n_levels > 0)
       CHECK(conic_hybrid_error_px(&near, &node->bound, &h->levels[node->first_level]) == HUGE_VAL);

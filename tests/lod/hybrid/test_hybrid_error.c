@@ -1,6 +1,7 @@
 /* How far pictures of hybrid models are from those of the mesh itself. Of both, a picture of 256 × 256 is taken with
  * 8 × 8 samples a pixel, so that what is measured is the model and not the pixels: how far outlines moved, how far what
  * is drawn lies from the mesh, and how colours differ. What is to be drawn is chosen for the picture of 256 × 256. */
+#include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_model.h"
 #include "lod/mesh/face_tree.h"
 #include "tests/support/hybrid_fixture.h"
@@ -138,7 +139,7 @@ static double stated_px(const comparison *c) {
       for (int axis = 0; axis < 3; axis++)
         at[row] += m[axis] * (h->origin[axis] + (double)cluster->bound.center[axis]);
     }
-    double front = at[2] - around, far = sqrt(conic_hybrid_dot(at, at)) + around;
+    double front = at[2] - around, far = conic_length(at) + around;
     worst = fmax(worst, (double)built->error * c->camera.fx * far / (front * front));
   }
   return worst;
@@ -269,12 +270,12 @@ static double off_disc(const disc *d, const double at[3], double *size) {
   double way[3], x, y;
   for (int axis = 0; axis < 3; axis++)
     way[axis] = at[axis] - d->at[axis];
-  x = conic_hybrid_dot(way, d->u) / conic_hybrid_dot(d->u, d->u);
-  y = conic_hybrid_dot(way, d->v) / conic_hybrid_dot(d->v, d->v);
+  x = conic_dot(way, d->u) / conic_dot(d->u, d->u);
+  y = conic_dot(way, d->v) / conic_dot(d->v, d->v);
   *size = sqrt(x * x + y * y);
   for (int axis = 0; axis < 3; axis++)
     way[axis] -= (x * d->u[axis] + y * d->v[axis]) / fmax(*size, 1.0);
-  return sqrt(conic_hybrid_dot(way, way));
+  return conic_length(way);
 }
 
 /* How far the vertices of a node's faces are from the discs of one of its levels; and how many there are of them, and

@@ -1,0 +1,37 @@
+/* Vectors of three doubles. Sums go from the first component to the last, so that what is made of them is the same to
+ * the bit wherever it is made. */
+#ifndef CONIC_VECTORS_H
+#define CONIC_VECTORS_H
+
+#include <math.h>
+
+static inline double conic_dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* c may be neither a nor b. */
+static inline void conic_cross(const double a[3], const double b[3], double c[3]) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double conic_length(const double v[3]) {
+  return sqrt(conic_dot(v, v));
+}
+
+static inline void conic_subtract(const double a[3], const double b[3], double difference[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    difference[axis] = a[axis] - b[axis];
+}
+
+/* Makes v a unit vector; 0, and v zero, where it has no direction. */
+static inline int conic_normalize(double v[3]) {
+  double length = conic_length(v);
+  int is_good = length > 0.0 && length - length == 0.0;
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] = is_good ? v[axis] / length : 0.0;
+  return is_good;
+}
+
+#endif
