@@ -383,8 +383,7 @@ void conic_clean_options_init(conic_clean_options *options) {
 conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
                                        conic_points_source *source, void *source_cookie, const conic_points_sink *sink,
                                        conic_surface_report *report) {
-  cleaning work = {
-      .context = context, .options = options, .records = {.descriptor = -1}, .results = {.descriptor = -1}};
+  cleaning work = {.context = context, .options = options};
   if (options->size != sizeof *options || !(options->surface.h > 0.0 && options->surface.h < 1e30) ||
       options->surface.cluster != 0.0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: cells need an h for all points, and no clusters");

@@ -33,7 +33,7 @@ static void test_pieces(conic_context *context, const unsigned char *bytes, size
     CHECK_OK(conic_spool_append(&spool, bytes + at, n));
     at += n;
   }
-  CHECK((spool.descriptor < 0) == (memory_bytes >= N_BYTES));
+  CHECK((spool.file.descriptor < 0) == (memory_bytes >= N_BYTES));
   check_bytes(&spool, bytes, found, N_BYTES);
   conic_spool_end(&spool);
   free(found);
