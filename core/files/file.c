@@ -171,6 +171,16 @@ int conic_file_is_there(const char *path) {
   return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
 }
 
+int conic_file_has_ending(const char *path, const char *ending) {
+  size_t n = strlen(path), n_ending = strlen(ending);
+  if (n <= n_ending || path[n - n_ending - 1] != '.')
+    return 0;
+  for (const char *c = path + n - n_ending; *c; c++, ending++)
+    if ((*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c) != *ending)
+      return 0;
+  return 1;
+}
+
 int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {
   unsigned char head[16];
   FILE *file = strcmp(path, "-") != 0 && conic_file_is_there(path) ? fopen(path, "rb") : NULL;

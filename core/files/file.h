@@ -32,4 +32,7 @@ int conic_file_is_there(const char *path);
 /* Whether such a file begins with these bytes, 16 at most. */
 int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);
 
+/* Whether PATH ends in "." and these lower-case letters, in either case whatever the locale is. */
+int conic_file_has_ending(const char *path, const char *ending);
+
 #endif

@@ -190,3 +190,24 @@ conic_status conic_input_next_line(conic_input *input, int *is_done) {
     }
   }
 }
+
+int conic_input_is(const char *word, size_t length, const char *keyword) {
+  return length == strlen(keyword) && memcmp(word, keyword, length) == 0;
+}
+
+conic_status conic_input_read_statements(conic_input *input, const conic_input_statement *statements, size_t n,
+                                         void *reader) {
+  conic_status status = CONIC_OK;
+  for (int is_done = 0; status == CONIC_OK && !is_done;) {
+    const char *word;
+    size_t length, i = 0;
+    status = conic_input_word(input, &word, &length);
+    while (status == CONIC_OK && i < n && !conic_input_is(word, length, statements[i].keyword))
+      i++;
+    if (status == CONIC_OK && i < n)
+      status = statements[i].read(reader);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(input, &is_done);
+  }
+  return status;
+}

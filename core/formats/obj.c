@@ -76,7 +76,8 @@ static void store_position(obj_reader *reader, const double position[3]) {
 }
 
 /* v x y z, then nothing, a weight (of no use here), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
-static conic_status read_vertex(obj_reader *reader) {
+static conic_status read_vertex(void *data) {
+  obj_reader *reader = data;
   double values[7];
   int n;
   conic_splats *points = &reader->builder.model->points;
@@ -101,7 +102,8 @@ static conic_status read_vertex(obj_reader *reader) {
   return CONIC_OK;
 }
 
-static conic_status read_normal(obj_reader *reader) {
+static conic_status read_normal(void *data) {
+  obj_reader *reader = data;
   double values[3];
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
@@ -120,7 +122,8 @@ static conic_status read_normal(obj_reader *reader) {
 }
 
 /* Texture coordinates are counted, so that indices can be checked, and kept only where that is asked for. */
-static conic_status read_texture(obj_reader *reader) {
+static conic_status read_texture(void *data) {
+  obj_reader *reader = data;
   double values[3] = {0.0, 0.0, 0.0};
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
@@ -211,7 +214,8 @@ static conic_status add_triangle(obj_reader *reader, const face_corner a, const 
   return status;
 }
 
-static conic_status read_face(obj_reader *reader) {
+static conic_status read_face(void *data) {
+  obj_reader *reader = data;
   face_corner first = {0, 0, 0}, previous = {0, 0, 0}, current;
   for (uint64_t n = 0;; n++) {
     const char *word;
@@ -233,7 +237,8 @@ static conic_status read_face(obj_reader *reader) {
 }
 
 /* usemtl NAME */
-static conic_status read_material(obj_reader *reader) {
+static conic_status read_material(void *data) {
+  obj_reader *reader = data;
   const char *word;
   size_t length;
   conic_status status = conic_input_word(reader->input, &word, &length);
@@ -245,7 +250,8 @@ static conic_status read_material(obj_reader *reader) {
 }
 
 /* mtllib FILE …: paths are relative to the model's folder. */
-static conic_status read_libraries(obj_reader *reader) {
+static conic_status read_libraries(void *data) {
+  obj_reader *reader = data;
   const char *word;
   char path[2 * CONIC_INPUT_LONGEST_WORD];
   size_t length;
@@ -262,23 +268,9 @@ static conic_status read_libraries(obj_reader *reader) {
   }
 }
 
-/* One statement; those that mean nothing here are passed over by the caller's step to the next line. */
-static conic_status read_statement(obj_reader *reader) {
-  static const struct {
-    const char *keyword;
-    conic_status (*read)(obj_reader *reader);
-  } statements[] = {{"v", read_vertex}, {"vn", read_normal},       {"vt", read_texture},
-                    {"f", read_face},   {"usemtl", read_material}, {"mtllib", read_libraries}};
-  const char *word;
-  size_t length;
-  conic_status status = conic_input_word(reader->input, &word, &length);
-  if (status != CONIC_OK)
-    return status;
-  for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
-    if (length == strlen(statements[i].keyword) && memcmp(word, statements[i].keyword, length) == 0)
-      return statements[i].read(reader);
-  return CONIC_OK;
-}
+static const conic_input_statement statements[] = {{"v", read_vertex},        {"vn", read_normal},
+                                                   {"vt", read_texture},      {"f", read_face},
+                                                   {"usemtl", read_material}, {"mtllib", read_libraries}};
 
 static conic_status check_indices(const obj_reader *reader) {
   for (int kind = VERTEX; kind < N_KINDS; kind++)
@@ -317,18 +309,14 @@ static conic_status gather_normals(obj_reader *reader) {
 
 conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
   obj_reader reader = {.input = input};
-  int is_done = 0;
   input->continues_lines = 1;
   conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   if (status == CONIC_OK && options->keeps_faces) {
     status = conic_faces_create(input->context, &model->faces);
     reader.faces = model->faces;
   }
-  while (status == CONIC_OK && !is_done) {
-    status = read_statement(&reader);
-    if (status == CONIC_OK)
-      status = conic_input_next_line(input, &is_done);
-  }
+  if (status == CONIC_OK)
+    status = conic_input_read_statements(input, statements, sizeof statements / sizeof *statements, &reader);
   if (status == CONIC_OK)
     status = check_indices(&reader);
   if (status == CONIC_OK)

@@ -177,25 +177,28 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
   return CONIC_OK;
 }
 
-size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
-  const float *x = splats->position[0], *y = splats->position[1], *z = splats->position[2];
+size_t conic_points_bounds(float *const position[3], const double origin[3], const uint32_t *indices, size_t n,
+                           double minimum[3], double maximum[3]) {
   float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   size_t n_finite = 0;
-  for (size_t i = 0; i < splats->count; i++) {
-    if (!(x[i] * 0.0f == 0.0f && y[i] * 0.0f == 0.0f && z[i] * 0.0f == 0.0f))
+  for (size_t k = 0; k < n; k++) {
+    size_t i = indices ? indices[k] : k;
+    const float p[3] = {position[0][i], position[1][i], position[2][i]};
+    if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
       continue;
     for (int axis = 0; axis < 3; axis++) {
-      float value = splats->position[axis][i];
-      if (n_finite == 0 || value < low[axis])
-        low[axis] = value;
-      if (n_finite == 0 || value > high[axis])
-        high[axis] = value;
+      low[axis] = n_finite == 0 || p[axis] < low[axis] ? p[axis] : low[axis];
+      high[axis] = n_finite == 0 || p[axis] > high[axis] ? p[axis] : high[axis];
     }
     n_finite++;
   }
   for (int axis = 0; axis < 3; axis++) {
-    minimum[axis] = n_finite ? splats->origin[axis] + (double)low[axis] : 0.0;
-    maximum[axis] = n_finite ? splats->origin[axis] + (double)high[axis] : 0.0;
+    minimum[axis] = n_finite ? origin[axis] + (double)low[axis] : 0.0;
+    maximum[axis] = n_finite ? origin[axis] + (double)high[axis] : 0.0;
   }
   return n_finite;
+}
+
+size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
+  return conic_points_bounds(splats->position, splats->origin, NULL, splats->count, minimum, maximum);
 }

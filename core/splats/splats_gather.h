@@ -14,4 +14,9 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
  * it was. Errors: MEMORY. */
 conic_status conic_splats_resize(conic_context *context, conic_splats *splats, size_t capacity, unsigned fields);
 
+/* The bounds of the finite ones of n points, those of `indices` or, where that is null, the first; returns how many are
+ * finite. Without one the bounds are 0. */
+size_t conic_points_bounds(float *const position[3], const double origin[3], const uint32_t *indices, size_t n,
+                           double minimum[3], double maximum[3]);
+
 #endif

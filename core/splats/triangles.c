@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "core/splats/splats_gather.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
   for (int i = 0; i < n; i++) {
@@ -109,24 +110,8 @@ conic_status conic_triangles_check(conic_context *context, const conic_triangles
 }
 
 size_t conic_triangles_bounds(const conic_triangles *triangles, double minimum[3], double maximum[3]) {
-  float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  size_t n_finite = 0;
-  for (size_t i = 0; i < 3 * triangles->count; i++) {
-    uint32_t vertex = triangles->corners[i / 3][i % 3];
-    float p[3] = {triangles->position[0][vertex], triangles->position[1][vertex], triangles->position[2][vertex]};
-    if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = n_finite == 0 || p[axis] < low[axis] ? p[axis] : low[axis];
-      high[axis] = n_finite == 0 || p[axis] > high[axis] ? p[axis] : high[axis];
-    }
-    n_finite++;
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    minimum[axis] = n_finite ? triangles->origin[axis] + (double)low[axis] : 0.0;
-    maximum[axis] = n_finite ? triangles->origin[axis] + (double)high[axis] : 0.0;
-  }
-  return n_finite;
+  return conic_points_bounds(triangles->position, triangles->origin, (const uint32_t *)triangles->corners,
+                             3 * triangles->count, minimum, maximum);
 }
 
 size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]) {
