@@ -17,25 +17,23 @@ typedef struct cli_bench_look {
 
 typedef struct cli_bench_scene {
   char name[32]; /* "sphere-1M" */
-  conic_splats splats;
-  int is_framed, has_camera; /* a file's camera; neither: the built-in one */
-  conic_camera camera;       /* of has_camera */
+  conic_source *source;
+  const conic_splats *splats; /* the source's */
+  int is_framed, has_camera;  /* a file's camera; neither: the built-in one */
+  conic_camera camera;        /* of has_camera */
   int cull_back;
-  double low[3], high[3]; /* its box */
-  double near_z, splat_length;
 } cli_bench_scene;
 
-/* Makes the scene of a name, or, where there is a look at it, reads the file of that name. The splats are the
- * session's: released by cli_bench_scene_release, also after a failure. Returns the exit code, after a message. */
+/* Makes the scene of a name, or, where there is a look at it, reads the file of that name. Released by
+ * cli_bench_scene_release, also after a failure. Returns the exit code, after a message. */
 int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench_look *look, cli_bench_scene *scene);
-void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene);
+void cli_bench_scene_release(cli_bench_scene *scene);
 /* Whether a scene of that name can be made: CLI_DONE, or CLI_USAGE after a message. */
 int cli_bench_scene_check(const char *name);
 /* What can be asked for, for the help. */
 void cli_bench_scene_list(void);
 /* The camera that it is seen by, brought to the size. */
-conic_status cli_bench_scene_camera(cli_session *session, const cli_bench_scene *scene, int width, int height,
-                                    conic_camera *camera);
+conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera);
 
 /* --- methods --- */
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bench/bench_job.h"
+#include "bench/kernels/cross_all.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
@@ -27,6 +28,7 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
       {"compare", CLI_TEXT, &job->old_path, "OLD.json", "ratios to an earlier run's --json"},
       {"curve", CLI_FLAG, &job->is_curve, NULL, "the cost over 10 k to 16 M splats, and over 256² to 8192² pixels"},
       {"machine", CLI_FLAG, &job->is_machine, NULL, "how fast the machine reads, writes, copies and computes"},
+      {"kernels", CLI_FLAG, &job->is_kernels, NULL, "each loop alone, by each instruction set, beside plain C"},
       {"floor", CLI_FLAG, &job->is_floor, NULL, "what each stage must take at least, beside what it takes"},
   };
   job->files = calloc((size_t)argc, sizeof *job->files);
@@ -42,7 +44,10 @@ static int parse(cli_session *session, int argc, char **argv, cli_bench_job *job
     exit_code = cli_usage("bench: --camera is for files; what is made has a camera of its own");
   if (exit_code == CLI_DONE && job->is_curve && (job->scenes_text || job->n_files || job->is_floor))
     exit_code = cli_usage("bench: --curve has scenes of its own");
-  return exit_code == CLI_DONE ? cli_bench_plan(job) : exit_code;
+  if (exit_code == CLI_DONE && job->is_kernels &&
+      (job->scenes_text || job->n_files || job->is_curve || job->is_machine || job->is_floor || session->json_path))
+    exit_code = cli_usage("bench: --kernels measures and prints nothing else");
+  return exit_code == CLI_DONE && !job->is_kernels ? cli_bench_plan(job) : exit_code;
 }
 
 static const cli_bench_machine *machine_of(const cli_bench_job *job, const cli_bench_line *line) {
@@ -126,9 +131,11 @@ static int run(cli_session *session, int argc, char **argv) {
   session->draws_many_frames = 1;
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
-  if (exit_code == CLI_DONE)
+  if (exit_code == CLI_DONE && job->is_kernels)
+    exit_code = cli_cross_all(CONIC_CROSS_SEED, 1) ? CLI_DIFFERENT : CLI_DONE;
+  else if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
-  if (exit_code == CLI_DONE)
+  if (exit_code == CLI_DONE && !job->is_kernels)
     exit_code = measure(session, job);
   free(job->lines);
   free(job->files);

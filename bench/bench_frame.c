@@ -66,9 +66,8 @@ static conic_render_options options_of(const cli_bench_scene *scene, const cli_b
   options.method = cli_bench_methods[line->i_method].method;
   options.passes = cli_bench_methods[line->i_method].passes;
   options.cull_back = scene->cull_back;
-  options.near_z = scene->near_z;
-  options.splat_length = scene->splat_length;
   options.isa = line->isa;
+  conic_source_settle(scene->source, &options);
   return options;
 }
 
@@ -95,7 +94,7 @@ typedef struct bench {
 
 static conic_status draw_timed(bench *b, conic_render_statistics *statistics) {
   double cycles = cli_bench_cycles_read(b->counter);
-  conic_status status = conic_render(b->renderer, &b->scene->splats, &b->camera, &b->options, &b->timed, statistics);
+  conic_status status = conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, &b->timed, statistics);
   b->cycles[b->n] = cli_bench_cycles_read(b->counter) - cycles;
   return status;
 }
@@ -141,7 +140,7 @@ static conic_status draw_all(bench *b, const cli_bench_patience *patience, cli_b
   note_difference(&pictures->reference, &b->timed, line);
   take_medians(b, line);
   conic_render_statistics statistics;
-  status = conic_render(b->renderer, &b->scene->splats, &b->camera, &b->options, &pictures->drawn, &statistics);
+  status = conic_render(b->renderer, b->scene->splats, &b->camera, &b->options, &pictures->drawn, &statistics);
   note_difference(&pictures->reference, &pictures->drawn, line);
   return status;
 }
@@ -152,11 +151,11 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
   conic_camera camera;
   conic_render_options options = options_of(scene, line);
   options.isa = CONIC_ISA_SCALAR;
-  conic_status status = cli_bench_scene_camera(session, scene, line->width, line->height, &camera);
+  conic_status status = cli_bench_scene_camera(scene, line->width, line->height, &camera);
   if (status == CONIC_OK)
     status = conic_renderer_create(session->context, &renderer);
   if (status == CONIC_OK)
-    status = conic_render(renderer, &scene->splats, &camera, &options, reference, NULL);
+    status = conic_render(renderer, scene->splats, &camera, &options, reference, NULL);
   conic_renderer_destroy(renderer);
   return status;
 }
@@ -172,14 +171,14 @@ conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i <= CLI_BENCH_N_STAGES; i++)
     b.ms[i] = b.cycles + (i + 1) * most;
-  conic_status status = cli_bench_scene_camera(worker, scene, line->width, line->height, &b.camera);
+  conic_status status = cli_bench_scene_camera(scene, line->width, line->height, &b.camera);
   if (status == CONIC_OK)
     status = line->device ? cli_device_open(worker, line->device, &b.renderer)
                           : conic_renderer_create(worker->context, &b.renderer);
   if (status == CONIC_OK)
     status = draw_all(&b, patience, pictures, line);
   if (status == CONIC_OK) {
-    cli_bench_work_of(&line->statistics, &scene->splats, &b.timed, b.options.passes, line->work);
+    cli_bench_work_of(&line->statistics, scene->splats, &b.timed, b.options.passes, line->work);
     for (int plane = 0; plane < CONIC_N_PLANES; plane++)
       line->hash[plane] = conic_image_hash(&pictures->drawn, (conic_plane)plane);
   }

@@ -14,7 +14,7 @@ typedef struct cli_bench_job {
   cli_bench_look look; /* at the files */
   cli_device device;
   int size[2], repeat;
-  int is_quick, is_curve, is_machine, is_floor;
+  int is_quick, is_curve, is_machine, is_floor, is_kernels;
 
   /* What it means (bench/bench_plan.c). */
   char scene_names[CLI_BENCH_MOST_SCENES][32];

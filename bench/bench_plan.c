@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/suggest.h"
+#include "core/lanes/instruction_sets.h"
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";
 static const char quick_scenes[] = "sphere-100k,sphere-1M,mixed";
@@ -91,13 +92,13 @@ static void add_isa(cli_bench_job *job, conic_isa isa) {
 static int take_isa(cli_bench_job *job, const char *word) {
   if (strcmp(word, "all") == 0) {
     for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++)
-      if (cli_isa_is_here((conic_isa)isa))
+      if (conic_isa_is_here((conic_isa)isa))
         add_isa(job, (conic_isa)isa);
     return CLI_DONE;
   }
   for (int isa = CONIC_ISA_AUTO; isa < CONIC_N_ISAS; isa++)
     if (strcmp(word, conic_isa_name((conic_isa)isa)) == 0) {
-      if (!cli_isa_is_here((conic_isa)isa))
+      if (!conic_isa_is_here((conic_isa)isa))
         return cli_error(CLI_RESOURCE, "bench: this machine or build has no %s", word);
       add_isa(job, (conic_isa)isa);
       return CLI_DONE;

@@ -5,7 +5,6 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
-#include "cli/render/render_job.h"
 #include "cli/suggest.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
@@ -189,36 +188,34 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
 
 static conic_status read_file(cli_session *session, const char *path, const cli_bench_look *look,
                               cli_bench_scene *scene) {
-  cli_render_job job;
-  cli_scene_defaults(&job);
+  conic_source_options options;
+  conic_source_options_init(&options);
   const char *slash = strrchr(path, '/');
   snprintf(scene->name, sizeof scene->name, "%.31s", slash ? slash + 1 : path);
-  job.inputs = &path;
-  job.n_inputs = 1;
+  options.is_whole = 1;
   scene->cull_back = look->culls_back;
   scene->is_framed = !look->camera_path;
   scene->has_camera = look->camera_path != NULL;
   conic_status status = CONIC_OK;
-  if (conic_hybrid_is_file(path)) {
+  if (conic_source_abilities(&path, 1, &options) & CONIC_SOURCE_CLUSTERS) {
     cli_error(CLI_USAGE, "%s: hybrid models are measured by conic render --repeat", path);
     return CONIC_ERROR_ARGUMENT;
   }
   if (look->camera_path)
     status = conic_camera_read(session->context, look->camera_path, &scene->camera);
-  return status == CONIC_OK ? cli_scene_read(session, &job, &scene->splats) : status;
-}
-
-static conic_status measure(cli_session *session, cli_bench_scene *scene) {
-  conic_splats_bounds(&scene->splats, scene->low, scene->high);
-  scene->near_z = conic_default_near(&scene->splats);
-  return conic_splats_length(session->context, &scene->splats, &scene->splat_length);
+  return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
 }
 
 static conic_status make(cli_session *session, const wish *w, const char *name, cli_bench_scene *scene) {
+  conic_splats splats = {0};
   snprintf(scene->name, sizeof scene->name, "%s", name);
   scene->cull_back = !w->mix && w->type == CONIC_SCENE_SPHERE;
-  return w->mix ? make_mix(session, w->mix, (size_t)w->count, &scene->splats)
-                : make_analytic(session, w, &scene->splats);
+  conic_status status =
+      w->mix ? make_mix(session, w->mix, (size_t)w->count, &splats) : make_analytic(session, w, &splats);
+  if (status == CONIC_OK)
+    status = conic_source_of_drawing(session->context, &splats, NULL, &scene->source);
+  conic_splats_release(session->context, &splats);
+  return status;
 }
 
 int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench_look *look, cli_bench_scene *scene) {
@@ -229,12 +226,13 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
     return exit_code;
   conic_status status = look ? read_file(session, name, look, scene) : make(session, &w, name, scene);
   if (status == CONIC_OK)
-    status = measure(session, scene);
+    scene->splats = conic_source_chosen(scene->source)->drawing.splats;
   return cli_exit_of(status);
 }
 
-void cli_bench_scene_release(cli_session *session, cli_bench_scene *scene) {
-  conic_splats_release(session->context, &scene->splats);
+void cli_bench_scene_release(cli_bench_scene *scene) {
+  conic_source_close(scene->source);
+  scene->source = NULL;
 }
 
 static void build_in(conic_camera *camera) {
@@ -256,14 +254,13 @@ static void resize(conic_camera *camera, int width, int height) {
   camera->height = height;
 }
 
-conic_status cli_bench_scene_camera(cli_session *session, const cli_bench_scene *scene, int width, int height,
-                                    conic_camera *camera) {
+conic_status cli_bench_scene_camera(const cli_bench_scene *scene, int width, int height, conic_camera *camera) {
   if (scene->is_framed) {
     conic_framing framing;
     conic_framing_init(&framing);
     framing.width = width;
     framing.height = height;
-    return conic_camera_frame(session->context, &framing, scene->low, scene->high, camera);
+    return conic_source_frame(scene->source, &framing, camera);
   }
   if (scene->has_camera)
     *camera = scene->camera;

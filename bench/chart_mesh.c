@@ -20,13 +20,11 @@ typedef struct mesh_job {
 
 static conic_status frame(const mesh_job *job, int edge, double zoom, conic_camera *camera) {
   conic_framing framing;
-  double low[3], high[3];
   conic_framing_init(&framing);
   framing.width = framing.height = edge;
   framing.elevation_deg = 40.0;
   framing.zoom = zoom;
-  conic_triangles_bounds(&job->models.mesh, low, high);
-  return conic_camera_frame(job->context, &framing, low, high, camera);
+  return conic_source_frame(job->models.sources[CLI_CHART_TRIANGLES], &framing, camera);
 }
 
 /* Where a vertex is on the screen; 0 where it is not finite or not before the camera. */
@@ -69,7 +67,7 @@ static conic_status choose_sizes(mesh_job *job) {
   conic_status status = frame(job, REFERENCE, 1.0, &camera);
   if (status != CONIC_OK)
     return status;
-  double area = mean_area_px(&job->models.mesh, &camera);
+  double area = mean_area_px(job->models.mesh, &camera);
   job->chart->n_sizes = job->chart->is_quick ? 3 : CLI_MAX_MESH_SIZES;
   for (int i = 0; i < job->chart->n_sizes; i++) {
     cli_mesh_size *size = &job->chart->sizes[i];
@@ -199,9 +197,10 @@ conic_status cli_mesh_chart_measure(cli_session *session, cli_mesh_chart *chart)
   job.repeat = chart->is_quick ? 1 : 5;
   job.largest = chart->is_quick ? 160 : 1024;
   conic_status status = cli_chart_models_build(session, chart->path, chart->is_quick ? 32 : 200, &job.models);
-  chart->n_triangles = job.models.mesh.count;
-  if (status == CONIC_OK)
+  if (status == CONIC_OK) {
+    chart->n_triangles = job.models.mesh->count;
     status = conic_renderer_create(job.context, &job.renderer);
+  }
   if (status == CONIC_OK)
     status = choose_sizes(&job);
   for (int i = 0; i < chart->n_sizes && status == CONIC_OK; i++)
@@ -209,6 +208,6 @@ conic_status cli_mesh_chart_measure(cli_session *session, cli_mesh_chart *chart)
   if (status == CONIC_OK)
     find_fronts(chart);
   conic_renderer_destroy(job.renderer);
-  cli_chart_models_release(job.context, &job.models);
+  cli_chart_models_release(&job.models);
   return status;
 }

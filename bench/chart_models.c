@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/commands/hybrid_mesh.h"
+#include "source/mesh_input.h"
 
 const char *cli_chart_model_name(cli_chart_model representation) {
   static const char *const names[CLI_N_CHART_MODELS] = {"triangles", "surfels", "hybrid", "octree", "points"};
@@ -50,7 +50,8 @@ static conic_status make_terrain(conic_context *context, size_t side, conic_tria
 }
 
 static conic_status read_mesh(cli_session *session, const char *path, size_t side, conic_triangles *mesh) {
-  conic_status status = path ? cli_mesh_read(session, path, NULL, mesh) : make_terrain(session->context, side, mesh);
+  conic_status status =
+      path ? conic_mesh_read(session->context, path, NULL, mesh) : make_terrain(session->context, side, mesh);
   if (status == CONIC_OK && !mesh->normal[0])
     status = conic_triangles_smooth(session->context, mesh);
   return status;
@@ -80,16 +81,14 @@ static conic_status make_points(conic_context *context, const conic_triangles *m
 }
 
 static conic_status make_hybrid(cli_session *session, const char *path, size_t side,
-                                const conic_hybrid_options *options, conic_hybrid **hybrid, double *splat_length) {
-  conic_hybrid_info info;
+                                const conic_hybrid_options *options, conic_source **source) {
+  conic_hybrid *hybrid;
   conic_triangles mesh = {0}; /* once more: it is taken over */
   conic_status status = read_mesh(session, path, side, &mesh);
   if (status == CONIC_OK)
-    status = conic_hybrid_build(session->context, &mesh, options, hybrid, NULL);
+    status = conic_hybrid_build(session->context, &mesh, options, &hybrid, NULL);
   if (status == CONIC_OK)
-    status = conic_hybrid_describe(*hybrid, &info);
-  if (status == CONIC_OK)
-    *splat_length = info.splat_length;
+    status = conic_source_of_hybrid(session->context, hybrid, source);
   conic_triangles_release(session->context, &mesh);
   return status;
 }
@@ -98,101 +97,62 @@ static conic_status make_hybrid(cli_session *session, const char *path, size_t s
 static conic_status make_hybrids(cli_session *session, const char *path, size_t side, cli_chart_models *models) {
   conic_hybrid_options options;
   conic_hybrid_options_init(&options);
-  conic_status status =
-      make_hybrid(session, path, side, &options, &models->hybrid, &models->splat_length[CLI_CHART_HYBRID]);
+  conic_status status = make_hybrid(session, path, side, &options, &models->sources[CLI_CHART_HYBRID]);
   options.phase2 = 1e6;
   options.most_error = 0.0;
   options.has_single_levels = 1;
-  if (status == CONIC_OK)
-    status = make_hybrid(session, path, side, &options, &models->surfels, &models->splat_length[CLI_CHART_SURFELS]);
-  return status;
+  return status == CONIC_OK ? make_hybrid(session, path, side, &options, &models->sources[CLI_CHART_SURFELS]) : status;
 }
 
-static conic_status make_octree(conic_context *context, cli_chart_models *models) {
+static conic_status make_octree(conic_context *context, conic_splats *points, conic_source **source) {
   conic_octree_options options;
-  conic_octree_info info;
-  conic_splats splats;
+  conic_octree *octree;
   conic_octree_options_init(&options);
-  conic_status status = make_points(context, &models->mesh, &splats);
-  if (status == CONIC_OK)
-    status = conic_octree_build(context, &splats, &options, &models->octree);
-  if (status == CONIC_OK)
-    status = conic_octree_describe(models->octree, &info);
-  if (status == CONIC_OK)
-    models->splat_length[CLI_CHART_OCTREE] = info.splat_length;
-  return status;
+  conic_status status = conic_octree_build(context, points, &options, &octree);
+  return status == CONIC_OK ? conic_source_of_octree(context, octree, source) : status;
 }
 
 conic_status cli_chart_models_build(cli_session *session, const char *path, size_t side, cli_chart_models *models) {
   conic_context *context = session->context;
-  conic_status status = read_mesh(session, path, side, &models->mesh);
-  const conic_drawing drawing = {NULL, &models->mesh};
+  conic_splats none = {0}, leaves = {0}, points = {0};
+  conic_triangles mesh = {0};
+  conic_status status = read_mesh(session, path, side, &mesh);
+  if (status == CONIC_OK)
+    status = make_points(context, &mesh, &leaves);
+  if (status == CONIC_OK)
+    status = make_points(context, &mesh, &points);
+  if (status == CONIC_OK)
+    status = conic_source_of_drawing(context, &none, &mesh, &models->sources[CLI_CHART_TRIANGLES]);
   if (status == CONIC_OK) {
-    models->near_z = conic_drawing_near(&drawing);
+    models->mesh = conic_source_chosen(models->sources[CLI_CHART_TRIANGLES])->drawing.triangles;
     status = make_hybrids(session, path, side, models);
   }
   if (status == CONIC_OK)
-    status = make_octree(context, models);
+    status = make_octree(context, &leaves, &models->sources[CLI_CHART_OCTREE]);
   if (status == CONIC_OK)
-    status = make_points(context, &models->mesh, &models->points);
-  if (status == CONIC_OK)
-    status = conic_splats_length(context, &models->points, &models->splat_length[CLI_CHART_POINTS]);
+    status = conic_source_of_drawing(context, &points, NULL, &models->sources[CLI_CHART_POINTS]);
+  conic_splats_release(context, &leaves);
+  conic_splats_release(context, &points);
+  conic_triangles_release(context, &mesh);
   return status;
 }
 
-void cli_chart_models_release(conic_context *context, cli_chart_models *models) {
-  conic_hybrid_selection_release(context, &models->chosen_surfels);
-  conic_hybrid_selection_release(context, &models->mixed);
-  conic_selection_release(context, &models->leaves);
-  conic_hybrid_destroy(models->hybrid);
-  conic_hybrid_destroy(models->surfels);
-  conic_octree_destroy(models->octree);
-  conic_splats_release(context, &models->points);
-  conic_triangles_release(context, &models->mesh);
-  memset(models, 0, sizeof *models);
-}
-
-/* Error 0: as built. */
-static conic_status choose_hybrid(const conic_hybrid *hybrid, const conic_camera *camera, double error_px,
-                                  const conic_render_options *options, conic_hybrid_selection *selection,
-                                  conic_drawing *drawing) {
-  conic_hybrid_view view;
-  conic_hybrid_view_init(&view);
-  view.error_px = error_px;
-  conic_status status = conic_hybrid_select(hybrid, camera, options, &view, selection);
-  *drawing = (conic_drawing){&selection->splats, &selection->triangles};
-  return status;
-}
-
-static conic_status choose_leaves(cli_chart_models *models, const conic_camera *camera, double error_px,
-                                  const conic_render_options *options, conic_drawing *drawing) {
-  conic_selection_options wanted;
-  conic_selection_options_init(&wanted);
-  wanted.error_px = error_px;
-  conic_status status = conic_octree_select(models->octree, camera, options, &wanted, &models->leaves);
-  *drawing = (conic_drawing){&models->leaves.splats, NULL};
-  return status;
+void cli_chart_models_release(cli_chart_models *models) {
+  for (int i = 0; i < CLI_N_CHART_MODELS; i++)
+    conic_source_close(models->sources[i]);
 }
 
 conic_status cli_chart_models_choose(cli_chart_models *models, cli_chart_model representation,
                                      const conic_camera *camera, double error_px, conic_render_options *options,
                                      conic_drawing *drawing) {
+  conic_source *source = models->sources[representation];
+  conic_source_view view;
+  conic_source_view_init(&view);
+  view.error_px = representation == CLI_CHART_SURFELS ? 0.0 : error_px; /* they stay as built */
   options->method = representation == CLI_CHART_POINTS ? CONIC_METHOD_POINT : CONIC_METHOD_CONIC;
-  options->near_z = models->near_z;
-  options->splat_length = models->splat_length[representation];
-  switch (representation) {
-  case CLI_CHART_SURFELS:
-    return choose_hybrid(models->surfels, camera, 0.0, options, &models->chosen_surfels, drawing);
-  case CLI_CHART_HYBRID:
-    return choose_hybrid(models->hybrid, camera, error_px, options, &models->mixed, drawing);
-  case CLI_CHART_OCTREE:
-    return choose_leaves(models, camera, error_px, options, drawing);
-  case CLI_CHART_POINTS:
-    *drawing = (conic_drawing){&models->points, NULL};
-    return CONIC_OK;
-  case CLI_CHART_TRIANGLES:
-    break;
-  }
-  *drawing = (conic_drawing){NULL, &models->mesh};
-  return CONIC_OK;
+  options->near_z = conic_source_measure(models->sources[CLI_CHART_TRIANGLES])->near_z;
+  conic_source_settle(source, options);
+  conic_status status = conic_source_choose(source, camera, options, &view);
+  *drawing = conic_source_chosen(source)->drawing;
+  return status;
 }

@@ -19,19 +19,14 @@ const char *cli_chart_model_name(cli_chart_model representation);
 
 /* Zero before it is built. */
 typedef struct cli_chart_models {
-  conic_triangles mesh;
-  conic_hybrid *hybrid, *surfels;
-  conic_octree *octree;
-  conic_splats points;
-  conic_hybrid_selection chosen_surfels, mixed;
-  conic_selection leaves;
-  double near_z, splat_length[CLI_N_CHART_MODELS];
+  conic_source *sources[CLI_N_CHART_MODELS];
+  const conic_triangles *mesh; /* theirs */
 } cli_chart_models;
 
 /* Reads the mesh, or where `path` is null makes a terrain of side × side squares, and makes the others of it; all with
  * smooth normals where the file has none. Released by cli_chart_models_release, after a failure too. */
 conic_status cli_chart_models_build(cli_session *session, const char *path, size_t side, cli_chart_models *models);
-void cli_chart_models_release(conic_context *context, cli_chart_models *models);
+void cli_chart_models_release(cli_chart_models *models);
 
 /* What that representation draws of the scene at this error, which is the models' until the next call. Sets in
  * `options` what is the representation's own: method, near distance and the length of its splats. */

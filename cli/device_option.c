@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/lanes/instruction_sets.h"
+
 /* P.D: two numbers of up to four digits. */
 static int is_place(const char *text) {
   static const char digits[] = "0123456789";
@@ -23,15 +25,8 @@ int cli_device_check(const cli_session *session, const cli_device *device) {
   return cli_usage("%s: --device takes cpu or opencl[:P.D], not %s", session->command, name);
 }
 
-int cli_isa_is_here(conic_isa isa) {
-  conic_isa best = conic_isa_best();
-  if (isa == CONIC_ISA_AUTO || isa == CONIC_ISA_SCALAR || isa == best)
-    return 1;
-  return best != CONIC_ISA_NEON && isa != CONIC_ISA_NEON && isa < best && best != CONIC_ISA_SCALAR;
-}
-
 int cli_isa_check(const cli_session *session, conic_isa isa) {
-  if (cli_isa_is_here(isa))
+  if (conic_isa_is_here(isa))
     return CLI_DONE;
   return cli_error(CLI_RESOURCE, "%s: this machine or build has no %s", session->command, conic_isa_name(isa));
 }

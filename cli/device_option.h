@@ -13,9 +13,7 @@ typedef struct cli_device {
 /* CLI_DONE where the name is one, or CLI_USAGE after a message. */
 int cli_device_check(const cli_session *session, const cli_device *device);
 
-/* Whether this machine and this build have an instruction set; CONIC_ISA_AUTO they always have. */
-int cli_isa_is_here(conic_isa isa);
-/* CLI_DONE where they have, or CLI_RESOURCE after a message. */
+/* CLI_DONE where this machine and this build have the instruction set, or CLI_RESOURCE after a message. */
 int cli_isa_check(const cli_session *session, conic_isa isa);
 
 /* A renderer that draws there, which the caller destroys. Errors: UNSUPPORTED, MEMORY. */

@@ -209,6 +209,7 @@ int cli_session_open(cli_session *session) {
   options.progress_cookie = session;
   options.threads = session->threads;
   options.large_pages = session->draws_many_frames;
+  options.isa = session->isa;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));

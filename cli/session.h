@@ -19,7 +19,8 @@ typedef struct cli_session {
   const char *part;      /* cli_session_part; null: none */
   int i_part, n_parts;
   double part_share;      /* of the part, what is done */
-  int draws_many_frames;  /* of the same model: set before cli_session_open */
+  int draws_many_frames;  /* of the same model; this and isa are set before cli_session_open */
+  conic_isa isa;          /* --isa */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
 

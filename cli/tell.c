@@ -44,24 +44,3 @@ void cli_tell_run(cli_session *session, const cli_stage *stages, int n_stages, d
   snprintf(whole, sizeof whole, "in all, %.0f MiB of memory at most", (double)cli_peak_rss_bytes() / 1048576.0);
   cli_tell_stages(session, stages, n_stages, whole, total_seconds);
 }
-
-void cli_tell_repairs(cli_session *session, const char *path, const conic_repairs *repairs) {
-  const struct {
-    size_t n;
-    const char *what;
-  } reasons[] = {{repairs->nan, "left out, not finite"},
-                 {repairs->failed, "left out, no ellipse to be found"},
-                 {repairs->zero, "given a normal or size, having none that is one"},
-                 {repairs->duplicate, "at the place of another"},
-                 {repairs->isolated, "far from all others, kept small"},
-                 {repairs->clip, "clip lines dropped"}};
-  text_line told = {"", 0};
-  char piece[96];
-  for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
-    if (reasons[i].n) {
-      snprintf(piece, sizeof piece, "%zu %s", reasons[i].n, reasons[i].what);
-      append(&told, piece);
-    }
-  if (told.length)
-    conic_log(session->context, CONIC_LOG_INFO, "%s: of the points: %s", path, told.text);
-}

@@ -18,7 +18,4 @@ void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages
 /* The same for all of a run, with the memory that it took. */
 void cli_tell_run(cli_session *session, const cli_stage *stages, int n_stages, double total_seconds);
 
-/* What of a file's points could not be used as it stood; no line where all could. */
-void cli_tell_repairs(cli_session *session, const char *path, const conic_repairs *repairs);
-
 #endif

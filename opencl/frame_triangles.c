@@ -8,7 +8,7 @@
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
 #include "opencl/program.h"
-#include "raster/kernels/tile_kernels.h"
+#include "raster/kernels/raster_kernels.h"
 #include "raster/triangles/triangle_frame.h"
 
 _Static_assert(CONIC_DEVICE_TEXTURE_LEVELS == CONIC_TEXTURE_LEVELS, "a device's texture has all levels");
@@ -180,12 +180,16 @@ static void set_constants(conic_frame *f) {
 
 conic_status conic_frame_set_up_triangles(conic_frame *f, conic_isa isa) {
   host_array arrays[N_ARRAYS];
+  conic_raster_kernels kernels;
   conic_status status = conic_opencl_need_triangles(f->opencl);
+  if (status == CONIC_OK)
+    status = conic_isa_choose(f->opencl->context, isa, &isa);
   if (status != CONIC_OK)
     return status;
+  conic_raster_kernels_init(&kernels, isa);
   double start = conic_seconds_now();
   conic_triangle_frame_tiles(f->triangles, f->opencl->tile);
-  status = conic_triangle_frame_prepare(f->triangles, conic_tile_kernels_of(isa));
+  status = conic_triangle_frame_prepare(f->triangles, &kernels.triangles);
   if (status != CONIC_OK)
     return status;
   list_arrays(f->triangles, arrays);

@@ -1,4 +1,4 @@
-/* The splats' passes a pixel a work-item, 16 × 16 of them a group: for GPUs. raster/kernels/tile_kernels_scalar.c in the same
+/* The splats' passes a pixel a work-item, 16 × 16 of them a group: for GPUs. raster/kernels/raster_kernels_scalar.c in the same
  * order of arithmetic. */
 #include "opencl/gather_resolve.cl"
 

@@ -1,14 +1,14 @@
 /* The words of core/lanes/lanes_double.h in OpenCL C, for devices with double precision. */
-typedef double8 half_doubles;
+typedef double8 wide;
 
 typedef struct doubles {
-  half_doubles half[2];
+  wide half[2];
 } doubles;
 
-#define half_of_value(value) ((half_doubles)(value))
-#define half_sqrt(value) sqrt((half_doubles)(value))
+#define wide_of(value) ((wide)(value))
+#define wide_sqrt(value) sqrt((wide)(value))
 
-CONIC_INLINE half_doubles half_of(lanes value, int i_half) {
+CONIC_INLINE wide half_of(lanes value, int i_half) {
   if (i_half == 0)
     return convert_double8(value.lo);
   return convert_double8(value.hi);
@@ -22,11 +22,11 @@ CONIC_INLINE int_lanes lanes_truncate(const doubles *value) {
   return (int_lanes)(convert_int8(value->half[0]), convert_int8(value->half[1]));
 }
 
-CONIC_INLINE half_doubles half_max(half_doubles a, half_doubles b) {
+CONIC_INLINE wide wide_max(wide a, wide b) {
   return a > b ? a : b;
 }
 
-CONIC_INLINE half_doubles half_min(half_doubles a, half_doubles b) {
+CONIC_INLINE wide wide_min(wide a, wide b) {
   return a < b ? a : b;
 }
 

@@ -3,7 +3,7 @@
 #define CONIC_LANES_H
 #define CONIC_LANES_DOUBLE_H
 #define CONIC_LANES 16
-#define CONIC_HALF_LANES 8
+#define CONIC_WIDE_LANES 8
 #define CONIC_INLINE static inline
 #define CONIC_OUTLINE static
 /* A block of 4 × 4 pixels is one vector, column by column. */

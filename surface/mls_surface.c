@@ -219,16 +219,16 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   conic_status status = check_options(context, options, conic_splats_fields(points));
   if (status != CONIC_OK)
     return status;
-  const conic_surface_kernels *kernels = conic_surface_kernels_of(options->isa);
-  if (!kernels)
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "surface: %s is not on this machine",
-                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "this instruction set");
+  conic_isa isa;
+  status = conic_isa_choose(context, options->isa, &isa);
+  if (status != CONIC_OK)
+    return status;
   conic_surface *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->options = *options;
-  made->kernels = kernels;
+  conic_surface_kernels_init(&made->kernels, isa);
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);

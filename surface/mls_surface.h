@@ -19,7 +19,7 @@ typedef struct conic_surface_clusters {
 struct conic_surface {
   conic_context *context;
   conic_surface_options options;
-  const conic_surface_kernels *kernels;
+  conic_surface_kernels kernels;
   conic_weighing weighing;
   conic_splats points; /* a copy: positions, unit normals and colours, by point */
   conic_neighbours tree;

@@ -1,29 +1,13 @@
-/* The desk on which tests/cross sets out all that a slot of the kernel tables reads and writes, between guard bands;
- * and the splats that it sets out. */
+/* The desk of splats: all that the slots of set-up, sorting, passes and resolving read and write; and the splats that
+ * are set out. */
 #ifndef CONIC_CROSS_DESK_H
 #define CONIC_CROSS_DESK_H
 
-#include "raster/kernels/tile_kernels.h"
-#include "tests/support/fixture.h"
+#include "bench/kernels/cross.h"
 
-enum {
-  N_SPLATS = 2501,
-  GUARD = 256,
-  PATTERN = 0xa5,
-  MAX_ARENAS = 30,
-  N_KERNELS = 4,
-  GREATEST_LIST = 1 << 15,
-  MOST_TILES = 64
-};
+enum { N_SPLATS = 2501, N_KERNELS = 4, GREATEST_LIST = 1 << 15, MOST_TILES = 16 };
 
-/* Memory between two guard bands. */
-typedef struct arena {
-  unsigned char *memory, *inside;
-  size_t bytes;
-  size_t compared; /* what of it has to be the same */
-} arena;
-
-/* The arenas of a desk, in this order; the image's planes follow. */
+/* The desk's arenas, in this order; the image's planes follow. */
 enum {
   FOOTPRINTS,
   BOXES,
@@ -51,7 +35,8 @@ enum {
 };
 
 /* All that the slots read and write: a chunk of splats and its records, a band of blocks, an image. */
-typedef struct desk {
+typedef struct splat_desk {
+  cross_desk memory;
   const fixture *f;
   conic_view view;
   conic_finish finish;
@@ -64,22 +49,14 @@ typedef struct desk {
   conic_bins bins;
   conic_sorter sorter;
   uint32_t *next_record, *next_entry, *tile_begin;
-  conic_tile_entry *entries;
+  conic_tile_entry *entries; /* of up to MOST_TILES tiles a splat */
+  size_t n_entry_room;
   conic_tile_entry *references;
   conic_band band;
   conic_tile_rays rays;
   conic_image image;
   size_t n_answered; /* what the slot returned */
-  int n_arenas;
-  arena arenas[MAX_ARENAS];
-} desk;
-
-/* One way through the slots. */
-typedef struct setting {
-  int number;
-  double share_of_specials;
-  unsigned planes; /* that the image has */
-} setting;
+} splat_desk;
 
 static inline float any_value(uint64_t *state, double scale, double share_of_specials) {
   static const float specials[] = {NAN,     INFINITY, -INFINITY, 0.0f,   -0.0f, 1e-42f,
@@ -134,41 +111,27 @@ static inline conic_finish finish_of(const fixture *f) {
   return finish;
 }
 
-static inline void *room(desk *d, size_t bytes) {
-  arena *a = &d->arenas[d->n_arenas++];
-  a->bytes = bytes;
-  a->compared = bytes;
-  size_t whole = (bytes + 2 * GUARD + 63) / 64 * 64;
-  a->memory = aligned_alloc(64, whole);
-  if (!a->memory)
-    exit(1);
-  a->inside = a->memory + GUARD;
-  memset(a->memory, PATTERN, whole);
-  memset(a->inside, 0, bytes);
-  return a->inside;
-}
-
-static inline void open_records(desk *d, size_t n) {
+static inline void open_records(splat_desk *d, size_t n) {
   d->projected.n_chunks = 1;
   d->projected.chunk_size = n;
   d->projected.chunks = &d->chunk;
   size_t with_slack = n + CONIC_PROJECT_SLACK;
-  d->projected.footprints = room(d, with_slack * sizeof *d->projected.footprints);
-  d->projected.boxes = room(d, with_slack * sizeof *d->projected.boxes);
-  d->projected.surfaces = room(d, with_slack * sizeof *d->projected.surfaces);
-  d->projected.rays = room(d, n * sizeof *d->projected.rays);
+  d->projected.footprints = cross_room(&d->memory, "footprints", with_slack * sizeof *d->projected.footprints);
+  d->projected.boxes = cross_room(&d->memory, "boxes", with_slack * sizeof *d->projected.boxes);
+  d->projected.surfaces = cross_room(&d->memory, "surfaces", with_slack * sizeof *d->projected.surfaces);
+  d->projected.rays = cross_room(&d->memory, "rays", n * sizeof *d->projected.rays);
 }
 
-static inline void open_band(desk *d, size_t n, unsigned planes) {
+static inline void open_band(splat_desk *d, size_t n, unsigned planes) {
   n = n < GREATEST_LIST ? n : GREATEST_LIST;
-  d->list = room(d, n * sizeof *d->list);
-  d->words = room(d, n * sizeof *d->words);
-  d->references = room(d, n * sizeof *d->references);
-  d->selected = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
-  d->selected_words = room(d, (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
-  d->band.kept = room(d, (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
-  d->band.nearest = room(d, sizeof *d->band.nearest);
-  d->band.sums = room(d, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
+  d->list = cross_room(&d->memory, "list", n * sizeof *d->list);
+  d->words = cross_room(&d->memory, "words", n * sizeof *d->words);
+  d->references = cross_room(&d->memory, "references", n * sizeof *d->references);
+  d->selected = cross_room(&d->memory, "selected", (n + CONIC_SELECT_SLACK) * sizeof *d->selected);
+  d->selected_words = cross_room(&d->memory, "selected words", (n + CONIC_SELECT_SLACK) * sizeof *d->selected_words);
+  d->band.kept = cross_room(&d->memory, "kept", (CONIC_BAND_BLOCKS + 1) * sizeof *d->band.kept);
+  d->band.nearest = cross_room(&d->memory, "nearest", sizeof *d->band.nearest);
+  d->band.sums = cross_room(&d->memory, "sums", CONIC_BAND_BLOCKS * sizeof *d->band.sums);
   d->band.view = &d->view;
   d->band.projected = &d->projected;
   d->band.indices = d->list;
@@ -177,92 +140,42 @@ static inline void open_band(desk *d, size_t n, unsigned planes) {
 }
 
 /* What records are turned into. */
-static inline void open_turned(desk *d, size_t n) {
-  d->tiles = room(d, n * sizeof *d->tiles);
-  d->keys = room(d, n * sizeof *d->keys);
-  d->beyond = room(d, n * sizeof *d->beyond);
-  d->order = room(d, n * sizeof *d->order);
-  d->moved_footprints = room(d, n * sizeof *d->moved_footprints);
-  d->moved_surfaces = room(d, n * sizeof *d->moved_surfaces);
-  d->next_record = room(d, MOST_TILES * sizeof *d->next_record);
-  d->next_entry = room(d, MOST_TILES * sizeof *d->next_entry);
-  d->tile_begin = room(d, MOST_TILES * sizeof *d->tile_begin);
-  d->entries = room(d, (n * MOST_TILES + 1) * sizeof *d->entries);
+static inline void open_turned(splat_desk *d, size_t n) {
+  d->bins = (conic_bins){.tile = 32, .tile_bits = 5, .n_tiles_x = (d->view.width + 31) / 32};
+  d->bins.n_tiles = (size_t)d->bins.n_tiles_x * (size_t)((d->view.height + 31) / 32);
+  d->n_entry_room = n * (d->bins.n_tiles < MOST_TILES ? d->bins.n_tiles : MOST_TILES) + 1;
+  d->tiles = cross_room(&d->memory, "tiles", n * sizeof *d->tiles);
+  d->keys = cross_room(&d->memory, "keys", n * sizeof *d->keys);
+  d->beyond = cross_room(&d->memory, "beyond", n * sizeof *d->beyond);
+  d->order = cross_room(&d->memory, "order", n * sizeof *d->order);
+  d->moved_footprints = cross_room(&d->memory, "moved footprints", n * sizeof *d->moved_footprints);
+  d->moved_surfaces = cross_room(&d->memory, "moved surfaces", n * sizeof *d->moved_surfaces);
+  d->next_record = cross_room(&d->memory, "next record", (d->bins.n_tiles + 1) * sizeof *d->next_record);
+  d->next_entry = cross_room(&d->memory, "next entry", (d->bins.n_tiles + 1) * sizeof *d->next_entry);
+  d->tile_begin = cross_room(&d->memory, "tile begin", (d->bins.n_tiles + 1) * sizeof *d->tile_begin);
+  d->entries = cross_room(&d->memory, "entries", d->n_entry_room * sizeof *d->entries);
 }
 
-static inline void open_image(desk *d, unsigned planes) {
+static inline void open_image(splat_desk *d, unsigned planes) {
   d->image.width = d->view.width;
   d->image.height = d->view.height;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
     if (planes & 1u << plane)
-      d->image.planes[plane] = room(d, (size_t)d->view.width * (size_t)d->view.height * sizeof(float) *
-                                           (size_t)conic_plane_describe((conic_plane)plane)->n_channels);
+      d->image.planes[plane] = cross_room(&d->memory, "an image's plane",
+                                          (size_t)d->view.width * (size_t)d->view.height * sizeof(float) *
+                                              (size_t)conic_plane_describe((conic_plane)plane)->n_channels);
 }
 
-static inline desk *open_desk(const fixture *f, const setting *s) {
-  desk *d = calloc(1, sizeof *d);
-  if (!d)
-    exit(1);
+static inline splat_desk *open_desk(const fixture *f, unsigned planes) {
+  splat_desk *d = cross_calloc(sizeof *d);
   d->f = f;
   CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &d->view));
   d->finish = finish_of(f);
   open_records(d, f->splats.count);
-  open_band(d, f->splats.count, s->planes);
+  open_band(d, f->splats.count, planes);
   open_turned(d, f->splats.count);
-  open_image(d, s->planes);
+  open_image(d, planes);
   return d;
-}
-
-static inline void close_desk(desk *d) {
-  for (int i = 0; i < d->n_arenas; i++) {
-    const arena *a = &d->arenas[i];
-    for (size_t k = 0; k < GUARD; k++)
-      CHECK(a->memory[k] == PATTERN && a->inside[a->bytes + k] == PATTERN);
-    free(a->memory);
-  }
-  free(d);
-}
-
-/* Says where the arena differs first, and how. */
-static inline void compare_arena(const desk *a, const desk *b, int i) {
-  static const char *const names[] = {"footprints",
-                                      "boxes",
-                                      "surfaces",
-                                      "rays",
-                                      "list",
-                                      "words",
-                                      "references",
-                                      "selected",
-                                      "selected words",
-                                      "kept",
-                                      "nearest",
-                                      "sums",
-                                      "tiles",
-                                      "keys",
-                                      "beyond",
-                                      "order",
-                                      "moved footprints",
-                                      "moved surfaces",
-                                      "next record",
-                                      "next entry",
-                                      "tile begin",
-                                      "entries"};
-  const unsigned char *of_a = a->arenas[i].inside, *of_b = b->arenas[i].inside;
-  size_t n = a->arenas[i].compared, at = 0;
-  CHECK(n == b->arenas[i].compared);
-  if (n != b->arenas[i].compared || memcmp(of_a, of_b, n) == 0)
-    return;
-  while (of_a[at] == of_b[at])
-    at++;
-  fprintf(stderr, "%s differ from byte %zu of %zu on: %02x and %02x\n", i < IMAGE ? names[i] : "an image's planes", at,
-          n, of_a[at], of_b[at]);
-  check_failures++;
-}
-
-/* The arenas first … last - 1. */
-static inline void compare_arenas(const desk *a, const desk *b, int first, int last) {
-  for (int i = first; i < last; i++)
-    compare_arena(a, b, i);
 }
 
 #endif

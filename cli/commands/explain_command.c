@@ -19,7 +19,7 @@ typedef struct explain_job {
   const char *dump_path; /* --dump-projection; null: none */
 
   conic_camera camera;
-  conic_drawing drawing;
+  const conic_drawing *drawing;
   conic_contributions *contributions;
   conic_image image; /* all planes, where a pixel is asked for */
 } explain_job;
@@ -52,22 +52,17 @@ static void write_vector(cli_json *json, const char *key, const float vector[3])
 
 /* Which splat it is of what is drawn; and of what that was chosen. */
 static void write_splat_name(cli_json *json, const explain_job *job, uint32_t splat) {
+  uint32_t number;
+  const char *name = conic_source_name_splat(job->scene.source, splat, &number);
   cli_json_count(json, "splat", splat);
-  if (job->scene.patches)
-    cli_json_count(json, "point", job->scene.patch_selection.points[splat]);
-  if (job->scene.octree) {
-    uint32_t id = job->scene.selection.ids[splat];
-    int is_point = id < job->scene.info.n_points;
-    cli_json_count(json, is_point ? "point" : "node", is_point ? id : id - job->scene.info.n_points);
-  }
-  if (job->scene.hybrid)
-    cli_json_count(json, "cluster", job->scene.hybrid_selection.splat_cluster[splat]);
+  if (name)
+    cli_json_count(json, name, number);
 }
 
 static void write_triangle_name(cli_json *json, const explain_job *job, uint32_t triangle) {
   cli_json_count(json, "triangle", triangle);
-  if (job->drawing.triangles->cluster)
-    cli_json_count(json, "cluster", job->drawing.triangles->cluster[triangle]);
+  if (job->drawing->triangles->cluster)
+    cli_json_count(json, "cluster", job->drawing->triangles->cluster[triangle]);
 }
 
 /* What a splat is on the screen, whatever the pixel. */
@@ -224,13 +219,13 @@ static conic_status write_pixel(cli_json *json, const explain_job *job) {
   for (int i = 0; i < CONIC_N_CONTRIBUTION_VERDICTS; i++)
     cli_json_count(json, conic_contribution_verdict_name((conic_contribution_verdict)i), at.counts[i]);
   cli_json_close(json);
-  if (job->drawing.triangles->count)
+  if (job->drawing->triangles->count)
     write_blended(json, job, &at);
   cli_json_array(json, "contributions");
   for (size_t i = 0; i < at.n && status == CONIC_OK; i++)
     status = write_contribution(json, job, &at.list[i], at.visible_weight);
   cli_json_close(json);
-  if (job->drawing.triangles->count)
+  if (job->drawing->triangles->count)
     write_triangles(json, job, at.triangles, at.n_triangles, at.visible_weight);
   return status;
 }
@@ -310,22 +305,23 @@ static conic_status dump_projection(cli_session *session, const explain_job *job
 }
 
 static conic_status draw(cli_session *session, explain_job *job) {
-  unsigned planes = CONIC_DRAWN_PLANES | (job->scene.hybrid ? 1u << CONIC_PLANE_CLUSTER : 0u);
+  unsigned planes =
+      CONIC_DRAWN_PLANES | (job->scene.abilities & CONIC_SOURCE_CLUSTERS ? 1u << CONIC_PLANE_CLUSTER : 0u);
   if (!job->is_pixel_given)
     return CONIC_OK;
   conic_status status =
       conic_image_allocate(session->context, job->camera.width, job->camera.height, planes, &job->image);
   if (status == CONIC_OK)
-    status = conic_render_drawing(session->context, job->scene.renderer, &job->drawing, &job->camera,
+    status = conic_render_drawing(session->context, job->scene.renderer, job->drawing, &job->camera,
                                   &job->scene.options, 1, &job->image, NULL);
   if (status == CONIC_OK)
-    cli_scene_name(&job->scene, &job->image);
+    conic_source_name_image(job->scene.source, &job->image);
   return status;
 }
 
 /* What was asked about is there: only now is it known what there is. */
 static int check_questions(const explain_job *job) {
-  size_t n_splats = job->drawing.splats->count;
+  size_t n_splats = job->drawing->splats->count;
   if (job->is_splat_given && n_splats == 0)
     return cli_usage("explain: there is no splat %llu: triangles alone are drawn", job->splat);
   if (job->is_splat_given && job->splat >= n_splats)
@@ -336,20 +332,20 @@ static int check_questions(const explain_job *job) {
   return CLI_DONE;
 }
 
-static int answer(cli_session *session, explain_job *job, const conic_splats *splats) {
-  double ms;
-  conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &job->camera);
+static int answer(cli_session *session, explain_job *job) {
+  conic_status status = cli_scene_camera(&job->scene, 0, &job->camera);
   if (status == CONIC_OK) /* where something is chosen, that is what is drawn, and explained */
-    status = cli_scene_select(&job->scene, &job->camera, splats, &job->drawing, &ms);
+    status = conic_source_choose(job->scene.source, &job->camera, &job->scene.options, &job->scene.view);
+  job->drawing = &conic_source_chosen(job->scene.source)->drawing;
   int exit_code = status == CONIC_OK ? check_questions(job) : cli_exit_of(status);
   if (exit_code != CLI_DONE)
     return exit_code;
-  status = conic_contributions_create_drawing(session->context, &job->drawing, &job->camera, &job->scene.options,
+  status = conic_contributions_create_drawing(session->context, job->drawing, &job->camera, &job->scene.options,
                                               &job->contributions);
   if (status == CONIC_OK)
     status = draw(session, job);
   if (status == CONIC_OK)
-    status = dump_projection(session, job, job->drawing.splats->count);
+    status = dump_projection(session, job, job->drawing->splats->count);
   exit_code = cli_exit_of(status);
   if (exit_code == CLI_DONE && (job->is_pixel_given || job->is_splat_given))
     exit_code = write_report(session, job);
@@ -359,18 +355,14 @@ static int answer(cli_session *session, explain_job *job, const conic_splats *sp
 }
 
 static int explain(cli_session *session, explain_job *job) {
-  conic_splats splats;
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  memset(&splats, 0, sizeof splats);
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK)
-    status = cli_scene_read(session, &job->scene, &splats);
-  if (status == CONIC_OK)
-    status = cli_scene_measure(session, &job->scene, &splats);
-  exit_code = status == CONIC_OK ? answer(session, job, &splats) : cli_exit_of(status);
-  cli_scene_release(session, &job->scene, &splats);
+    status = cli_scene_open(session, &job->scene);
+  exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
+  cli_scene_release(&job->scene);
   return exit_code;
 }
 
@@ -378,7 +370,7 @@ static int explain(cli_session *session, explain_job *job) {
 static int check(cli_session *session, explain_job *job) {
   if (!job->is_pixel_given && !job->is_splat_given && !job->dump_path)
     return cli_usage("explain: nothing is asked; give --pixel X,Y, --splat I or --dump-projection FILE");
-  if (job->scene.samples > 1)
+  if (job->scene.view.samples > 1)
     return cli_usage("explain: it explains pixels, not --samples");
   if (!session->json_path && (job->is_pixel_given || job->is_splat_given))
     session->json_path = "-";

@@ -1,12 +1,12 @@
 /* conic hybrid: a mesh in, clusters of triangles and of surfels out. */
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/commands/hybrid_mesh.h"
-#include "cli/commands/reach.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
+#include "source/mesh_input.h"
+#include "source/reach.h"
 
 static const char *const sampling_words[] = {"blue", "box", NULL};
 
@@ -24,7 +24,7 @@ typedef struct hybrid_job {
 static conic_status build(hybrid_job *job) {
   conic_triangles mesh;
   double start = cli_seconds();
-  conic_status status = cli_mesh_read(job->session, job->input, job->texture, &mesh);
+  conic_status status = conic_mesh_read(job->session->context, job->input, job->texture, &mesh);
   double read = cli_seconds();
   job->read_seconds = read - start;
   if (status != CONIC_OK)
@@ -34,7 +34,7 @@ static conic_status build(hybrid_job *job) {
   job->work_seconds = built - read;
   if (status == CONIC_OK)
     status = conic_hybrid_describe(job->hybrid, &job->info);
-  if (status == CONIC_OK && !cli_is_in_reach(job->info.minimum, job->info.maximum)) {
+  if (status == CONIC_OK && !conic_is_in_reach(job->info.minimum, job->info.maximum)) {
     cli_error(CLI_INPUT, "%s: a point is farther out than 1e20", job->input);
     status = CONIC_ERROR_INPUT;
   }

@@ -6,49 +6,18 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/commands/hybrid_info.h"
-#include "cli/commands/info_parts.h"
-#include "cli/commands/layers_info.h"
-#include "cli/commands/octree_info.h"
-#include "cli/commands/reach.h"
-#include "cli/json_write.h"
 #include "cli/outputs.h"
+#include "cli/source_facts.h"
 #include "core/files/file.h"
-#include "core/splats/clip.h"
-
-/* What in a model cannot be drawn as it stands. */
-typedef struct defects {
-  size_t positions, axes, normals, colors, opacities, clips;
-  const char *extent; /* why no camera can be put before it; null where one can */
-} defects;
 
 typedef struct info_job {
   const char *path;
   int is_check;
-  const char *kind;
   int has_bytes;
   uint64_t bytes;
-  /* of models */
-  conic_model model;
-  size_t n_finite;
-  double minimum[3], maximum[3];
-  defects found;
-  /* of octrees */
-  conic_octree *octree;
-  conic_octree_info info;
-  conic_octree_defects broken;
-  /* of hybrid models */
-  conic_hybrid *hybrid;
-  conic_hybrid_info hybrid_info;
-  conic_hybrid_defects hybrid_broken;
-  /* of layered point clouds */
-  int is_layered;
-  conic_layers_info layers;
-  conic_layers_defects layer_defects;
-  /* of images */
+  conic_facts *facts; /* null: it is an image */
   conic_image image;
   size_t n_wrong_samples;
-  int is_sound;
 } info_job;
 
 static int parse(cli_session *session, int argc, char **argv, info_job *job) {
@@ -84,44 +53,6 @@ static void find_size(info_job *job) {
   job->bytes = (uint64_t)found.st_size;
 }
 
-static int is_finite(float value) {
-  return value - value == 0.0f;
-}
-
-static int is_finite_vector(float *const vector[3], size_t i) {
-  return is_finite(vector[0][i]) && is_finite(vector[1][i]) && is_finite(vector[2][i]);
-}
-
-static int is_zero_vector(float *const vector[3], size_t i) {
-  return vector[0][i] == 0.0f && vector[1][i] == 0.0f && vector[2][i] == 0.0f;
-}
-
-static int is_direction(float *const vector[3], size_t i) {
-  return is_finite_vector(vector, i) && !is_zero_vector(vector, i);
-}
-
-static void check_model(info_job *job) {
-  const conic_splats *points = &job->model.points;
-  defects *found = &job->found;
-  for (size_t i = 0; i < points->count; i++) {
-    found->positions += !is_finite_vector(points->position, i);
-    if (points->tangent_u[0])
-      found->axes += !is_direction(points->tangent_u, i) || !is_direction(points->tangent_v, i);
-    if (points->normal[0])
-      found->normals += !is_direction(points->normal, i);
-    if (points->color[0])
-      found->colors += !is_finite_vector(points->color, i);
-    if (points->opacity)
-      found->opacities += !(is_finite(points->opacity[i]) && points->opacity[i] >= 0.0f);
-  }
-  for (size_t i = 0; i < points->n_clips; i++)
-    for (int k = 0; k < points->clips[i].n_lines; k++)
-      found->clips += !conic_clip_is_line(points->clips[i].lines[k]);
-  found->extent = cli_why_out_of_reach(points);
-  job->is_sound = !found->extent && found->positions + found->axes + found->normals + found->colors == 0 &&
-                  found->opacities + found->clips == 0;
-}
-
 static void check_image(info_job *job) {
   size_t n_pixels = (size_t)job->image.width * (size_t)job->image.height;
   for (int plane = 0; plane < CONIC_N_PLANES; plane++) {
@@ -130,114 +61,18 @@ static void check_image(info_job *job) {
     if (!samples || description->is_uint)
       continue;
     for (size_t i = 0; i < n_pixels * (size_t)description->n_channels; i++)
-      job->n_wrong_samples += !is_finite(samples[i]);
+      job->n_wrong_samples += samples[i] - samples[i] != 0.0f;
   }
-  job->is_sound = job->n_wrong_samples == 0;
 }
 
-static int read_octree(cli_session *session, info_job *job) {
-  conic_status status = conic_octree_read(session->context, job->path, &job->octree);
-  if (status == CONIC_OK)
-    status = conic_octree_describe(job->octree, &job->info);
-  if (status == CONIC_OK && job->is_check)
-    status = conic_octree_check(job->octree, &job->broken);
-  const conic_octree_defects *broken = &job->broken;
-  job->kind = "cot";
-  job->is_sound = broken->ellipses + broken->spheres + broken->cones + broken->errors + broken->splats == 0;
-  return cli_exit_of(status);
-}
-
-static int read_hybrid(cli_session *session, info_job *job) {
-  conic_status status = conic_hybrid_read(session->context, job->path, &job->hybrid);
-  if (status == CONIC_OK)
-    status = conic_hybrid_describe(job->hybrid, &job->hybrid_info);
-  if (status == CONIC_OK && job->is_check)
-    status = conic_hybrid_check(job->hybrid, &job->hybrid_broken);
-  const conic_hybrid_defects *broken = &job->hybrid_broken;
-  job->kind = "chy";
-  job->is_sound = broken->values + broken->spheres + broken->cones + broken->levels == 0;
-  return cli_exit_of(status);
-}
-
-static int read_layers(cli_session *session, info_job *job) {
-  conic_status status = conic_layers_describe(session->context, job->path, &job->layers);
-  if (status == CONIC_OK && job->is_check)
-    status = conic_layers_check(session->context, job->path, &job->layer_defects);
-  job->kind = "lpc";
-  job->is_layered = 1;
-  job->is_sound = cli_layers_are_sound(&job->layer_defects);
-  return cli_exit_of(status);
-}
-
-static int has_image(const info_job *job) {
-  return job->image.width > 0;
-}
-
-static int read_file(cli_session *session, info_job *job) {
-  int is_image = is_exr(job->path);
+static conic_status read_file(cli_session *session, info_job *job) {
   find_size(job);
-  if (conic_octree_is_file(job->path))
-    return read_octree(session, job);
-  if (conic_hybrid_is_file(job->path))
-    return read_hybrid(session, job);
-  if (conic_layers_is_file(job->path))
-    return read_layers(session, job);
-  conic_status status = is_image ? conic_image_read(session->context, job->path, &job->image)
-                                 : conic_model_read(session->context, job->path, NULL, &job->model);
-  if (status != CONIC_OK)
-    return cli_exit_of(status);
-  job->kind = is_image ? "exr" : conic_model_kind_name(job->model.kind);
-  if (!has_image(job))
-    job->n_finite = conic_splats_bounds(&job->model.points, job->minimum, job->maximum);
-  if (job->is_check && has_image(job))
+  if (!is_exr(job->path))
+    return conic_source_inspect(session->context, job->path, job->is_check, &job->facts);
+  conic_status status = conic_image_read(session->context, job->path, &job->image);
+  if (status == CONIC_OK && job->is_check)
     check_image(job);
-  else if (job->is_check)
-    check_model(job);
-  return CLI_DONE;
-}
-
-typedef struct field_name {
-  unsigned field;
-  const char *name;
-} field_name;
-
-static const field_name field_names[] = {{CONIC_SPLATS_TANGENTS, "axes"},
-                                         {CONIC_SPLATS_NORMALS, "normals"},
-                                         {CONIC_SPLATS_COLORS, "colors"},
-                                         {CONIC_SPLATS_OPACITIES, "opacities"},
-                                         {CONIC_SPLATS_CLIPS, "clip lines"}};
-enum { N_FIELDS = sizeof field_names / sizeof *field_names };
-
-static void print_model(const info_job *job) {
-  const conic_model *model = &job->model;
-  unsigned fields = conic_splats_fields(&model->points);
-  printf("points     %zu\n", model->points.count);
-  if (model->n_triangles)
-    printf("triangles  %zu\n", model->n_triangles);
-  printf("fields     positions");
-  for (int i = 0; i < N_FIELDS; i++)
-    if (fields & field_names[i].field)
-      printf(", %s", field_names[i].name);
-  putchar('\n');
-  if (job->n_finite)
-    cli_bounds_print(job->minimum, job->maximum);
-  if (!job->is_check)
-    return;
-  const defects *found = &job->found;
-  printf("sound      %s\n", job->is_sound ? "yes" : "no");
-  if (found->extent)
-    printf("  cannot be drawn: %s\n", found->extent);
-  const size_t counts[] = {found->positions, found->axes,      found->normals,
-                           found->colors,    found->opacities, found->clips};
-  static const char *const what[] = {"positions that are not finite",
-                                     "axes that are zero or not finite",
-                                     "normals that are zero or not finite",
-                                     "colours that are not finite",
-                                     "opacities that are negative or not finite",
-                                     "clip lines that are not finite or have no direction"};
-  for (int i = 0; i < 6; i++)
-    if (counts[i])
-      printf("  %zu %s\n", counts[i], what[i]);
+  return status;
 }
 
 static void print_image(const info_job *job) {
@@ -250,65 +85,40 @@ static void print_image(const info_job *job) {
     }
   putchar('\n');
   if (job->is_check)
-    printf("sound      %s\n", job->is_sound ? "yes" : "no");
+    printf("sound      %s\n", job->n_wrong_samples ? "no" : "yes");
   if (job->n_wrong_samples)
     printf("  %zu samples that are not finite\n", job->n_wrong_samples);
 }
 
+/* The file's size over its points; 0 where either is not known. */
+static double bytes_per_point(const info_job *job) {
+  const conic_fact *fact;
+  for (size_t i = 0; job->facts && job->has_bytes && (fact = conic_facts_at(job->facts, i)); i++)
+    if (fact->type == CONIC_FACT_COUNT && strcmp(fact->key, "points") == 0 && fact->count)
+      return (double)job->bytes / (double)fact->count;
+  return 0.0;
+}
+
+static const char *kind_of(const info_job *job) {
+  return job->facts ? conic_facts_at(job->facts, 0)->text : "exr";
+}
+
 static int print_text(const info_job *job) {
-  printf("kind       %s\n", job->kind);
+  double share = bytes_per_point(job);
+  printf("kind       %s\n", kind_of(job));
   if (job->has_bytes)
     printf("bytes      %" PRIu64, job->bytes);
-  uint64_t n_points = job->octree       ? job->info.n_points
-                      : job->is_layered ? job->layers.n_samples
-                                        : job->model.points.count;
-  if (job->has_bytes && n_points)
-    printf(" (%.1f a point)", (double)job->bytes / (double)n_points);
+  if (share > 0.0)
+    printf(" (%.1f a point)", share);
   if (job->has_bytes)
     putchar('\n');
-  if (job->octree)
-    cli_octree_print(&job->info, job->is_check ? &job->broken : NULL);
-  else if (job->hybrid)
-    cli_hybrid_print(&job->hybrid_info, job->is_check ? &job->hybrid_broken : NULL);
-  else if (job->is_layered)
-    cli_layers_print(&job->layers, job->is_check ? &job->layer_defects : NULL);
-  else if (has_image(job))
-    print_image(job);
+  if (job->facts)
+    cli_facts_print(job->facts);
   else
-    print_model(job);
+    print_image(job);
   if (fflush(stdout) != 0 || ferror(stdout))
     return cli_error(CLI_RESOURCE, "-: cannot write: %s", strerror(errno));
   return CLI_DONE;
-}
-
-static void report_model(cli_json *json, const info_job *job) {
-  const conic_model *model = &job->model;
-  unsigned fields = conic_splats_fields(&model->points);
-  cli_json_count(json, "points", model->points.count);
-  if (model->n_triangles)
-    cli_json_count(json, "triangles", model->n_triangles);
-  if (job->has_bytes && model->points.count)
-    cli_json_number(json, "bytes_per_point", (double)job->bytes / (double)model->points.count);
-  cli_json_array(json, "fields");
-  for (int i = 0; i < N_FIELDS; i++)
-    if (fields & field_names[i].field)
-      cli_json_text(json, NULL, field_names[i].name);
-  cli_json_close(json);
-  if (job->n_finite) {
-    cli_bounds_report(json, job->minimum, job->maximum);
-  }
-  if (!job->is_check)
-    return;
-  cli_json_object(json, "defects");
-  cli_json_count(json, "positions", job->found.positions);
-  cli_json_count(json, "axes", job->found.axes);
-  cli_json_count(json, "normals", job->found.normals);
-  cli_json_count(json, "colors", job->found.colors);
-  cli_json_count(json, "opacities", job->found.opacities);
-  cli_json_count(json, "clips", job->found.clips);
-  if (job->found.extent)
-    cli_json_text(json, "extent", job->found.extent);
-  cli_json_close(json);
 }
 
 static void report_image(cli_json *json, const info_job *job) {
@@ -327,21 +137,17 @@ static int report(cli_session *session, const info_job *job) {
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  cli_json_text(json, "kind", job->kind);
+  cli_json_text(json, "kind", kind_of(job));
   if (job->has_bytes)
     cli_json_count(json, "bytes", job->bytes);
-  if (job->octree)
-    cli_octree_report(json, &job->info, job->is_check ? &job->broken : NULL);
-  else if (job->hybrid)
-    cli_hybrid_report(json, &job->hybrid_info, job->is_check ? &job->hybrid_broken : NULL);
-  else if (job->is_layered)
-    cli_layers_report(json, &job->layers, job->is_check ? &job->layer_defects : NULL);
-  else if (has_image(job))
-    report_image(json, job);
+  if (bytes_per_point(job) > 0.0)
+    cli_json_number(json, "bytes_per_point", bytes_per_point(job));
+  if (job->facts)
+    cli_facts_report(json, job->facts, 1);
   else
-    report_model(json, job);
+    report_image(json, job);
   if (job->is_check)
-    cli_json_bool(json, "sound", job->is_sound);
+    cli_json_bool(json, "sound", job->facts ? cli_facts_are_sound(job->facts) : job->n_wrong_samples == 0);
   return cli_json_finish(file);
 }
 
@@ -354,15 +160,13 @@ static int run(cli_session *session, int argc, char **argv) {
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
     int is_text_wanted = !session->json_path || strcmp(session->json_path, "-") != 0;
-    exit_code = read_file(session, &job);
+    exit_code = cli_exit_of(read_file(session, &job));
     if (exit_code == CLI_DONE && is_text_wanted)
       exit_code = print_text(&job);
     if (exit_code == CLI_DONE)
       exit_code = report(session, &job);
-    conic_model_release(session->context, &job.model);
+    conic_facts_destroy(job.facts);
     conic_image_release(session->context, &job.image);
-    conic_octree_destroy(job.octree);
-    conic_hybrid_destroy(job.hybrid);
   }
   return exit_code < 0 ? CLI_DONE : exit_code;
 }

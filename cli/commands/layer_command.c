@@ -10,6 +10,7 @@
 #include "conic/layers.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
 
 typedef struct layer_job {
   cli_session *session;
@@ -83,7 +84,7 @@ static conic_status read_whole(layer_job *job, const conic_read_options *options
     return status;
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
   if (status == CONIC_OK)
-    cli_tell_repairs(job->session, job->input, &repairs);
+    conic_repairs_log(job->session->context, job->input, &repairs);
   if (status == CONIC_OK)
     status = append(job, &model.points);
   conic_model_release(context, &model);

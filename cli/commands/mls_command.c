@@ -9,6 +9,7 @@
 #include "cli/outputs.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
 
 typedef enum mls_action { MLS_PROJECT, MLS_THIN, MLS_DENSIFY, N_MLS_ACTIONS } mls_action;
 
@@ -176,7 +177,7 @@ static void tell(const mls_job *job, double total_seconds) {
                               {"write", job->write_seconds}};
   conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->input, job->n_in,
             job->n_out, r->h);
-  cli_tell_repairs(job->session, job->input, &job->repairs);
+  conic_repairs_log(job->session->context, job->input, &job->repairs);
   if (job->action == MLS_PROJECT)
     conic_log(context, CONIC_LOG_INFO,
               "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "
@@ -280,6 +281,7 @@ static int write_statistics(mls_job *job, double total_seconds) {
 
 static int run_job(mls_job *job) {
   double start = cli_seconds();
+  job->session->isa = (conic_isa)job->isa;
   int exit_code = cli_session_open(job->session);
   if (exit_code != CLI_DONE)
     return exit_code;

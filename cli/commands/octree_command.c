@@ -3,11 +3,12 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/commands/reach.h"
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
+#include "source/reach.h"
 
 typedef struct octree_job {
   cli_session *session;
@@ -36,7 +37,7 @@ static conic_status build(octree_job *job) {
   if (status != CONIC_OK)
     return status;
   job->n_in = model.points.count;
-  const char *why = cli_why_out_of_reach(&model.points);
+  const char *why = conic_why_out_of_reach(&model.points);
   if (why) {
     cli_error(CLI_INPUT, "%s: cannot be drawn: %s", job->input, why);
     conic_model_release(context, &model);
@@ -95,7 +96,7 @@ static void tell(const octree_job *job, double total_seconds) {
   conic_log(job->session->context, CONIC_LOG_INFO,
             "%s: %zu points in; %zu leaves and %zu inner nodes in %d levels out, %.1f MiB", job->input, job->n_in,
             info->n_leaves, info->n_nodes, info->n_levels, (double)info->n_bytes / 1048576.0);
-  cli_tell_repairs(job->session, job->input, &job->repairs);
+  conic_repairs_log(job->session->context, job->input, &job->repairs);
   cli_tell_run(job->session, stages, 4, total_seconds);
 }
 

@@ -9,6 +9,7 @@
 #include "cli/tell.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/repairs_log.h"
 
 typedef struct prepare_job {
   cli_session *session;
@@ -122,7 +123,7 @@ static void tell(const prepare_job *job, double total_seconds) {
             points->count);
   if (points->n_clips)
     conic_log(job->session->context, CONIC_LOG_INFO, "%s: %zu splats have clip lines", job->input, points->n_clips);
-  cli_tell_repairs(job->session, job->input, &job->repairs);
+  conic_repairs_log(job->session->context, job->input, &job->repairs);
   cli_tell_run(job->session, stages, 3, total_seconds);
 }
 

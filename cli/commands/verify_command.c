@@ -30,7 +30,7 @@ static conic_status get_image(cli_session *session, verify_job *job, const conic
     return status;
   double start = cli_seconds();
   status = conic_render_drawing(session->context, job->scene.renderer, drawing, camera, &job->scene.options,
-                                job->scene.samples, &job->image, &job->scene.statistics);
+                                job->scene.view.samples, &job->image, &job->scene.statistics);
   job->render_ms = 1e3 * (cli_seconds() - start);
   return status;
 }
@@ -46,10 +46,9 @@ static conic_status check_size(const verify_job *job, const conic_camera *camera
 
 /* A picture from a file has the names of what was chosen, where the oracle counts. */
 static void name_reference(verify_job *job) {
-  const conic_selection *leaves = &job->scene.selection;
-  const conic_patch_selection *samples = &job->scene.patch_selection;
-  const uint32_t *names = job->scene.octree ? leaves->ids : job->scene.patches ? samples->points : NULL;
-  size_t n_names = job->scene.octree ? leaves->splats.count : samples->splats.count;
+  const conic_source_choice *choice = conic_source_chosen(job->scene.source);
+  const uint32_t *names = choice->ids;
+  size_t n_names = choice->drawing.splats->count;
   double *ids = job->reference.planes[CONIC_PLANE_ID];
   uint32_t *tied = job->reference.tied_id;
   for (size_t i = 0; names && i < (size_t)job->reference.width * (size_t)job->reference.height; i++) {
@@ -60,24 +59,24 @@ static void name_reference(verify_job *job) {
   }
 }
 
-static conic_status compare(cli_session *session, verify_job *job, const conic_splats *splats) {
+static conic_status compare(cli_session *session, verify_job *job) {
+  const conic_source_choice *choice = conic_source_chosen(job->scene.source);
   conic_camera camera;
-  conic_drawing drawing;
-  double ms;
-  conic_status status = cli_scene_camera(session, &job->scene, splats, 0, &camera);
+  conic_status status = cli_scene_camera(&job->scene, 0, &camera);
   if (status == CONIC_OK) /* the oracle judges how what is chosen is drawn, not the choice */
-    status = cli_scene_select(&job->scene, &camera, splats, &drawing, &ms);
+    status = conic_source_choose(job->scene.source, &camera, &job->scene.options, &job->scene.view);
   if (status == CONIC_OK)
-    status = get_image(session, job, &drawing, &camera);
+    status = get_image(session, job, &choice->drawing, &camera);
   if (status == CONIC_OK)
     status = check_size(job, &camera);
   conic_render_options options = job->scene.options;
-  if (!job->scene.octree && !job->scene.hybrid)
+  if (choice->is_all)
     options.splat_length = 0.0; /* the oracle sees all splats, and measures them by itself */
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status = conic_oracle_render_drawing(session->context, &drawing, &camera, &options,
-                                         (conic_oracle_question)job->question, job->scene.samples, &job->reference);
+    status =
+        conic_oracle_render_drawing(session->context, &choice->drawing, &camera, &options,
+                                    (conic_oracle_question)job->question, job->scene.view.samples, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK && job->image_path)
     name_reference(job);
@@ -109,7 +108,7 @@ static void report_pixels(cli_json *json, const verify_job *job) {
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
-  if (job->scene.samples > 1) {
+  if (job->scene.view.samples > 1) {
     cli_json_count(json, "unstable_samples", job->reference.unstable_samples);
     cli_json_count(json, "covered_samples", job->reference.covered_samples);
   }
@@ -140,8 +139,8 @@ static int write_statistics(cli_session *session, const verify_job *job) {
     return exit_code;
   cli_json_text(json, "against", conic_oracle_question_name((conic_oracle_question)job->question));
   cli_json_text(json, "method", cli_method_name(&job->scene));
-  if (job->scene.samples > 1)
-    cli_json_count(json, "samples", (uint64_t)job->scene.samples);
+  if (job->scene.view.samples > 1)
+    cli_json_count(json, "samples", (uint64_t)job->scene.view.samples);
   report_planes(json, job);
   report_pixels(json, job);
   if (job->question == CONIC_ORACLE_EXACT)
@@ -157,7 +156,7 @@ static int write_statistics(cli_session *session, const verify_job *job) {
 /* Too much is in doubt for the rest to say anything. */
 static int is_too_unstable(const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
-  int has_samples = job->scene.samples > 1;
+  int has_samples = job->scene.view.samples > 1;
   size_t unstable = has_samples ? job->reference.unstable_samples : verdict->unstable_pixels;
   size_t covered = has_samples ? job->reference.covered_samples : verdict->covered_pixels;
   return job->question == CONIC_ORACLE_METHOD && (double)unstable > verdict->unstable_limit * (double)covered;
@@ -168,7 +167,7 @@ static void print_unstable(const verify_job *job) {
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
   printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
          100.0 * (double)verdict->unstable_pixels / covered);
-  if (job->scene.samples > 1)
+  if (job->scene.view.samples > 1)
     printf(", %zu of %zu samples", job->reference.unstable_samples, job->reference.covered_samples);
   const char *separator = ": ";
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
@@ -211,24 +210,20 @@ static int finish(cli_session *session, const verify_job *job) {
 }
 
 static int verify(cli_session *session, verify_job *job) {
-  conic_splats splats;
   int exit_code = cli_session_open(session);
   if (exit_code != CLI_DONE)
     return exit_code;
-  memset(&splats, 0, sizeof splats);
   conic_status status = cli_scene_begin(session, &job->scene);
   if (status == CONIC_OK && job->image_path)
     status = conic_image_read(session->context, job->image_path, &job->image);
   if (status == CONIC_OK)
-    status = cli_scene_read(session, &job->scene, &splats);
+    status = cli_scene_open(session, &job->scene);
   if (status == CONIC_OK)
-    status = cli_scene_measure(session, &job->scene, &splats);
-  if (status == CONIC_OK)
-    status = compare(session, job, &splats);
+    status = compare(session, job);
   exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_scene_release(session, &job->scene, &splats);
+  cli_scene_release(&job->scene);
   return exit_code;
 }
 

@@ -21,6 +21,8 @@ typedef struct raw_options {
   int isa;
   double cutoff, prefilter;
   int passes, is_patch_given;
+  int as; /* a conic_representation */
+  cli_length h;
 } raw_options;
 
 static int parse_output(const char *text, void *value) {
@@ -146,24 +148,23 @@ static int parse_planes(const char *text, void *value) {
 }
 
 /* What goes with choosing less than everything, and with hybrid models. */
-static int check_choice(const cli_session *session, const cli_render_job *job) {
+static int check_choice(const cli_session *session, const cli_render_job *job, int as) {
   const char *command = session->command;
-  if (job->error_px > 0.0 && job->budget > 0)
+  int is_hybrid = (job->abilities & CONIC_SOURCE_CLUSTERS) != 0;
+  if (job->view.error_px > 0.0 && job->budget > 0)
     return cli_usage("%s: --error and --budget are two ways to choose; give one of both", command);
-  if (job->is_patch && (job->as != CLI_AS_POINTS || cli_hybrid_is_wanted(job)))
+  if (job->is_patch && (as != CONIC_AS_POINTS || is_hybrid))
     return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
   if (job->is_patch && cli_lod_is_wanted(job))
     return cli_usage("%s: --method patch draws samples of its own: not with --error or --budget", command);
-  if (cli_hybrid_is_wanted(job) && job->n_inputs != 1)
-    return cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
-  if (cli_hybrid_is_wanted(job))
-    return CLI_DONE;
-  if (job->only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
+  if (is_hybrid)
+    return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+  if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
-  if (cli_layers_is_wanted(job) && cli_lod_is_wanted(job) && !job->draws_layers)
+  if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)
     return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
-  int may_be_octree = job->n_inputs == 1 && (conic_octree_is_file(job->inputs[0]) || access(job->inputs[0], R_OK) != 0);
-  if (cli_lod_is_wanted(job) && !cli_layers_is_wanted(job) && !may_be_octree)
+  int may_choose = job->abilities & CONIC_SOURCE_CHOOSES || (job->n_inputs == 1 && access(job->inputs[0], R_OK) != 0);
+  if (cli_lod_is_wanted(job) && !may_choose)
     return cli_usage(
         "%s: --error and --budget need a single .cot, .lpc or .chy as input (conic octree, conic layer and "
         "conic hybrid make them), or --as hybrid",
@@ -172,7 +173,7 @@ static int check_choice(const cli_session *session, const cli_render_job *job) {
 }
 
 /* What the options of the scene and the drawing mean together. */
-static int check_scene(const cli_session *session, const raw_options *raw, const cli_render_job *job) {
+static int check_scene(const cli_session *session, const raw_options *raw, cli_render_job *job) {
   const char *command = session->command;
   if (job->n_inputs == 0)
     return cli_usage("%s: no input; see conic help %s", command, command);
@@ -181,9 +182,9 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
   if (job->camera_path && (raw->is_framing_given || job->is_up_given))
     return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
                      command);
-  if (job->texture_path && job->as == CLI_AS_POINTS)
+  if (job->opening.texture_path && raw->as == CONIC_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
-  if (job->is_smooth && job->as != CLI_AS_MESH)
+  if (job->opening.is_smooth && raw->as != CONIC_AS_MESH)
     return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
   if (!job->is_patch && raw->is_patch_given)
     return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
@@ -191,7 +192,10 @@ static int check_scene(const cli_session *session, const raw_options *raw, const
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
-  int answer = check_choice(session, job);
+  job->opening.as = job->is_patch && raw->as == CONIC_AS_POINTS ? CONIC_AS_PATCHES : (conic_representation)raw->as;
+  job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
+  job->opening.is_whole = !cli_lod_is_wanted(job) && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
+  int answer = check_choice(session, job, raw->as);
   return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
 }
 
@@ -209,38 +213,35 @@ static int check_deep(const cli_render_job *job) {
   const char *dot = strrchr(job->deep_path, '.');
   if (!dot || strcmp(dot, ".exr") != 0)
     return cli_usage("%s: a deep image is an .exr", job->deep_path);
-  if (job->samples > 1)
+  if (job->view.samples > 1)
     return cli_usage("render: --deep lists the splats of pixels, not of --samples");
   return CLI_DONE;
 }
 
-static int check_layers(const cli_render_job *job) {
-  const cli_render_layers *layers = &job->layers;
-  if ((layers->progressive_path || layers->deadline > 0.0 || layers->is_given) && !cli_layers_is_wanted(job))
+static int check_streaming(const cli_render_job *job, int is_given) {
+  int streams = (job->abilities & CONIC_SOURCE_STREAMS) != 0;
+  if ((job->progressive_path || job->deadline > 0.0 || is_given) && !streams)
     return cli_usage("render: --progressive, --deadline, --memory, --timeout and --occlusion are for a single .lpc, or "
                      "the URL of one");
-  if (!cli_layers_is_wanted(job))
-    return CLI_DONE;
-  if (job->deep_path)
+  if (streams && job->deep_path)
     return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
-  if (layers->progressive_path && (job->is_turntable || job->repeat > 1))
+  if (job->progressive_path && (job->is_turntable || job->repeat > 1))
     return cli_usage("render: --progressive writes the pictures of one frame, not of a turntable or of --repeat");
   return CLI_DONE;
 }
 
 int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
                           int n_outputs) {
-  const char *const beside[] = {job->camera_path, job->texture_path};
+  const char *const beside[] = {job->camera_path, job->opening.texture_path};
   int answer = cli_check_inputs_stay(session, job->inputs, job->n_inputs, outputs, n_outputs);
   return answer == CLI_DONE ? cli_check_inputs_stay(session, beside, 2, outputs, n_outputs) : answer;
 }
 
 /* What render's own options mean. */
-static int check_outputs(const cli_session *session, const cli_render_job *job) {
+static int check_outputs(const cli_session *session, const cli_render_job *job, int is_streaming_given) {
   const char *paths[CLI_MAX_OUTPUTS + 3];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path &&
-      !job->layers.progressive_path)
+  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(paths[i] = job->outputs[i]);
@@ -255,11 +256,11 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
     answer = check_output(job->clusters_path);
   if (answer != CLI_DONE)
     return answer;
-  if (cli_lod_is_wanted(job) && job->deep_path && !cli_hybrid_is_wanted(job))
+  if (cli_lod_is_wanted(job) && job->deep_path && !(job->abilities & CONIC_SOURCE_CLUSTERS))
     return cli_usage("render: --deep lists the splats of the input, not those that --error and --budget choose");
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
-  answer = check_layers(job);
+  answer = check_streaming(job, is_streaming_given);
   if (answer != CLI_DONE)
     return answer;
   if (job->camera_path && job->is_turntable)
@@ -269,19 +270,18 @@ static int check_outputs(const cli_session *session, const cli_render_job *job) 
 }
 
 void cli_scene_defaults(cli_render_job *job) {
-  conic_estimate_options estimate;
   memset(job, 0, sizeof *job);
-  conic_estimate_options_init(&estimate);
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
-  job->n_neighbours = estimate.n_neighbours;
+  conic_source_options_init(&job->opening);
+  conic_patches_options_init(&job->patches);
+  conic_layers_access_init(&job->access);
+  conic_source_view_init(&job->view);
+  job->opening.patches = &job->patches;
+  job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
-  job->degree = 3;
-  job->n_frames = job->repeat = job->samples = 1;
+  job->n_frames = job->repeat = 1;
   job->device.name = "cpu";
-  job->layers.memory_mib = 512;
-  job->layers.timeout = 15.0;
-  job->only_kind = -1;
   job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
 }
 
@@ -321,17 +321,17 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = parse_up,
        .is_given = &job->is_up_given},
-      {"as", CLI_CHOICE, &job->as, "WHAT",
+      {"as", CLI_CHOICE, &raw.as, "WHAT",
        "what a mesh is drawn as: points (a splat a vertex), mesh (triangles) or hybrid (both) [points]",
        .choices = as_words},
-      {"texture", CLI_TEXT, &job->texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
-      {"smooth", CLI_FLAG, &job->is_smooth, NULL,
+      {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
+      {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
-      {"error", CLI_NUMBER, &job->error_px, "PX",
+      {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
       {"budget", CLI_COUNT, &job->budget, "N",
        "of a .cot, .lpc or hybrid, the N primitives or fewer whose error is the least", 1, 4294967294.0},
-      {"only", CLI_CHOICE, &job->only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
+      {"only", CLI_CHOICE, &job->view.only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
        .choices = only_words},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
@@ -344,7 +344,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
-      {"samples", CLI_INT, &job->samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
+      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
        CONIC_MAX_SAMPLES},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
@@ -358,12 +358,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = parse_planes},
-      {"degree", CLI_INT, &job->degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1, CONIC_SURFACE_MAX_DEGREE,
-       .is_given = &raw.is_patch_given},
-      {"h", CLI_PARSED, &job->h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
+      {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
+       CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
+      {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
        .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
-      {"k", CLI_INT, &job->n_neighbours, "K", "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6,
-       64},
+      {"k", CLI_INT, &job->opening.n_neighbours, "K",
+       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
@@ -381,7 +381,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;
   o->passes = raw.passes;
-  o->isa = (conic_isa)raw.isa;
+  o->isa = session->isa = (conic_isa)raw.isa;
+  job->view.budget = job->budget;
+  job->opening.cutoff = o->kernel.cutoff;
+  job->opening.h_in_spacings = raw.h.is_in_spacings;
+  job->patches.surface.h = raw.h.value;
+  job->patches.surface.isa = o->isa;
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];
@@ -391,7 +396,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
-  job->draws_layers = 1;
+  job->may_stream = 1;
+  int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
        .parse = parse_output},
@@ -401,26 +407,30 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
-      {"progressive", CLI_TEXT, &job->layers.progressive_path, "DIR",
+      {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},
-      {"deadline", CLI_NUMBER, &job->layers.deadline, "S",
+      {"deadline", CLI_NUMBER, &job->deadline, "S",
        "of an .lpc, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
-      {"memory", CLI_INT, &job->layers.memory_mib, "MiB", "of an .lpc, what clouds and splats may take [512]", 1,
-       1 << 20, .is_given = &job->layers.is_given},
-      {"occlusion", CLI_CHOICE, &job->layers.occlusion, "HOW",
+      {"memory", CLI_INT, &memory_mib, "MiB", "of an .lpc, what clouds and splats may take [512]", 1, 1 << 20,
+       .is_given = &is_streaming_given},
+      {"occlusion", CLI_CHOICE, &occlusion, "HOW",
        "of an .lpc, leave out what is hidden: auto, on or off; changes no bit [auto]", .choices = occlusion_words,
-       .is_given = &job->layers.is_given},
-      {"timeout", CLI_NUMBER, &job->layers.timeout, "S",
+       .is_given = &is_streaming_given},
+      {"timeout", CLI_NUMBER, &job->access.stall_seconds, "S",
        "of a URL, a server that is silent for so long is asked again, up to 4 times [15]", 1, 3600,
-       .is_given = &job->layers.is_given},
+       .is_given = &is_streaming_given},
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  job->access.memory_bytes = (uint64_t)memory_mib << 20;
+  job->access.connect_seconds = job->access.stall_seconds;
+  job->view.occlusion = (conic_occlusion)occlusion;
+  job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0;
   if (job->overdraw_path)
     job->planes |= 1u << CONIC_PLANE_COUNT;
   if (job->clusters_path)
     job->planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
   if (job->planes & 1u << CONIC_PLANE_CLUSTER)
     job->planes |= 1u << CONIC_PLANE_ID;
-  return answer == CLI_DONE ? check_outputs(session, job) : answer;
+  return answer == CLI_DONE ? check_outputs(session, job, is_streaming_given) : answer;
 }

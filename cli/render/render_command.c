@@ -60,7 +60,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
-  name_attribute(image, "conicSamples", NULL, (double)job->samples);
+  name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
   name_attribute(image, "conicCx", NULL, camera->cx);
@@ -120,23 +120,23 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
   if (!job->clusters_path)
     return CONIC_OK;
   char *path = frame_path(job, job->clusters_path, i_frame);
-  conic_status status = path ? cli_hybrid_write_clusters(session, path, image) : CONIC_ERROR_MEMORY;
+  conic_status status = path ? cli_clusters_write(session, path, image) : CONIC_ERROR_MEMORY;
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
   return status;
 }
 
 /* --deep: what is behind the picture's pixels. */
-static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                               const conic_camera *camera, const conic_image *image, int i_frame) {
-  const conic_drawing drawing = cli_scene_drawing(job, splats);
+static conic_status write_deep(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                               const conic_image *image, int i_frame) {
+  const conic_drawing *drawing = &conic_source_chosen(job->source)->drawing;
   conic_contributions *contributions;
   double start = cli_seconds();
   if (!job->deep_path)
     return CONIC_OK;
   char *path = frame_path(job, job->deep_path, i_frame);
   conic_status status =
-      path ? conic_contributions_create_drawing(session->context, &drawing, camera, &job->options, &contributions)
+      path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->options, &contributions)
            : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     status = conic_contributions_write(contributions, path, image);
@@ -144,24 +144,6 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
   }
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
-}
-
-/* One picture; where what is drawn is chosen for it, that counts among the frame's time. */
-static conic_status draw(cli_session *session, cli_render_job *job, const conic_splats *splats,
-                         const conic_camera *camera, conic_image *image, conic_render_statistics *statistics) {
-  double lod_ms;
-  conic_drawing drawing;
-  if (job->layers.file)
-    return cli_layers_draw(session, job, camera, image, statistics);
-  conic_status status = cli_scene_select(job, camera, splats, &drawing, &lod_ms);
-  if (status == CONIC_OK)
-    status = conic_render_drawing(session->context, job->renderer, &drawing, camera, &job->options, job->samples, image,
-                                  statistics);
-  if (status == CONIC_OK)
-    cli_scene_name(job, image);
-  statistics->ms.lod = lod_ms;
-  statistics->ms.frame += lod_ms;
   return status;
 }
 
@@ -180,14 +162,15 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
-static conic_status render_frame(cli_session *session, cli_render_job *job, const conic_splats *splats, int i_frame,
-                                 conic_image *image, conic_render_statistics *repeats) {
+static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
+                                 conic_render_statistics *repeats) {
   conic_camera camera;
-  conic_status status = cli_scene_camera(session, job, splats, i_frame, &camera);
+  conic_status status = cli_scene_camera(job, i_frame, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
-    status = draw(session, job, splats, &camera, image, &repeats[i]);
+    status = job->progressive_path ? cli_render_levels(session, job, &camera, image, &repeats[i])
+                                   : cli_render_picture(job, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
@@ -198,7 +181,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, cons
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_clusters(session, job, image, i_frame);
-  return status == CONIC_OK ? write_deep(session, job, splats, &camera, image, i_frame) : status;
+  return status == CONIC_OK ? write_deep(session, job, &camera, image, i_frame) : status;
 }
 
 static void tell(cli_session *session, const cli_render_job *job) {
@@ -210,8 +193,9 @@ static void tell(cli_session *session, const cli_render_job *job) {
                                 {"visibility", 1e-3 * ms->visibility},
                                 {"accumulate", 1e-3 * ms->accumulate},
                                 {"resolve", 1e-3 * ms->resolve}};
+  const conic_source_scale *scale = conic_source_measure(job->source);
   const cli_stage stages[] = {
-      {"read", 1e-3 * job->read_ms}, {"estimate", 1e-3 * job->estimate_ms}, {"write", 1e-3 * job->write_ms}};
+      {"read", scale->read_seconds}, {"estimate", scale->estimate_seconds}, {"write", 1e-3 * job->write_ms}};
   conic_context *context = session->context;
   if (s->triangles_in)
     conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
@@ -225,7 +209,7 @@ static void tell(cli_session *session, const cli_render_job *job) {
   cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
 }
 
-static int render_scene(cli_session *session, cli_render_job *job, const conic_splats *splats, double start) {
+static int render_scene(cli_session *session, cli_render_job *job) {
   conic_image image;
   int exit_code = CLI_DONE;
   memset(&image, 0, sizeof image);
@@ -234,9 +218,9 @@ static int render_scene(cli_session *session, cli_render_job *job, const conic_s
   for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
     if (job->is_turntable)
       cli_session_part(session, "frame", i + 1, job->n_frames);
-    status = render_frame(session, job, splats, i, &image, repeats);
+    status = render_frame(session, job, i, &image, repeats);
   }
-  job->total_ms = 1e3 * (cli_seconds() - start);
+  job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
   if (status == CONIC_OK) {
     tell(session, job);
     exit_code = cli_render_report(session, job, &image);
@@ -261,25 +245,21 @@ static conic_status check_formats(const cli_session *session, const cli_render_j
 
 static int run(cli_session *session, int argc, char **argv) {
   cli_render_job job;
-  conic_splats splats;
   double start = cli_seconds();
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
-  job.layers.start_seconds = start;
+  job.start_seconds = start;
   session->draws_many_frames = (double)job.repeat * job.n_frames >= MANY;
   if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
-    memset(&splats, 0, sizeof splats);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
     if (status == CONIC_OK)
-      status = cli_scene_read(session, &job, &splats);
-    if (status == CONIC_OK)
-      status = cli_scene_measure(session, &job, &splats);
-    exit_code = status == CONIC_OK ? render_scene(session, &job, &splats, start) : cli_exit_of(status);
-    cli_scene_release(session, &job, &splats);
+      status = cli_scene_open(session, &job);
+    exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
+    cli_scene_release(&job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

@@ -1,10 +1,21 @@
 #include "cli/render/render_job.h"
+#include "cli/source_facts.h"
 
 static double per_second_in_millions(double count, double ms) {
   return ms > 0.0 ? count / ms * 1e-3 : 0.0;
 }
 
-static void report_counts(cli_json *json, const cli_render_job *job) {
+static conic_status report_source(cli_json *json, const cli_render_job *job) {
+  conic_facts *facts;
+  conic_status status = conic_source_describe(job->source, &job->statistics, &facts);
+  if (status != CONIC_OK)
+    return status;
+  cli_facts_report(json, facts, 0);
+  conic_facts_destroy(facts);
+  return CONIC_OK;
+}
+
+static conic_status report_counts(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   double overdraw = s->pixels_covered ? (double)s->fragments / (double)s->pixels_covered : 0.0;
   cli_json_count(json, "splats_in", s->splats_in);
@@ -28,33 +39,7 @@ static void report_counts(cli_json *json, const cli_render_job *job) {
     if (s->splats_by_method[i])
       cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
   cli_json_close(json);
-  cli_json_object(json, "primitives");
-  cli_json_count(json, "splats", job->patches ? job->patch_selection.n_splats : s->splats_drawn);
-  if (s->triangles_in)
-    cli_json_count(json, "triangles", s->triangles_drawn);
-  if (job->patches) { /* of what was handed over to be drawn */
-    cli_json_count(json, "patches", job->patch_selection.n_patches);
-    cli_json_count(json, "samples", job->patch_selection.n_samples);
-  }
-  if (job->octree) { /* of what was handed over to be drawn */
-    cli_json_count(json, "leaves", job->selection.splats.count - job->selection.n_inner);
-    cli_json_count(json, "inner_nodes", job->selection.n_inner);
-  }
-  if (job->hybrid) {
-    cli_json_count(json, "triangle_patches", job->hybrid_selection.n_clusters[CONIC_HYBRID_TRIANGLES]);
-    cli_json_count(json, "surfel_patches", job->hybrid_selection.n_clusters[CONIC_HYBRID_SURFELS]);
-    cli_json_count(json, "simpler_patches", job->hybrid_selection.n_simpler);
-    cli_json_count(json, "joined_patches", job->hybrid_selection.n_joined);
-    cli_json_count(json, "nodes", job->hybrid_selection.n_nodes);
-    cli_json_count(json, "points", job->hybrid_selection.n_points);
-  }
-  cli_json_close(json);
-  if (job->layers.file)
-    cli_render_layers_report(json, job);
-  else
-    cli_json_count(json, "clouds_culled", job->hybrid ? job->hybrid_selection.n_culled : job->selection.n_culled);
-  if (job->octree || job->hybrid)
-    cli_json_number(json, "error_px", job->hybrid ? job->hybrid_selection.error_px : job->selection.error_px);
+  return report_source(json, job);
 }
 
 static void report_settings(cli_json *json, const cli_render_job *job) {
@@ -63,7 +48,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "isa", s->isa);
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
-  cli_json_count(json, "samples", (uint64_t)job->samples);
+  cli_json_count(json, "samples", (uint64_t)job->view.samples);
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
@@ -71,10 +56,11 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
 }
 
 static void report_times(cli_json *json, const cli_render_job *job) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
   const conic_render_statistics *s = &job->statistics;
   cli_json_object(json, "ms");
-  cli_json_number(json, "read", job->read_ms);
-  cli_json_number(json, "estimate", job->estimate_ms);
+  cli_json_number(json, "read", 1e3 * scale->read_seconds);
+  cli_json_number(json, "estimate", 1e3 * scale->estimate_seconds);
   cli_json_number(json, "lod", s->ms.lod);
   cli_json_number(json, "setup", s->ms.setup);
   cli_json_number(json, "bin", s->ms.bin);
@@ -108,9 +94,10 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
   cli_json *json = cli_json_open(session, &file, &exit_code);
   if (!json)
     return exit_code;
-  report_counts(json, job);
+  conic_status status = report_counts(json, job);
   report_settings(json, job);
   report_hashes(json, image);
   report_times(json, job);
-  return cli_json_finish(file);
+  exit_code = cli_json_finish(file);
+  return status == CONIC_OK ? exit_code : cli_exit_of(status);
 }

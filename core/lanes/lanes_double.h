@@ -1,18 +1,18 @@
-/* Doubles for as many splats as there are lanes: two halves, each of a native vector. */
+/* Doubles: a native vector of them, `wide`, and as many as there are lanes, which are two of these. */
 #ifndef CONIC_LANES_DOUBLE_H
 #define CONIC_LANES_DOUBLE_H
 
 #include "core/lanes/lanes.h"
 
-#define CONIC_HALF_LANES (CONIC_LANES / 2)
+#define CONIC_WIDE_LANES (CONIC_LANES / 2)
 
-typedef double half_doubles __attribute__((vector_size(8 * CONIC_HALF_LANES)));
-typedef float half_floats __attribute__((vector_size(4 * CONIC_HALF_LANES)));
-typedef int32_t half_ints __attribute__((vector_size(4 * CONIC_HALF_LANES)));
-typedef int64_t half_masks __attribute__((vector_size(8 * CONIC_HALF_LANES)));
+typedef double wide __attribute__((vector_size(8 * CONIC_WIDE_LANES)));
+typedef float wide_floats __attribute__((vector_size(4 * CONIC_WIDE_LANES)));
+typedef int32_t wide_ints __attribute__((vector_size(4 * CONIC_WIDE_LANES)));
+typedef int64_t wide_mask __attribute__((vector_size(8 * CONIC_WIDE_LANES)));
 
 typedef struct doubles {
-  half_doubles half[2];
+  wide half[2];
 } doubles;
 
 #if CONIC_LANES == 16
@@ -32,9 +32,9 @@ typedef struct doubles {
 #if defined(__AVX512F__)
 
 /* By name: gcc 12 would take them apart into quarters. */
-CONIC_INLINE half_doubles half_of(lanes value, int half) {
+CONIC_INLINE wide half_of(lanes value, int half) {
   __m256d part = half == 0 ? _mm512_castpd512_pd256((__m512d)value) : _mm512_extractf64x4_pd((__m512d)value, 1);
-  return (half_doubles)_mm512_cvtps_pd((__m256)part);
+  return (wide)_mm512_cvtps_pd((__m256)part);
 }
 
 /* Rounded to float. */
@@ -52,52 +52,93 @@ CONIC_INLINE int_lanes lanes_truncate(const doubles *value) {
 #else
 
 /* Both halves in one vector. */
-CONIC_INLINE lanes lanes_join(half_floats low, half_floats high) {
+CONIC_INLINE lanes lanes_join(wide_floats low, wide_floats high) {
   return __builtin_shufflevector(low, high, CONIC_ALL_LANES);
 }
 
-CONIC_INLINE int_lanes lanes_join_int(half_ints low, half_ints high) {
+CONIC_INLINE int_lanes lanes_join_int(wide_ints low, wide_ints high) {
   return __builtin_shufflevector(low, high, CONIC_ALL_LANES);
 }
 
-CONIC_INLINE half_doubles half_of(lanes value, int half) {
-  half_floats floats = half == 0 ? __builtin_shufflevector(value, value, CONIC_LOW_LANES)
+CONIC_INLINE wide half_of(lanes value, int half) {
+  wide_floats floats = half == 0 ? __builtin_shufflevector(value, value, CONIC_LOW_LANES)
                                  : __builtin_shufflevector(value, value, CONIC_HIGH_LANES);
-  return __builtin_convertvector(floats, half_doubles);
+  return __builtin_convertvector(floats, wide);
 }
 
 /* Rounded to float. */
 CONIC_INLINE lanes lanes_narrow(const doubles *value) {
-  return lanes_join(__builtin_convertvector(value->half[0], half_floats),
-                    __builtin_convertvector(value->half[1], half_floats));
+  return lanes_join(__builtin_convertvector(value->half[0], wide_floats),
+                    __builtin_convertvector(value->half[1], wide_floats));
 }
 
 /* Truncated; the values are within int32_t. */
 CONIC_INLINE int_lanes lanes_truncate(const doubles *value) {
-  return lanes_join_int(__builtin_convertvector(value->half[0], half_ints),
-                        __builtin_convertvector(value->half[1], half_ints));
+  return lanes_join_int(__builtin_convertvector(value->half[0], wide_ints),
+                        __builtin_convertvector(value->half[1], wide_ints));
 }
 
 #endif
 
-CONIC_INLINE half_doubles half_of_value(double value) {
-  return value - (half_doubles){0};
+CONIC_INLINE wide wide_of(double value) {
+  return value - (wide){0};
+}
+
+CONIC_INLINE wide wide_load(const double *from) {
+  wide value;
+  memcpy(&value, from, sizeof value);
+  return value;
+}
+
+CONIC_INLINE void wide_store(double *to, wide value) {
+  memcpy(to, &value, sizeof value);
+}
+
+CONIC_INLINE wide wide_load_floats(const float *from) {
+  wide_floats value;
+  memcpy(&value, from, sizeof value);
+  return __builtin_convertvector(value, wide);
+}
+
+CONIC_INLINE wide wide_select(wide_mask mask, wide yes, wide no) {
+  return (wide)((mask & (wide_mask)yes) | (~mask & (wide_mask)no));
+}
+
+/* value where the mask holds, else +0. */
+CONIC_INLINE wide wide_keep(wide_mask mask, wide value) {
+  return (wide)(mask & (wide_mask)value);
+}
+
+CONIC_INLINE wide wide_absolute(wide value) {
+  return (wide)((wide_mask)value & INT64_MAX);
+}
+
+CONIC_INLINE int wide_any(wide_mask mask) {
+#if defined(__AVX512F__)
+  return _mm512_movepi64_mask((__m512i)mask) != 0;
+#elif defined(__AVX2__)
+  return _mm256_movemask_pd((__m256d)mask) != 0;
+#elif defined(__SSE2__)
+  return _mm_movemask_pd((__m128d)mask) != 0;
+#else
+  return (mask[0] | mask[1]) != 0;
+#endif
 }
 
 /* a > b ? a : b and a < b ? a : b; the square root; which lanes have a > b, a ≤ b being false where one is not a
  * number. */
 #if defined(__AVX512F__)
 
-CONIC_INLINE half_doubles half_max(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm512_max_pd((__m512d)a, (__m512d)b);
+CONIC_INLINE wide wide_max(wide a, wide b) {
+  return (wide)_mm512_max_pd((__m512d)a, (__m512d)b);
 }
 
-CONIC_INLINE half_doubles half_min(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm512_min_pd((__m512d)a, (__m512d)b);
+CONIC_INLINE wide wide_min(wide a, wide b) {
+  return (wide)_mm512_min_pd((__m512d)a, (__m512d)b);
 }
 
-CONIC_INLINE half_doubles half_sqrt(half_doubles a) {
-  return (half_doubles)_mm512_sqrt_pd((__m512d)a);
+CONIC_INLINE wide wide_sqrt(wide a) {
+  return (wide)_mm512_sqrt_pd((__m512d)a);
 }
 
 CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
@@ -110,53 +151,51 @@ CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
 
 #if defined(__AVX2__)
 
-CONIC_INLINE half_doubles half_max(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm256_max_pd((__m256d)a, (__m256d)b);
+CONIC_INLINE wide wide_max(wide a, wide b) {
+  return (wide)_mm256_max_pd((__m256d)a, (__m256d)b);
 }
 
-CONIC_INLINE half_doubles half_min(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm256_min_pd((__m256d)a, (__m256d)b);
+CONIC_INLINE wide wide_min(wide a, wide b) {
+  return (wide)_mm256_min_pd((__m256d)a, (__m256d)b);
 }
 
-CONIC_INLINE half_doubles half_sqrt(half_doubles a) {
-  return (half_doubles)_mm256_sqrt_pd((__m256d)a);
+CONIC_INLINE wide wide_sqrt(wide a) {
+  return (wide)_mm256_sqrt_pd((__m256d)a);
 }
 
 #elif defined(__SSE2__)
 
-CONIC_INLINE half_doubles half_max(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm_max_pd((__m128d)a, (__m128d)b);
+CONIC_INLINE wide wide_max(wide a, wide b) {
+  return (wide)_mm_max_pd((__m128d)a, (__m128d)b);
 }
 
-CONIC_INLINE half_doubles half_min(half_doubles a, half_doubles b) {
-  return (half_doubles)_mm_min_pd((__m128d)a, (__m128d)b);
+CONIC_INLINE wide wide_min(wide a, wide b) {
+  return (wide)_mm_min_pd((__m128d)a, (__m128d)b);
 }
 
-CONIC_INLINE half_doubles half_sqrt(half_doubles a) {
-  return (half_doubles)_mm_sqrt_pd((__m128d)a);
+CONIC_INLINE wide wide_sqrt(wide a) {
+  return (wide)_mm_sqrt_pd((__m128d)a);
 }
 
 #else
 
-CONIC_INLINE half_doubles half_max(half_doubles a, half_doubles b) {
-  half_masks more = a > b;
-  return (half_doubles)((more & (half_masks)a) | (~more & (half_masks)b));
+CONIC_INLINE wide wide_max(wide a, wide b) {
+  return wide_select(a > b, a, b);
 }
 
-CONIC_INLINE half_doubles half_min(half_doubles a, half_doubles b) {
-  half_masks less = a < b;
-  return (half_doubles)((less & (half_masks)a) | (~less & (half_masks)b));
+CONIC_INLINE wide wide_min(wide a, wide b) {
+  return wide_select(a < b, a, b);
 }
 
-CONIC_INLINE half_doubles half_sqrt(half_doubles a) {
-  return (half_doubles){__builtin_sqrt(a[0]), __builtin_sqrt(a[1])};
+CONIC_INLINE wide wide_sqrt(wide a) {
+  return (wide){__builtin_sqrt(a[0]), __builtin_sqrt(a[1])};
 }
 
 #endif
 
 CONIC_INLINE lanes_mask lanes_greater_double(const doubles *a, double b) {
-  return lanes_join_int(__builtin_convertvector(a->half[0] > b, half_ints),
-                        __builtin_convertvector(a->half[1] > b, half_ints));
+  return lanes_join_int(__builtin_convertvector(a->half[0] > b, wide_ints),
+                        __builtin_convertvector(a->half[1] > b, wide_ints));
 }
 
 #endif

@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+#include "conic/isa.h"
 #include "conic/status.h"
 
 #ifdef __cplusplus
@@ -52,9 +53,13 @@ typedef struct conic_context_options {
 
   /* No single allocation is larger than this; 0: no limit. */
   size_t max_allocation_bytes;
+
+  /* Of all loops, but those of calls whose own options name another. One that is not here makes these calls fail with
+   * UNSUPPORTED. */
+  conic_isa isa;
 } conic_context_options;
 
-/* malloc and free, no messages, no progress, all threads, no limit. */
+/* malloc and free, no messages, no progress, all threads, no limit, the widest instructions. */
 CONIC_API void conic_context_options_init(conic_context_options *options);
 
 /* Creates a context; `options` may be null for the defaults. On success the caller owns *context and ends it with

@@ -81,7 +81,7 @@ typedef struct conic_contributions conic_contributions;
 
 /* Projects the splats, with tangent axes, for a frame; `options` as for conic_render. The splats must outlive
  * *contributions, which the caller owns on success and which must not outlive the context; on failure it is null.
- * Errors: ARGUMENT, MEMORY. */
+ * Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not here). */
 CONIC_API conic_status conic_contributions_create(conic_context *context, const conic_splats *splats,
                                                   const conic_camera *camera, const conic_render_options *options,
                                                   conic_contributions **contributions);

@@ -30,7 +30,7 @@ CONIC_API void conic_octree_options_init(conic_octree_options *options);
 /* Builds the hierarchy of splats with tangent axes. It takes the arrays over: *splats is empty afterwards, on failure
  * too. Splats that cannot be drawn are kept beside it. The result depends on the splats and the options only, never on
  * the threads. On success the caller owns *octree, which must not outlive the context. Errors: ARGUMENT, INPUT (nothing
- * to draw, or farther out than 1e15), MEMORY, CANCELLED. */
+ * to draw, or farther out than 1e15), MEMORY, CANCELLED, UNSUPPORTED (the context's instruction set). */
 CONIC_API conic_status conic_octree_build(conic_context *context, conic_splats *splats,
                                           const conic_octree_options *options, conic_octree **octree);
 
@@ -105,7 +105,7 @@ typedef struct conic_selection {
 
 /* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
  * error is at most so many pixels wherever in its sphere it is projected. The kernel's cutoff must be the octree's.
- * Errors: ARGUMENT, MEMORY. */
+ * Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not here). */
 CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
                                            const conic_render_options *render, const conic_selection_options *options,
                                            conic_selection *selection);

@@ -11,6 +11,7 @@
 #include "conic/camera.h"
 #include "conic/context.h"
 #include "conic/image.h"
+#include "conic/isa.h"
 #include "conic/splats.h"
 
 #ifdef __cplusplus
@@ -51,24 +52,6 @@ typedef enum conic_shading {
   CONIC_SHADE_LAMBERT = 1, /* ambient and diffuse */
   CONIC_SHADE_PHONG = 2    /* ambient, diffuse and a highlight */
 } conic_shading;
-
-/* Which instructions the hot loops use; none changes a bit of the image. */
-typedef enum conic_isa {
-  CONIC_ISA_AUTO = 0, /* the widest that this machine has */
-  CONIC_ISA_SCALAR = 1,
-  CONIC_ISA_SSE2 = 2,
-  CONIC_ISA_AVX2 = 3,
-  CONIC_ISA_AVX512 = 4,
-  CONIC_ISA_NEON = 5
-} conic_isa;
-
-#define CONIC_N_ISAS 6
-
-/* "auto", "scalar", "sse2" …; null for a number that is none. */
-CONIC_API const char *conic_isa_name(conic_isa isa);
-
-/* What `auto` stands for here. */
-CONIC_API conic_isa conic_isa_best(void);
 
 typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */

@@ -1,5 +1,5 @@
-/* What octree_cover.h says, in lanes: COVER and FIND_NEAR are the functions' names. Whatever the lanes, discs are taken
- * block by block in one order, so that all give the same. */
+/* What octree_cover.h says, in lanes. Whatever these are, discs are taken block by block in one order, so that all give
+ * the same. */
 #include <math.h>
 #include <string.h>
 
@@ -353,8 +353,8 @@ static void list_blocks(const conic_node_disc *node, float farthest, conic_near_
   end_list(&near->of_node);
 }
 
-float COVER(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
-            conic_near_discs *near, const conic_node_disc *node) {
+static float find_cover(const conic_disc_samples *samples, const conic_discs *discs, size_t begin, size_t end,
+                        conic_near_discs *near, const conic_node_disc *node) {
   cover c = {.node = node, .enough = node->enough};
   int is_listed = 0;
   begin_cover(samples, &c);
@@ -377,7 +377,7 @@ float COVER(const conic_disc_samples *samples, const conic_discs *discs, size_t 
   }
 }
 
-void FIND_NEAR(const conic_discs *discs, conic_near_discs *near) {
+static void find_near(const conic_discs *discs, conic_near_discs *near) {
   middle_box box;
   memcpy(box.center, near->center, sizeof box.center);
   memcpy(box.half, near->half, sizeof box.half);

@@ -444,8 +444,10 @@ static conic_status run_pass(error_pass *pass) {
 }
 
 conic_status conic_octree_find_errors(conic_octree *octree) {
-  error_pass pass = {.octree = octree, .kernels = conic_octree_kernels_choose(), .sizes = {1, 64, 1, 8192}};
-  conic_status status = CONIC_OK;
+  error_pass pass = {.octree = octree, .sizes = {1, 64, 1, 8192}};
+  conic_isa isa;
+  conic_status status = conic_isa_choose(octree->context, CONIC_ISA_AUTO, &isa);
+  conic_octree_kernels_init(&pass.kernels, isa);
   conic_disc_samples_init(&pass.samples);
   while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {
     status = conic_progress(octree->context, "octree", pass.sizes.above == 1 ? 0.7 : 0.95);

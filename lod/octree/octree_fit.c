@@ -190,16 +190,19 @@ static size_t list_tasks(const conic_octree *octree, fit_task *tasks) {
 }
 
 conic_status conic_octree_fit(conic_octree *octree) {
-  fitter f = {.octree = octree, .kernels = conic_octree_kernels_choose()};
+  fitter f = {.octree = octree};
   conic_moments root;
-  if (octree->n_nodes == 0)
-    return CONIC_OK;
+  conic_isa isa;
+  conic_status status = conic_isa_choose(octree->context, CONIC_ISA_AUTO, &isa);
+  if (status != CONIC_OK || octree->n_nodes == 0)
+    return status;
+  conic_octree_kernels_init(&f.kernels, isa);
   f.n_tasks = list_tasks(octree, NULL);
   f.tasks = conic_memory_allocate(octree->context, f.n_tasks, sizeof *f.tasks);
   if (!f.tasks)
     return CONIC_ERROR_MEMORY;
   list_tasks(octree, f.tasks);
-  conic_status status = conic_progress(octree->context, "octree", 0.4);
+  status = conic_progress(octree->context, "octree", 0.4);
   if (status == CONIC_OK) {
     conic_parallel_for(octree->context, f.n_tasks, run_task, &f);
     status = fit_top(&f, 0, &root);

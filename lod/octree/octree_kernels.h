@@ -1,7 +1,8 @@
-/* The loops that take the time of building and of choosing, as the instruction sets have them: all give the same. */
+/* The loops that take the time of building and of choosing. */
 #ifndef CONIC_OCTREE_KERNELS_H
 #define CONIC_OCTREE_KERNELS_H
 
+#include "core/lanes/instruction_sets.h"
 #include "lod/octree/octree_cover.h"
 #include "lod/octree/octree_fit.h"
 #include "lod/octree/octree_view.h"
@@ -21,14 +22,6 @@ typedef struct conic_octree_kernels {
   conic_put_function *put;
 } conic_octree_kernels;
 
-extern conic_cover_function conic_cover_baseline, conic_cover_avx2, conic_cover_avx512;
-extern conic_find_near_function conic_find_near_baseline, conic_find_near_avx2, conic_find_near_avx512;
-extern conic_add_reach_function conic_add_reach_baseline, conic_add_reach_avx2, conic_add_reach_avx512;
-extern conic_choose_ratio_function conic_choose_ratio_baseline, conic_choose_ratio_avx2, conic_choose_ratio_avx512;
-extern conic_measure_function conic_measure_baseline, conic_measure_avx2, conic_measure_avx512;
-extern conic_put_function conic_put_baseline, conic_put_avx2, conic_put_avx512;
-
-/* The fastest that this machine has. */
-conic_octree_kernels conic_octree_kernels_choose(void);
+CONIC_DECLARE_KERNELS(conic_octree_kernels);
 
 #endif

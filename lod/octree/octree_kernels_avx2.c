@@ -1,14 +1,5 @@
 #if defined(__x86_64__)
-#define COVER conic_cover_avx2
-#define FIND_NEAR conic_find_near_avx2
-#define ADD_REACH conic_add_reach_avx2
-#define CHOOSE_RATIO conic_choose_ratio_avx2
-#define MEASURE conic_measure_avx2
-#define PUT conic_put_avx2
-#include "lod/octree/octree_cover_body.h"
-#include "lod/octree/octree_measure_body.h"
-#include "lod/octree/octree_put_body.h"
-#include "lod/octree/octree_reach_body.h"
+#include "lod/octree/octree_kernels_body.h"
 #else
 typedef int conic_not_this_machine;
 #endif

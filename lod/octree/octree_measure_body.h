@@ -1,14 +1,13 @@
-/* What octree_view.h says of measuring, for compilers to put in lanes: MEASURE is the function's name. */
+/* What octree_view.h says of measuring: plain C, which compilers put in lanes. */
 #include <math.h>
 
-#include "core/lanes/lanes.h"
 #include "lod/octree/octree_kernels.h"
 
 /* A displacement by e of what is at X changes its projection by no more than f·e·|X|/z²: the greatest factor of the
  * projection's derivative is f·|X|/z². All that a node is about, from its leaves' discs to its own, lies in its sphere,
  * and so does the way from the one to the other. */
-CONIC_INLINE void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin,
-                                 float *pixels) {
+static inline void measure_errors(const conic_octree *octree, const conic_octree_view *view, size_t begin,
+                                  float *pixels) {
   const float *x = octree->center[0] + begin, *y = octree->center[1] + begin, *z = octree->center[2] + begin;
   const float *radius = octree->radius + begin, *error = octree->error + begin;
   const conic_octree_view v = *view;
@@ -33,7 +32,7 @@ CONIC_INLINE void measure_errors(const conic_octree *octree, const conic_octree_
 
 /* Nodes all of whose leaves face away are out of sight. Where some may and others do not, a part of what the node shows
  * is culled, and what is left of it may be at its other end: its error is its diameter. */
-CONIC_INLINE void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, float *pixels) {
+static inline void cull_backs(const conic_octree *octree, const conic_octree_view *view, size_t begin, float *pixels) {
   const float *x = octree->center[0] + begin, *y = octree->center[1] + begin, *z = octree->center[2] + begin;
   const float *nx = octree->normal[0] + begin, *ny = octree->normal[1] + begin, *nz = octree->normal[2] + begin;
   const float *radius = octree->radius + begin, *cone = octree->cone + begin, *error = octree->error + begin;
@@ -57,7 +56,7 @@ CONIC_INLINE void cull_backs(const conic_octree *octree, const conic_octree_view
   }
 }
 
-void MEASURE(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n, float *pixels) {
+static void measure(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n, float *pixels) {
   for (size_t k = 0; k < n; k += CONIC_OCTREE_GROUP) {
     measure_errors(octree, view, begin + k, pixels + k);
     if (view->cull_back)

@@ -1,5 +1,5 @@
 /* Takes chosen nodes and leaves, a line of the cache each, apart into the arrays of a set of splats, as many at a time
- * as there are lanes: PUT is the function's name. */
+ * as there are lanes. */
 #include "core/lanes/lanes_store.h"
 #include "lod/octree/octree_kernels.h"
 
@@ -78,8 +78,8 @@ CONIC_INLINE void put_group(const group fields[N_FIELDS], size_t n, const conic_
   memcpy(ids + k, &fields[AT_ID], n * sizeof *ids);
 }
 
-void PUT(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye, const conic_splats *to,
-         uint32_t *ids, size_t place) {
+static void put(const conic_octree *octree, const uint32_t *sources, size_t n, const float *eye, const conic_splats *to,
+                uint32_t *ids, size_t place) {
   const conic_drawn_node *const kinds[2] = {octree->drawn_leaves, octree->drawn};
   for (size_t first = 0; first < n; first += GROUP) {
     const conic_drawn_node *chosen[GROUP];

@@ -1,92 +1,19 @@
-/* How far leaves reach from a node, in lanes of doubles: ADD_REACH and CHOOSE_RATIO are the functions' names. Leaves
- * are taken in batches of the same size whatever the lanes, so that all give the same. */
+/* How far leaves reach from a node, in lanes of doubles. Leaves are taken in batches of the same size whatever the
+ * lanes, so that all give the same. */
 #include <math.h>
 #include <string.h>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/lanes_double.h"
 #include "lod/octree/octree_kernels.h"
-
-#if defined(__AVX512F__)
-enum { WIDE = 8 };
-#elif defined(__AVX2__)
-enum { WIDE = 4 };
-#else
-enum { WIDE = 2 };
-#endif
-
-typedef double wide __attribute__((vector_size(8 * WIDE)));
-typedef int64_t wide_mask __attribute__((vector_size(8 * WIDE)));
-typedef float narrow __attribute__((vector_size(4 * WIDE)));
-
-enum { REACH_BATCH = 8 };
-
-/* An outline is held by the polygon of 16 corners around it: eight, and eight opposite. */
-enum { CORNERS = 8 };
-static const double corners_x[CORNERS] = {
-    1.0195911582083184,  0.9419794021690183,  0.7209598220069479, 0.3901806440322565, 0.0,
-    -0.3901806440322565, -0.7209598220069479, -0.9419794021690183};
-static const double corners_y[CORNERS] = {0.0,
-                                          0.3901806440322565,
-                                          0.7209598220069479,
-                                          0.9419794021690183,
-                                          1.0195911582083184,
-                                          0.9419794021690183,
-                                          0.7209598220069479,
-                                          0.3901806440322565};
-
-CONIC_INLINE int wide_any(wide_mask mask) {
-#if defined(__AVX512F__)
-  return _mm512_movepi64_mask((__m512i)mask) != 0;
-#elif defined(__AVX2__)
-  return _mm256_movemask_pd((__m256d)mask) != 0;
-#elif defined(__SSE2__)
-  return _mm_movemask_pd((__m128d)mask) != 0;
-#else
-  return (mask[0] | mask[1]) != 0;
-#endif
-}
-
-CONIC_INLINE wide wide_sqrt(wide a) {
-#if defined(__AVX512F__)
-  return (wide)_mm512_sqrt_pd((__m512d)a);
-#elif defined(__AVX2__)
-  return (wide)_mm256_sqrt_pd((__m256d)a);
-#elif defined(__SSE2__)
-  return (wide)_mm_sqrt_pd((__m128d)a);
-#else
-  return (wide){sqrt(a[0]), sqrt(a[1])};
-#endif
-}
-
-CONIC_INLINE wide wide_select(wide_mask mask, wide yes, wide no) {
-  return (wide)((mask & (wide_mask)yes) | (~mask & (wide_mask)no));
-}
-
-CONIC_INLINE wide wide_absolute(wide a) {
-  return (wide)((wide_mask)a & INT64_MAX);
-}
-
-CONIC_INLINE wide wide_max(wide a, wide b) {
-  return wide_select(a > b, a, b);
-}
+#include "lod/octree/outline_corners.h"
 
 CONIC_INLINE double wide_greatest(wide a) {
-  double all[WIDE], greatest;
+  double all[CONIC_WIDE_LANES], greatest;
   memcpy(all, &a, sizeof all);
   greatest = all[0];
-  for (int i = 1; i < WIDE; i++)
+  for (int i = 1; i < CONIC_WIDE_LANES; i++)
     greatest = all[i] > greatest ? all[i] : greatest;
   return greatest;
-}
-
-CONIC_INLINE wide wide_of(double value) {
-  return value - (wide){0};
-}
-
-CONIC_INLINE wide load_wide(const float *from) {
-  narrow value;
-  memcpy(&value, from, sizeof value);
-  return __builtin_convertvector(value, wide);
 }
 
 CONIC_INLINE wide dot_wide(const wide a[3], const double b[3]) {
@@ -120,8 +47,9 @@ CONIC_INLINE void add_outline(const wide_leaf *leaf, double cutoff, const conic_
   wide_mask may_widen = leaf->is_there & ~is_within(square, square_out, before->reach);
   if (!wide_any(may_widen))
     return;
-  for (int k = 0; k < CORNERS; k++) {
-    wide a = cutoff * (corners_x[k] * ux + corners_y[k] * vx), b = cutoff * (corners_x[k] * uy + corners_y[k] * vy);
+  for (int k = 0; k < CONIC_OUTLINE_CORNERS; k++) {
+    wide a = cutoff * (conic_corners_x[k] * ux + conic_corners_y[k] * vx),
+         b = cutoff * (conic_corners_x[k] * uy + conic_corners_y[k] * vy);
     greatest2 = wide_max(square + (a * a + b * b) + 2.0 * wide_absolute(a * x + b * y), greatest2);
   }
   double greatest = sqrt(wide_greatest(wide_select(may_widen, greatest2, (wide){0})));
@@ -169,17 +97,17 @@ CONIC_INLINE void add_normal(const wide_leaf *leaf, const double n[3], const con
 /* A batch of n leaves, or of the first of as many as one has. */
 CONIC_INLINE void add_batch(const float *const columns[9], size_t n, double cutoff, const conic_node_frame *frame,
                             conic_leaf_reach *reach) {
-  static const int64_t places[REACH_BATCH] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static const int64_t places[CONIC_REACH_BATCH] = {0, 1, 2, 3, 4, 5, 6, 7};
   const conic_leaf_reach before = *reach;
-  for (size_t part = 0; part < n; part += WIDE) {
+  for (size_t part = 0; part < n; part += CONIC_WIDE_LANES) {
     wide_leaf leaf;
     wide_mask place;
     memcpy(&place, places + part, sizeof place);
     leaf.is_there = place < (int64_t)n - (wide_mask){0};
     for (int axis = 0; axis < 3; axis++) {
-      leaf.p[axis] = load_wide(columns[axis] + part) - frame->position[axis];
-      leaf.u[axis] = load_wide(columns[3 + axis] + part);
-      leaf.v[axis] = load_wide(columns[6 + axis] + part);
+      leaf.p[axis] = wide_load_floats(columns[axis] + part) - frame->position[axis];
+      leaf.u[axis] = wide_load_floats(columns[3 + axis] + part);
+      leaf.v[axis] = wide_load_floats(columns[6 + axis] + part);
     }
     add_outline(&leaf, cutoff, frame, &before, reach);
     add_radius(&leaf, cutoff, &before, reach);
@@ -188,17 +116,17 @@ CONIC_INLINE void add_batch(const float *const columns[9], size_t n, double cuto
   }
 }
 
-void ADD_REACH(const conic_splats *leaves, size_t begin, size_t end, double cutoff, const conic_node_frame *frame,
-               conic_leaf_reach *reach) {
+static void add_reach(const conic_splats *leaves, size_t begin, size_t end, double cutoff,
+                      const conic_node_frame *frame, conic_leaf_reach *reach) {
   float *const *const vectors[3] = {leaves->position, leaves->tangent_u, leaves->tangent_v};
-  float last[9][REACH_BATCH];
+  float last[9][CONIC_REACH_BATCH];
   const float *columns[9];
-  for (size_t first = begin; first < end; first += REACH_BATCH) {
-    size_t n = end - first < REACH_BATCH ? end - first : REACH_BATCH;
+  for (size_t first = begin; first < end; first += CONIC_REACH_BATCH) {
+    size_t n = end - first < CONIC_REACH_BATCH ? end - first : CONIC_REACH_BATCH;
     for (int k = 0; k < 9; k++) {
       columns[k] = vectors[k / 3][k % 3] + first;
-      if (leaves->count - first < REACH_BATCH) { /* there is nothing to load behind the last */
-        for (size_t i = 0; i < REACH_BATCH; i++)
+      if (leaves->count - first < CONIC_REACH_BATCH) { /* there is nothing to load behind the last */
+        for (size_t i = 0; i < CONIC_REACH_BATCH; i++)
           last[k][i] = columns[k][i < n ? i : n - 1];
         columns[k] = last[k];
       }
@@ -223,44 +151,44 @@ CONIC_INLINE void place_corners(const conic_splats *leaves, size_t i, double cut
     flat[part][0] = major[0] * along_u + major[1] * along_v;
     flat[part][1] = major[0] * along_v - major[1] * along_u;
   }
-  for (int k = 0; k < CORNERS; k += WIDE) {
+  for (int k = 0; k < CONIC_OUTLINE_CORNERS; k += CONIC_WIDE_LANES) {
     wide cx, cy;
-    memcpy(&cx, corners_x + k, sizeof cx);
-    memcpy(&cy, corners_y + k, sizeof cy);
+    memcpy(&cx, conic_corners_x + k, sizeof cx);
+    memcpy(&cy, conic_corners_y + k, sizeof cy);
     wide x = cutoff * (cx * flat[1][0] + cy * flat[2][0]), y = cutoff * (cx * flat[1][1] + cy * flat[2][1]);
     wide x_before = flat[0][0] - x, x_after = flat[0][0] + x, y_before = flat[0][1] - y, y_after = flat[0][1] + y;
-    narrow squares[4] = {
-        __builtin_convertvector(x_before * x_before, narrow), __builtin_convertvector(x_after * x_after, narrow),
-        __builtin_convertvector(y_before * y_before, narrow), __builtin_convertvector(y_after * y_after, narrow)};
+    wide_floats squares[4] = {__builtin_convertvector(x_before * x_before, wide_floats),
+                              __builtin_convertvector(x_after * x_after, wide_floats),
+                              __builtin_convertvector(y_before * y_before, wide_floats),
+                              __builtin_convertvector(y_after * y_after, wide_floats)};
     memcpy(x2 + k, &squares[0], sizeof squares[0]);
-    memcpy(x2 + CORNERS + k, &squares[1], sizeof squares[1]);
+    memcpy(x2 + CONIC_OUTLINE_CORNERS + k, &squares[1], sizeof squares[1]);
     memcpy(y2 + k, &squares[2], sizeof squares[2]);
-    memcpy(y2 + CORNERS + k, &squares[3], sizeof squares[3]);
+    memcpy(y2 + CONIC_OUTLINE_CORNERS + k, &squares[3], sizeof squares[3]);
   }
 }
 
-double CHOOSE_RATIO(const conic_splats *leaves, size_t begin, size_t end, double cutoff, const double place[3],
-                    const double u[3], const double v[3], const conic_ellipse *shape, double least_ratio) {
-  enum { N_RATIOS = 9 };
-  static const double factors[N_RATIOS] = {0.5, 0.59, 0.68, 0.77, 0.86, 1.0, 1.15, 1.3, 1.5};
-  float x2[2 * CORNERS * CONIC_FEW_LEAVES], y2[2 * CORNERS * CONIC_FEW_LEAVES], best_area = HUGE_VALF;
-  double best = shape->ratio, ratios[N_RATIOS];
-  float across2[N_RATIOS];
-  lanes greatest[N_RATIOS];
-  size_t n = 2 * CORNERS * (end - begin);
+static double choose_ratio(const conic_splats *leaves, size_t begin, size_t end, double cutoff, const double place[3],
+                           const double u[3], const double v[3], const conic_ellipse *shape, double least_ratio) {
+  float x2[2 * CONIC_OUTLINE_CORNERS * CONIC_FEW_LEAVES], y2[2 * CONIC_OUTLINE_CORNERS * CONIC_FEW_LEAVES],
+      best_area = HUGE_VALF;
+  double best = shape->ratio, ratios[CONIC_N_RATIOS];
+  float across2[CONIC_N_RATIOS];
+  lanes greatest[CONIC_N_RATIOS];
+  size_t n = 2 * CONIC_OUTLINE_CORNERS * (end - begin);
   for (size_t i = begin; i < end; i++)
-    place_corners(leaves, i, cutoff, place, u, v, shape->major, x2 + 2 * CORNERS * (i - begin),
-                  y2 + 2 * CORNERS * (i - begin));
-  for (int k = 0; k < N_RATIOS; k++) {
-    double ratio = factors[k] * shape->ratio;
+    place_corners(leaves, i, cutoff, place, u, v, shape->major, x2 + 2 * CONIC_OUTLINE_CORNERS * (i - begin),
+                  y2 + 2 * CONIC_OUTLINE_CORNERS * (i - begin));
+  for (int k = 0; k < CONIC_N_RATIOS; k++) {
+    double ratio = conic_ratio_factors[k] * shape->ratio;
     ratios[k] = ratio > 1.0 ? 1.0 : ratio < least_ratio ? least_ratio : ratio;
     across2[k] = (float)(1.0 / (ratios[k] * ratios[k]));
     greatest[k] = lanes_of(0.0f);
   }
   for (size_t i = 0; i < n; i += CONIC_LANES)
-    for (int k = 0; k < N_RATIOS; k++)
+    for (int k = 0; k < CONIC_N_RATIOS; k++)
       greatest[k] = lanes_max(lanes_load(x2 + i) + lanes_load(y2 + i) * across2[k], greatest[k]);
-  for (int k = 0; k < N_RATIOS; k++) {
+  for (int k = 0; k < CONIC_N_RATIOS; k++) {
     float area = greatest_of(greatest[k]) * (float)ratios[k];
     if (area < best_area) {
       best_area = area;

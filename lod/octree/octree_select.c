@@ -274,14 +274,19 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
-  s.put = conic_octree_kernels_choose().put;
-  conic_status status = conic_octree_decode_all(octree);
+  conic_render_options drawn = *render;
+  conic_octree_kernels kernels;
+  conic_status status = conic_isa_choose(octree->context, render->isa, &drawn.isa);
+  conic_octree_kernels_init(&kernels, drawn.isa);
+  s.put = kernels.put;
+  if (status == CONIC_OK)
+    status = conic_octree_decode_all(octree);
   if (status == CONIC_OK)
     status = keep_scratch(octree, selection);
   if (status != CONIC_OK)
     return status;
   s.scratch = selection->scratch;
-  conic_octree_view_init(octree, camera, render, render->near_z > 0.0 ? render->near_z : conic_octree_near(octree),
+  conic_octree_view_init(octree, camera, &drawn, render->near_z > 0.0 ? render->near_z : conic_octree_near(octree),
                          &s.view);
   if (options->budget && octree->n_nodes)
     status = conic_octree_fit_budget(octree, &s.view, options->budget, &s.error_px);

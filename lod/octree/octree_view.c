@@ -39,5 +39,7 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
   view->slack = 1e-6f;
   view->slack_offset = (float)(1e-6 * farthest);
   view->cull_back = render->cull_back;
-  view->measure = conic_octree_kernels_choose().measure;
+  conic_octree_kernels kernels;
+  conic_octree_kernels_init(&kernels, render->isa);
+  view->measure = kernels.measure;
 }

@@ -22,9 +22,10 @@ struct conic_octree_view {
   float focal_px; /* the longer of the two */
   float slack, slack_offset;
   int cull_back;
-  conic_measure_function *measure; /* the fastest that there is; all give the same */
+  conic_measure_function *measure;
 };
 
+/* The options' instruction set has to be here. */
 void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
                             double near_z, conic_octree_view *view);
 

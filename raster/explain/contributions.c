@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/kernels/tile_kernels.h"
+#include "raster/kernels/raster_kernels.h"
 
 /* Splats that a thread projects at a time. */
 enum { CHUNK = 1 << 14 };
@@ -89,15 +89,19 @@ static conic_status list_bands(conic_contributions *c) {
 
 static conic_status prepare_triangles(conic_contributions *c, const conic_camera *camera) {
   const conic_triangles *triangles = c->drawing.triangles;
-  if (!triangles)
-    return CONIC_OK;
-  conic_status status = conic_triangles_check(c->context, triangles, "contributions");
+  conic_raster_kernels kernels;
+  conic_isa isa;
+  conic_status status = conic_isa_choose(c->context, c->options.isa, &isa);
+  if (status != CONIC_OK || !triangles)
+    return status;
+  conic_raster_kernels_init(&kernels, isa);
+  status = conic_triangles_check(c->context, triangles, "contributions");
   if (status != CONIC_OK)
     return status;
   conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
   c->triangles.first_id = (uint32_t)c->splats->count;
   conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
-  return conic_triangle_frame_prepare(&c->triangles, conic_tile_kernels_of(CONIC_ISA_AUTO));
+  return conic_triangle_frame_prepare(&c->triangles, &kernels.triangles);
 }
 
 conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,

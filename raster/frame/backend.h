@@ -3,7 +3,7 @@
 #ifndef CONIC_BACKEND_H
 #define CONIC_BACKEND_H
 
-#include "raster/tiles/resolve.h"
+#include "raster/tiles/finish.h"
 
 typedef struct conic_backend conic_backend;
 

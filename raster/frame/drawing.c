@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "raster/kernels/tile_kernels.h"
+#include "raster/kernels/raster_kernels.h"
 #include "raster/triangles/triangle_frame.h"
 #include "raster/view/scene_scale.h"
 
@@ -27,15 +27,18 @@ conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole
 }
 
 conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,
-                                       const conic_view *view, const conic_camera *camera,
+                                       const conic_view *view, const conic_camera *camera, conic_isa isa,
                                        conic_render_statistics *statistics) {
   conic_triangle_frame frame;
-  if (!drawing->triangles)
-    return CONIC_OK;
+  conic_raster_kernels kernels;
+  conic_status status = conic_isa_choose(context, isa, &isa);
+  if (status != CONIC_OK || !drawing->triangles)
+    return status;
+  conic_raster_kernels_init(&kernels, isa);
   memset(&frame, 0, sizeof frame);
   conic_triangle_frame_begin(&frame, context, drawing->triangles, view, camera);
   conic_triangle_frame_tiles(&frame, CONIC_GREATEST_TILE);
-  conic_status status = conic_triangle_frame_prepare(&frame, conic_tile_kernels_of(CONIC_ISA_AUTO));
+  status = conic_triangle_frame_prepare(&frame, &kernels.triangles);
   statistics->triangles_culled = statistics->triangles_skipped = statistics->triangles_drawn = 0;
   if (status == CONIC_OK)
     conic_triangle_frame_count(&frame, statistics);

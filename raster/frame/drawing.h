@@ -26,9 +26,10 @@ conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_draw
 conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole_drawing *drawing,
                                        conic_render_options *options);
 
-/* What becomes of the triangles in a picture of the camera, without drawing it. Errors: MEMORY, ARGUMENT. */
+/* What becomes of the triangles in a picture of the camera, without drawing it. Errors: MEMORY, ARGUMENT,
+ * UNSUPPORTED. */
 conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,
-                                       const conic_view *view, const conic_camera *camera,
+                                       const conic_view *view, const conic_camera *camera, conic_isa isa,
                                        conic_render_statistics *statistics);
 
 #endif

@@ -45,7 +45,8 @@ typedef struct frame {
   conic_projected projected;
   conic_bins bins;
   conic_finish finish;
-  const conic_tile_kernels *kernels;
+  conic_isa isa;
+  conic_raster_kernels kernels;
   conic_image *image;
   conic_window window;     /* the pixels that are drawn: whole tiles */
   float *hiding;           /* in the place of an image; else null */
@@ -197,11 +198,11 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
   conic_sorter_place(&f->bins, f->projected.chunk_size, f->splats->n_clips > 0, f->projected.rays,
                      f->sorters + (size_t)i_thread * f->sorter_bytes, &sorter);
   sorter.chunk.first_ray = begin;
-  f->kernels->project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
+  f->kernels.project.project(&f->view, f->splats, begin, end < n ? end : n, &sorter.projected, &sorter.chunk);
   if (sorter.projected.clips)
     conic_clip_chunk(&f->view, f->splats, begin, &sorter.projected, &sorter.chunk);
   uint64_t projected = conic_ticks();
-  conic_bins_sort(&f->bins, f->kernels, &sorter, i_chunk, &f->projected);
+  conic_bins_sort(&f->bins, &f->kernels.bins, &sorter, i_chunk, &f->projected);
   f->times[i_thread].setup += projected - start;
   f->times[i_thread].sort += conic_ticks() - projected;
 }
@@ -249,7 +250,7 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   uint64_t start = conic_ticks();
   begin_tile(f, i_tile, i_thread, &tile);
   f->times[i_thread].lists += conic_ticks() - start;
-  conic_tile_draw(&tile, f->kernels, &f->finish, f->image, &report);
+  conic_tile_draw(&tile, &f->kernels, &f->finish, f->image, &report);
   f->times[i_thread].lists += report.lists;
   f->times[i_thread].visibility += report.visibility;
   f->times[i_thread].accumulate += report.accumulate;
@@ -324,7 +325,7 @@ static void count_up(const frame *f, const conic_render_options *options, conic_
   statistics->triangle_fragments = atomic_load(&f->n_triangle_fragments);
   statistics->threads = conic_context_threads(f->renderer->context);
   statistics->tile = f->bins.tile;
-  statistics->isa = f->kernels->name;
+  statistics->isa = conic_isa_name(f->isa);
 }
 
 static void note_settings(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
@@ -368,7 +369,7 @@ static conic_status draw(frame *f, conic_render_milliseconds *ms) {
   conic_status status = project_and_sort(f);
   double sorted = conic_seconds_now();
   if (status == CONIC_OK && f->triangles)
-    status = conic_triangle_frame_prepare(f->triangles, f->kernels);
+    status = conic_triangle_frame_prepare(f->triangles, &f->kernels.triangles);
   if (status != CONIC_OK)
     return status;
   double prepared = conic_seconds_now();
@@ -419,12 +420,12 @@ static conic_status render(frame *f, const conic_whole_drawing *drawing, const c
   conic_renderer *renderer = f->renderer;
   conic_context *context = renderer->context;
   memset(&counted, 0, sizeof counted);
-  f->kernels = conic_tile_kernels_of(options->isa);
-  if (!f->kernels)
-    return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "render: this machine or build has no %s",
-                      conic_isa_name(options->isa) ? conic_isa_name(options->isa) : "such instruction set");
   conic_render_options scaled = *options;
-  conic_status status = conic_whole_drawing_scale(context, drawing, &scaled);
+  conic_status status = conic_isa_choose(context, options->isa, &f->isa);
+  if (status != CONIC_OK)
+    return status;
+  conic_raster_kernels_init(&f->kernels, f->isa);
+  status = conic_whole_drawing_scale(context, drawing, &scaled);
   if (status == CONIC_OK)
     status = conic_view_init(context, f->splats, camera, options, scaled.near_z, scaled.splat_length, &f->view);
   if (status == CONIC_OK)

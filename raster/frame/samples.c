@@ -194,7 +194,7 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   }
   conic_method_count(options->method, n_rays, s);
   conic_memory_release(context, c.chunks);
-  return conic_whole_drawing_count(context, drawing, &c.view, camera, s);
+  return conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s);
 }
 
 static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_whole_drawing *drawing,

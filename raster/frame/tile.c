@@ -30,9 +30,9 @@ void conic_tile_place_scratch(conic_tile *tile, void *memory) {
 }
 
 /* The splats that meet row i_row of the tile's blocks. */
-static void select_band(const conic_tile *tile, const conic_tile_kernels *kernels, int i_row, conic_band *band) {
-  band->n = kernels->select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
-                            tile->scratch.indices, tile->scratch.words);
+static void select_band(const conic_tile *tile, const conic_raster_kernels *kernels, int i_row, conic_band *band) {
+  band->n = kernels->bins.select(tile->scratch.entries, tile->n_references, UINT32_C(0x10000) << i_row,
+                                 tile->scratch.indices, tile->scratch.words);
   band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
 }
 
@@ -49,12 +49,12 @@ static void raise_hiding(const conic_tile *tile, const conic_band *band) {
     }
 }
 
-static void hide(const conic_tile *tile, const conic_tile_kernels *kernels, conic_band *band,
+static void hide(const conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band,
                  conic_tile_report *report) {
   uint64_t start = conic_ticks();
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     select_band(tile, kernels, i_row, band);
-    kernels->visibility(band);
+    kernels->passes.visibility(band);
     raise_hiding(tile, band);
   }
   report->visibility += conic_ticks() - start;
@@ -67,30 +67,30 @@ static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band)
     conic_triangle_tile_row(tile->triangles, tile->triangle_tile, i_row, band);
 }
 
-static void draw_triangles(const conic_tile *tile, const conic_tile_kernels *kernels, conic_tile_report *report) {
+static void draw_triangles(const conic_tile *tile, const conic_raster_kernels *kernels, conic_tile_report *report) {
   uint64_t start = conic_ticks();
-  kernels->triangles_draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
+  kernels->triangles.draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
   report->n_triangle_fragments = tile->triangle_tile->n_fragments;
   report->visibility += conic_ticks() - start;
 }
 
 /* Visibility and accumulation of all rows, each resolved at once. */
-static void draw_blended(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+static void draw_blended(const conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     uint64_t start = conic_ticks();
     select_band(tile, kernels, i_row, band);
     uint64_t listed = conic_ticks();
-    kernels->visibility(band);
+    kernels->passes.visibility(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles)
-      kernels->triangles_hide(band, rays);
+      kernels->triangles.hide(band, rays);
     uint64_t seen = conic_ticks();
-    kernels->accumulate(band);
+    kernels->passes.accumulate(band);
     if (band->triangles)
-      kernels->triangles_add(band, finish, rays);
+      kernels->triangles.add(band, finish, rays);
     uint64_t summed = conic_ticks();
-    kernels->resolve(band, finish, rays, image);
+    kernels->resolve.resolve(band, finish, rays, image);
     report->lists += listed - start;
     report->visibility += seen - listed;
     report->accumulate += summed - seen;
@@ -112,28 +112,28 @@ static int choose_strip(const conic_band *band, int n_lanes) {
 }
 
 /* The nearest splat alone: all rows in one go, since little is kept of it. */
-static void draw_nearest(const conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+static void draw_nearest(const conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
                          const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
   uint64_t start = conic_ticks();
-  band->strip_rows = choose_strip(band, kernels->n_lanes);
-  kernels->nearest(band);
+  band->strip_rows = choose_strip(band, kernels->passes.n_lanes);
+  kernels->passes.nearest(band);
   uint64_t seen = conic_ticks();
   report->visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
     band->nearest_row = i_row * CONIC_BLOCK_EDGE;
-    kernels->take_nearest(band);
+    kernels->passes.take_nearest(band);
     begin_triangles(tile, i_row, band);
     if (band->triangles) {
       conic_triangles_win(band);
-      kernels->triangles_add(band, finish, rays);
+      kernels->triangles.add(band, finish, rays);
     }
-    kernels->resolve(band, finish, rays, image);
+    kernels->resolve.resolve(band, finish, rays, image);
   }
   report->resolve += conic_ticks() - seen;
 }
 
-void conic_tile_draw(conic_tile *tile, const conic_tile_kernels *kernels, const conic_finish *finish,
+void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
                      conic_image *image, conic_tile_report *report) {
   conic_tile_rays rays;
   conic_band band = {.view = tile->view,

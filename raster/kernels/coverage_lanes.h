@@ -5,7 +5,7 @@
 #define CONIC_COVERAGE_LANES_H
 
 #include "core/lanes/lanes.h"
-#include "raster/project/laplace_body.h"
+#include "raster/kernels/laplace_body.h"
 #include "raster/tiles/coverage.h"
 
 /* One splat's pixels in one part of a block, covered or not. */

@@ -1,5 +1,8 @@
 /* The single pass in lanes, where the nearest splat wins alone: a tile splat by splat, then its colours. Included by
- * tile_kernels_body.h. */
+ * raster_kernels_body.h. */
+#include "core/lanes/lanes_store.h"
+#include "raster/kernels/pass_body.h"
+
 CONIC_INLINE void keep_nearest(const fragments *f, uint32_t i_footprint, conic_nearest *kept, size_t at,
                                int is_special) {
   lanes iz = lanes_load(kept->iz + at);

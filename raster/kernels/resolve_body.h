@@ -1,7 +1,8 @@
-/* Pass 3 in lanes: conic_band_resolve (raster/tiles/resolve.c) a part of a block at a time, with the same operations in
- * the same order. Included by tile_kernels_body.h. */
+/* Pass 3 in lanes: conic_band_resolve (raster/kernels/resolve.c) a part of a block at a time, with the same operations
+ * in the same order. Included by raster_kernels_body.h. */
+#include "core/lanes/lanes_store.h"
+#include "raster/kernels/resolve.h"
 #include "raster/kernels/shade_lanes.h"
-#include "raster/tiles/resolve.h"
 
 /* The finished pixels of one part of a block, channel by channel. Uncovered ones hold what an uncovered pixel is. */
 typedef struct finished {

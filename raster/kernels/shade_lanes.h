@@ -4,7 +4,7 @@
 #define CONIC_SHADE_LANES_H
 
 #include "core/lanes/lanes.h"
-#include "raster/tiles/resolve.h"
+#include "raster/tiles/finish.h"
 
 CONIC_INLINE lanes dot_lanes(const lanes a[3], const lanes b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];

@@ -101,8 +101,7 @@ typedef struct conic_projected {
 void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
                        conic_chunk *chunk);
 
-/* Projects the splats begin … end - 1 and appends them to the chunk: the plain C reference of the kernel table's
- * `project`. */
+/* `project` in plain C. */
 void conic_project_range(const conic_view *view, const conic_splats *splats, size_t begin, size_t end,
                          conic_projected *projected, conic_chunk *chunk);
 

@@ -27,7 +27,7 @@ CONIC_INLINE void rotate_lanes(const float m[3][3], const lanes v[3], lanes resu
 
 CONIC_INLINE void move_centers(const conic_view *view, const lanes position[3], group_splats *g) {
   for (int half = 0; half < 2; half++) {
-    half_doubles x = half_of(position[0], half), y = half_of(position[1], half), z = half_of(position[2], half);
+    wide x = half_of(position[0], half), y = half_of(position[1], half), z = half_of(position[2], half);
     for (int row = 0; row < 3; row++) {
       const double *m = view->rotation[row];
       g->p[row].half[half] = ((m[0] * x + m[1] * y) + m[2] * z) + view->translation[row];
@@ -40,7 +40,7 @@ CONIC_INLINE void classify(const conic_view *view, group_splats *g) {
   doubles x, y, reach, nearest, farthest, before, ahead, zero;
   g->reach_z = view->cutoff * lanes_sqrt(g->tu[2] * g->tu[2] + g->tv[2] * g->tv[2]);
   for (int half = 0; half < 2; half++) {
-    half_doubles z = g->p[2].half[half], r = half_of(g->reach_z, half), inverse = 1.0 / z;
+    wide z = g->p[2].half[half], r = half_of(g->reach_z, half), inverse = 1.0 / z;
     g->inverse_z.half[half] = inverse;
     zero.half[half] = (((g->p[0].half[half] + g->p[1].half[half]) + z) + r) * 0.0;
     before.half[half] = z - r;
@@ -148,18 +148,18 @@ CONIC_INLINE void widen(const conic_view *view, group_screen *s) {
  * its end. A ray's reference is the projected p, a variance's its own centre. */
 CONIC_INLINE void place(const group_splats *g, int axis, double principal, double focal, int size, group_screen *s) {
   doubles center, low, high, fraction;
-  half_doubles zero = half_of_value(0.0), limit = half_of_value((double)size);
+  wide zero = wide_of(0.0), limit = wide_of((double)size);
   lanes to_reference = lanes_select(s->by_ray, lanes_of(0.0f), s->shift[axis]);
   /* In double a factor of 1.0001: not as float times 1 and a float's 1.0001. */
   lanes is_exact = lanes_keep(s->box_is_exact, lanes_of(1.0f));
   for (int half = 0; half < 2; half++) {
-    half_doubles exact = half_of(is_exact, half), half_width = half_of(s->half_width[axis], half);
-    half_doubles reach = half_width * (1.0001 - exact * (1.0001 - 1.0)) + (0.01 - exact * 0.01);
-    half_doubles p = principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half]);
-    half_doubles middle = p + half_of(s->shift[axis], half), reference = p + half_of(to_reference, half);
-    low.half[half] = half_min(half_max(middle - reach + 0.5, zero), limit);
-    high.half[half] = half_max(half_min(middle + reach + 0.5, limit), zero);
-    center.half[half] = half_min(half_max(reference, half_of_value(-1e9)), half_of_value(1e9));
+    wide exact = half_of(is_exact, half), half_width = half_of(s->half_width[axis], half);
+    wide reach = half_width * (1.0001 - exact * (1.0001 - 1.0)) + (0.01 - exact * 0.01);
+    wide p = principal + focal * (g->p[axis].half[half] * g->inverse_z.half[half]);
+    wide middle = p + half_of(s->shift[axis], half), reference = p + half_of(to_reference, half);
+    low.half[half] = wide_min(wide_max(middle - reach + 0.5, zero), limit);
+    high.half[half] = wide_max(wide_min(middle + reach + 0.5, limit), zero);
+    center.half[half] = wide_min(wide_max(reference, wide_of(-1e9)), wide_of(1e9));
   }
   s->begin[axis] = lanes_truncate(&low);
   s->end[axis] = lanes_truncate(&high);
@@ -207,8 +207,8 @@ CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, la
   if (!view->needs_nearness)
     return;
   for (int half = 0; half < 2; half++) {
-    half_doubles x = g->p[0].half[half], y = g->p[1].half[half], z = g->p[2].half[half];
-    distance.half[half] = half_sqrt((x * x + y * y) + z * z);
+    wide x = g->p[0].half[half], y = g->p[1].half[half], z = g->p[2].half[half];
+    distance.half[half] = wide_sqrt((x * x + y * y) + z * z);
   }
   lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * longer), lanes_of(view->epsilon_cap));
   lanes from_eye = lanes_narrow(&distance);

@@ -2,9 +2,9 @@
 
 #include <string.h>
 
-#include "raster/kernels/tile_kernels.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins_tiles.h"
+#include "raster/tiles/tile_kernels.h"
 
 static size_t rounded(size_t bytes) {
   return (bytes + 63) / 64 * 64;
@@ -96,7 +96,7 @@ static void copy_clips(const conic_sorter *sorter, size_t first, conic_projected
       to->clips[first + at] = from->clips[sorter->order[at]];
 }
 
-size_t conic_sorter_count(const conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter,
+size_t conic_sorter_count(const conic_bins *bins, const conic_bin_kernels *kernels, conic_sorter *sorter,
                           uint32_t *tile_begin) {
   kernels->keys(sorter->projected.boxes, sorter->chunk.n_drawn, bins->tile_bits, bins->n_tiles_x, bins->by_pixels,
                 sorter->tile, sorter->word, sorter->beyond);
@@ -104,7 +104,7 @@ size_t conic_sorter_count(const conic_bins *bins, const conic_tile_kernels *kern
   return place(bins, sorter, tile_begin) + (size_t)1; /* one place behind all */
 }
 
-void conic_bins_sort(conic_bins *bins, const conic_tile_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
+void conic_bins_sort(conic_bins *bins, const conic_bin_kernels *kernels, conic_sorter *sorter, size_t i_chunk,
                      conic_projected *projected) {
   conic_chunk *chunk = &projected->chunks[i_chunk];
   size_t first = atomic_fetch_add(&bins->n_records, sorter->chunk.n_drawn);

@@ -1,4 +1,4 @@
-#include "raster/tiles/resolve.h"
+#include "raster/tiles/finish.h"
 
 static float dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];

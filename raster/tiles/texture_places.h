@@ -12,7 +12,7 @@ typedef struct conic_texture_places {
   float uv[2][CONIC_BLOCK_PIXELS], along[2][CONIC_BLOCK_PIXELS], across[2][CONIC_BLOCK_PIXELS];
 } conic_texture_places;
 
-/* The plain C reference of the slot `texture`. */
+/* `at_places` in plain C. */
 void conic_texture_at_places(const conic_texture *texture, const conic_texture_places *places, uint32_t pixels,
                              float color[3][CONIC_BLOCK_PIXELS]);
 

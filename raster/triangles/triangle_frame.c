@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/kernels/tile_kernels.h"
+#include "raster/triangles/triangle_kernels.h"
 #include "raster/triangles/triangle_sort.h"
 
 /* Vertices that a task projects, and triangles that one sets up, unless their tables would be too many. */
@@ -13,7 +13,7 @@ enum { VERTICES_TOGETHER = 8192, TRIANGLES_TOGETHER = 8192 };
 
 typedef struct preparation {
   conic_triangle_frame *frame;
-  const conic_tile_kernels *kernels;
+  const conic_triangle_kernels *kernels;
 } preparation;
 
 /* Room for count × size bytes; null where there is none. What was in it is gone if it had to grow. */
@@ -88,7 +88,7 @@ static void vertices_task(void *data, size_t i_item, int i_thread) {
   preparation *p = data;
   size_t n = p->frame->triangles->n_vertices, begin = i_item * VERTICES_TOGETHER, end = begin + VERTICES_TOGETHER;
   (void)i_thread;
-  p->kernels->triangle_vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
+  p->kernels->vertices(p->frame, begin, end < n ? end : n, p->frame->vertices);
 }
 
 /* The tiles that a box touches. */
@@ -173,7 +173,7 @@ static void triangles_task(void *data, size_t i_chunk, int i_thread) {
   hand_over(frame, &sorter, i_chunk);
 }
 
-conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_tile_kernels *kernels) {
+conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_kernels *kernels) {
   preparation p = {frame, kernels};
   size_t n = frame->triangles->count, n_vertices = frame->triangles->n_vertices;
   conic_status status = plan(frame);

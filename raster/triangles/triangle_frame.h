@@ -8,7 +8,7 @@
 #include "raster/tiles/band.h"
 #include "raster/triangles/triangle_samples.h"
 
-struct conic_tile_kernels;
+struct conic_triangle_kernels;
 
 /* Memory that only ever grows, kept from frame to frame. */
 typedef struct conic_triangle_memory {
@@ -93,14 +93,14 @@ void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *cont
 void conic_triangle_frame_tiles(conic_triangle_frame *frame, int tile);
 
 /* Projects, clips and sorts the frame's triangles. Errors: MEMORY. */
-conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const struct conic_tile_kernels *kernels);
+conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const struct conic_triangle_kernels *kernels);
 
 void conic_triangle_frame_release(conic_context *context, conic_triangle_frame *frame);
 
 /* Adds what became of the triangles, fragments aside. */
 void conic_triangle_frame_count(const conic_triangle_frame *frame, conic_render_statistics *statistics);
 
-/* The plain C reference of the slot `vertices`. */
+/* `vertices` in plain C. */
 void conic_triangle_vertices(const conic_triangle_frame *frame, size_t begin, size_t end,
                              conic_screen_vertex *vertices);
 

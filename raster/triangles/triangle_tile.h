@@ -2,7 +2,7 @@
 #ifndef CONIC_TRIANGLE_TILE_H
 #define CONIC_TRIANGLE_TILE_H
 
-#include "raster/tiles/resolve.h"
+#include "raster/tiles/finish.h"
 #include "raster/triangles/triangle_frame.h"
 
 /* Points the band to the tile's row; null where no triangle is in it. */
@@ -38,7 +38,7 @@ void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish
 /* Adds it to the pixel's sums, all but the colour where it is still without its texture. */
 void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_block_sums *sums);
 
-/* The plain C references of the slots. */
+/* The slots `draw`, `hide` and `add` in plain C; and what stands for `hide` where the nearest wins alone. */
 void conic_triangles_draw(const conic_triangle_frame *frame, size_t i_tile, int x, int y, conic_triangle_tile *tile);
 void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays);
 void conic_triangles_win(conic_band *band);

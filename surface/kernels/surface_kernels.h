@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "conic/surface.h"
+#include "core/lanes/instruction_sets.h"
 
 #define CONIC_NEAR_LANES 8
 
@@ -40,7 +41,6 @@ enum { CONIC_N_PLANE_SUMS = 12 };
 enum { CONIC_N_SPHERE_SUMS = 10 };
 
 typedef struct conic_surface_kernels {
-  const char *name;
   /* Weights about q (relative to r), and the sums of w, w·d (3), w·d·dᵀ (xx xy xz yy yz zz) with d from q, and how many
    * weigh something. */
   void (*moments)(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]);
@@ -60,15 +60,7 @@ typedef struct conic_surface_kernels {
   void (*sphere)(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_SPHERE_SUMS]);
 } conic_surface_kernels;
 
-extern const conic_surface_kernels conic_surface_kernels_scalar;
-#if defined(__x86_64__)
-extern const conic_surface_kernels conic_surface_kernels_sse2, conic_surface_kernels_avx2, conic_surface_kernels_avx512;
-#elif defined(__aarch64__)
-extern const conic_surface_kernels conic_surface_kernels_neon;
-#endif
-
-/* The table of the instruction set; null where this build or this machine has not got it. */
-const conic_surface_kernels *conic_surface_kernels_of(conic_isa isa);
+CONIC_DECLARE_KERNELS(conic_surface_kernels);
 
 /* Monomials up to the degree. */
 static inline int conic_n_coefficients(int degree) {

@@ -1,63 +1,13 @@
-/* The kernels in vectors as wide as a register: included by one file an instruction set, with TABLE and NAME. Eight
+/* The kernels in vectors as wide as a register: included by one file an instruction set. Eight
  * partial sums a total, whatever the width: a narrow vector goes through all neighbours once for each part of the
  * eight. Each lane does what surface/kernels/surface_kernels_scalar.c and surface/kernels/weight.h do, in their order.
  */
+#include "core/lanes/lanes_double.h"
 #include "surface/kernels/surface_kernels.h"
 #include "surface/kernels/weight.h"
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
-#if defined(__AVX512F__)
-#define WIDTH 8
-#elif defined(__AVX2__)
-#define WIDTH 4
-#else
-#define WIDTH 2
-#endif
-
-#define INLINE static inline __attribute__((always_inline))
-
-typedef double wide __attribute__((vector_size(8 * WIDTH)));
-typedef int64_t wide_bits __attribute__((vector_size(8 * WIDTH)));
-
-INLINE wide wide_load(const double *from) {
-  wide value;
-  memcpy(&value, from, sizeof value);
-  return value;
-}
-
-INLINE void wide_store(double *to, wide value) {
-  memcpy(to, &value, sizeof value);
-}
-
-INLINE wide wide_of(double value) {
-  return value - (wide){0};
-}
-
-INLINE wide wide_keep(wide_bits mask, wide value) {
-  return (wide)(mask & (wide_bits)value);
-}
-
-INLINE wide wide_select(wide_bits mask, wide yes, wide no) {
-  return (wide)((mask & (wide_bits)yes) | (~mask & (wide_bits)no));
-}
-
-INLINE wide wide_sqrt(wide value) {
-#if defined(__AVX512F__)
-  return (wide)_mm512_sqrt_pd((__m512d)value);
-#elif defined(__AVX2__)
-  return (wide)_mm256_sqrt_pd((__m256d)value);
-#elif defined(__SSE2__)
-  return (wide)_mm_sqrt_pd((__m128d)value);
-#else
-  return (wide){__builtin_sqrt(value[0]), __builtin_sqrt(value[1])};
-#endif
-}
-
 /* The order that every total has. */
-INLINE double total(const double partial[CONIC_NEAR_LANES]) {
+CONIC_INLINE double total(const double partial[CONIC_NEAR_LANES]) {
   return ((partial[0] + partial[4]) + (partial[2] + partial[6])) +
          ((partial[1] + partial[5]) + (partial[3] + partial[7]));
 }
@@ -66,18 +16,18 @@ typedef struct wide_theta {
   wide value, first, second;
 } wide_theta;
 
-INLINE wide wide_exp(wide s) {
+CONIC_INLINE wide wide_exp(wide s) {
   wide x = -s, k = x * CONIC_WEIGHT_LOG2E + CONIC_WEIGHT_ROUND;
-  wide_bits k_bits = (wide_bits)k << 52;
+  wide_mask k_bits = (wide_mask)k << 52;
   k = k - CONIC_WEIGHT_ROUND;
   wide r = (x - k * CONIC_WEIGHT_LN2_HIGH) - k * CONIC_WEIGHT_LN2_LOW, r2 = r * r, r4 = r2 * r2;
   wide a = (1.0 + r) + r2 * (CONIC_EXP_2 + CONIC_EXP_3 * r);
   wide b = (CONIC_EXP_4 + CONIC_EXP_5 * r) + r2 * (CONIC_EXP_6 + CONIC_EXP_7 * r);
   wide c = (CONIC_EXP_8 + CONIC_EXP_9 * r) + r2 * (CONIC_EXP_10 + CONIC_EXP_11 * r);
-  return (wide)((wide_bits)(a + r4 * (b + r4 * c)) + k_bits);
+  return (wide)((wide_mask)(a + r4 * (b + r4 * c)) + k_bits);
 }
 
-INLINE wide_theta wide_gauss(const conic_weighing *weighing, wide s) {
+CONIC_INLINE wide_theta wide_gauss(const conic_weighing *weighing, wide s) {
   wide_theta theta;
   wide g = wide_exp(s);
   theta.value = g - weighing->edge * ((1.0 + weighing->end) - s);
@@ -86,7 +36,7 @@ INLINE wide_theta wide_gauss(const conic_weighing *weighing, wide s) {
   return theta;
 }
 
-INLINE wide_theta wide_compact(const conic_weighing *weighing, wide s) {
+CONIC_INLINE wide_theta wide_compact(const conic_weighing *weighing, wide s) {
   wide_theta theta;
   wide z = s / weighing->end, y = wide_sqrt(z);
   wide least = wide_select(y > CONIC_WEIGHT_LEAST, y, wide_of(CONIC_WEIGHT_LEAST));
@@ -96,7 +46,7 @@ INLINE wide_theta wide_compact(const conic_weighing *weighing, wide s) {
   return theta;
 }
 
-INLINE wide_theta wide_flat(const conic_weighing *weighing, wide s) {
+CONIC_INLINE wide_theta wide_flat(const conic_weighing *weighing, wide s) {
   wide_theta theta;
   double inverse = 1.0 / weighing->end;
   wide z = s * inverse, z2 = z * z, u = 1.0 - z2;
@@ -106,8 +56,8 @@ INLINE wide_theta wide_flat(const conic_weighing *weighing, wide s) {
   return theta;
 }
 
-INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, conic_surface_weight weight) {
-  wide_bits inside = s < weighing->end;
+CONIC_INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, conic_surface_weight weight) {
+  wide_mask inside = s < weighing->end;
   wide inner = wide_select(inside, s, wide_of(weighing->end));
   wide_theta theta = weight == CONIC_WEIGHT_COMPACT ? wide_compact(weighing, inner)
                      : weight == CONIC_WEIGHT_FLAT  ? wide_flat(weighing, inner)
@@ -118,21 +68,21 @@ INLINE wide_theta wide_weight(const conic_weighing *weighing, wide s, conic_surf
   return theta;
 }
 
-/* Sums of so many terms: partial sums `lane` to lane + WIDTH of each. */
+/* Sums of so many terms: partial sums `lane` to lane + CONIC_WIDE_LANES of each. */
 typedef double partial_sums[CONIC_NEAR_LANES];
 
-INLINE void store_parts(const wide *parts, int n, partial_sums *partials, size_t lane) {
+CONIC_INLINE void store_parts(const wide *parts, int n, partial_sums *partials, size_t lane) {
   for (int k = 0; k < n; k++)
     wide_store(partials[k] + lane, parts[k]);
 }
 
-INLINE void add_up(partial_sums *partials, int n, double *sums) {
+CONIC_INLINE void add_up(partial_sums *partials, int n, double *sums) {
   for (int k = 0; k < n; k++)
     sums[k] = total(partials[k]);
 }
 
-INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
-                         size_t lane, conic_surface_weight weight) {
+CONIC_INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const double q[3],
+                               partial_sums *partials, size_t lane, conic_surface_weight weight) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, count = {0};
   wide xx = {0}, xy = {0}, xz = {0}, yy = {0}, yz = {0}, zz = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
@@ -160,7 +110,7 @@ INLINE void moments_part(conic_near *near, const conic_weighing *weighing, const
 
 static void moments(conic_near *near, const conic_weighing *weighing, const double q[3], double sums[CONIC_N_MOMENTS]) {
   partial_sums partials[CONIC_N_MOMENTS];
-  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += CONIC_WIDE_LANES)
     if (weighing->weight == CONIC_WEIGHT_COMPACT)
       moments_part(near, weighing, q, partials, lane, CONIC_WEIGHT_COMPACT);
     else if (weighing->weight == CONIC_WEIGHT_FLAT)
@@ -170,8 +120,8 @@ static void moments(conic_near *near, const conic_weighing *weighing, const doub
   add_up(partials, CONIC_N_MOMENTS, sums);
 }
 
-INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
-                       partial_sums *partials, size_t lane, conic_surface_weight weight) {
+CONIC_INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
+                             partial_sums *partials, size_t lane, conic_surface_weight weight) {
   wide g_a = {0}, g_b = {0}, k = {0}, aa = {0}, ab = {0}, bb = {0}, at = {0}, bt = {0}, ka = {0}, kb = {0}, kt = {0};
   wide energy = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
@@ -208,7 +158,7 @@ INLINE void plane_part(const conic_near *near, const conic_weighing *weighing, d
 static void plane(const conic_near *near, const conic_weighing *weighing, double frame[3][3], double t,
                   double sums[CONIC_N_PLANE_SUMS]) {
   partial_sums partials[CONIC_N_PLANE_SUMS];
-  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += CONIC_WIDE_LANES)
     if (weighing->weight == CONIC_WEIGHT_COMPACT)
       plane_part(near, weighing, frame, t, partials, lane, CONIC_WEIGHT_COMPACT);
     else if (weighing->weight == CONIC_WEIGHT_FLAT)
@@ -221,7 +171,7 @@ static void plane(const conic_near *near, const conic_weighing *weighing, double
 static void fill_columns(conic_near *near, double frame[3][3], double t, double scale, int degree) {
   size_t n = near->n_padded;
   int n_coefficients = conic_n_coefficients(degree);
-  for (size_t i = 0; i < n; i += WIDTH) {
+  for (size_t i = 0; i < n; i += CONIC_WIDE_LANES) {
     wide dx = wide_load(near->offset[0] + i), dy = wide_load(near->offset[1] + i), dz = wide_load(near->offset[2] + i);
     wide x = ((dx * frame[0][0] + dy * frame[0][1]) + dz * frame[0][2]) * scale;
     wide y = ((dx * frame[1][0] + dy * frame[1][1]) + dz * frame[1][2]) * scale;
@@ -237,9 +187,9 @@ static void fill_columns(conic_near *near, double frame[3][3], double t, double 
   }
 }
 
-INLINE double weighted_product(const conic_near *near, const double *a, const double *b) {
+CONIC_INLINE double weighted_product(const conic_near *near, const double *a, const double *b) {
   partial_sums partial;
-  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH) {
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += CONIC_WIDE_LANES) {
     wide sum = {0};
     for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES)
       sum += (wide_load(near->weights + i) * wide_load(a + i)) * wide_load(b + i);
@@ -264,14 +214,14 @@ static void factor(conic_near *near, double frame[3][3], double t, double scale,
       double *column = near->columns + (size_t)k * n;
       double share = weighted_product(near, pivot, column) * inverse;
       upper[j][k] = share;
-      for (size_t i = 0; i < n; i += WIDTH)
+      for (size_t i = 0; i < n; i += CONIC_WIDE_LANES)
         wide_store(column + i, wide_load(column + i) - share * wide_load(pivot + i));
     }
   }
 }
 
-INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const double q[3], partial_sums *partials,
-                        size_t lane, conic_surface_weight weight) {
+CONIC_INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const double q[3],
+                              partial_sums *partials, size_t lane, conic_surface_weight weight) {
   wide w_sum = {0}, x_sum = {0}, y_sum = {0}, z_sum = {0}, nx_sum = {0}, ny_sum = {0}, nz_sum = {0};
   wide d2_sum = {0}, dn_sum = {0}, count = {0};
   for (size_t i = lane; i < near->n_padded; i += CONIC_NEAR_LANES) {
@@ -299,7 +249,7 @@ INLINE void sphere_part(conic_near *near, const conic_weighing *weighing, const 
 static void sphere(conic_near *near, const conic_weighing *weighing, const double q[3],
                    double sums[CONIC_N_SPHERE_SUMS]) {
   partial_sums partials[CONIC_N_SPHERE_SUMS];
-  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += WIDTH)
+  for (size_t lane = 0; lane < CONIC_NEAR_LANES; lane += CONIC_WIDE_LANES)
     if (weighing->weight == CONIC_WEIGHT_COMPACT)
       sphere_part(near, weighing, q, partials, lane, CONIC_WEIGHT_COMPACT);
     else if (weighing->weight == CONIC_WEIGHT_FLAT)
@@ -309,5 +259,6 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
   add_up(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 
-const conic_surface_kernels TABLE = {
-    .name = NAME, .moments = moments, .plane = plane, .factor = factor, .sphere = sphere};
+CONIC_FILL_KERNELS(conic_surface_kernels) {
+  *kernels = (conic_surface_kernels){moments, plane, factor, sphere};
+}

@@ -122,5 +122,6 @@ static void sphere(conic_near *near, const conic_weighing *weighing, const doubl
   totals(partials, CONIC_N_SPHERE_SUMS, sums);
 }
 
-const conic_surface_kernels conic_surface_kernels_scalar = {
-    .name = "scalar", .moments = moments, .plane = plane, .factor = factor, .sphere = sphere};
+void conic_surface_kernels_scalar(conic_surface_kernels *kernels) {
+  *kernels = (conic_surface_kernels){moments, plane, factor, sphere};
+}

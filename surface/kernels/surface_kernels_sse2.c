@@ -1,6 +1,4 @@
 #if defined(__x86_64__)
-#define TABLE conic_surface_kernels_sse2
-#define NAME "sse2"
 #include "surface/kernels/surface_kernels_body.h"
 #else
 typedef int conic_not_this_machine;

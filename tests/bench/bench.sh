@@ -67,6 +67,12 @@ if command -v python3 > /dev/null; then
   done
 fi
 
+# The kernels alone
+run 0 bench --kernels
+for family in project visibility 'triangles draw' texture 'surface plane' cover; do
+  grep -qE "^$family .* scalar .* 1\.00 x$" out || fail "bench --kernels: no $family"
+done
+
 # Refusals
 refused() { # EXIT_CODE PATTERN ARGUMENTS …
   run "$1" bench "${@:3}"
@@ -82,6 +88,7 @@ refused 2 'did you mean affine?' --methods afine
 refused 2 'unknown instruction set' --isa mmx
 refused 2 'threads' --threads many
 refused 2 'scenes of its own' --curve --scenes sphere-2k
+refused 2 'nothing else' --kernels --machine
 refused 2 'for files' --camera camera.json
 refused 3 'absent.ply' absent.ply
 refused 3 'absent.json' --scenes sphere-2k --compare absent.json

@@ -70,7 +70,7 @@ static void test_planted(cli_session *session, const char *scene_name, int i_met
   CHECK(line.statistics.fragments > 1000 && line.statistics.splats_drawn > 0);
   conic_image_release(session->context, &pictures.reference);
   conic_image_release(session->context, &pictures.drawn);
-  cli_bench_scene_release(session, &scene);
+  cli_bench_scene_release(&scene);
 }
 
 /* The model: set-up reads all splats, resolving writes all pixels, twice the fragments are twice the operations. */

@@ -1,4 +1,5 @@
 /* The oracle against what can be worked out by hand, and the comparison against errors that it must see. */
+#include "oracle/oracle_splat.h"
 #include "tests/support/examine.h"
 
 static const double pi = 3.14159265358979323846;
@@ -82,6 +83,30 @@ static void test_depth(conic_context *context) {
       double distance = n[0] * s.center[0] + n[1] * s.center[1] + n[2] * s.center[2];
       CHECK_NEAR(samples[i].plane_inverse_depth, along / distance, 1e-13);
     }
+  }
+}
+
+/* Method `conic` is the ray's where a disc reaches over a quarter of its distance, and its own before. */
+static void test_choice(void) {
+  const conic_camera camera = pinhole(400, 300, 300.0);
+  const double sigmas[2] = {0.25, 0.27};
+  conic_render_options options;
+  conic_render_options_init(&options);
+  options.method = CONIC_METHOD_CONIC;
+  oracle_view view = conic_oracle_view(&camera, &options, 0.01);
+  for (int i = 0; i < 2; i++) {
+    conic_oracle_splat s = tilted(sigmas[i]);
+    oracle_placed placed;
+    double answers[ORACLE_N_QUESTIONS];
+    int is_so[ORACLE_N_QUESTIONS];
+    memcpy(placed.p, s.center, sizeof placed.p);
+    memcpy(placed.tu, s.tangent_u, sizeof placed.tu);
+    memcpy(placed.tv, s.tangent_v, sizeof placed.tv);
+    double reach = 1.5 * sqrt(placed.tu[2] * placed.tu[2] + placed.tv[2] * placed.tv[2]) / placed.p[2];
+    conic_oracle_ask(&view, &placed, answers);
+    conic_oracle_answer(answers, is_so);
+    CHECK((reach > 0.25) == i);
+    CHECK(conic_oracle_choose(&view, is_so) == (i ? ORACLE_RAY : ORACLE_CONIC));
   }
 }
 
@@ -255,6 +280,7 @@ int main(void) {
   fixture f = fixture_open(2);
   test_frontal(f.context);
   test_depth(f.context);
+  test_choice();
   test_dots(f.context);
   test_exact(f.context);
   test_planted(&f);

@@ -1,6 +1,6 @@
 /* One image, one set of bits: hostile and friendly splats over threads and tile sizes, every plane, both pass modes.
  * And every plane is defined on every pixel. */
-#include "raster/kernels/tile_kernels.h"
+#include "core/lanes/instruction_sets.h"
 #include "tests/support/fixture.h"
 
 static float hostile_value(uint64_t *state, double scale) {
@@ -50,7 +50,7 @@ static void check_instruction_sets(fixture *f, const uint64_t expected[CONIC_N_D
   conic_render_statistics counted = f->statistics;
   for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
     uint64_t hashes[CONIC_N_DRAWN_PLANES];
-    if (!conic_tile_kernels_of((conic_isa)isa))
+    if (!conic_isa_is_here((conic_isa)isa))
       continue;
     f->options.isa = (conic_isa)isa;
     fixture_render(f);

@@ -1,7 +1,7 @@
 /* One image, one set of bits, of meshes and of hybrid models: over threads, tile sizes, instruction sets and passes;
  * and the models themselves over threads. */
+#include "core/lanes/instruction_sets.h"
 #include "lod/hybrid/hybrid_model.h"
-#include "raster/kernels/tile_kernels.h"
 #include "tests/support/hybrid_fixture.h"
 #include "tests/support/triangle_fixture.h"
 
@@ -114,7 +114,7 @@ static void check_same(const hashes *expected, const hashes *found, int scene, c
 
 static void check_instruction_sets(fixture *f, model *m, int scene, const hashes *expected) {
   for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++) {
-    if (!conic_tile_kernels_of((conic_isa)isa))
+    if (!conic_isa_is_here((conic_isa)isa))
       continue;
     f->options.isa = (conic_isa)isa;
     hashes found = draw(f, m, scene);

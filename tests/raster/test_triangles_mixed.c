@@ -1,7 +1,7 @@
 /* Splats and triangles in one picture: no fringe, no hole, no seam; one set of bits. */
 #include <unistd.h>
 
-#include "raster/kernels/tile_kernels.h"
+#include "core/lanes/instruction_sets.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/triangle_fixture.h"
 
@@ -152,7 +152,7 @@ static void check_identity(void) {
       for (int variant = 0; variant < 2 * CONIC_N_ISAS * 4; variant++) {
         int isa = variant / 2 % CONIC_N_ISAS, samples = variant / 2 / CONIC_N_ISAS == 3 ? 2 : 1;
         uint64_t hashes[CONIC_N_DRAWN_PLANES + 1], *of_first = expected[has_splats][variant % 2][samples - 1];
-        if (!conic_tile_kernels_of((conic_isa)isa) || (samples > 1 && isa > 2))
+        if (!conic_isa_is_here((conic_isa)isa) || (samples > 1 && isa > 2))
           continue;
         f.options.passes = variant % 2 ? 1 : 3;
         f.options.isa = (conic_isa)isa;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs into an empty folder, moves that, and builds examples/minimal.c against it: by find_package (shared and
+# Installs into an empty folder, moves that, and builds the examples against it: by find_package (shared and
 # static) and by pkg-config. Each program must draw a picture that is not black, and all the same one.
 set -euo pipefail
 
@@ -42,6 +42,8 @@ project(minimal LANGUAGES C)
 find_package(conic 0.1 REQUIRED)
 add_executable(shared "$source_folder/examples/minimal.c")
 target_link_libraries(shared conic::conic m)
+add_executable(any_file "$source_folder/examples/any_file.c")
+target_link_libraries(any_file conic::conic)
 option(STATIC "" OFF)
 if(STATIC)
   find_package(conic 0.1 REQUIRED COMPONENTS static)
@@ -67,6 +69,14 @@ draw() { # PROGRAM
 
 build_package by_package
 draw "$work/by_package/shared"
+
+# Whatever file there is, the other example draws.
+"$work/prefix/bin/conic" make plane -n 100 -o "$work/plane.ply"
+"$work/prefix/bin/conic" octree "$work/plane.ply" -o "$work/plane.cot"
+for file in "$work/plane.ply" "$work/plane.cot"; do
+  "$work/by_package/any_file" "$file" "$file.pfm" || { echo "any_file does not draw $file"; exit 1; }
+  not_black "$file.pfm" || { echo "any_file draws $file black"; exit 1; }
+done
 
 build_package by_package_static -DSTATIC=ON
 draw "$work/by_package_static/static"
@@ -98,7 +108,6 @@ if [[ -e $module ]]; then
     echo "code $code: $(cat "$work/message")"
     exit 1
   }
-  "$program" make plane -n 100 -o "$work/plane.ply"
   has_module
   draw_png
   echo "no library" > "$module"

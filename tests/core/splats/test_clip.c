@@ -70,13 +70,14 @@ static void test_repairs(conic_context *context) {
   clips[1].lines[0][0] = INFINITY;        /* one line left */
   clips[2].lines[0][0] = clips[2].lines[0][1] = 0.0f;
   clips[3].n_lines = 7;
-  clips[4].splat = 3;   /* out of order */
-  clips[19].splat = 60; /* of no splat */
+  clips[4].splat = 3;              /* out of order */
+  clips[8].splat = clips[7].splat; /* twice */
+  clips[19].splat = 60;            /* of no splat */
   for (int axis = 0; axis < 3; axis++)
     model.points.tangent_u[axis][18] = 0.0f; /* new axes: lines in units of the old ones are lost */
   CHECK_OK(conic_model_to_splats(context, &options, &model, &repairs));
-  CHECK(repairs.clip == 7 && repairs.zero == 1);
-  CHECK(model.points.n_clips == 20 - 2 - 1 - 1 - 1 && model.points.clips[0].splat == 3);
+  CHECK(repairs.clip == 8 && repairs.zero == 1);
+  CHECK(model.points.n_clips == 20 - 2 - 1 - 1 - 1 - 1 && model.points.clips[0].splat == 3);
   CHECK(model.points.clips[0].n_lines == 1 && model.points.clips[0].lines[0][0] == -1.0f);
   for (size_t i = 0; i < model.points.n_clips; i++)
     CHECK(model.points.clips[i].n_lines >= 1 && model.points.clips[i].n_lines <= 2 &&

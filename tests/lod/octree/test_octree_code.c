@@ -147,6 +147,7 @@ static void test_samples(void) {
 static void test_leaves(void) {
   fixture f = fixture_open(2);
   conic_code_scale scale;
+  double all_moved = 0.0, all_away = 0.0;
   fixture_scene(&f, CONIC_SCENE_TERRAIN, 5000);
   conic_splats back;
   unsigned char *codes = malloc(conic_leaf_codes_bytes(5000, 1, 0));
@@ -166,6 +167,8 @@ static void test_leaves(void) {
                               back.tangent_u[last][i] * back.tangent_v[next][i]);
       double moved = (double)(f.splats.position[axis][i] - back.position[axis][i]);
       moved2 += moved * moved;
+      all_moved += moved;
+      all_away += fabs(moved);
       uu += (double)(f.splats.tangent_u[axis][i] * f.splats.tangent_u[axis][i]);
       uu_back += (double)(back.tangent_u[axis][i] * back.tangent_u[axis][i]);
       CHECK_NEAR((double)back.color[axis][i], (double)f.splats.color[axis][i], 0.005);
@@ -174,6 +177,7 @@ static void test_leaves(void) {
     CHECK_NEAR(sqrt(uu_back / uu), 1.0, 1e-3);
     CHECK(dot(n, n_back) > 0.999999 * sqrt(dot(n, n) * dot(n_back, n_back)));
   }
+  CHECK(fabs(all_moved) < 0.1 * all_away); /* to the nearest step, not to one side */
   free(codes);
   conic_splats_release(f.context, &back);
   fixture_close(&f);

@@ -94,13 +94,15 @@ static double displacement(const conic_octree *octree, const fixture *f, size_t 
     float p[3], u[3], v[3];
     leaf_values(octree, k, p, u, v);
     for (int i = 0; i < N_POINTS; i++) {
-      double point[3], pixel[2], nearest = HUGE_VAL;
+      double point[3], pixel[2], nearest2 = HUGE_VAL;
       disc_point(p, u, v, i, point);
       if (!project(&f->camera, point, near_z, pixel))
         continue;
-      for (int j = 0; j < n; j++)
-        nearest = fmin(nearest, hypot(pixel[0] - own[j][0], pixel[1] - own[j][1]));
-      farthest = fmax(farthest, nearest);
+      for (int j = 0; j < n; j++) {
+        double x = pixel[0] - own[j][0], y = pixel[1] - own[j][1], distance2 = x * x + y * y;
+        nearest2 = distance2 < nearest2 ? distance2 : nearest2;
+      }
+      farthest = fmax(farthest, sqrt(nearest2));
     }
   }
   return farthest;

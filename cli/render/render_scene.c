@@ -1,0 +1,76 @@
+/* A scene as the commands that draw one take it: opened, measured, framed. */
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/render/render_job.h"
+
+int cli_lod_is_wanted(const cli_render_job *job) {
+  return job->view.error_px > 0.0 || job->budget > 0;
+}
+
+const char *cli_method_name(const cli_render_job *job) {
+  return job->is_patch ? "patch" : conic_method_name(job->options.method);
+}
+
+conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
+  const char *texture_path = job->opening.texture_path;
+  if (cli_isa_check(session, job->options.isa) != CLI_DONE)
+    return CONIC_ERROR_UNSUPPORTED;
+  if (texture_path && access(texture_path, R_OK) != 0) {
+    cli_error(CLI_INPUT, "%s: cannot read: %s", texture_path, strerror(errno));
+    return CONIC_ERROR_INPUT;
+  }
+  conic_status status = cli_device_open(session, &job->device, &job->renderer);
+  if (status == CONIC_OK && job->camera_path)
+    status = conic_camera_read(session->context, job->camera_path, &job->camera);
+  return status;
+}
+
+/* Lengths in spacings become world units. */
+static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
+  double spacing = 1.0;
+  conic_status status = CONIC_OK;
+  int has_spacings = job->epsilon.is_in_spacings || job->near_z.is_in_spacings;
+  int is_known = conic_source_measure(job->source)->spacing > 0.0;
+  if (has_spacings && !is_known && (cli_lod_is_wanted(job) || job->abilities & CONIC_SOURCE_CLUSTERS)) {
+    cli_error(CLI_USAGE,
+              "%s: lengths in spacings need every splat; give world units with --error, --budget or a hybrid",
+              session->command);
+    return CONIC_ERROR_ARGUMENT;
+  }
+  if (has_spacings)
+    status = conic_source_spacing(job->source, &spacing);
+  if (job->epsilon.value >= 0.0)
+    job->options.epsilon = job->epsilon.value * (job->epsilon.is_in_spacings ? spacing : 1.0);
+  if (job->near_z.value >= 0.0)
+    job->options.near_z = job->near_z.value * (job->near_z.is_in_spacings ? spacing : 1.0);
+  return status;
+}
+
+conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
+  conic_status status =
+      conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
+  if (status == CONIC_OK)
+    status = resolve_lengths(session, job);
+  if (status == CONIC_OK)
+    conic_source_settle(job->source, &job->options);
+  return status;
+}
+
+void cli_scene_release(cli_render_job *job) {
+  conic_renderer_destroy(job->renderer);
+  conic_source_close(job->source);
+}
+
+conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_camera *camera) {
+  conic_framing framing = job->framing;
+  if (job->camera_path) {
+    *camera = job->camera;
+    return CONIC_OK;
+  }
+  if (!job->is_up_given)
+    memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
+  framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
+  return conic_source_frame(job->source, &framing, camera);
+}

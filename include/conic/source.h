@@ -1,0 +1,201 @@
+/* Sources: whatever can be drawn, behind one interface. Splat files and raw points, meshes, octrees (.cot), layered
+ * point clouds (.lpc, files or URLs), hybrid models (.chy), and polynomial patches about points: who opens one asks
+ * what it can do, never what it is. */
+#ifndef CONIC_SOURCE_H
+#define CONIC_SOURCE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/hybrid.h"
+#include "conic/image.h"
+#include "conic/layers_draw.h"
+#include "conic/octree.h"
+#include "conic/patches.h"
+#include "conic/render.h"
+#include "conic/splats.h"
+#include "conic/triangles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is drawn, and the memory that drawing it keeps. One thread at a time. */
+typedef struct conic_source conic_source;
+
+/* What a file becomes that does not say by itself. */
+typedef enum conic_representation {
+  CONIC_AS_POINTS = 0, /* splats: of a mesh, one a vertex */
+  CONIC_AS_MESH = 1,   /* triangles, where there are faces */
+  CONIC_AS_HYBRID = 2, /* a mesh becomes a hybrid model */
+  CONIC_AS_PATCHES = 3 /* points become samples of the polynomials about them */
+} conic_representation;
+
+/* What a source can do besides being drawn, as bits. */
+typedef enum conic_source_ability {
+  CONIC_SOURCE_CHOOSES = 1,  /* draws less than everything: by an error, or within a budget */
+  CONIC_SOURCE_CLUSTERS = 2, /* draws clusters of two kinds: only_kind, and the image's cluster plane */
+  CONIC_SOURCE_STREAMS = 4   /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
+                                over unless it is opened whole */
+} conic_source_ability;
+
+typedef struct conic_source_options {
+  size_t size; /* sizeof(conic_source_options), set by the init function */
+  conic_representation as;
+  int is_whole;                      /* read every splat of a hierarchy, so that it is handed over, and choose none */
+  float cutoff;                      /* F_g of the kernel that will draw */
+  int n_neighbours;                  /* that a raw point's size is estimated from, 6 to 64 */
+  const char *texture_path;          /* a picture that lies on the mesh in place of its own; null: none */
+  int is_smooth;                     /* a mesh that is drawn as one gets vertex normals from its faces */
+  const conic_layers_access *access; /* of layered clouds; null: the defaults */
+  const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
+  int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
+} conic_source_options;
+
+/* Splats, cutoff 1.5, 20 neighbours. */
+CONIC_API void conic_source_options_init(conic_source_options *options);
+
+/* What a source of these files and options could do, told from their first bytes: bits of conic_source_ability. Null
+ * options are the defaults. */
+CONIC_API unsigned conic_source_abilities(const char *const *paths, size_t n_paths,
+                                          const conic_source_options *options);
+
+/* Opens `n_paths` files, of any kinds, as one source, and measures it. A hybrid stands alone. Reports what was put
+ * right in points to the log. On success the caller owns *source, which must not outlive the context. Null options are
+ * the defaults. Errors: as those of the functions that read each kind; ARGUMENT; INPUT where nothing could be drawn. */
+CONIC_API conic_status conic_source_open(conic_context *context, const char *const *paths, size_t n_paths,
+                                         const conic_source_options *options, conic_source **source);
+
+/* Sources of what is in memory already, which they take over: the arguments are empty afterwards, or no longer the
+ * caller's, on failure too. `triangles` may be null; splats are to have tangent axes. Errors: MEMORY. */
+CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
+                                               conic_source **source);
+CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);
+CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid, conic_source **source);
+
+/* Null is allowed. */
+CONIC_API void conic_source_close(conic_source *source);
+
+/* What a picture depends on as a whole. */
+typedef struct conic_source_scale {
+  unsigned abilities;             /* bits of conic_source_ability */
+  double minimum[3], maximum[3];  /* box of the finite centres and corners */
+  double up[3];                   /* +y; +z where all files are surveys (LAS) */
+  double near_z, splat_length;    /* for conic_render_options */
+  double epsilon;                 /* likewise, where the source has one of its own; else negative: automatic */
+  double spacing;                 /* the median sample spacing where it is known; else 0: conic_source_spacing */
+  uint64_t n_splats, n_triangles; /* at full detail; of a hybrid, as built */
+  int n_levels;                   /* that can be drawn one after the other; 0: all comes at once */
+  int has_colors;
+  double read_seconds, estimate_seconds; /* what opening it took */
+} conic_source_scale;
+
+/* The source's own; stays until it is closed. */
+CONIC_API const conic_source_scale *conic_source_measure(const conic_source *source);
+
+/* The median sample spacing, looked for where it is not known. Errors: ARGUMENT (a hybrid has none), MEMORY, CANCELLED.
+ */
+CONIC_API conic_status conic_source_spacing(conic_source *source, double *spacing);
+
+/* A camera that sees all of it; null `framing` is the default one with the source's `up`. Errors: ARGUMENT, INPUT (it
+ * reaches farther out than 1e20). */
+CONIC_API conic_status conic_source_frame(const conic_source *source, const conic_framing *framing,
+                                          conic_camera *camera);
+
+/* Fills in what the options leave open: near_z and splat_length where they are 0, an epsilon below 0 where the source
+ * has its own. Choosing and drawing do so by themselves. */
+CONIC_API void conic_source_settle(const conic_source *source, conic_render_options *render);
+
+/* How one picture is chosen. What a source cannot do is not looked at. */
+typedef struct conic_source_view {
+  size_t size;               /* sizeof(conic_source_view), set by the init function */
+  double error_px;           /* above 0: the greatest error on the screen; 0: full detail, a hybrid as built */
+  uint64_t budget;           /* or, where not 0: the least error that so many splats and triangles can give */
+  int only_kind;             /* -1, or the conic_hybrid_kind that all clusters are drawn as */
+  int samples;               /* N × N a pixel */
+  int most_levels;           /* no more levels are drawn; 0: all */
+  conic_occlusion occlusion; /* leave out what is hidden */
+  int may_be_coarser;        /* what cannot be read, or not in time, is drawn coarser */
+  double seconds;            /* with that: no more is read after so many; 0: no limit */
+} conic_source_view;
+
+/* Full detail, either kind, one sample. */
+CONIC_API void conic_source_view_init(conic_source_view *view);
+
+/* What the last picture was, or is to be, drawn of. */
+typedef struct conic_source_choice {
+  conic_drawing drawing; /* the source's, until the next picture; both null where a source streams, else neither is */
+  const uint32_t *ids;   /* of every splat, what the image's id plane calls it; null: its index */
+  int is_all;            /* all that there is, in its own order: nothing was chosen */
+  double error_px;       /* asked for, or what the budget came to; 0 where nothing was chosen */
+  uint64_t n_culled;     /* parts that are out of sight */
+  int n_levels;          /* of a source with levels: that were drawn */
+} conic_source_choice;
+
+/* Chooses what a camera sees, and hands it over by conic_source_chosen. Null `view` is the default. Errors: ARGUMENT,
+ * UNSUPPORTED (it streams), MEMORY, CANCELLED. */
+CONIC_API conic_status conic_source_choose(conic_source *source, const conic_camera *camera,
+                                           const conic_render_options *render, const conic_source_view *view);
+
+/* The source's own; stays until the next picture. */
+CONIC_API const conic_source_choice *conic_source_chosen(const conic_source *source);
+
+/* What else a splat of the choice is called: "point", "node" or "cluster", and its number; null: nothing. */
+CONIC_API const char *conic_source_name_splat(const conic_source *source, uint32_t splat, uint32_t *number);
+
+/* Names what was chosen in an image that conic_render_drawing drew of it: in the planes id and cluster. */
+CONIC_API void conic_source_name_image(const conic_source *source, conic_image *image);
+
+/* Chooses, draws into the planes that `image` has, and names what was chosen in its planes id and cluster. What
+ * choosing took is part of the statistics' times. Null `view` is the default, and `statistics` may be null. Errors: as
+ * conic_source_choose, conic_render_drawing and conic_layers_draw. */
+CONIC_API conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                         const conic_render_options *render, const conic_source_view *view,
+                                         conic_image *image, conic_render_statistics *statistics);
+
+/* --- statistics --- */
+
+typedef enum conic_fact_type {
+  CONIC_FACT_COUNT = 0,
+  CONIC_FACT_NUMBER = 1,
+  CONIC_FACT_TRUTH = 2, /* in `count` */
+  CONIC_FACT_TEXT = 3,
+  CONIC_FACT_OBJECT = 4, /* what follows up to its end belongs to it */
+  CONIC_FACT_ARRAY = 5,  /* likewise; the items have no keys */
+  CONIC_FACT_END = 6,
+  CONIC_FACT_LINE = 7,   /* for people: `key` is a label, and `text` says what other facts say in numbers */
+  CONIC_FACT_DEFECT = 8, /* `count` things that are wrong, which `text` describes */
+  CONIC_FACT_FAULT = 9   /* all of it cannot be drawn: `text` says why */
+} conic_fact_type;
+
+typedef struct conic_fact {
+  conic_fact_type type;
+  const char *key; /* a static name, as the program's JSON has it; null in arrays */
+  uint64_t count;
+  double number;
+  char text[160];
+} conic_fact;
+
+typedef struct conic_facts conic_facts;
+
+/* Of the last picture: the object "primitives", what was culled, its error, and what else the source counts. On success
+ * the caller owns *facts. Errors: MEMORY. */
+CONIC_API conic_status conic_source_describe(const conic_source *source, const conic_render_statistics *statistics,
+                                             conic_facts **facts);
+
+/* Of a file, as it stands: first its kind, then what it holds; `is_checked`: also the object "defects", for which all
+ * of it is looked at. On success the caller owns *facts. Errors: as those of the functions that read each kind. */
+CONIC_API conic_status conic_source_inspect(conic_context *context, const char *path, int is_checked,
+                                            conic_facts **facts);
+
+/* Fact `i`, or null after the last one. */
+CONIC_API const conic_fact *conic_facts_at(const conic_facts *facts, size_t i);
+/* Null is allowed. */
+CONIC_API void conic_facts_destroy(conic_facts *facts);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

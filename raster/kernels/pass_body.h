@@ -1,0 +1,283 @@
+/* Passes 1 and 2 in lanes: visibility and accumulation, and what the single pass shares with them. */
+#ifndef CONIC_PASS_BODY_H
+#define CONIC_PASS_BODY_H
+
+#include "raster/kernels/coverage_lanes.h"
+
+/* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
+ * outside the image: what is compared with it is not covered. */
+typedef struct sites {
+  lanes x[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS], y;
+} sites;
+
+CONIC_INLINE lanes nan_beyond(int_lanes pixels, int size) {
+  lanes_mask inside = lanes_less_int(pixels, lanes_of_int(size));
+  return lanes_select(inside, __builtin_convertvector(pixels, lanes), lanes_of(__builtin_nanf("")));
+}
+
+CONIC_INLINE void find_sites(const conic_band *band, sites *s) {
+  s->y = nan_beyond(lanes_rows() + band->y, band->view->height);
+  for (int part = 0; part < band->n_blocks * CONIC_PARTS; part++)
+    s->x[part] = nan_beyond(lanes_columns() + (band->x + part * (CONIC_LANES / CONIC_BLOCK_EDGE)), band->view->width);
+  for (int part = 0; part < CONIC_PARTS; part++)
+    s->x[CONIC_NO_BLOCK * CONIC_PARTS + part] = lanes_of(__builtin_nanf(""));
+}
+
+/* What a band's loops read. A copy of their own: what they store might otherwise be these pointers, as far as a
+ * compiler can tell. */
+typedef struct sources {
+  const conic_view *view;
+  float support;
+  const conic_footprint *footprints;
+  const conic_projected_surface *surfaces;
+  const conic_ray *rays;
+  const conic_clip_record *clips;
+  const uint32_t *indices, *words;
+  size_t n;
+} sources;
+
+CONIC_INLINE sources sources_of(const conic_band *band) {
+  const conic_projected *projected = band->projected;
+  return (sources){band->view,          band->view->support, projected->footprints,
+                   projected->surfaces, projected->rays,     projected->clips,
+                   band->indices,       band->words,         band->n};
+}
+
+CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
+                           int is_special, fragments *f) {
+  const conic_ray *ray = is_special && footprint->s3 == 0.0f ? &from->rays[footprint->i_ray] : NULL;
+  const conic_clip_record *clip =
+      is_special && conic_is_clipped(footprint) ? &from->clips[footprint - from->footprints] : NULL;
+  fragments_at(from->view, from->support, footprint, ray, clip, rows, x, is_special, f);
+}
+
+/* What the splat after the next few is read from, in this pass and the next. */
+CONIC_INLINE void prefetch_splat(const sources *from, size_t i) {
+  enum { AHEAD = 32 };
+  uint32_t later = from->indices[i + AHEAD < from->n ? i + AHEAD : i];
+  __builtin_prefetch(&from->footprints[later]);
+  __builtin_prefetch(&from->surfaces[later]);
+}
+
+/* Where there is one ray there are more: that of the splat after the next few, whose footprint is there already. */
+CONIC_INLINE void prefetch_ray(const sources *from, uint32_t later) {
+  const conic_footprint *footprint = &from->footprints[later];
+  if (footprint->s3 == 0.0f) {
+    __builtin_prefetch(&from->rays[footprint->i_ray].u0);
+    __builtin_prefetch(&from->rays[footprint->i_ray].dy_high);
+  }
+}
+
+CONIC_INLINE void empty_blocks(conic_band *band) {
+  for (int block = 0; block < band->n_blocks; block++) {
+    band->n_kept[block] = 0;
+    band->not_kept[block] = band->n;
+  }
+}
+
+/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
+CONIC_INLINE unsigned pass_part(lanes nearness, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                                int is_special) {
+  lanes offset_iz = lanes_keep(f->covered, nearness * lanes_min(f->plane_iz, f->iz));
+  lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
+  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].seen_iz + at,
+              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
+  if (is_special)
+    lanes_store(kept->scale[place] + at, f->scale);
+  return lanes_count(f->covered);
+}
+
+/* The state of the first pass along a band, a copy of its own like `sources`. */
+typedef struct pass {
+  conic_kept *kept;
+  size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
+  uint64_t n_fragments;
+} pass;
+
+/* One splat, and what of it is the same in all blocks. */
+typedef struct passing {
+  const conic_footprint *footprint;
+  size_t i; /* in the band's list */
+  uint32_t i_footprint;
+  lanes nearness;
+  splat_rows rows;
+} passing;
+
+CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
+                             int is_special) {
+  conic_kept *kept = &p->kept[block];
+  size_t place = p->n_kept[block];
+  unsigned n_covered = 0;
+  fragments f;
+  kept->footprint[place] = splat->i_footprint;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
+    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
+    n_covered += pass_part(splat->nearness, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
+  }
+  p->n_fragments += n_covered;
+  if (place < p->room)
+    p->n_kept[block] = place + (n_covered > 0);
+  else if (n_covered > 0 && p->not_kept[block] > splat->i)
+    p->not_kept[block] = splat->i;
+}
+
+/* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
+ * splats have one or two, and which, no branch can foresee. */
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, int is_special) {
+  const uint32_t i_footprint = from->indices[i], word = from->words[i];
+  const uint32_t first = conic_word_first(word), last = conic_word_last(word);
+  const conic_footprint *footprint = &from->footprints[i_footprint];
+  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_rows(footprint, s->y)};
+  pass_block(p, from, s, &splat, first, is_special);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, is_special);
+  for (uint32_t block = first + 2; block <= last; block++)
+    pass_block(p, from, s, &splat, block, is_special);
+}
+
+static void visibility(conic_band *band) {
+  const sources from = sources_of(band);
+  pass p = {.kept = band->kept, .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
+  int has_special = 0;
+  sites s;
+  find_sites(band, &s);
+  for (int block = 0; block < band->n_blocks; block++) {
+    p.not_kept[block] = from.n;
+    memset(p.kept[block].threshold, 0, sizeof p.kept[block].threshold);
+  }
+  for (size_t i = 0; i < from.n; i++) {
+    prefetch_splat(&from, i);
+    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
+      pass_splat(&p, &from, &s, i, 0);
+    else {
+      prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
+      pass_splat(&p, &from, &s, i, 1);
+      has_special = 1;
+    }
+  }
+  memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);
+  memcpy(band->not_kept, p.not_kept, sizeof band->not_kept);
+  band->has_special = has_special;
+  band->n_fragments += p.n_fragments;
+}
+
+/* The sums of one part, in registers. */
+typedef struct part_sums {
+  lanes weight, color[3], normal[3], heaviest_weight, nearest_iz;
+  index_lanes heaviest, nearest, count;
+} part_sums;
+
+CONIC_INLINE void clear_sums(part_sums *sums) {
+  sums->weight = sums->heaviest_weight = sums->nearest_iz = lanes_of(0.0f);
+  for (int axis = 0; axis < 3; axis++)
+    sums->color[axis] = sums->normal[axis] = lanes_of(0.0f);
+  sums->heaviest = sums->nearest = sums->count = lanes_of_index(0);
+}
+
+/* Where `better` holds, `value` and `i_footprint` take the place of what is kept. */
+CONIC_INLINE void keep_better(lanes *kept, index_lanes *whose, lanes_mask better, lanes value, uint32_t i_footprint) {
+  *kept = lanes_select(better, value, *kept);
+  *whose = lanes_select_indices(better, lanes_of_index(i_footprint), *whose);
+}
+
+/* Adds visible fragments: an invisible one adds 0, which changes no bit. Splats come in file order: sums keep it, and
+ * the first of equals stays. */
+CONIC_INLINE void blend(const conic_projected_surface *surface, uint32_t i_footprint, lanes weight, part_sums *to) {
+  to->weight += weight;
+  for (int axis = 0; axis < 3; axis++) {
+    to->color[axis] += weight * surface->color[axis];
+    to->normal[axis] += weight * surface->normal[axis];
+  }
+  lanes_mask heavier = lanes_less(to->heaviest_weight, weight);
+  to->heaviest_weight = lanes_max(weight, to->heaviest_weight);
+  to->heaviest = lanes_select_indices(heavier, lanes_of_index(i_footprint), to->heaviest);
+}
+
+CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t n_kept, size_t at, int has_special,
+                             kernel_kind kind, part_sums *to) {
+  enum { AHEAD = 8 };
+  lanes threshold = lanes_load(kept->threshold + at);
+  for (size_t i = 0; i < n_kept; i++) {
+    uint32_t i_footprint = kept->footprint[i];
+    __builtin_prefetch(&from->surfaces[kept->footprint[i + AHEAD < n_kept ? i + AHEAD : i]]);
+    lanes_mask visible = lanes_at_least(lanes_load(kept->fragments[i].seen_iz + at), threshold);
+    if (!lanes_any(visible))
+      continue;
+    lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
+    if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
+      scale = lanes_load(kept->scale[i] + at);
+    const conic_projected_surface *surface = &from->surfaces[i_footprint];
+    blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
+  }
+}
+
+/* What was not kept is evaluated again. */
+CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, int part, kernel_kind kind,
+                             part_sums *to) {
+  const sources from = sources_of(band);
+  int at = block * CONIC_PARTS + part;
+  lanes threshold = lanes_load(band->kept[block].threshold + (size_t)part * CONIC_LANES);
+  fragments f;
+  for (size_t i = band->not_kept[block]; i < from.n; i++) {
+    if (!conic_word_has(from.words[i], (uint32_t)block))
+      continue;
+    const conic_footprint *footprint = &from.footprints[from.indices[i]];
+    splat_rows rows = begin_rows(footprint, s->y);
+    evaluate(&from, footprint, &rows, s->x[at], !(footprint->s3 > 0.0f), &f);
+    lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
+    if (!lanes_any(visible))
+      continue;
+    uint32_t i_footprint = from.indices[i];
+    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint->amplitude, f.q, f.scale, visible, kind),
+          to);
+    if (!band->keeps_indices)
+      continue;
+    to->count = lanes_increment(visible, to->count);
+    keep_better(&to->nearest_iz, &to->nearest, visible & lanes_less(to->nearest_iz, f.iz), f.iz, i_footprint);
+  }
+}
+
+CONIC_INLINE void store_sums(const part_sums *from, size_t at, conic_block_sums *to) {
+  lanes_store(to->weight + at, from->weight);
+  for (int axis = 0; axis < 3; axis++) {
+    lanes_store(to->color[axis] + at, from->color[axis]);
+    lanes_store(to->normal[axis] + at, from->normal[axis]);
+  }
+  lanes_store_indices(to->heaviest + at, from->heaviest);
+  lanes_store_indices(to->nearest + at, from->nearest);
+  lanes_store_indices(to->count + at, from->count);
+}
+
+CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
+  const sources from = sources_of(band);
+  sites s;
+  find_sites(band, &s);
+  for (int block = 0; block < band->n_blocks; block++) {
+    if (conic_block_is_empty(band, block))
+      continue;
+    for (int part = 0; part < CONIC_PARTS; part++) {
+      size_t at = (size_t)part * CONIC_LANES;
+      part_sums of_part;
+      clear_sums(&of_part);
+      blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
+      if (band->not_kept[block] < band->n)
+        blend_rest(band, &s, block, part, kind, &of_part);
+      store_sums(&of_part, at, &band->sums[block]);
+    }
+  }
+}
+
+static void accumulate(conic_band *band) {
+  switch (kind_of(&band->view->kernel)) {
+  case KERNEL_NARROW_GAUSS:
+    accumulate_with(band, KERNEL_NARROW_GAUSS);
+    break;
+  case KERNEL_GAUSS:
+    accumulate_with(band, KERNEL_GAUSS);
+    break;
+  default:
+    accumulate_with(band, KERNEL_OTHER);
+  }
+}
+
+#endif

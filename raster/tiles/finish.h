@@ -1,0 +1,37 @@
+/* How pixels are finished: their rays, their light, and the pass that normalises, shades and writes them. */
+#ifndef CONIC_FINISH_H
+#define CONIC_FINISH_H
+
+#include "raster/tiles/band.h"
+
+/* Of the light that falls on a surface: from everywhere, from the light, and reflected like a gloss. Chosen by eye on
+ * the scans and meshes: the darkest side stays readable and white does not burn out. */
+#define CONIC_AMBIENT 0.05f
+#define CONIC_DIFFUSE 0.75f
+#define CONIC_SPECULAR 0.15f
+
+/* How a frame's pixels are finished. */
+typedef struct conic_finish {
+  const conic_render_options *options;
+  float world_from_cam[3][3]; /* for the direction to the viewer */
+  float light[3];             /* unit, towards the light; unused with a headlight */
+  float exposure;             /* factor */
+  float background[4];        /* of an uncovered pixel: rgba, exposed */
+} conic_finish;
+
+/* The directions of a tile's columns and rows of pixels: d = (x, y, 1). */
+typedef struct conic_tile_rays {
+  int x_begin, y_begin; /* the tile's first pixel */
+  float x[CONIC_GREATEST_TILE], y[CONIC_GREATEST_TILE];
+  float block_x[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* the same for each column of blocks … */
+  float block_y[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* … and each row of them, in the order of a block's pixels */
+} conic_tile_rays;
+
+void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays);
+
+/* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the
+ * weighted mean of the splats' unit normals, whose length says how far they agree. */
+void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
+                 const float viewer[3], float shaded[3]);
+
+#endif

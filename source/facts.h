@@ -1,0 +1,38 @@
+/* Facts, as they are put together: CONIC_ADD_FACTS(facts, CONIC_COUNT("points", n), …). */
+#ifndef CONIC_FACTS_H
+#define CONIC_FACTS_H
+
+#include "conic/source.h"
+
+#define CONIC_COUNT(name, value) ((conic_fact){.type = CONIC_FACT_COUNT, .key = (name), .count = (uint64_t)(value)})
+#define CONIC_NUMBER(name, value) ((conic_fact){.type = CONIC_FACT_NUMBER, .key = (name), .number = (double)(value)})
+#define CONIC_TRUTH(name, value) ((conic_fact){.type = CONIC_FACT_TRUTH, .key = (name), .count = (value) != 0})
+#define CONIC_OBJECT(name) ((conic_fact){.type = CONIC_FACT_OBJECT, .key = (name)})
+#define CONIC_ARRAY(name) ((conic_fact){.type = CONIC_FACT_ARRAY, .key = (name)})
+#define CONIC_END ((conic_fact){.type = CONIC_FACT_END})
+#define CONIC_DEFECT(name, value, what)                                                                                \
+  ((conic_fact){.type = CONIC_FACT_DEFECT, .key = (name), .count = (uint64_t)(value), .text = what})
+#define CONIC_LINE(label, ...) conic_fact_text(CONIC_FACT_LINE, label, __VA_ARGS__)
+
+/* A fact of a type with text. */
+conic_fact conic_fact_text(conic_fact_type type, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+enum { CONIC_MOST_FACTS = 96 };
+
+struct conic_facts {
+  conic_context *context;
+  size_t n;
+  conic_fact list[CONIC_MOST_FACTS];
+};
+
+/* Leaves out what no longer fits. */
+void conic_facts_add(conic_facts *facts, const conic_fact *more, size_t n);
+#define CONIC_ADD_FACTS(facts, ...)                                                                                    \
+  conic_facts_add(facts, (const conic_fact[]){__VA_ARGS__},                                                            \
+                  sizeof((const conic_fact[]){__VA_ARGS__}) / sizeof(conic_fact))
+
+/* The object "bounds", and the line. */
+void conic_facts_add_bounds(conic_facts *facts, const double low[3], const double high[3]);
+
+#endif

@@ -1,0 +1,151 @@
+/* Layered point clouds: a .lpc or its URL, drawn by itself, in bounded memory. */
+#include <inttypes.h>
+#include <string.h>
+
+#include "conic/layers.h"
+#include "conic/layers_draw.h"
+#include "source/source_kind.h"
+
+typedef struct layers_source {
+  conic_source base;
+  conic_layers *layers;
+  float cutoff;
+  uint64_t n_clouds;
+  conic_layers_drawn drawn;
+} layers_source;
+
+static int is_layers_file(const char *path) {
+  return conic_layers_is_url(path) || conic_layers_is_file(path);
+}
+
+static int takes_layers(const char *path, const conic_source_options *options) {
+  return !options->is_whole && options->as != CONIC_AS_PATCHES && is_layers_file(path);
+}
+
+static conic_status open_layers(conic_source *source, const char *const *paths, size_t n_paths,
+                                const conic_source_options *options) {
+  layers_source *l = (layers_source *)source;
+  conic_source_scale *scale = &source->scale;
+  conic_layers_scale found;
+  (void)n_paths;
+  conic_status status = conic_layers_open(source->context, paths[0], options->access, &l->layers);
+  if (status != CONIC_OK)
+    return status;
+  conic_layers_measure(l->layers, options->cutoff, &found);
+  memcpy(scale->minimum, found.minimum, sizeof scale->minimum);
+  memcpy(scale->maximum, found.maximum, sizeof scale->maximum);
+  scale->near_z = found.near_z;
+  scale->splat_length = found.splat_length;
+  scale->spacing = found.spacing;
+  scale->n_splats = found.n_samples;
+  scale->n_levels = found.n_levels;
+  scale->has_colors = found.has_colors;
+  l->cutoff = options->cutoff;
+  l->n_clouds = found.n_clouds;
+  return CONIC_OK;
+}
+
+static void close_layers(conic_source *source) {
+  conic_layers_close(((layers_source *)source)->layers);
+}
+
+static conic_status draw_layers(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                                conic_render_statistics *statistics) {
+  layers_source *l = (layers_source *)source;
+  conic_layers_draw_options options;
+  conic_layers_draw_options_init(&options);
+  options.error_px = view->error_px;
+  options.budget = view->budget;
+  options.most_levels = view->most_levels;
+  options.occlusion = view->occlusion;
+  options.samples = view->samples;
+  options.may_be_coarser = view->may_be_coarser;
+  options.seconds = view->seconds;
+  conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
+  source->choice = (conic_source_choice){
+      .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};
+  return status;
+}
+
+static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
+  const conic_layers_drawn *d = &((const layers_source *)source)->drawn;
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("layers"), CONIC_COUNT("clouds", ((const layers_source *)source)->n_clouds),
+                  CONIC_COUNT("clouds_drawn", d->n_clouds), CONIC_COUNT("clouds_grazing", d->n_clouds_grazing),
+                  CONIC_COUNT("clouds_read", d->n_clouds_read), CONIC_COUNT("clouds_missing", d->n_clouds_missing),
+                  CONIC_COUNT("places", d->n_places), CONIC_COUNT("places_hidden", d->n_places_hidden),
+                  CONIC_COUNT("places_grazing", d->n_places_grazing),
+                  CONIC_COUNT("places_coarser", d->n_places_coarser), CONIC_NUMBER("coarser_px", d->missing_error_px),
+                  CONIC_COUNT("splats_hidden", d->n_splats_left), CONIC_COUNT("levels", d->n_levels),
+                  CONIC_COUNT("bands", d->n_bands), CONIC_COUNT("bytes_received", d->n_bytes_received));
+  if (source->view.most_levels > 0) /* one after each level */
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("pictures", source->view.most_levels));
+  CONIC_ADD_FACTS(facts, CONIC_END);
+}
+
+static conic_status tell_layers_file(conic_source *source, conic_facts *facts) {
+  conic_layers_info info;
+  conic_status status = conic_layers_describe(source->context, source->name, &info);
+  if (status != CONIC_OK)
+    return status;
+  const double bits = 8.0 * (double)info.n_bytes / (double)info.n_samples;
+  CONIC_ADD_FACTS(facts, CONIC_COUNT("points", info.n_samples), CONIC_COUNT("clouds", info.n_clouds),
+                  CONIC_COUNT("levels", info.n_levels), CONIC_COUNT("cloud_size", info.cloud_size),
+                  CONIC_COUNT("largest_cloud", info.most_samples), CONIC_TRUTH("colors", info.has_colors),
+                  CONIC_TRUTH("oriented", !info.is_unoriented), CONIC_NUMBER("bits_per_sample", bits),
+                  CONIC_OBJECT("bits"), CONIC_NUMBER("position", info.bits_position),
+                  CONIC_NUMBER("normal", info.bits_normal), CONIC_NUMBER("colour", info.bits_color),
+                  CONIC_NUMBER("index", info.bits_index), CONIC_END, CONIC_NUMBER("spacing", info.spacing),
+                  CONIC_NUMBER("quantum", info.quantum), CONIC_NUMBER("position_error", info.position_error),
+                  CONIC_NUMBER("splat_radius", info.splat_radius), CONIC_NUMBER("near", info.near_z),
+                  CONIC_LINE("samples", "%" PRIu64 "%s%s", info.n_samples, info.has_colors ? ", with colours" : "",
+                             info.is_unoriented ? ", normals without a side" : ""),
+                  CONIC_LINE("clouds", "%" PRIu64 " in %d levels, %u samples asked for, %u in the largest",
+                             info.n_clouds, info.n_levels, (unsigned)info.cloud_size, (unsigned)info.most_samples),
+                  CONIC_LINE("spacing", "%.4g; positions in steps of %.4g, moved by %.3g at most", info.spacing,
+                             info.quantum, info.position_error),
+                  CONIC_LINE("outline", "%.4g, the median at full resolution", info.splat_radius));
+  conic_facts_add_bounds(facts, info.minimum, info.maximum);
+  CONIC_ADD_FACTS(facts, CONIC_LINE("bits", "%.2f a sample: position %.2f, normal %.2f, colour %.2f, index %.2f", bits,
+                                    info.bits_position, info.bits_normal, info.bits_color, info.bits_index));
+  return CONIC_OK;
+}
+
+static conic_status tell_layers_defects(conic_source *source, conic_facts *facts) {
+  conic_layers_defects broken;
+  conic_status status = conic_layers_check(source->context, source->name, &broken);
+  if (status == CONIC_OK)
+    CONIC_ADD_FACTS(facts, CONIC_DEFECT("clouds", broken.clouds, "clouds that are damaged"),
+                    CONIC_DEFECT("coverage", broken.coverage, "clouds that do not cover their place as they say"),
+                    CONIC_DEFECT("spheres", broken.spheres, "clouds whose sphere does not hold their place"),
+                    CONIC_DEFECT("cones", broken.cones, "clouds whose cone does not hold their normals"));
+  return status;
+}
+
+/* Measured from the world's origin, whatever the file's. */
+static conic_status take_layers_splats(conic_source *source, conic_splats *splats) {
+  const layers_source *l = (layers_source *)source;
+  conic_splats samples;
+  memset(splats, 0, sizeof *splats);
+  conic_status status = conic_layers_splats(l->layers, l->cutoff, &samples);
+  if (status == CONIC_OK)
+    status = conic_splats_append(source->context, splats, &samples);
+  conic_splats_release(source->context, &samples);
+  return status;
+}
+
+const conic_source_kind conic_source_kind_layers = {
+    .size = sizeof(layers_source),
+    .abilities = CONIC_SOURCE_CHOOSES | CONIC_SOURCE_STREAMS,
+    .company = CONIC_SOURCE_SINGLE,
+    .takes = takes_layers,
+    .open = open_layers,
+    .close = close_layers,
+    .draw = draw_layers,
+    .tell_rest = tell_layers_rest,
+    .is_file = is_layers_file,
+    .name = "lpc",
+    .tell_file = tell_layers_file,
+    .tell_defects = tell_layers_defects,
+    .take_splats = take_layers_splats,
+};

@@ -1,0 +1,103 @@
+/* Points that are drawn as part of a smooth surface: the samples of the polynomials about them. */
+#include "conic/patches.h"
+
+#include "core/base/clock.h"
+#include "core/base/message.h"
+#include "source/source_kind.h"
+
+typedef struct patches_source {
+  conic_source base;
+  conic_source *points;
+  conic_patches *patches;
+  conic_patch_selection selection;
+} patches_source;
+
+static int takes_patches(const char *path, const conic_source_options *options) {
+  (void)path;
+  return options->as == CONIC_AS_PATCHES;
+}
+
+/* ε goes with the points, and not with their samples. */
+static conic_status lay_patches(patches_source *p, const conic_source_options *options) {
+  const conic_splats *splats = conic_source_chosen(p->points)->drawing.splats;
+  conic_patches_options laying;
+  double spacing = 1.0;
+  conic_status status = CONIC_OK;
+  if (options->patches)
+    laying = *options->patches;
+  else
+    conic_patches_options_init(&laying);
+  laying.cutoff = options->cutoff;
+  if (options->h_in_spacings && laying.surface.h > 0.0)
+    status = conic_source_spacing(p->points, &spacing);
+  laying.surface.h *= spacing;
+  p->base.scale.epsilon = (double)options->cutoff * p->base.scale.splat_length;
+  return status == CONIC_OK ? conic_patches_create(p->base.context, splats, &laying, &p->patches) : status;
+}
+
+static conic_status open_patches(conic_source *source, const char *const *paths, size_t n_paths,
+                                 const conic_source_options *options) {
+  patches_source *p = (patches_source *)source;
+  conic_source_options whole = *options;
+  whole.as = CONIC_AS_POINTS;
+  whole.is_whole = 1;
+  conic_status status = conic_source_open(source->context, paths, n_paths, &whole, &p->points);
+  if (status != CONIC_OK)
+    return status;
+  unsigned abilities = source->scale.abilities;
+  source->scale = *conic_source_measure(p->points);
+  source->scale.abilities = abilities;
+  double start = conic_seconds_now();
+  status = lay_patches(p, options);
+  source->scale.estimate_seconds += conic_seconds_now() - start;
+  return status;
+}
+
+static void close_patches(conic_source *source) {
+  patches_source *p = (patches_source *)source;
+  conic_patches_destroy(p->patches);
+  conic_source_close(p->points);
+}
+
+static conic_status find_patches_spacing(conic_source *source, double *spacing) {
+  return conic_source_spacing(((patches_source *)source)->points, spacing);
+}
+
+static conic_status choose_from_patches(conic_source *source, const conic_camera *camera,
+                                        const conic_render_options *render, const conic_source_view *view) {
+  patches_source *p = (patches_source *)source;
+  (void)view;
+  conic_status status = conic_patches_select(p->patches, camera, render, &p->selection);
+  source->choice.drawing.splats = &p->selection.splats;
+  source->choice.ids = p->selection.points;
+  return status;
+}
+
+static void name_patches_image(const conic_source *source, conic_image *image) {
+  conic_patch_selection_name(&((const patches_source *)source)->selection, image);
+}
+
+static const char *name_patches_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+  *number = ((const patches_source *)source)->selection.points[splat];
+  return "point";
+}
+
+/* Of what was handed over to be drawn. */
+static void tell_patches_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
+  const conic_patch_selection *selection = &((const patches_source *)source)->selection;
+  *n_splats = selection->n_splats;
+  CONIC_ADD_FACTS(facts, CONIC_COUNT("patches", selection->n_patches), CONIC_COUNT("samples", selection->n_samples));
+}
+
+const conic_source_kind conic_source_kind_patches = {
+    .size = sizeof(patches_source),
+    .company = CONIC_SOURCE_MANY,
+    .takes = takes_patches,
+    .open = open_patches,
+    .close = close_patches,
+    .find_spacing = find_patches_spacing,
+    .choose = choose_from_patches,
+    .name_image = name_patches_image,
+    .name_splat = name_patches_splat,
+    .tell_primitives = tell_patches_primitives,
+};

@@ -1,0 +1,23 @@
+/* How far out points may be where a scene is framed or kept. */
+#ifndef CONIC_REACH_H
+#define CONIC_REACH_H
+
+#include "conic/splats.h"
+
+/* Whether the box can be framed: the camera's numbers then stay well within those that drawing takes. */
+static inline int conic_is_in_reach(const double low[3], const double high[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    if (!(low[axis] > -1e20 && high[axis] < 1e20))
+      return 0;
+  return 1;
+}
+
+/* Why a camera cannot be put before the points, in words; null where it can. */
+static inline const char *conic_why_out_of_reach(const conic_splats *points) {
+  double low[3], high[3];
+  if (conic_splats_bounds(points, low, high) == 0)
+    return points->count ? "no point is finite" : "it holds no points";
+  return conic_is_in_reach(low, high) ? NULL : "a point is farther out than 1e20";
+}
+
+#endif

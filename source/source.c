@@ -1,0 +1,288 @@
+/* What all sources share: which kind takes which input, the box and the camera, and the frame around a kind's own
+ * functions. */
+#include "conic/source.h"
+
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "source/reach.h"
+#include "source/source_kind.h"
+
+/* Every kind, in the order in which they are asked; the last takes whatever is left. */
+static const conic_source_kind *const kinds[] = {&conic_source_kind_layers, &conic_source_kind_hybrid,
+                                                 &conic_source_kind_patches, &conic_source_kind_octree,
+                                                 &conic_source_kind_drawing};
+enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
+
+void conic_source_options_init(conic_source_options *options) {
+  memset(options, 0, sizeof *options);
+  options->size = sizeof *options;
+  options->cutoff = 1.5f;
+  options->n_neighbours = 20;
+}
+
+void conic_source_view_init(conic_source_view *view) {
+  memset(view, 0, sizeof *view);
+  view->size = sizeof *view;
+  view->only_kind = -1;
+  view->samples = 1;
+}
+
+/* --- kinds --- */
+
+static int takes_any(const conic_source_kind *kind, const char *const *paths, size_t n,
+                     const conic_source_options *options) {
+  if (kind->company == CONIC_SOURCE_SINGLE && n != 1)
+    return 0;
+  for (size_t i = 0; i < n; i++)
+    if (kind->takes(paths[i], options))
+      return 1;
+  return 0;
+}
+
+static const conic_source_kind *find_kind(const char *const *paths, size_t n, const conic_source_options *options) {
+  int i = 0;
+  while (i < N_KINDS - 1 && !takes_any(kinds[i], paths, n, options))
+    i++;
+  return kinds[i];
+}
+
+const conic_source_kind *conic_source_kind_of_file(const char *path) {
+  for (int i = 0; i < N_KINDS; i++)
+    if (kinds[i]->is_file && kinds[i]->is_file(path))
+      return kinds[i];
+  return NULL;
+}
+
+unsigned conic_source_abilities(const char *const *paths, size_t n_paths, const conic_source_options *options) {
+  conic_source_options defaults;
+  conic_source_options_init(&defaults);
+  return find_kind(paths, n_paths, options ? options : &defaults)->abilities;
+}
+
+/* --- opening and closing --- */
+
+conic_status conic_source_create(conic_context *context, const conic_source_kind *kind, const char *name,
+                                 conic_source **source) {
+  conic_source *s = conic_memory_allocate_zeroed(context, kind->size + strlen(name) + 1, 1);
+  *source = s;
+  if (!s)
+    return CONIC_ERROR_MEMORY;
+  s->kind = kind;
+  s->context = context;
+  s->name = strcpy((char *)s + kind->size, name);
+  s->scale.abilities = kind->abilities;
+  s->scale.up[1] = 1.0;
+  s->scale.epsilon = -1.0;
+  return CONIC_OK;
+}
+
+conic_status conic_source_finish(conic_status status, conic_source **source) {
+  if (status == CONIC_OK)
+    return CONIC_OK;
+  conic_source_close(*source);
+  *source = NULL;
+  return status;
+}
+
+conic_status conic_source_open_kind(conic_context *context, const conic_source_kind *kind, const char *const *paths,
+                                    size_t n_paths, const conic_source_options *options, conic_source **source) {
+  double start = conic_seconds_now();
+  conic_status status = conic_source_create(context, kind, paths[0], source);
+  if (status != CONIC_OK)
+    return status;
+  status = kind->open(*source, paths, n_paths, options);
+  (*source)->scale.read_seconds = conic_seconds_now() - start - (*source)->scale.estimate_seconds;
+  return conic_source_finish(status, source);
+}
+
+conic_status conic_source_open(conic_context *context, const char *const *paths, size_t n_paths,
+                               const conic_source_options *options, conic_source **source) {
+  conic_source_options defaults;
+  conic_source_options_init(&defaults);
+  options = options ? options : &defaults;
+  *source = NULL;
+  if (options->size != sizeof *options || n_paths == 0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
+  const conic_source_kind *kind = find_kind(paths, n_paths, options);
+  if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself, and made of one mesh", paths[0]);
+  return conic_source_open_kind(context, kind, paths, n_paths, options, source);
+}
+
+void conic_source_close(conic_source *source) {
+  if (!source)
+    return;
+  source->kind->close(source);
+  conic_memory_release(source->context, source);
+}
+
+/* --- measuring --- */
+
+const conic_source_scale *conic_source_measure(const conic_source *source) {
+  return &source->scale;
+}
+
+conic_status conic_source_spacing(conic_source *source, double *spacing) {
+  *spacing = source->scale.spacing;
+  if (*spacing > 0.0)
+    return CONIC_OK;
+  if (!source->kind->find_spacing)
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: it has no spacing", source->name);
+  return source->kind->find_spacing(source, spacing);
+}
+
+conic_status conic_source_frame(const conic_source *source, const conic_framing *framing, conic_camera *camera) {
+  const conic_source_scale *scale = &source->scale;
+  conic_framing defaults;
+  conic_framing_init(&defaults);
+  memcpy(defaults.up, scale->up, sizeof defaults.up);
+  if (!conic_is_in_reach(scale->minimum, scale->maximum))
+    return conic_fail(source->context, CONIC_ERROR_INPUT, "%s: cannot be drawn: a point is farther out than 1e20",
+                      source->name);
+  return conic_camera_frame(source->context, framing ? framing : &defaults, scale->minimum, scale->maximum, camera);
+}
+
+void conic_source_settle(const conic_source *source, conic_render_options *render) {
+  const conic_source_scale *scale = &source->scale;
+  if (render->near_z == 0.0)
+    render->near_z = scale->near_z;
+  if (render->splat_length == 0.0)
+    render->splat_length = scale->splat_length;
+  if (render->epsilon < 0.0)
+    render->epsilon = scale->epsilon;
+}
+
+/* --- pictures --- */
+
+const conic_source_choice *conic_source_chosen(const conic_source *source) {
+  return &source->choice;
+}
+
+/* The view becomes the source's, and the options are filled in. */
+static conic_status begin_picture(conic_source *source, const conic_render_options *render,
+                                  const conic_source_view *view, conic_render_options *settled) {
+  if (!render || render->size != sizeof *render || (view && view->size != sizeof *view))
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "source: the options were not initialised");
+  *settled = *render;
+  conic_source_settle(source, settled);
+  conic_source_view_init(&source->view);
+  if (view)
+    source->view = *view;
+  return CONIC_OK;
+}
+
+static conic_status choose_settled(conic_source *source, const conic_camera *camera,
+                                   const conic_render_options *render) {
+  static const conic_splats no_splats;
+  static const conic_triangles no_triangles;
+  if (!source->kind->choose)
+    return source->kind->draw ? conic_fail(source->context, CONIC_ERROR_UNSUPPORTED,
+                                           "%s: it is drawn as it is read, and hands nothing over", source->name)
+                              : CONIC_OK;
+  source->choice = (conic_source_choice){.drawing = {&no_splats, &no_triangles}};
+  return source->kind->choose(source, camera, render, &source->view);
+}
+
+conic_status conic_source_choose(conic_source *source, const conic_camera *camera, const conic_render_options *render,
+                                 const conic_source_view *view) {
+  conic_render_options settled;
+  conic_status status = begin_picture(source, render, view, &settled);
+  return status == CONIC_OK ? choose_settled(source, camera, &settled) : status;
+}
+
+conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                               const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                               conic_render_statistics *statistics) {
+  const conic_source_kind *kind = source->kind;
+  conic_render_options settled;
+  conic_status status = begin_picture(source, render, view, &settled);
+  if (status != CONIC_OK || kind->draw)
+    return status == CONIC_OK ? kind->draw(source, renderer, camera, &settled, &source->view, image, statistics)
+                              : status;
+  double start = conic_seconds_now();
+  status = choose_settled(source, camera, &settled);
+  double ms = kind->choose ? 1e3 * (conic_seconds_now() - start) : 0.0;
+  if (status == CONIC_OK)
+    status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
+                                  source->view.samples, image, statistics);
+  if (status != CONIC_OK)
+    return status;
+  conic_source_name_image(source, image);
+  if (statistics) {
+    statistics->ms.lod = ms;
+    statistics->ms.frame += ms;
+  }
+  return CONIC_OK;
+}
+
+const char *conic_source_name_splat(const conic_source *source, uint32_t splat, uint32_t *number) {
+  return source->kind->name_splat && !source->choice.is_all ? source->kind->name_splat(source, splat, number) : NULL;
+}
+
+void conic_source_name_image(const conic_source *source, conic_image *image) {
+  if (source->kind->name_image && !source->choice.is_all)
+    source->kind->name_image(source, image);
+}
+
+/* --- statistics --- */
+
+static conic_status begin_facts(conic_context *context, conic_facts **facts) {
+  *facts = conic_memory_allocate_zeroed(context, 1, sizeof **facts);
+  if (!*facts)
+    return CONIC_ERROR_MEMORY;
+  (*facts)->context = context;
+  return CONIC_OK;
+}
+
+conic_status conic_source_describe(const conic_source *source, const conic_render_statistics *statistics,
+                                   conic_facts **facts) {
+  const conic_source_kind *kind = source->kind;
+  const conic_source_choice *choice = &source->choice;
+  conic_status status = begin_facts(source->context, facts);
+  if (status != CONIC_OK)
+    return status;
+  CONIC_ADD_FACTS(*facts, CONIC_OBJECT("primitives"), CONIC_COUNT("splats", statistics->splats_drawn));
+  if (statistics->triangles_in)
+    CONIC_ADD_FACTS(*facts, CONIC_COUNT("triangles", statistics->triangles_drawn));
+  if (kind->tell_primitives && !choice->is_all)
+    kind->tell_primitives(source, *facts, &(*facts)->list[1].count);
+  CONIC_ADD_FACTS(*facts, CONIC_END, CONIC_COUNT("clouds_culled", choice->n_culled));
+  if (kind->abilities & CONIC_SOURCE_CHOOSES && !choice->is_all)
+    CONIC_ADD_FACTS(*facts, CONIC_NUMBER("error_px", choice->error_px));
+  if (kind->tell_rest)
+    kind->tell_rest(source, *facts);
+  return CONIC_OK;
+}
+
+static conic_status inspect_as(conic_context *context, const conic_source_kind *kind, const char *path, int is_checked,
+                               conic_facts *facts) {
+  conic_source *source;
+  conic_status status = conic_source_create(context, kind, path, &source);
+  if (status != CONIC_OK)
+    return status;
+  CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, "kind", "%s", kind->name));
+  status = kind->tell_file(source, facts);
+  if (status == CONIC_OK && is_checked) {
+    CONIC_ADD_FACTS(facts, CONIC_OBJECT("defects"));
+    status = kind->tell_defects(source, facts);
+    CONIC_ADD_FACTS(facts, CONIC_END);
+  }
+  conic_source_close(source);
+  return status;
+}
+
+conic_status conic_source_inspect(conic_context *context, const char *path, int is_checked, conic_facts **facts) {
+  const conic_source_kind *kind = conic_source_kind_of_file(path);
+  conic_status status = begin_facts(context, facts);
+  if (status == CONIC_OK)
+    status = kind ? inspect_as(context, kind, path, is_checked, *facts)
+                  : conic_model_inspect(context, path, is_checked, *facts);
+  if (status == CONIC_OK)
+    return CONIC_OK;
+  conic_facts_destroy(*facts);
+  *facts = NULL;
+  return status;
+}

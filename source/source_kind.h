@@ -1,0 +1,79 @@
+/* A kind of source: one file that fills in this table, and one line in the list of source/source.c. */
+#ifndef CONIC_SOURCE_KIND_H
+#define CONIC_SOURCE_KIND_H
+
+#include "conic/source.h"
+#include "source/facts.h"
+
+typedef enum conic_source_company {
+  CONIC_SOURCE_SINGLE, /* takes the only input; beside others its splats are taken */
+  CONIC_SOURCE_ALONE,  /* refuses to stand beside others */
+  CONIC_SOURCE_MANY
+} conic_source_company;
+
+/* Any function may be null unless it says otherwise. */
+typedef struct conic_source_kind {
+  size_t size; /* of the kind's own struct, which begins with a conic_source */
+  unsigned abilities;
+  conic_source_company company;
+
+  /* Whether an input becomes this kind; never null. Of the list's kinds the first that says so has it. */
+  int (*takes)(const char *path, const conic_source_options *options);
+  /* Fills in a zeroed source and its scale; of the times only what was not reading. What is there after a failure is
+   * closed like any other. Never null. */
+  conic_status (*open)(conic_source *source, const char *const *paths, size_t n_paths,
+                       const conic_source_options *options);
+  void (*close)(conic_source *source); /* never null */
+  conic_status (*find_spacing)(conic_source *source, double *spacing);
+
+  /* Fills in the choice, which is two empty sets; null: it stays as opening set it. */
+  conic_status (*choose)(conic_source *source, const conic_camera *camera, const conic_render_options *render,
+                         const conic_source_view *view);
+  /* In place of choosing and rendering. */
+  conic_status (*draw)(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                       const conic_render_options *render, const conic_source_view *view, conic_image *image,
+                       conic_render_statistics *statistics);
+  void (*name_image)(const conic_source *source, conic_image *image);
+  const char *(*name_splat)(const conic_source *source, uint32_t splat, uint32_t *number);
+
+  /* Of the last picture: adds to the object "primitives", where *n_splats is what drawing counted; and what follows. */
+  void (*tell_primitives)(const conic_source *source, conic_facts *facts, uint64_t *n_splats);
+  void (*tell_rest)(const conic_source *source, conic_facts *facts);
+
+  /* Whether a file begins like the kind's; the next three are null only where this is. */
+  int (*is_file)(const char *path);
+  const char *name; /* of the kind of file */
+  /* What the file that a source was created for holds, which it may open; and then the object "defects". */
+  conic_status (*tell_file)(conic_source *source, conic_facts *facts);
+  conic_status (*tell_defects)(conic_source *source, conic_facts *facts);
+  /* Every splat of an open source, which the caller releases. */
+  conic_status (*take_splats)(conic_source *source, conic_splats *splats);
+} conic_source_kind;
+
+struct conic_source {
+  const conic_source_kind *kind;
+  conic_context *context;
+  char *name; /* of the first input */
+  conic_source_scale scale;
+  conic_source_choice choice;
+  conic_source_view view; /* of the last picture */
+};
+
+extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
+    conic_source_kind_hybrid, conic_source_kind_patches;
+
+/* The kind of a file that only one reads; null: it is read as a model. */
+const conic_source_kind *conic_source_kind_of_file(const char *path);
+
+/* A source of a kind, opened as that; and one that is zeroed, but for the name. */
+conic_status conic_source_open_kind(conic_context *context, const conic_source_kind *kind, const char *const *paths,
+                                    size_t n_paths, const conic_source_options *options, conic_source **source);
+conic_status conic_source_create(conic_context *context, const conic_source_kind *kind, const char *name,
+                                 conic_source **source);
+/* Where `status` is a failure, closes what was made so far. Hands it on. */
+conic_status conic_source_finish(conic_status status, conic_source **source);
+
+/* conic_source_inspect of a file that is read as a model. */
+conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
+
+#endif
