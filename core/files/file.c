@@ -130,6 +130,13 @@ void conic_output_abandon(conic_output *output) {
   release(output);
 }
 
+conic_status conic_output_end(conic_output *output, conic_status status) {
+  if (status == CONIC_OK)
+    return conic_output_commit(output);
+  conic_output_abandon(output);
+  return status;
+}
+
 /* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more. */
 static int is_left_over(const char *name, const char *stem, size_t n_stem, const char *ending) {
   char *end;

@@ -17,6 +17,9 @@ FILE *conic_output_stream(conic_output *output);
 /* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
 conic_status conic_output_commit(conic_output *output);
 
+/* Commits what was written where `status` is OK; else abandons it and returns `status`. */
+conic_status conic_output_end(conic_output *output, conic_status status);
+
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
 

@@ -276,16 +276,13 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
 }
 
 conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
-  conic_status status;
-  if (writer->written < writer->count) {
+  conic_status status = CONIC_OK;
+  if (writer->written < writer->count)
     status = conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: %zu splats were announced, but %zu written",
                         writer->path, writer->count, writer->written);
-    conic_splats_writer_abandon(writer);
-    return status;
-  }
-  if (!writer->has_header)
+  else if (!writer->has_header)
     begin(writer, NULL);
-  status = conic_output_commit(writer->output);
+  status = conic_output_end(writer->output, status);
   writer->output = NULL;
   conic_splats_writer_abandon(writer);
   return status;

@@ -130,12 +130,9 @@ static void release(conic_deep_writer *writer) {
 
 conic_status conic_deep_finish(conic_deep_writer *writer) {
   exr_result_t result = exr_finish(&writer->file);
-  conic_status status = CONIC_OK;
-  if (result != EXR_ERR_SUCCESS) {
-    status = conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
-    conic_output_abandon(writer->output);
-  } else
-    status = conic_output_commit(writer->output);
+  conic_status status =
+      result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
+  status = conic_output_end(writer->output, status);
   release(writer);
   return status;
 }

@@ -143,12 +143,7 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
-  status = write_stream(context, path, conic_output_stream(output), image);
-  if (status != CONIC_OK) {
-    conic_output_abandon(output);
-    return status;
-  }
-  return conic_output_commit(output);
+  return conic_output_end(output, write_stream(context, path, conic_output_stream(output), image));
 }
 
 conic_status conic_exr_check(conic_context *context, const char *path) {

@@ -92,17 +92,13 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
     return status;
   FILE *stream = conic_output_stream(output);
   fwrite(bytes, 1, sizeof bytes, stream); /* a failure is seen when the file is committed */
-  for (size_t at = sizeof bytes, n; at < l.n_bytes; at += n) {
+  for (size_t at = sizeof bytes, n; at < l.n_bytes && status == CONIC_OK; at += n) {
     n = l.n_bytes - at < (size_t)1 << 24 ? l.n_bytes - at : (size_t)1 << 24;
     if (fwrite(body + at, 1, n, stream) != n)
       break;
     status = conic_progress(hybrid->context, "write", (double)(at + n) / (double)l.n_bytes);
-    if (status != CONIC_OK) {
-      conic_output_abandon(output);
-      return status;
-    }
   }
-  return conic_output_commit(output);
+  return conic_output_end(output, status);
 }
 
 /* --- reading --- */

@@ -188,19 +188,15 @@ static conic_status write_body(conic_octree *octree, const char *path, header *h
     return status;
   FILE *stream = conic_output_stream(output);
   size_t written = fwrite(bytes, 1, HEADER_BYTES, stream);
-  for (int i = 0; i < l.n; i++) { /* a failure is seen when the file is committed */
+  for (int i = 0; i < l.n && status == CONIC_OK; i++) { /* a failure is seen when the file is committed */
     written += fwrite(sources[i], 1, l.arrays[i].n_bytes, stream);
     size_t next = i + 1 < l.n ? l.arrays[i + 1].offset : l.n_bytes;
     written += fwrite(zeros, 1, next - l.arrays[i].offset - l.arrays[i].n_bytes, stream);
     if (written != next)
       break;
     status = conic_progress(octree->context, "write", (double)next / (double)l.n_bytes);
-    if (status != CONIC_OK) {
-      conic_output_abandon(output);
-      return status;
-    }
   }
-  return conic_output_commit(output);
+  return conic_output_end(output, status);
 }
 
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
