@@ -3,6 +3,7 @@
 
 #include "conic/opencl.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 
 static conic_status refuse(conic_context *context) {
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "opencl: this build has no OpenCL; it draws on the CPU only");
@@ -19,10 +20,9 @@ void conic_opencl_devices_release(conic_context *context, conic_opencl_device *d
   (void)devices;
 }
 
-void conic_opencl_options_init(conic_opencl_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->device = "opencl";
+void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size) {
+  static const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
+  conic_options_give(options, size, &own);
 }
 
 conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,

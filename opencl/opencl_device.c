@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 
 enum { MOST_PLATFORMS = 16, MOST_DEVICES = 64 };
 
@@ -117,10 +118,9 @@ void conic_opencl_devices_release(conic_context *context, conic_opencl_device *d
   conic_memory_release(context, devices);
 }
 
-void conic_opencl_options_init(conic_opencl_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->device = "opencl";
+void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size) {
+  static const conic_opencl_options own = {.size = sizeof own, .device = "opencl"};
+  conic_options_give(options, size, &own);
 }
 
 /* The digits at *text as a number, and *text past them; -1 where there are none or too many. */

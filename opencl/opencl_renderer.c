@@ -1,4 +1,5 @@
 #include "opencl/opencl_renderer.h"
+#include "core/base/options.h"
 
 #include <string.h>
 
@@ -130,13 +131,15 @@ void conic_opencl_close(conic_opencl *opencl) {
   conic_memory_release(opencl->context, opencl);
 }
 
-conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *options,
+conic_status conic_opencl_renderer_create(conic_context *context, const conic_opencl_options *given,
                                           conic_opencl_device *device, conic_renderer **renderer) {
+  conic_opencl_options options;
   conic_opencl *opencl;
   *renderer = NULL;
-  if (!options || options->size != sizeof *options)
+  conic_opencl_options_init(&options);
+  if (!conic_options_take(&options, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "opencl: the options were not initialised");
-  conic_status status = conic_opencl_open(context, options, &opencl);
+  conic_status status = conic_opencl_open(context, &options, &opencl);
   if (status != CONIC_OK)
     return status;
   status = conic_renderer_create(context, renderer);

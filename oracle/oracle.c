@@ -7,6 +7,8 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
+#include "core/splats/columns.h"
 #include "oracle/oracle_exact.h"
 #include "oracle/oracle_pixel.h"
 #include "oracle/oracle_triangle.h"
@@ -324,43 +326,30 @@ conic_status conic_oracle_allocate(conic_context *context, conic_reference *r) {
   return r->unstable && r->tied_id ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static conic_status check(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                          const conic_render_options *options, conic_oracle_question question) {
-  if (!splats || !camera || !options || (splats->count && !splats->position[0]))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats, a camera and options");
+static conic_status check(conic_context *context, const conic_splats *splats, conic_oracle_question question) {
   if (splats->count && (!splats->tangent_u[0] || !splats->tangent_v[0]))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
-  if (camera->width < 1 || camera->height < 1 || camera->width > 65535 || camera->height > 65535)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the camera's picture has no size");
   if (!conic_oracle_question_name(question))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "no question to the oracle has the number %d", (int)question);
   return CONIC_OK;
 }
 
-conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
-                               const conic_render_options *options, conic_oracle_question question,
-                               conic_reference *reference) {
-  static const conic_splats no_splats;
-  const conic_drawing whole = {drawing->splats ? drawing->splats : &no_splats, drawing->triangles};
-  memset(reference, 0, sizeof *reference);
-  conic_status status = check(context, whole.splats, camera, options, question);
-  if (status == CONIC_OK && whole.triangles)
-    status = conic_triangles_check(context, whole.triangles, "the oracle");
-  if (status != CONIC_OK)
-    return status;
-  conic_render_options settled = *options;
-  if (!(settled.near_z > 0.0) && whole.triangles)
-    settled.near_z = conic_drawing_near(&whole);
-  job j = {.context = context, .options = &settled, .reference = reference};
+/* The picture of what was checked; near_z is found where it is 0. */
+static conic_status answer_drawing(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                                   conic_render_options *settled, conic_oracle_question question,
+                                   conic_reference *reference) {
+  if (!(settled->near_z > 0.0) && drawing->triangles)
+    settled->near_z = conic_drawing_near(drawing);
+  job j = {.context = context, .options = settled, .reference = reference};
   reference->width = camera->width;
   reference->height = camera->height;
   reference->question = question;
-  reference->white = conic_oracle_exp(options->exposure * 0.69314718055994530942);
-  status = conic_oracle_allocate(context, reference);
+  reference->white = conic_oracle_exp(settled->exposure * 0.69314718055994530942);
+  conic_status status = conic_oracle_allocate(context, reference);
   if (status == CONIC_OK)
-    status = conic_oracle_scene_create(context, whole.splats, camera, &settled, &j.scene);
+    status = conic_oracle_scene_create(context, drawing->splats, camera, settled, &j.scene);
   if (status == CONIC_OK) {
-    status = conic_oracle_mesh_create(context, &whole, &j.scene, &settled, &j.mesh);
+    status = conic_oracle_mesh_create(context, drawing, &j.scene, settled, &j.mesh);
     if (status == CONIC_OK)
       status = compute(&j);
     conic_oracle_mesh_release(context, &j.mesh);
@@ -371,13 +360,32 @@ conic_status conic_oracle_draw(conic_context *context, const conic_drawing *draw
   return status;
 }
 
+conic_status conic_oracle_draw(conic_context *context, const conic_drawing *drawing, const conic_camera *camera,
+                               const conic_render_options *options, conic_oracle_question question,
+                               conic_reference *reference) {
+  conic_entered_drawing entered;
+  const conic_drawing whole = {&entered.splats, drawing->triangles ? &entered.triangles : NULL};
+  conic_render_options settled;
+  memset(reference, 0, sizeof *reference);
+  conic_status status = conic_view_arguments_take(context, "the oracle", camera, options, &settled);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_drawing_enter(context, "the oracle", drawing, &entered);
+  if (status == CONIC_OK)
+    status = check(context, &entered.splats, question);
+  if (status == CONIC_OK)
+    status = answer_drawing(context, &whole, camera, &settled, question, reference);
+  conic_drawing_leave(context, &entered);
+  return status;
+}
+
 conic_status conic_oracle_render(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                  const conic_render_options *options, conic_oracle_question question,
                                  conic_reference *reference) {
-  const conic_drawing alone = {splats, NULL};
+  const conic_drawing alone = {.splats = splats};
   memset(reference, 0, sizeof *reference);
-  conic_status status = check(context, splats, camera, options, question);
-  return status == CONIC_OK ? conic_oracle_draw(context, &alone, camera, options, question, reference) : status;
+  return splats ? conic_oracle_draw(context, &alone, camera, options, question, reference)
+                : conic_fail(context, CONIC_ERROR_ARGUMENT, "the oracle needs splats");
 }
 
 void conic_reference_release(conic_context *context, conic_reference *reference) {

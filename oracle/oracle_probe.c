@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/image/view_arguments.h"
 #include "oracle/oracle_exact.h"
 
 static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
@@ -16,9 +17,13 @@ static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE
 }
 
 conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat *splat, const conic_camera *camera,
-                                const conic_render_options *options, const double (*places)[2], size_t n,
+                                const conic_render_options *given, const double (*places)[2], size_t n,
                                 conic_oracle_sample *samples) {
-  oracle_view view = conic_oracle_view(camera, options, options->near_z);
+  conic_render_options options;
+  conic_status status = conic_view_arguments_take(context, "the oracle", camera, given, &options);
+  if (status != CONIC_OK)
+    return status;
+  oracle_view view = conic_oracle_view(camera, &options, options.near_z);
   oracle_placed placed;
   double answers[ORACLE_N_QUESTIONS];
   int is_so[ORACLE_N_QUESTIONS];

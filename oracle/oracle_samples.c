@@ -141,7 +141,7 @@ conic_status conic_oracle_render_drawing(conic_context *context, const conic_dra
 conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                          const conic_render_options *options, conic_oracle_question question,
                                          int samples, conic_reference *reference) {
-  const conic_drawing alone = {splats, NULL};
+  const conic_drawing alone = {.splats = splats};
   if (samples == 1 || !splats)
     return conic_oracle_render(context, splats, camera, options, question, reference);
   return conic_oracle_render_drawing(context, &alone, camera, options, question, samples, reference);

@@ -7,6 +7,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "source/reach.h"
 #include "source/source_kind.h"
 
@@ -16,18 +17,14 @@ static const conic_source_kind *const kinds[] = {&conic_source_kind_layers, &con
                                                  &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
 
-void conic_source_options_init(conic_source_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cutoff = 1.5f;
-  options->n_neighbours = 20;
+void conic_source_options_init_sized(conic_source_options *options, size_t size) {
+  static const conic_source_options own = {.size = sizeof own, .cutoff = 1.5f, .n_neighbours = 20};
+  conic_options_give(options, size, &own);
 }
 
-void conic_source_view_init(conic_source_view *view) {
-  memset(view, 0, sizeof *view);
-  view->size = sizeof *view;
-  view->only_kind = -1;
-  view->samples = 1;
+void conic_source_view_init_sized(conic_source_view *view, size_t size) {
+  static const conic_source_view own = {.size = sizeof own, .only_kind = -1, .samples = 1};
+  conic_options_give(view, size, &own);
 }
 
 /* --- kinds --- */
@@ -57,9 +54,10 @@ const conic_source_kind *conic_source_kind_of_file(const char *path) {
 }
 
 unsigned conic_source_abilities(const char *const *paths, size_t n_paths, const conic_source_options *options) {
-  conic_source_options defaults;
-  conic_source_options_init(&defaults);
-  return find_kind(paths, n_paths, options ? options : &defaults)->abilities;
+  conic_source_options own;
+  conic_source_options_init(&own);
+  conic_options_take(&own, options);
+  return find_kind(paths, n_paths, &own)->abilities;
 }
 
 /* --- opening and closing --- */
@@ -100,16 +98,15 @@ conic_status conic_source_open_kind(conic_context *context, const conic_source_k
 
 conic_status conic_source_open(conic_context *context, const char *const *paths, size_t n_paths,
                                const conic_source_options *options, conic_source **source) {
-  conic_source_options defaults;
-  conic_source_options_init(&defaults);
-  options = options ? options : &defaults;
+  conic_source_options own;
+  conic_source_options_init(&own);
   *source = NULL;
-  if (options->size != sizeof *options || n_paths == 0)
+  if ((options && !conic_options_take(&own, options)) || n_paths == 0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
-  const conic_source_kind *kind = find_kind(paths, n_paths, options);
+  const conic_source_kind *kind = find_kind(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself, and made of one mesh", paths[0]);
-  return conic_source_open_kind(context, kind, paths, n_paths, options, source);
+  return conic_source_open_kind(context, kind, paths, n_paths, &own, source);
 }
 
 void conic_source_close(conic_source *source) {
@@ -164,13 +161,11 @@ const conic_source_choice *conic_source_chosen(const conic_source *source) {
 /* The view becomes the source's, and the options are filled in. */
 static conic_status begin_picture(conic_source *source, const conic_render_options *render,
                                   const conic_source_view *view, conic_render_options *settled) {
-  if (!render || render->size != sizeof *render || (view && view->size != sizeof *view))
-    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "source: the options were not initialised");
-  *settled = *render;
-  conic_source_settle(source, settled);
+  conic_render_options_init(settled);
   conic_source_view_init(&source->view);
-  if (view)
-    source->view = *view;
+  if (!conic_options_take(settled, render) || (view && !conic_options_take(&source->view, view)))
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "source: the options were not initialised");
+  conic_source_settle(source, settled);
   return CONIC_OK;
 }
 

@@ -6,6 +6,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 #include "surface/cells.h"
 #include "surface/own_points.h"
@@ -70,12 +72,26 @@ static void put_sample(const cell_sample *from, conic_splats *to, size_t i) {
 
 /* --- the points, put in the order of the cells --- */
 
-static conic_status count_batch(void *cookie, const conic_splats *batch) {
-  cleaning *work = cookie;
+typedef conic_status batch_taker(cleaning *work, const conic_splats *batch);
+
+static conic_status enter_batch(cleaning *work, const conic_splats *batch, batch_taker *take) {
+  conic_splats close;
+  float *block;
+  conic_status status = conic_splats_enter(work->context, name_of(work), batch, &close, &block);
+  if (status == CONIC_OK)
+    status = take(work, &close);
+  conic_memory_release(work->context, block);
+  return status;
+}
+
+static unsigned fields_of(const conic_splats *batch) {
   unsigned fields = conic_splats_fields(batch);
-  work->fields = fields & CONIC_SPLATS_COLORS;
-  if (fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))
-    work->fields |= CONIC_SPLATS_NORMALS;
+  return (fields & CONIC_SPLATS_COLORS) |
+         (fields & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS) ? (unsigned)CONIC_SPLATS_NORMALS : 0u);
+}
+
+static conic_status count_points(cleaning *work, const conic_splats *batch) {
+  work->fields = fields_of(batch);
   memcpy(work->origin, batch->origin, sizeof work->origin);
   for (size_t i = 0; i < batch->count; i++) {
     const float place[3] = {batch->position[0][i], batch->position[1][i], batch->position[2][i]};
@@ -92,6 +108,10 @@ static conic_status count_batch(void *cookie, const conic_splats *batch) {
     work->n_finite++;
   }
   return conic_progress(work->context, "sort", 0.0);
+}
+
+static conic_status count_batch(void *cookie, const conic_splats *batch) {
+  return enter_batch(cookie, batch, count_points);
 }
 
 static void fill_record(const conic_splats *batch, size_t i, uint64_t index, unsigned fields, record *r) {
@@ -148,15 +168,18 @@ static conic_status place_points(cleaning *work, const conic_splats *batch, size
   return status;
 }
 
-static conic_status place_batch(void *cookie, const conic_splats *batch) {
-  cleaning *work = cookie;
+static conic_status place_all(cleaning *work, const conic_splats *batch) {
   conic_status status = CONIC_OK;
-  if (work->n_placed + batch->count > work->n_points)
+  if (work->n_placed + batch->count > work->n_points || fields_of(batch) != work->fields)
     return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: the points changed while they were read", name_of(work));
   for (size_t i = 0; i < batch->count && status == CONIC_OK; i += BATCH)
     status = place_points(work, batch, i, batch->count - i < BATCH ? batch->count - i : BATCH);
   return status == CONIC_OK ? conic_progress(work->context, "sort", (double)work->n_placed / (double)work->n_points)
                             : status;
+}
+
+static conic_status place_batch(void *cookie, const conic_splats *batch) {
+  return enter_batch(cookie, batch, place_all);
 }
 
 /* --- a cell --- */
@@ -374,18 +397,20 @@ static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
   return status;
 }
 
-void conic_clean_options_init(conic_clean_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  conic_surface_options_init(&options->surface);
+void conic_clean_options_init_sized(conic_clean_options *options, size_t size) {
+  conic_clean_options own = {.size = sizeof own};
+  conic_surface_options_init(&own.surface);
+  conic_options_give(options, size, &own);
 }
 
-conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *options,
+conic_status conic_surface_clean_cells(conic_context *context, const conic_clean_options *given,
                                        conic_points_source *source, void *source_cookie, const conic_points_sink *sink,
                                        conic_surface_report *report) {
-  cleaning work = {.context = context, .options = options};
-  if (options->size != sizeof *options || !(options->surface.h > 0.0 && options->surface.h < 1e30) ||
-      options->surface.cluster != 0.0)
+  conic_clean_options options;
+  cleaning work = {.context = context, .options = &options};
+  conic_clean_options_init(&options);
+  if (!conic_options_take(&options, given) || !(options.surface.h > 0.0 && options.surface.h < 1e30) ||
+      options.surface.cluster != 0.0)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: cells need an h for all points, and no clusters");
   conic_status status = clean_all(&work, source, source_cookie);
   if (status == CONIC_OK)

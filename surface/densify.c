@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/splats/builder.h"
 #include "core/splats/splats_gather.h"
@@ -23,9 +24,9 @@ static const double ROUND_SHARE = 0.7;
 /* A new point must stay as far from the old ones, as a share of the gap that it fills. */
 static const double LEAST_CLEARANCE = 0.5;
 
-void conic_densify_options_init(conic_densify_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
+void conic_densify_options_init_sized(conic_densify_options *options, size_t size) {
+  static const conic_densify_options own = {.size = sizeof own};
+  conic_options_give(options, size, &own);
 }
 
 /* A point with its tangent plane, and the widest gap in its cell. */
@@ -248,12 +249,14 @@ static conic_status begin(densifying *work) {
   return conic_workspaces_check(context, work->workspaces);
 }
 
-conic_status conic_surface_densify(conic_surface *surface, const conic_densify_options *options, conic_splats *dense,
+conic_status conic_surface_densify(conic_surface *surface, const conic_densify_options *given, conic_splats *dense,
                                    conic_surface_report *report) {
   conic_context *context = surface->context;
+  conic_densify_options own, *options = &own;
   densifying work = {.surface = surface, .options = options, .points = dense};
   memset(dense, 0, sizeof *dense);
-  if (options->size != sizeof *options || !(options->spacing > 0.0) || !(options->hole >= 0.0))
+  conic_densify_options_init(options);
+  if (!conic_options_take(options, given) || !(options->spacing > 0.0) || !(options->hole >= 0.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "densify: no spacing is given");
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK)

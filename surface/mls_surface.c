@@ -6,19 +6,18 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
+#include "core/splats/columns.h"
 #include "surface/clusters.h"
 #include "surface/kernels/weight.h"
 
 enum { CHUNK = 1024, CHUNKS_A_REPORT = 16 };
 
-void conic_surface_options_init(conic_surface_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->degree = 3;
-  options->neglect = 2.0;
-  options->n_local = 32;
+void conic_surface_options_init_sized(conic_surface_options *options, size_t size) {
+  static const conic_surface_options own = {.size = sizeof own, .degree = 3, .neglect = 2.0, .n_local = 32};
+  conic_options_give(options, size, &own);
 }
 
 const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
@@ -28,7 +27,7 @@ const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
 }
 
 static conic_status check_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
-  if (o->size != sizeof *o || (unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
+  if ((unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
       (unsigned)o->weight > CONIC_WEIGHT_FLAT)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: options that were not initialised");
   if (o->degree < 1 || o->degree > CONIC_SURFACE_MAX_DEGREE)
@@ -209,14 +208,15 @@ static conic_status prepare(conic_surface *surface, const conic_splats *points) 
 }
 
 conic_status conic_surface_create(conic_context *context, const conic_splats *points,
-                                  const conic_surface_options *options, conic_surface **surface) {
-  conic_surface_options defaults;
+                                  const conic_surface_options *given, conic_surface **surface) {
+  conic_surface_options own, *options = &own;
   *surface = NULL;
-  if (!options) {
-    conic_surface_options_init(&defaults);
-    options = &defaults;
-  }
-  conic_status status = check_options(context, options, conic_splats_fields(points));
+  conic_surface_options_init(options);
+  if ((given && !conic_options_take(options, given)) || !conic_is_zero(own.reserved, sizeof own.reserved))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: the options were not initialised");
+  conic_status status = conic_splats_check(context, "surface", points);
+  if (status == CONIC_OK)
+    status = check_options(context, options, conic_splats_fields(points));
   if (status != CONIC_OK)
     return status;
   conic_isa isa;
@@ -232,7 +232,12 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   made->weighing.weight = options->weight;
   made->weighing.end = options->neglect * options->neglect;
   made->weighing.edge = conic_weight_exp(made->weighing.end);
-  status = prepare(made, points);
+  conic_splats close;
+  float *block;
+  status = conic_splats_enter(context, "surface", points, &close, &block);
+  if (status == CONIC_OK)
+    status = prepare(made, &close);
+  conic_memory_release(context, block);
   if (status == CONIC_OK)
     *surface = made;
   else

@@ -9,6 +9,7 @@
 #include "core/base/heap.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/splats/splats_gather.h"
 #include "surface/mls_surface.h"
@@ -23,9 +24,9 @@ static const double FIRST_SHARE = 0.3;
 /* A stage ends when so many are left of its points: neighbours, scales and tree are then found anew. */
 static const double STAGE_SHARE = 0.6;
 
-void conic_thin_options_init(conic_thin_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
+void conic_thin_options_init_sized(conic_thin_options *options, size_t size) {
+  static const conic_thin_options own = {.size = sizeof own};
+  conic_options_give(options, size, &own);
 }
 
 typedef struct thinning {
@@ -269,13 +270,15 @@ static conic_status thin_within(conic_surface *surface, const conic_thin_options
   return status;
 }
 
-conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *options, conic_splats *thinned,
+conic_status conic_surface_thin(conic_surface *surface, const conic_thin_options *given, conic_splats *thinned,
                                 conic_surface_report *report) {
   conic_context *context = surface->context;
+  conic_thin_options own, *options = &own;
   conic_surface_report counted;
   memset(thinned, 0, sizeof *thinned);
   memset(&counted, 0, sizeof counted);
-  if (options->size != sizeof *options || !(options->max_error >= 0.0) ||
+  conic_thin_options_init(options);
+  if (!conic_options_take(options, given) || !(options->max_error >= 0.0) ||
       (options->count == 0 && !(options->max_error > 0.0)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "thin: neither a count nor an error is given");
   conic_status status = CONIC_OK;

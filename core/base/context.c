@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 
 static void *default_allocate(void *cookie, size_t bytes) {
   (void)cookie;
@@ -20,9 +21,9 @@ static void default_release(void *cookie, void *pointer) {
   free(pointer);
 }
 
-void conic_context_options_init(conic_context_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
+void conic_context_options_init_sized(conic_context_options *options, size_t size) {
+  static const conic_context_options own = {.size = sizeof own};
+  conic_options_give(options, size, &own);
 }
 
 static int machine_threads(void) {
@@ -37,10 +38,9 @@ conic_status conic_context_create(const conic_context_options *options, conic_co
   *context = NULL;
   conic_context_options_init(&settings);
   if (options) {
-    if (options->size != sizeof settings || options->threads < 0 || options->threads > CONIC_MAX_THREADS ||
-        !options->allocate != !options->release)
+    if (!conic_options_take(&settings, options) || settings.threads < 0 || settings.threads > CONIC_MAX_THREADS ||
+        !settings.allocate != !settings.release)
       return CONIC_ERROR_ARGUMENT;
-    settings = *options;
   }
   if (!settings.allocate) {
     settings.allocate = default_allocate;

@@ -4,13 +4,11 @@
 
 #include "conic/camera.h"
 #include "core/files/json_read.h"
+#include "core/image/view_arguments.h"
 
 typedef enum camera_key { WIDTH, HEIGHT, FX, FY, CX, CY, MATRIX, N_KEYS } camera_key;
 
 static const char *const key_names[N_KEYS] = {"width", "height", "fx", "fy", "cx", "cy", "world_to_camera"};
-
-/* How far the rotation's rows may be from orthonormal: files are written with few digits. */
-static const double rotation_tolerance = 1e-3;
 
 static conic_status read_size(conic_json *json, int *size) {
   double value;
@@ -56,16 +54,10 @@ static conic_status read_row(conic_json *json, double row[4]) {
 static conic_status check_matrix(conic_json *json, double rows[4][4]) {
   if (rows[3][0] != 0.0 || rows[3][1] != 0.0 || rows[3][2] != 0.0 || rows[3][3] != 1.0)
     return conic_json_wrong(json, "the last row of world_to_camera is 0 0 0 1");
-  for (int i = 0; i < 3; i++)
-    for (int j = i; j < 3; j++) {
-      double dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1] + rows[i][2] * rows[j][2];
-      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < rotation_tolerance))
-        return conic_json_wrong(json, "world_to_camera is no rotation and translation: its rows are not orthonormal");
-    }
-  double determinant = rows[0][0] * (rows[1][1] * rows[2][2] - rows[1][2] * rows[2][1]) -
-                       rows[0][1] * (rows[1][0] * rows[2][2] - rows[1][2] * rows[2][0]) +
-                       rows[0][2] * (rows[1][0] * rows[2][1] - rows[1][1] * rows[2][0]);
-  return determinant > 0.0 ? CONIC_OK : conic_json_wrong(json, "world_to_camera mirrors");
+  const char *fault = conic_rotation_fault((const double(*)[4])rows);
+  char wrong[96];
+  snprintf(wrong, sizeof wrong, "world_to_camera %s", fault ? fault : "");
+  return fault ? conic_json_wrong(json, wrong) : CONIC_OK;
 }
 
 static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {

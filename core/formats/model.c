@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/formats/las.h"
@@ -12,10 +13,9 @@
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
-void conic_read_options_init(conic_read_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cutoff = 1.5f;
+void conic_read_options_init_sized(conic_read_options *options, size_t size) {
+  static const conic_read_options own = {.size = sizeof own, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 const char *conic_model_kind_name(conic_model_kind kind) {
@@ -134,9 +134,9 @@ conic_status conic_read_options_check(conic_context *context, const char *path, 
   conic_read_options_init(settings);
   if (!options)
     return CONIC_OK;
-  if (options->size != sizeof *settings || !(options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f))
+  if (!conic_options_take(settings, options) ||
+      !(settings->cutoff > 0.0f && settings->cutoff - settings->cutoff == 0.0f))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
-  *settings = *options;
   return CONIC_OK;
 }
 

@@ -7,9 +7,11 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/vectors.h"
 #include "core/files/file.h"
 #include "core/files/number.h"
+#include "core/splats/columns.h"
 
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {
@@ -38,17 +40,15 @@ typedef struct row_cursor {
   conic_ply_encoding encoding;
 } row_cursor;
 
-void conic_write_options_init(conic_write_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cutoff = 1.5f;
+void conic_write_options_init_sized(conic_write_options *options, size_t size) {
+  static const conic_write_options own = {.size = sizeof own, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 static conic_status check_options(conic_context *context, const char *path, const conic_write_options *options,
                                   unsigned fields) {
   int is_cutoff_usable = options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f;
-  if (options->size != sizeof *options ||
-      (options->encoding != CONIC_PLY_BINARY && options->encoding != CONIC_PLY_ASCII) ||
+  if ((options->encoding != CONIC_PLY_BINARY && options->encoding != CONIC_PLY_ASCII) ||
       (options->circles && !is_cutoff_usable))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options have no meaning", path);
   if (options->circles && !(fields & CONIC_SPLATS_TANGENTS))
@@ -61,8 +61,8 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   conic_write_options settings;
   *writer = NULL;
   conic_write_options_init(&settings);
-  if (options)
-    settings = *options;
+  if (options && !conic_options_take(&settings, options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options were not initialised", path);
   conic_status status = check_options(context, path, &settings, fields);
   if (status != CONIC_OK)
     return status;
@@ -251,7 +251,7 @@ static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_sp
     row->next[-1] = '\n';
 }
 
-conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic_splats *batch) {
+static conic_status append_rows(conic_splats_writer *writer, const conic_splats *batch) {
   FILE *to = conic_output_stream(writer->output);
   if (batch->count > writer->count - writer->written)
     return conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: more splats than the %zu announced", writer->path,
@@ -275,6 +275,16 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
   return CONIC_OK;
 }
 
+conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic_splats *batch) {
+  conic_splats close;
+  float *block;
+  conic_status status = conic_splats_enter(writer->context, writer->path, batch, &close, &block);
+  if (status == CONIC_OK)
+    status = append_rows(writer, &close);
+  conic_memory_release(writer->context, block);
+  return status;
+}
+
 conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
   conic_status status = CONIC_OK;
   if (writer->written < writer->count)
@@ -291,8 +301,9 @@ conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
 conic_status conic_splats_write(conic_context *context, const char *path, const conic_splats *splats,
                                 const conic_write_options *options) {
   conic_splats_writer *writer;
-  conic_status status =
-      conic_splats_writer_open(context, path, splats->count, conic_splats_fields(splats), options, &writer);
+  conic_status status = conic_splats_check(context, path, splats);
+  if (status == CONIC_OK)
+    status = conic_splats_writer_open(context, path, splats->count, conic_splats_fields(splats), options, &writer);
   if (status != CONIC_OK)
     return status;
   status = conic_splats_writer_append(writer, splats);

@@ -4,17 +4,20 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 
-void conic_framing_init(conic_framing *framing) {
-  memset(framing, 0, sizeof *framing);
-  framing->width = framing->height = 1024;
-  framing->azimuth_deg = 30.0;
-  framing->elevation_deg = 15.0;
-  framing->fov_deg = 40.0;
-  framing->zoom = 1.0;
-  framing->up[1] = 1.0;
+void conic_framing_init_sized(conic_framing *framing, size_t size) {
+  static const conic_framing own = {.size = sizeof own,
+                             .width = 1024,
+                             .height = 1024,
+                             .azimuth_deg = 30.0,
+                             .elevation_deg = 15.0,
+                             .fov_deg = 40.0,
+                             .zoom = 1.0,
+                             .up = {0.0, 1.0, 0.0}};
+  conic_options_give(framing, size, &own);
 }
 
 static int framing_makes_sense(const conic_framing *framing) {
@@ -45,9 +48,11 @@ static void rotate(const double rotation[3][3], const double v[3], double result
     result[i] = rotation[i][0] * v[0] + rotation[i][1] * v[1] + rotation[i][2] * v[2];
 }
 
-conic_status conic_camera_frame(conic_context *context, const conic_framing *framing, const double minimum[3],
+conic_status conic_camera_frame(conic_context *context, const conic_framing *given, const double minimum[3],
                                 const double maximum[3], conic_camera *camera) {
-  if (!framing || !camera || !framing_makes_sense(framing))
+  conic_framing own, *framing = &own;
+  conic_framing_init(framing);
+  if (!camera || !conic_options_take(framing, given) || !framing_makes_sense(framing))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the framing makes no sense");
   double up[3], rotation[3][3], center[3], diagonal_squared = 0.0;
   double up_length = conic_length(framing->up);
@@ -74,6 +79,7 @@ conic_status conic_camera_frame(conic_context *context, const conic_framing *fra
   double tan_sphere = 0.9 * tan_half; /* of the angle under which the sphere's radius is seen */
   double distance = radius * sqrt(1.0 + tan_sphere * tan_sphere) / tan_sphere;
 
+  memset(camera, 0, sizeof *camera);
   int shorter = framing->width < framing->height ? framing->width : framing->height;
   camera->width = framing->width;
   camera->height = framing->height;

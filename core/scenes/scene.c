@@ -7,9 +7,11 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
+#include "core/splats/columns.h"
 #include "core/splats/ellipse.h"
 
 static const conic_scene_kind *const kinds[CONIC_N_SCENES] = {
@@ -48,20 +50,19 @@ unsigned conic_scene_fields(conic_scene_type type) {
   return !kind ? 0 : kind->edges ? fields | (unsigned)CONIC_SPLATS_CLIPS : fields;
 }
 
-void conic_scene_options_init(conic_scene_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->type = CONIC_SCENE_SPHERE;
-  options->count = 100000;
-  options->cutoff = 1.5f;
+void conic_scene_options_init_sized(conic_scene_options *options, size_t size) {
+  static const conic_scene_options own = {.size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 static int is_finite(double value) {
   return value * 0.0 == 0.0;
 }
 
-static conic_status check_options(conic_context *context, const conic_scene_options *options) {
-  if (!options || options->size != sizeof *options || !kind_of(options->type))
+static conic_status check_options(conic_context *context, const conic_scene_options *given,
+                                  conic_scene_options *options) {
+  conic_scene_options_init(options);
+  if (!conic_options_take(options, given) || !kind_of(options->type))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: options that are none");
   if (options->count < 1 || options->count > MAX_COUNT)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the count must be from 1 to %llu",
@@ -78,24 +79,25 @@ static conic_status check_options(conic_context *context, const conic_scene_opti
   return CONIC_OK;
 }
 
-conic_status conic_scene_create(conic_context *context, const conic_scene_options *options, conic_scene **scene) {
+conic_status conic_scene_create(conic_context *context, const conic_scene_options *given, conic_scene **scene) {
+  conic_scene_options options;
   *scene = NULL;
-  conic_status status = check_options(context, options);
+  conic_status status = check_options(context, given, &options);
   if (status != CONIC_OK)
     return status;
   conic_scene *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  made->options = *options;
-  made->kind = kind_of(options->type);
+  made->options = options;
+  made->kind = kind_of(options.type);
   conic_srgb_decode_table(made->decode);
   status = made->kind->prepare(made);
   if (status != CONIC_OK) {
     conic_scene_destroy(made);
     return status;
   }
-  made->spacing = sqrt(made->area / (double)options->count);
+  made->spacing = sqrt(made->area / (double)options.count);
   *scene = made;
   return CONIC_OK;
 }
@@ -240,6 +242,9 @@ conic_status conic_scene_sample(conic_scene *scene, size_t first, size_t n, coni
   size_t count = scene->options.count;
   if (first > count || n > count - first)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: samples %zu to %zu of %zu", first, first + n, count);
+  conic_status status = conic_splats_check_own(context, "scene", splats);
+  if (status != CONIC_OK)
+    return status;
   unsigned needed = conic_scene_fields(scene->options.type);
   if ((conic_splats_fields(splats) & needed) != needed)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,

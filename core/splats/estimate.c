@@ -1,6 +1,8 @@
 /* From a model to splats: what came with good axes keeps them, vertices take theirs from their faces, and the rest from
  * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
 #include "core/splats/estimate.h"
+#include "core/base/options.h"
+#include "core/splats/columns.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,11 +15,9 @@
 #include "core/splats/features.h"
 #include "core/splats/normals.h"
 
-void conic_estimate_options_init(conic_estimate_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->n_neighbours = 20;
-  options->cutoff = 1.5f;
+void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
+  static const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
@@ -288,14 +288,21 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
   return status;
 }
 
-conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *options, conic_model *model,
+conic_status conic_model_to_splats(conic_context *context, const conic_estimate_options *given, conic_model *model,
                                    conic_repairs *repairs) {
-  if (!context || !options || !model || options->size != sizeof *options || options->n_neighbours < 6 ||
+  conic_estimate_options own, *options = &own;
+  conic_estimate_options_init(options);
+  if (!model || !conic_options_take(options, given) || options->n_neighbours < 6 ||
       options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
       !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
                       CONIC_MAX_NEIGHBOURS);
+  if (model->n_triangles && !model->triangles)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: the model has no triangles");
+  conic_status status = conic_splats_check_own(context, "estimate", &model->points);
+  if (status != CONIC_OK)
+    return status;
   double cosine = conic_cos(conic_radians(options->feature_angle_deg));
   if (options->feature_angle_deg == 0.0 || model->points.count == 0)
     return estimate_plain(context, options, model, repairs);

@@ -3,6 +3,7 @@
 
 #include "conic/splats.h"
 #include "core/base/memory.h"
+#include "core/splats/columns.h"
 #include "core/splats/neighbours.h"
 
 enum { N_NEAREST = 8, MAX_SAMPLES = 20000 };
@@ -39,11 +40,16 @@ static conic_status median_spacing(conic_context *context, const conic_neighbour
 
 conic_status conic_splats_spacing(conic_context *context, const conic_splats *splats, double *spacing) {
   conic_neighbours tree;
+  conic_splats close;
+  float *block;
   *spacing = 0.0;
-  conic_status status = conic_neighbours_build(context, (const float *const *)splats->position, splats->count, &tree);
-  if (status != CONIC_OK)
-    return status;
-  status = median_spacing(context, &tree, spacing);
-  conic_neighbours_release(context, &tree);
+  conic_status status = conic_splats_enter(context, "spacing", splats, &close, &block);
+  if (status == CONIC_OK)
+    status = conic_neighbours_build(context, (const float *const *)close.position, close.count, &tree);
+  if (status == CONIC_OK) {
+    status = median_spacing(context, &tree, spacing);
+    conic_neighbours_release(context, &tree);
+  }
+  conic_memory_release(context, block);
   return status;
 }

@@ -4,6 +4,7 @@
 #include "conic/splats.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/columns.h"
 
 /* The longer axis as the bits of a float, which order like the lengths themselves; 0 for a splat that is not usable. */
 static uint32_t length_bits(const conic_splats *splats, size_t i) {
@@ -32,11 +33,8 @@ static uint32_t find_bucket(const size_t *histogram, size_t *rank) {
   return bucket;
 }
 
-conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length) {
+static conic_status find_length(conic_context *context, const conic_splats *splats, double *length) {
   enum { N_BUCKETS = 65536 };
-  *length = 0.0;
-  if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
   size_t *histogram = conic_memory_allocate_zeroed(context, N_BUCKETS, sizeof *histogram);
   if (!histogram)
     return CONIC_ERROR_MEMORY;
@@ -65,4 +63,17 @@ conic_status conic_splats_length(conic_context *context, const conic_splats *spl
   }
   conic_memory_release(context, histogram);
   return CONIC_OK;
+}
+
+conic_status conic_splats_length(conic_context *context, const conic_splats *splats, double *length) {
+  conic_splats close;
+  float *block;
+  *length = 0.0;
+  conic_status status = conic_splats_enter(context, "length", splats, &close, &block);
+  if (status == CONIC_OK && !close.tangent_u[0])
+    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "the splats have no tangent axes");
+  if (status == CONIC_OK)
+    status = find_length(context, &close, length);
+  conic_memory_release(context, block);
+  return status;
 }

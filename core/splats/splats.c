@@ -5,49 +5,27 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/splats/clip.h"
+#include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 
-/* The set's arrays in one list, so that what is done to one is done to all. */
-enum { N_ARRAYS = 16 };
-
-static void list_arrays(conic_splats *splats, float **arrays[N_ARRAYS]) {
-  for (int axis = 0; axis < 3; axis++) {
-    arrays[axis] = &splats->position[axis];
-    arrays[3 + axis] = &splats->tangent_u[axis];
-    arrays[6 + axis] = &splats->tangent_v[axis];
-    arrays[9 + axis] = &splats->normal[axis];
-    arrays[12 + axis] = &splats->color[axis];
-  }
-  arrays[15] = &splats->opacity;
-}
-
-static unsigned field_of_array(int i_array) {
-  return i_array < 3    ? 0u
-         : i_array < 9  ? (unsigned)CONIC_SPLATS_TANGENTS
-         : i_array < 12 ? (unsigned)CONIC_SPLATS_NORMALS
-         : i_array < 15 ? (unsigned)CONIC_SPLATS_COLORS
-                        : (unsigned)CONIC_SPLATS_OPACITIES;
-}
-
 /* What an absent array means: white and opaque; zero axes and normals, which are repaired later. */
-static float absent_value(int i_array) {
-  return i_array >= 12 ? 1.0f : 0.0f;
+static float absent_value(const conic_column *column) {
+  return column->field & (CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES) ? 1.0f : 0.0f;
 }
 
 conic_status conic_splats_allocate(conic_context *context, size_t count, unsigned fields, conic_splats *splats) {
-  float **arrays[N_ARRAYS];
+  conic_column columns[CONIC_SPLATS_COLUMNS];
   memset(splats, 0, sizeof *splats);
-  list_arrays(splats, arrays);
-  for (int i = 0; i < N_ARRAYS; i++) {
-    unsigned field = field_of_array(i);
-    if (field && !(fields & field))
+  conic_splats_list_columns(splats, columns);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++) {
+    if (columns[i].field && !(fields & columns[i].field))
       continue;
-    *arrays[i] = conic_memory_allocate(context, count, sizeof(float));
-    if (!*arrays[i]) {
+    float *floats = *columns[i].floats = conic_memory_allocate(context, count, sizeof(float));
+    if (!floats) {
       conic_splats_release(context, splats);
       return CONIC_ERROR_MEMORY;
     }
-    conic_memory_prefer_large_pages(context, *arrays[i], count * sizeof(float));
+    conic_memory_prefer_large_pages(context, floats, count * sizeof(float));
   }
   if (fields & CONIC_SPLATS_CLIPS) {
     splats->clips = conic_memory_allocate(context, count, sizeof *splats->clips);
@@ -69,20 +47,17 @@ unsigned conic_splats_fields(const conic_splats *splats) {
 }
 
 void conic_splats_release(conic_context *context, conic_splats *splats) {
-  float **arrays[N_ARRAYS];
-  list_arrays(splats, arrays);
-  for (int i = 0; i < N_ARRAYS; i++)
-    conic_memory_release(context, *arrays[i]);
+  conic_column columns[CONIC_SPLATS_COLUMNS];
+  conic_splats_list_columns(splats, columns);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++)
+    conic_memory_release(context, *columns[i].floats);
   conic_memory_release(context, splats->clips);
   memset(splats, 0, sizeof *splats);
 }
 
-static void copy_or_fill(float *to, const float *from, size_t count, float absent) {
-  if (from)
-    memcpy(to, from, count * sizeof *to);
-  else
-    for (size_t i = 0; i < count; i++)
-      to[i] = absent;
+static void copy_or_fill(float *to, const conic_column *from) {
+  for (size_t i = 0; i < from->count; i++)
+    to[i] = *from->floats ? conic_column_at(*from->floats, *from->stride, i) : absent_value(from);
 }
 
 /* Puts the clip lines of both sets into `joined`, and nothing where there are none. On failure `joined` is empty. */
@@ -109,30 +84,34 @@ static conic_status join_clips(conic_context *context, const conic_splats *first
 
 conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more) {
   conic_splats joined, second = *more;
-  float **to[N_ARRAYS], **first[N_ARRAYS], **next[N_ARRAYS];
+  conic_column to[CONIC_SPLATS_COLUMNS], first[CONIC_SPLATS_COLUMNS], next[CONIC_SPLATS_COLUMNS];
+  conic_status status = conic_splats_check_own(context, "append", splats);
+  if (status == CONIC_OK)
+    status = conic_splats_check(context, "append", more);
+  if (status != CONIC_OK)
+    return status;
   if (more->count > SIZE_MAX - splats->count)
     return conic_fail(context, CONIC_ERROR_MEMORY, "too many splats");
   unsigned fields = conic_splats_fields(splats) | conic_splats_fields(more);
-  conic_status status =
-      conic_splats_allocate(context, splats->count + more->count, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &joined);
+  status = conic_splats_allocate(context, splats->count + more->count, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &joined);
   if (status == CONIC_OK)
     status = join_clips(context, splats, more, &joined);
   if (status != CONIC_OK)
     return status;
-  list_arrays(&joined, to);
-  list_arrays(splats, first);
-  list_arrays(&second, next);
-  for (int i = 0; i < N_ARRAYS; i++) {
-    if (!*to[i])
+  conic_splats_list_columns(&joined, to);
+  conic_splats_list_columns(splats, first);
+  conic_splats_list_columns(&second, next);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++) {
+    if (!*to[i].floats)
       continue;
-    copy_or_fill(*to[i], *first[i], splats->count, absent_value(i));
-    copy_or_fill(*to[i] + splats->count, *next[i], more->count, absent_value(i));
+    copy_or_fill(*to[i].floats, &first[i]);
+    copy_or_fill(*to[i].floats + splats->count, &next[i]);
   }
   for (int axis = 0; axis < 3; axis++) {
     double shift = more->origin[axis] - splats->origin[axis];
     joined.origin[axis] = splats->origin[axis];
     for (size_t i = 0; shift != 0.0 && i < more->count; i++)
-      joined.position[axis][splats->count + i] = (float)((double)more->position[axis][i] + shift);
+      joined.position[axis][splats->count + i] = (float)((double)joined.position[axis][splats->count + i] + shift);
   }
   conic_splats_release(context, splats);
   *splats = joined;
@@ -141,15 +120,15 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
 
 conic_status conic_splats_resize(conic_context *context, conic_splats *splats, size_t capacity, unsigned fields) {
   conic_splats larger;
-  float **to[N_ARRAYS], **from[N_ARRAYS];
+  conic_column to[CONIC_SPLATS_COLUMNS], from[CONIC_SPLATS_COLUMNS];
   conic_status status = conic_splats_allocate(context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
   if (status != CONIC_OK)
     return status;
-  list_arrays(&larger, to);
-  list_arrays(splats, from);
-  for (int i = 0; i < N_ARRAYS; i++)
-    if (*to[i])
-      copy_or_fill(*to[i], *from[i], splats->count, absent_value(i));
+  conic_splats_list_columns(&larger, to);
+  conic_splats_list_columns(splats, from);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++)
+    if (*to[i].floats)
+      copy_or_fill(*to[i].floats, &from[i]);
   memcpy(larger.origin, splats->origin, sizeof larger.origin);
   larger.count = splats->count;
   larger.n_clips = splats->n_clips;
@@ -163,27 +142,28 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
 conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
                                  size_t count, conic_splats *gathered) {
   conic_splats listed = *from;
-  float **to[N_ARRAYS], **old[N_ARRAYS];
+  conic_column to[CONIC_SPLATS_COLUMNS], old[CONIC_SPLATS_COLUMNS];
   unsigned fields = conic_splats_fields(from) & ~(unsigned)CONIC_SPLATS_CLIPS;
   conic_status status = conic_splats_allocate(context, count, fields, gathered);
   if (status != CONIC_OK)
     return status;
-  list_arrays(gathered, to);
-  list_arrays(&listed, old);
-  for (int i_array = 0; i_array < N_ARRAYS; i_array++)
-    for (size_t i = 0; *to[i_array] && i < count; i++)
-      (*to[i_array])[i] = (*old[i_array])[sources[i]];
+  conic_splats_list_columns(gathered, to);
+  conic_splats_list_columns(&listed, old);
+  for (int i_column = 0; i_column < CONIC_SPLATS_COLUMNS; i_column++)
+    for (size_t i = 0; *to[i_column].floats && i < count; i++)
+      (*to[i_column].floats)[i] = (*old[i_column].floats)[sources[i]];
   memcpy(gathered->origin, from->origin, sizeof gathered->origin);
   return CONIC_OK;
 }
 
-size_t conic_points_bounds(float *const position[3], const double origin[3], const uint32_t *indices, size_t n,
-                           double minimum[3], double maximum[3]) {
+size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
+                           size_t n, double minimum[3], double maximum[3]) {
   float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
   size_t n_finite = 0;
   for (size_t k = 0; k < n; k++) {
-    size_t i = indices ? indices[k] : k;
-    const float p[3] = {position[0][i], position[1][i], position[2][i]};
+    float p[3];
+    for (int axis = 0; axis < 3; axis++)
+      p[axis] = conic_column_at(position[axis], stride, indices ? indices[k] : k);
     if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
       continue;
     for (int axis = 0; axis < 3; axis++) {
@@ -200,5 +180,6 @@ size_t conic_points_bounds(float *const position[3], const double origin[3], con
 }
 
 size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
-  return conic_points_bounds(splats->position, splats->origin, NULL, splats->count, minimum, maximum);
+  size_t n = conic_splats_fault(splats) ? 0 : splats->count;
+  return conic_points_bounds(splats->position, splats->strides.position, splats->origin, NULL, n, minimum, maximum);
 }

@@ -16,7 +16,7 @@ conic_status conic_splats_resize(conic_context *context, conic_splats *splats, s
 
 /* The bounds of the finite ones of n points, those of `indices` or, where that is null, the first; returns how many are
  * finite. Without one the bounds are 0. */
-size_t conic_points_bounds(float *const position[3], const double origin[3], const uint32_t *indices, size_t n,
-                           double minimum[3], double maximum[3]);
+size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
+                           size_t n, double minimum[3], double maximum[3]);
 
 #endif

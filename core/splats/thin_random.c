@@ -2,6 +2,7 @@
 #include "conic/model.h"
 #include "core/base/memory.h"
 #include "core/base/random.h"
+#include "core/splats/columns.h"
 
 /* A bijection: no two indices have the same rank under one seed. */
 static uint64_t rank_of(uint64_t seed, uint64_t index) {
@@ -56,6 +57,9 @@ static void keep_clips(conic_splats *splats, uint64_t seed, uint64_t below) {
 }
 
 conic_status conic_splats_thin(conic_context *context, conic_splats *splats, size_t count, uint64_t seed) {
+  conic_status status = conic_splats_check_own(context, "thin", splats);
+  if (status != CONIC_OK)
+    return status;
   size_t n = splats->count;
   if (count >= n)
     return CONIC_OK;

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
@@ -73,21 +74,7 @@ static int are_in_range(const uint32_t (*corners)[3], size_t count, size_t n) {
   return count == 0 || greatest < n;
 }
 
-static int are_all_or_none(float *const *arrays, int n) {
-  for (int i = 1; i < n; i++)
-    if (!arrays[i] != !arrays[0])
-      return 0;
-  return 1;
-}
-
-static const char *what_is_wrong(const conic_triangles *t) {
-  if (t->count == 0)
-    return NULL;
-  if (!t->corners || !t->position[0])
-    return "the triangles have no corners or positions";
-  if (!are_all_or_none(t->position, 3) || !are_all_or_none(t->color, 3) || !are_all_or_none(t->normal, 3) ||
-      !are_all_or_none(t->texture_coordinate, 2))
-    return "an attribute of the triangles lacks a component";
+static const char *index_fault(const conic_triangles *t) {
   if (!are_in_range((const uint32_t(*)[3])t->corners, t->count, t->n_vertices))
     return "a triangle's vertex is out of range";
   if (t->normal[0] && t->normal_corners &&
@@ -96,8 +83,6 @@ static const char *what_is_wrong(const conic_triangles *t) {
   if (t->texture_coordinate[0] && t->texture_corners &&
       !are_in_range((const uint32_t(*)[3])t->texture_corners, t->count, t->n_texture_coordinates))
     return "a corner's texture coordinate is out of range";
-  if (t->n_materials && !t->materials)
-    return "the materials are missing";
   for (size_t i = 0; t->n_materials && t->material && i < t->count; i++)
     if (t->material[i] >= t->n_materials)
       return "a triangle's material is out of range";
@@ -105,13 +90,17 @@ static const char *what_is_wrong(const conic_triangles *t) {
 }
 
 conic_status conic_triangles_check(conic_context *context, const conic_triangles *triangles, const char *name) {
-  const char *wrong = what_is_wrong(triangles);
+  const char *wrong = conic_triangles_fault(triangles);
+  if (wrong)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the triangles: %s", name, wrong);
+  wrong = index_fault(triangles);
   return wrong ? conic_fail(context, CONIC_ERROR_INPUT, "%s: %s", name, wrong) : CONIC_OK;
 }
 
 size_t conic_triangles_bounds(const conic_triangles *triangles, double minimum[3], double maximum[3]) {
-  return conic_points_bounds(triangles->position, triangles->origin, (const uint32_t *)triangles->corners,
-                             3 * triangles->count, minimum, maximum);
+  size_t n = conic_triangles_fault(triangles) ? 0 : 3 * triangles->count;
+  return conic_points_bounds(triangles->position, triangles->strides.position, triangles->origin,
+                             (const uint32_t *)triangles->corners, n, minimum, maximum);
 }
 
 size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]) {
@@ -153,8 +142,13 @@ static void store_unit(const double sum[3], float *const normal[3], size_t i) {
 
 conic_status conic_triangles_smooth(conic_context *context, conic_triangles *triangles) {
   float *normal[3] = {NULL, NULL, NULL};
+  conic_status status = conic_triangles_check(context, triangles, "smooth");
+  if (status == CONIC_OK)
+    status = conic_triangles_check_own(context, "smooth", triangles);
+  if (status != CONIC_OK)
+    return status;
   double(*sums)[3] = conic_memory_allocate_zeroed(context, triangles->n_vertices, sizeof *sums);
-  conic_status status = sums ? allocate_floats(context, triangles->n_vertices, normal, 3) : CONIC_ERROR_MEMORY;
+  status = sums ? allocate_floats(context, triangles->n_vertices, normal, 3) : CONIC_ERROR_MEMORY;
   for (size_t i = 0; status == CONIC_OK && i < triangles->count; i++) {
     double face[3];
     face_normal(triangles, i, face);

@@ -3,6 +3,7 @@
 
 #include "conic/triangles.h"
 #include "core/base/memory.h"
+#include "core/splats/columns.h"
 
 /* An attribute of the corners: so many arrays of n values, and which of them each corner has. */
 typedef struct attribute {
@@ -80,7 +81,7 @@ static size_t materials_of(const conic_triangles *set) {
 
 static conic_status join_materials(conic_context *context, const conic_triangles *a, const conic_triangles *b,
                                    conic_triangles *joined) {
-  static const conic_material white = {{1.0f, 1.0f, 1.0f}, NULL};
+  static const conic_material white = {.color = {1.0f, 1.0f, 1.0f}};
   if (!a->n_materials && !b->n_materials)
     return CONIC_OK;
   size_t n_first = materials_of(a), n = n_first + materials_of(b);
@@ -130,14 +131,19 @@ conic_status conic_triangles_append(conic_context *context, conic_triangles *tri
   attribute_joining j = {.context = context, .first = triangles, .next = more};
   unsigned fields = (triangles->color[0] || more->color[0] ? (unsigned)CONIC_TRIANGLES_COLORS : 0u) |
                     (triangles->cluster || more->cluster ? (unsigned)CONIC_TRIANGLES_CLUSTERS : 0u);
+  conic_status status = conic_triangles_check_own(context, "append", triangles);
+  if (status == CONIC_OK)
+    status = conic_triangles_check_own(context, "append", more);
+  if (status != CONIC_OK)
+    return status;
   if (triangles->count == 0) {
     conic_triangles_release(context, triangles);
     *triangles = *more;
     memset(more, 0, sizeof *more);
     return CONIC_OK;
   }
-  conic_status status = conic_triangles_allocate(context, triangles->count + more->count,
-                                                 triangles->n_vertices + more->n_vertices, fields, &joined);
+  status = conic_triangles_allocate(context, triangles->count + more->count, triangles->n_vertices + more->n_vertices,
+                                    fields, &joined);
   if (status != CONIC_OK)
     return status;
   join_vertices(triangles, more, &joined);

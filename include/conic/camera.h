@@ -5,6 +5,8 @@
 #ifndef CONIC_CAMERA_H
 #define CONIC_CAMERA_H
 
+#include <stdint.h>
+
 #include "conic/context.h"
 
 #ifdef __cplusplus
@@ -16,10 +18,12 @@ typedef struct conic_camera {
   double fx, fy;               /* focal lengths in pixels */
   double cx, cy;               /* principal point in pixels */
   double cam_from_world[3][4]; /* rows of the rotation and the translation; columns act on (x, y, z, 1) */
+  uint64_t reserved[8];
 } conic_camera;
 
 /* How conic_camera_frame looks at a box. */
 typedef struct conic_framing {
+  size_t size; /* sizeof(conic_framing), set by the init function */
   int width, height;
   double azimuth_deg;   /* 0 looks along -z from +z (with y up); grows counter-clockwise seen from above */
   double elevation_deg; /* -90 to 90: how far the camera stands above the horizon */
@@ -29,7 +33,8 @@ typedef struct conic_framing {
 } conic_framing;
 
 /* 1024 × 1024, 30°, 15°, 40°, zoom 1, y up. */
-CONIC_API void conic_framing_init(conic_framing *framing);
+CONIC_API void conic_framing_init_sized(conic_framing *framing, size_t size);
+#define conic_framing_init(framing) conic_framing_init_sized(framing, sizeof *(framing))
 
 /* A camera that sees the bounding sphere of the box at 90 % of the picture's shorter side (at zoom 1). A box without
  * extent is framed as if its sphere had radius 1. Errors: ARGUMENT; *camera is then as it was. */

@@ -60,7 +60,8 @@ typedef struct conic_context_options {
 } conic_context_options;
 
 /* malloc and free, no messages, no progress, all threads, no limit, the widest instructions. */
-CONIC_API void conic_context_options_init(conic_context_options *options);
+CONIC_API void conic_context_options_init_sized(conic_context_options *options, size_t size);
+#define conic_context_options_init(options) conic_context_options_init_sized(options, sizeof *(options))
 
 /* Creates a context; `options` may be null for the defaults. On success the caller owns *context and ends it with
  * conic_context_destroy; on failure *context is null. Errors: ARGUMENT, MEMORY. */

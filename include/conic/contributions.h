@@ -41,6 +41,7 @@ typedef struct conic_projection {
   /* A variance's only: the centre, the variance with the prefilter in it (xx, xy, yy in px²), and the conic, its
    * inverse: a pixel at (x, y) from the centre is covered where a·x² + 2b·xy + c·y² is below the support. */
   double center_px[2], variance_px[3], conic[3];
+  uint64_t reserved[8];
 } conic_projection;
 
 /* What a splat does to a pixel in its reach. */

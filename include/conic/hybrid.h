@@ -39,7 +39,8 @@ typedef struct conic_hybrid_options {
 } conic_hybrid_options;
 
 /* 0.12, 0.4, by the number of faces, BLUE, 2 surfels, 0.5, cutoff 1.5, all levels. */
-CONIC_API void conic_hybrid_options_init(conic_hybrid_options *options);
+CONIC_API void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size);
+#define conic_hybrid_options_init(options) conic_hybrid_options_init_sized(options, sizeof *(options))
 
 /* What became of the mesh's faces, and how long that took. */
 typedef struct conic_hybrid_report {
@@ -51,6 +52,7 @@ typedef struct conic_hybrid_report {
   size_t n_pieces;               /* what hangs together */
   size_t n_first;                /* clusters after the first phase */
   double cluster_seconds, sample_seconds, simplify_seconds; /* the last two: over all threads, but shared */
+  uint64_t reserved[8];
 } conic_hybrid_report;
 
 /* Takes the mesh's arrays and textures over: *mesh is empty afterwards, on failure too. The result depends on the mesh
@@ -85,6 +87,7 @@ typedef struct conic_hybrid_info {
   double splat_length;           /* as conic_splats_length of the surfels as built */
   double near_z;                 /* 1e-4 × the box's diagonal */
   uint64_t n_bytes;              /* of the file that holds it */
+  uint64_t reserved[8];
 } conic_hybrid_info;
 
 CONIC_API conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info *info);
@@ -96,6 +99,7 @@ typedef struct conic_hybrid_defects {
   size_t cones;   /* clusters with a face that faces out of theirs, and nodes with such a cluster */
   size_t levels;  /* clusters and nodes whose levels' errors do not grow, clusters that have none without an error, and
                      points whose error is less than their radius */
+  uint64_t reserved[8];
 } conic_hybrid_defects;
 
 /* Errors: MEMORY. */
@@ -113,7 +117,8 @@ typedef struct conic_hybrid_view {
 } conic_hybrid_view;
 
 /* As built, of either kind. */
-CONIC_API void conic_hybrid_view_init(conic_hybrid_view *view);
+CONIC_API void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size);
+#define conic_hybrid_view_init(view) conic_hybrid_view_init_sized(view, sizeof *(view))
 
 /* What is drawn in one picture. With an error or a budget, a node of the tree that does not reach the near distance
  * may stand for all of its clusters, by a few surfels or by one splat that faces the camera. Zero before the first use;
@@ -131,6 +136,7 @@ typedef struct conic_hybrid_selection {
   double error_px; /* no place of these is drawn farther, in pixels, from where it is; infinite where a cluster
                       that is not drawn by its own triangles reaches the near distance */
   void *scratch;   /* private */
+  uint64_t reserved[8];
 } conic_hybrid_selection;
 
 /* Chooses what to draw: clusters out of sight, and with cull_back those that face away, are left out. Neighbours meet

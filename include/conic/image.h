@@ -30,6 +30,9 @@ typedef enum conic_plane {
 #define CONIC_N_DRAWN_PLANES CONIC_PLANE_CLUSTER
 #define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
 
+/* Room for planes in structs, so that a later version may have more. */
+#define CONIC_MAX_PLANES 16
+
 #define CONIC_NO_ID 0xFFFFFFFFu
 
 typedef struct conic_plane_description {
@@ -60,9 +63,10 @@ typedef struct conic_attribute {
 
 typedef struct conic_image {
   int width, height;
-  void *planes[CONIC_N_PLANES]; /* float or uint32_t by conic_plane_describe; null: not there */
+  void *planes[CONIC_MAX_PLANES]; /* float or uint32_t by conic_plane_describe; null: not there */
   int n_attributes;
   conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
+  uint64_t reserved[8];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.
@@ -110,7 +114,8 @@ typedef struct conic_difference {
   int has_color;           /* both have rgba: psnr, ssim, flip and over_code are set */
   size_t differing_pixels; /* pixels where any common plane differs */
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
-  conic_plane_difference planes[CONIC_N_PLANES];
+  conic_plane_difference planes[CONIC_MAX_PLANES];
+  uint64_t reserved[8];
 } conic_difference;
 
 /* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */

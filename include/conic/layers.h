@@ -23,7 +23,8 @@ typedef struct conic_layers_options {
 } conic_layers_options;
 
 /* Clouds of 2048 samples, 1 GiB, half a sampling distance, cutoff 1.5. */
-CONIC_API void conic_layers_options_init(conic_layers_options *options);
+CONIC_API void conic_layers_options_init_sized(conic_layers_options *options, size_t size);
+#define conic_layers_options_init(options) conic_layers_options_init_sized(options, sizeof *(options))
 
 /* A file that is being built. */
 typedef struct conic_layers_builder conic_layers_builder;
@@ -36,6 +37,7 @@ typedef struct conic_layers_statistics {
   int n_levels;
   double spacing, quantum; /* the sampling distance, and the step of the positions */
   double read_seconds, work_seconds, write_seconds;
+  uint64_t reserved[8];
 } conic_layers_statistics;
 
 /* Starts to build PATH, which appears under its name only when it is whole. Temporary files have no name, lie in the
@@ -69,6 +71,7 @@ typedef struct conic_layers_info {
   double near_z;                 /* as conic_default_near of what it was built from */
   /* Bits a sample. */
   double bits_position, bits_normal, bits_color, bits_index;
+  uint64_t reserved[8];
 } conic_layers_info;
 
 /* Reads and checks header and index. Errors: INPUT, MEMORY. */
@@ -80,6 +83,7 @@ typedef struct conic_layers_defects {
   uint64_t coverage; /* a sample of its place is farther from those drawn than its covering radius */
   uint64_t spheres;  /* a sample reaches out of the sphere */
   uint64_t cones;    /* a normal is outside the cone */
+  uint64_t reserved[8];
 } conic_layers_defects;
 
 /* Decodes every cloud and looks at every sample of every node. Errors: INPUT (header or index are damaged), MEMORY,

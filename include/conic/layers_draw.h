@@ -33,7 +33,8 @@ typedef struct conic_layers_access {
 } conic_layers_access;
 
 /* 512 MiB; 10 s, 15 s, 4 retries from 0.2 s on, 4 connections. */
-CONIC_API void conic_layers_access_init(conic_layers_access *access);
+CONIC_API void conic_layers_access_init_sized(conic_layers_access *access, size_t size);
+#define conic_layers_access_init(access) conic_layers_access_init_sized(access, sizeof *(access))
 
 /* Whether a name is an http:// or https:// URL. */
 CONIC_API int conic_layers_is_url(const char *name);
@@ -56,6 +57,7 @@ typedef struct conic_layers_scale {
   double near_z;                 /* as conic_default_near of what it was built from */
   double splat_length;           /* for conic_render_options: of the samples at full resolution */
   double spacing;                /* median sampling distance */
+  uint64_t reserved[8];
 } conic_layers_scale;
 
 /* `cutoff` is F_g of the kernel that will draw. */
@@ -79,7 +81,8 @@ typedef struct conic_layers_draw_options {
 } conic_layers_draw_options;
 
 /* Full resolution, one sample, automatic occlusion. */
-CONIC_API void conic_layers_draw_options_init(conic_layers_draw_options *options);
+CONIC_API void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size);
+#define conic_layers_draw_options_init(options) conic_layers_draw_options_init_sized(options, sizeof *(options))
 
 /* What a picture took. Places are what was chosen: cells of space, each with the samples that all clouds have there. */
 typedef struct conic_layers_drawn {
@@ -98,6 +101,7 @@ typedef struct conic_layers_drawn {
   uint64_t n_bytes_received; /* over the network, since the picture before or the opening */
   int n_bands;               /* the picture was drawn in so many */
   int n_levels;              /* of the deepest cloud drawn, plus 1 */
+  uint64_t reserved[8];
 } conic_layers_drawn;
 
 /* Draws into the planes that `image` has, as conic_render does; `id` is the number of the sample in the file (modulo

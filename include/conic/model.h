@@ -29,6 +29,7 @@ typedef struct conic_model {
   uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
   conic_model_kind kind;     /* of the file that was read */
   struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
+  uint64_t reserved[8];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -42,7 +43,8 @@ typedef struct conic_read_options {
 } conic_read_options;
 
 /* Cutoff 1.5, points alone. */
-CONIC_API void conic_read_options_init(conic_read_options *options);
+CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
+#define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
 /* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/reference/formats.md); "-" is standard input. The format is told by
  * the content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
@@ -75,6 +77,7 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
+  uint64_t reserved[8];
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -88,7 +91,8 @@ typedef struct conic_estimate_options {
 } conic_estimate_options;
 
 /* 20 neighbours, cutoff 1.5, no creases. */
-CONIC_API void conic_estimate_options_init(conic_estimate_options *options);
+CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
+#define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 
 /* Gives every point of the model tangent axes, in place: from the faces where there are any, else from the k nearest
  * neighbours (Confetti §4.3 with the corrections of docs/reference/errata.md); a set that has axes keeps them, and only
@@ -119,7 +123,8 @@ typedef struct conic_write_options {
 } conic_write_options;
 
 /* Binary, positions as they come, axes, cutoff 1.5. */
-CONIC_API void conic_write_options_init(conic_write_options *options);
+CONIC_API void conic_write_options_init_sized(conic_write_options *options, size_t size);
+#define conic_write_options_init(options) conic_write_options_init_sized(options, sizeof *(options))
 
 /* Opens PATH ("-" is standard output) for `count` splats with the optional arrays of `fields`. What is written first
  * decides for the whole file: an origin other than zero, that positions are double; colours that are all those of 8-bit

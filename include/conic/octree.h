@@ -25,7 +25,8 @@ typedef struct conic_octree_options {
 } conic_octree_options;
 
 /* Cutoff 1.5, not quantised. */
-CONIC_API void conic_octree_options_init(conic_octree_options *options);
+CONIC_API void conic_octree_options_init_sized(conic_octree_options *options, size_t size);
+#define conic_octree_options_init(options) conic_octree_options_init_sized(options, sizeof *(options))
 
 /* Builds the hierarchy of splats with tangent axes. It takes the arrays over: *splats is empty afterwards, on failure
  * too. Splats that cannot be drawn are kept beside it. The result depends on the splats and the options only, never on
@@ -62,6 +63,7 @@ typedef struct conic_octree_info {
   double radius[3];              /* of the inner nodes: least, median, greatest */
   double cone[3];                /* cosines of half the opening of their normal cones, likewise */
   uint64_t n_bytes;              /* of the file that holds it */
+  uint64_t reserved[8];
 } conic_octree_info;
 
 CONIC_API conic_status conic_octree_describe(const conic_octree *octree, conic_octree_info *info);
@@ -73,6 +75,7 @@ typedef struct conic_octree_defects {
   size_t cones;    /* a leaf's normal is outside the cone */
   size_t errors;   /* a leaf's disc is farther from the node's than the error says, or the error is over the diameter */
   size_t splats;   /* leaves in the hierarchy that cannot be drawn */
+  uint64_t reserved[8];
 } conic_octree_defects;
 
 /* Looks at every leaf of every node. Errors: MEMORY, CANCELLED. */
@@ -89,7 +92,8 @@ typedef struct conic_selection_options {
 } conic_selection_options;
 
 /* An error of 1 pixel. */
-CONIC_API void conic_selection_options_init(conic_selection_options *options);
+CONIC_API void conic_selection_options_init_sized(conic_selection_options *options, size_t size);
+#define conic_selection_options_init(options) conic_selection_options_init_sized(options, sizeof *(options))
 
 /* A picture's splats, in the order of the hierarchy. Zero before the first use; the memory is kept from call to call.
  */
@@ -101,6 +105,7 @@ typedef struct conic_selection {
   double error_px; /* asked for, or what the budget came to: infinite if it was for a single node of any size */
   size_t room;     /* of the arrays */
   void *scratch;   /* private */
+  uint64_t reserved[8];
 } conic_selection;
 
 /* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose

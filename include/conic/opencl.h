@@ -20,6 +20,7 @@ typedef struct conic_opencl_device {
   int rounds_correctly; /* division and square root; else its pictures may be others */
   int n_compute_units;
   uint64_t memory_bytes, greatest_buffer_bytes;
+  uint64_t reserved[8];
 } conic_opencl_device;
 
 /* The devices of this machine, platform by platform; none is no error. On success the caller releases *devices. Errors:
@@ -46,7 +47,8 @@ typedef struct conic_opencl_options {
 } conic_opencl_options;
 
 /* The first device that will do and rounds correctly, no cache, work as it chooses, projection on the device. */
-CONIC_API void conic_opencl_options_init(conic_opencl_options *options);
+CONIC_API void conic_opencl_options_init_sized(conic_opencl_options *options, size_t size);
+#define conic_opencl_options_init(options) conic_opencl_options_init_sized(options, sizeof *(options))
 
 /* A renderer that draws on the device, splats and triangles. On success the caller owns *renderer, which must
  * not outlive the context, and *device (which may be null) says what draws. Errors: ARGUMENT (a name that is none),

@@ -41,6 +41,7 @@ typedef enum conic_unstable_reason {
 } conic_unstable_reason;
 
 #define CONIC_N_UNSTABLE_REASONS 8
+#define CONIC_MAX_UNSTABLE_REASONS 16
 
 /* "cutoff", "clip" …; null for a number that is no reason. */
 CONIC_API const char *conic_unstable_reason_name(conic_unstable_reason reason);
@@ -59,17 +60,18 @@ typedef struct conic_weight_error {
 typedef struct conic_reference {
   int width, height;
   conic_oracle_question question;
-  double *planes[CONIC_N_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
-  uint8_t *unstable;              /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
-  uint32_t *tied_id;              /* CONIC_NO_ID; or the splat that is as near as the id's but for rounding, which is
-                                     as good an id; or CONIC_ANY_ID where there are several */
-  double white;                   /* 2^exposure, by which rgba is multiplied */
+  double *planes[CONIC_MAX_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
+  uint8_t *unstable;                /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
+  uint32_t *tied_id;                /* CONIC_NO_ID; or the splat that is as near as the id's but for rounding, which is
+                                       as good an id; or CONIC_ANY_ID where there are several */
+  double white;                     /* 2^exposure, by which rgba is multiplied */
   size_t covered_pixels, unstable_pixels;
   int samples;                              /* N × N a pixel; what follows counts samples */
   size_t covered_samples, unstable_samples; /* the same as the pixels where N is 1 */
   size_t undecided_ids;                     /* pixels with CONIC_ANY_ID: their ids are not compared */
-  size_t unstable_by_reason[CONIC_N_UNSTABLE_REASONS];
+  size_t unstable_by_reason[CONIC_MAX_UNSTABLE_REASONS];
   conic_weight_error weight_error; /* for the exact question; else zero */
+  uint64_t reserved[8];
 } conic_reference;
 
 /* Computes the reference picture of `splats` (with tangent axes); `options` as for conic_render, `tile` and
@@ -106,10 +108,11 @@ typedef struct conic_oracle_plane_verdict {
 } conic_oracle_plane_verdict;
 
 typedef struct conic_oracle_verdict {
-  conic_oracle_plane_verdict planes[CONIC_N_PLANES];
+  conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
   size_t compared_pixels, unstable_pixels, covered_pixels;
   double unstable_limit; /* share of the covered pixels, or samples, that may be unstable */
   int pass;              /* every bound and the limit are kept */
+  uint64_t reserved[8];
 } conic_oracle_verdict;
 
 /* Compares `image`, of the reference's size, with it: against the bounds of docs/reference/oracle.md where the question

@@ -30,16 +30,18 @@ typedef struct conic_patches_options {
 } conic_patches_options;
 
 /* The surface's defaults, cutoff 1.5, steps of 2 px. */
-CONIC_API void conic_patches_options_init(conic_patches_options *options);
+CONIC_API void conic_patches_options_init_sized(conic_patches_options *options, size_t size);
+#define conic_patches_options_init(options) conic_patches_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_patches conic_patches;
 
 /* What came of a set's points. */
 typedef struct conic_patches_report {
   size_t n_points;
-  size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points' projections */
-  size_t n_patches;                          /* points with a patch: DONE, and the polynomial is sound all over it */
-  size_t n_bytes;                            /* what the patches and their hierarchy take */
+  size_t outcomes[CONIC_MAX_SURFACE_OUTCOMES]; /* of the points' projections */
+  size_t n_patches;                            /* points with a patch: DONE, and the polynomial is sound all over it */
+  size_t n_bytes;                              /* what the patches and their hierarchy take */
+  uint64_t reserved[8];
 } conic_patches_report;
 
 /* Lays a patch about every point of `splats` (with tangent axes) that has one. The set must outlive the patches, which
@@ -62,6 +64,7 @@ typedef struct conic_patch_selection {
   size_t n_splats;        /* points that are drawn as their own splats */
   size_t n_culled;        /* points out of sight */
   size_t n_kept;          /* of the samples: taken over from the last picture */
+  uint64_t reserved[8];
 } conic_patch_selection;
 
 /* Chooses and samples what a camera sees: of `render`, the near distance, prefilter and culling count. A point whose

@@ -29,6 +29,7 @@ typedef enum conic_method {
 } conic_method;
 
 #define CONIC_N_METHODS 6
+#define CONIC_MAX_METHODS 16
 
 /* "conic", "ray" …; null for a number that is no method. */
 CONIC_API const char *conic_method_name(conic_method method);
@@ -75,11 +76,13 @@ typedef struct conic_render_options {
 
 /* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
  * background. */
-CONIC_API void conic_render_options_init(conic_render_options *options);
+CONIC_API void conic_render_options_init_sized(conic_render_options *options, size_t size);
+#define conic_render_options_init(options) conic_render_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_render_milliseconds {
   double lod; /* left at 0: whoever chooses what to draw (conic/octree.h) may add it, to frame too */
   double setup, bin, visibility, accumulate, resolve, frame;
+  uint64_t reserved[8];
 } conic_render_milliseconds;
 
 typedef struct conic_render_statistics {
@@ -87,9 +90,9 @@ typedef struct conic_render_statistics {
   uint64_t splats_culled;  /* behind near, off-screen, back-facing */
   uint64_t splats_skipped; /* not finite, or without area where nothing widens them */
   uint64_t splats_drawn;
-  uint64_t splats_fallback;                   /* of the drawn: not by the method's own formula */
-  uint64_t splats_by_method[CONIC_N_METHODS]; /* of the drawn, by the formula used */
-  uint64_t fragments;                         /* splat–pixel pairs inside a cutoff */
+  uint64_t splats_fallback;                     /* of the drawn: not by the method's own formula */
+  uint64_t splats_by_method[CONIC_MAX_METHODS]; /* of the drawn, by the formula used */
+  uint64_t fragments;                           /* splat–pixel pairs inside a cutoff */
   uint64_t pixels_covered;
   uint64_t triangles_in;      /* = culled + skipped + drawn */
   uint64_t triangles_culled;  /* behind near, off-screen, back-facing, or between the places of the samples */
@@ -102,6 +105,7 @@ typedef struct conic_render_statistics {
   int threads, tile;
   const char *isa;              /* what the hot loops used; static */
   conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
+  uint64_t reserved[16];
 } conic_render_statistics;
 
 /* The near distance that near_z = 0 stands for. Looks at every centre; who draws many frames asks once. */

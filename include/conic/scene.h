@@ -48,7 +48,8 @@ typedef struct conic_scene_options {
 } conic_scene_options;
 
 /* A sphere of 100,000 splats. */
-CONIC_API void conic_scene_options_init(conic_scene_options *options);
+CONIC_API void conic_scene_options_init_sized(conic_scene_options *options, size_t size);
+#define conic_scene_options_init(options) conic_scene_options_init_sized(options, sizeof *(options))
 
 /* A scene that is ready to be sampled; any split into batches gives the same splats. */
 typedef struct conic_scene conic_scene;

@@ -55,7 +55,8 @@ typedef struct conic_source_options {
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours. */
-CONIC_API void conic_source_options_init(conic_source_options *options);
+CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
+#define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
 /* What a source of these files and options could do, told from their first bytes: bits of conic_source_ability. Null
  * options are the defaults. */
@@ -122,7 +123,8 @@ typedef struct conic_source_view {
 } conic_source_view;
 
 /* Full detail, either kind, one sample. */
-CONIC_API void conic_source_view_init(conic_source_view *view);
+CONIC_API void conic_source_view_init_sized(conic_source_view *view, size_t size);
+#define conic_source_view_init(view) conic_source_view_init_sized(view, sizeof *(view))
 
 /* What the last picture was, or is to be, drawn of. */
 typedef struct conic_source_choice {

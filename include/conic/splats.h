@@ -2,7 +2,7 @@
  *
  * A splat is an ellipse in space with a kernel on it: centre p, tangent axes t_u and t_v (world units, orthogonal,
  * one standard deviation long for the Gaussian kernel); its normal is t_u × t_v. Structure of arrays: every pointer
- * is to `count` floats. */
+ * is to `count` floats, which lie side by side or a stride apart. */
 #ifndef CONIC_SPLATS_H
 #define CONIC_SPLATS_H
 
@@ -31,9 +31,20 @@ typedef struct conic_clip {
   float lines[2][3];
 } conic_clip;
 
+/* The bytes from one splat's float to the next in each array, the same for all its components; 0: side by side. Of an
+ * array of count × 3 floats at p, the components are p, p + 1, p + 2 and the stride is 3 × sizeof(float); in an array
+ * of structs it is the struct's size. Multiples of sizeof(float). */
+typedef struct conic_splats_strides {
+  size_t position, tangent_u, tangent_v, normal, color, opacity;
+} conic_splats_strides;
+
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
  * by a function of the library (then release it so). Optional arrays are null when absent. An optional
- * three-component array is there in all three components or in none. */
+ * three-component array is there in all three components or in none, else the set is an ARGUMENT error.
+ *
+ * Functions that only read a set allow strides. Most copy such arrays side by side in every call: to draw a set many
+ * times, append it to an empty one, and draw that. Functions that change a set or take it over refuse strides; sets
+ * that the library fills have none. */
 typedef struct conic_splats {
   size_t count;
 
@@ -59,6 +70,9 @@ typedef struct conic_splats {
    * one a splat and all below `count`. */
   size_t n_clips;
   conic_clip *clips;
+
+  conic_splats_strides strides;
+  uint64_t reserved[8];
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */

@@ -49,10 +49,12 @@ typedef struct conic_surface_options {
   int n_local;                 /* of h 0: that neighbour lies at the neglect distance; 6 to 64 */
   double cluster;              /* cells smaller than this times their distance are summed as one; 0 (none) to 1 */
   conic_isa isa;
+  uint64_t reserved[8];
 } conic_surface_options;
 
 /* MLS, full plane, Gaussian, degree 3, local h by 32 neighbours, neglected from 2 h on, no clusters. */
-CONIC_API void conic_surface_options_init(conic_surface_options *options);
+CONIC_API void conic_surface_options_init_sized(conic_surface_options *options, size_t size);
+#define conic_surface_options_init(options) conic_surface_options_init_sized(options, sizeof *(options))
 
 typedef struct conic_surface conic_surface;
 
@@ -74,6 +76,7 @@ typedef enum conic_surface_outcome {
 } conic_surface_outcome;
 
 #define CONIC_N_SURFACE_OUTCOMES 5
+#define CONIC_MAX_SURFACE_OUTCOMES 16
 
 /* "done", "not finite" …; null for a number that is none. */
 CONIC_API const char *conic_surface_outcome_name(conic_surface_outcome outcome);
@@ -99,19 +102,21 @@ CONIC_API conic_status conic_surface_project(conic_surface *surface, size_t coun
 typedef struct conic_surface_distance {
   double max, rms;
   size_t n_measured, n_failed; /* points of the first surface; those of them with nothing of the second about them */
+  uint64_t reserved[4];
 } conic_surface_distance;
 
 /* How points were moved, and how many could not be. */
 typedef struct conic_surface_report {
   size_t n_in, n_out;
-  size_t outcomes[CONIC_N_SURFACE_OUTCOMES]; /* of the points projected */
-  double moved_rms, moved_max;               /* in world units, over the DONE */
+  size_t outcomes[CONIC_MAX_SURFACE_OUTCOMES]; /* of the points projected */
+  double moved_rms, moved_max;                 /* in world units, over the DONE */
   double mean_neighbours;
   double h;     /* the median of the samples' */
   double error; /* thin: the greatest contribution of a point that was removed; densify: the widest gap left */
   conic_surface_distance there,
       back;             /* thin, where it is measured: from the set's surface to the new one's, and back */
   size_t n_evaluations; /* projections that were computed */
+  uint64_t reserved[8];
 } conic_surface_report;
 
 /* Projects the surface's own points. `projected` gets those that are DONE, in their old order, with normals where the
@@ -130,6 +135,7 @@ typedef struct conic_points_sink {
   conic_status (*begin)(void *cookie, const conic_surface_report *report, unsigned fields);
   conic_batch_receiver *receive;
   void *cookie;
+  uint64_t reserved[4];
 } conic_points_sink;
 
 typedef struct conic_clean_options {
@@ -141,7 +147,8 @@ typedef struct conic_clean_options {
 } conic_clean_options;
 
 /* The surface's defaults, for which h is still to be set. */
-CONIC_API void conic_clean_options_init(conic_clean_options *options);
+CONIC_API void conic_clean_options_init_sized(conic_clean_options *options, size_t size);
+#define conic_clean_options_init(options) conic_clean_options_init_sized(options, sizeof *(options))
 
 /* conic_surface_clean for sets of any size: cell by cell of a lattice with sides of 64 h, each with what lies within
  * (neglect + 1.5) h about it. The memory that there is changes no bit. Normals of algebraic spheres must come with the
@@ -159,7 +166,8 @@ typedef struct conic_thin_options {
 } conic_thin_options;
 
 /* Neither a count nor an error: one of them is still to be set. */
-CONIC_API void conic_thin_options_init(conic_thin_options *options);
+CONIC_API void conic_thin_options_init_sized(conic_thin_options *options, size_t size);
+#define conic_thin_options_init(options) conic_thin_options_init_sized(options, sizeof *(options))
 
 /* Removes the points that mean least, the least first: by the distance of a point from the surface of the others that
  * are left (PSS §5.1). Removing a point makes its neighbours be measured anew before they are. What is left is a subset
@@ -176,7 +184,8 @@ typedef struct conic_densify_options {
 } conic_densify_options;
 
 /* Holes wider than h stay, any number of points; the spacing is still to be set. */
-CONIC_API void conic_densify_options_init(conic_densify_options *options);
+CONIC_API void conic_densify_options_init_sized(conic_densify_options *options, size_t size);
+#define conic_densify_options_init(options) conic_densify_options_init_sized(options, sizeof *(options))
 
 /* Adds points of the surface where the set has gaps, the widest first: at vertices of the Voronoi diagram of a
  * point's neighbours in their plane (PSS §5.2). Nothing is added outside of its neighbours: borders stay where they

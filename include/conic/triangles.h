@@ -22,12 +22,18 @@ extern "C" {
 typedef struct conic_material {
   float color[3];         /* linear */
   conic_texture *texture; /* null: none */
+  uint64_t reserved[4];
 } conic_material;
+
+/* As conic_splats_strides, of the arrays of floats. */
+typedef struct conic_triangles_strides {
+  size_t position, color, normal, texture_coordinate;
+} conic_triangles_strides;
 
 /* A set of triangles: positions that are shared by index, and attributes with indices of their own where corners that
  * share a place differ in them. May be filled by hand with pointers to the caller's own arrays (then never pass it to
  * conic_triangles_release), or by a function of the library (then release it so). Optional arrays are null when absent;
- * those of several components are there in all of them or in none. */
+ * those of several components are there in all of them or in none. Strides are for whom conic_splats allows them. */
 typedef struct conic_triangles {
   size_t count;           /* triangles */
   uint32_t (*corners)[3]; /* [count]: vertices, each below n_vertices; counter-clockwise seen from the front */
@@ -56,6 +62,9 @@ typedef struct conic_triangles {
   uint32_t *material; /* [count], each below n_materials; optional: all have the first */
 
   uint32_t *cluster; /* [count]: what a triangle belongs to; optional, and of no matter to the picture */
+
+  conic_triangles_strides strides;
+  uint64_t reserved[8];
 } conic_triangles;
 
 /* The optional arrays of a set, as bits. */
@@ -74,8 +83,8 @@ CONIC_API conic_status conic_triangles_allocate(conic_context *context, size_t c
 /* Releases the arrays and the textures, and leaves an empty set; a set of zero bytes is allowed. */
 CONIC_API void conic_triangles_release(conic_context *context, conic_triangles *triangles);
 
-/* Whether all indices are in range and all arrays that belong together are there: what a renderer asks for. Errors:
- * INPUT, with a message that names `name`. */
+/* Whether all arrays that belong together are there and all indices are in range: what a renderer asks for. Errors:
+ * ARGUMENT, INPUT (an index), with a message that names `name`. */
 CONIC_API conic_status conic_triangles_check(conic_context *context, const conic_triangles *triangles,
                                              const char *name);
 
@@ -111,6 +120,7 @@ CONIC_API size_t conic_triangles_bounds(const conic_triangles *triangles, double
 typedef struct conic_drawing {
   const conic_splats *splats;
   const conic_triangles *triangles;
+  uint64_t reserved[4];
 } conic_drawing;
 
 /* The box of both, and how many centres and corners of it are finite; the near distance that near_z = 0 stands for. */

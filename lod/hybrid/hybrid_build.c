@@ -4,19 +4,17 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/splats/columns.h"
 #include "lod/hybrid/hybrid_nodes.h"
 #include "lod/hybrid/hybrid_pack.h"
 #include "lod/hybrid/hybrid_tree.h"
 #include "lod/mesh/flat_mesh.h"
 
-void conic_hybrid_options_init(conic_hybrid_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->phase1 = 0.12;
-  options->phase2 = 0.4;
-  options->density = 2.0;
-  options->most_error = 0.5;
-  options->cutoff = 1.5f;
+void conic_hybrid_options_init_sized(conic_hybrid_options *options, size_t size) {
+  static const conic_hybrid_options own = {
+      .size = sizeof own, .phase1 = 0.12, .phase2 = 0.4, .density = 2.0, .most_error = 0.5, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 typedef struct building {
@@ -145,8 +143,9 @@ static void report_oddities(building *b, const conic_triangles *mesh) {
   r->n_first = b->clusters.n_first;
 }
 
-static conic_status check_options(conic_context *context, const conic_hybrid_options *o) {
-  int is_good = o->size == sizeof *o && o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 &&
+static conic_status take_options(conic_context *context, const conic_hybrid_options *given, conic_hybrid_options *o) {
+  conic_hybrid_options_init(o);
+  int is_good = conic_options_take(o, given) && o->phase1 - o->phase1 == 0.0 && o->phase2 - o->phase2 == 0.0 &&
                 o->most_area >= 0.0 && o->density > 0.0 && o->density <= 1024.0 && o->most_error >= 0.0 &&
                 o->cutoff >= 0.25f && o->cutoff <= 5.0f &&
                 (o->sampling == CONIC_SAMPLING_BLUE || o->sampling == CONIC_SAMPLING_BOX);
@@ -179,13 +178,17 @@ static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hyb
   return status;
 }
 
-conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *options,
+conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, const conic_hybrid_options *given,
                                 conic_hybrid **hybrid, conic_hybrid_report *report) {
   conic_hybrid_report ignored;
-  building b = {.context = context, .options = options, .report = report ? report : &ignored};
+  conic_hybrid_options options;
+  building b = {.context = context, .options = &options, .report = report ? report : &ignored};
   *hybrid = NULL;
   memset(b.report, 0, sizeof *b.report);
-  conic_status status = check_options(context, options);
+  conic_status status = conic_triangles_check_own(context, "the mesh", mesh);
+  if (status != CONIC_OK)
+    return status;
+  status = take_options(context, given, &options);
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)

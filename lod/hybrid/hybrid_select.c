@@ -4,16 +4,17 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
 #include "lod/hybrid/hybrid_budget.h"
 #include "lod/hybrid/hybrid_plan.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
-void conic_hybrid_view_init(conic_hybrid_view *view) {
-  memset(view, 0, sizeof *view);
-  view->size = sizeof *view;
-  view->only_kind = -1;
+void conic_hybrid_view_init_sized(conic_hybrid_view *view, size_t size) {
+  static const conic_hybrid_view own = {.size = sizeof own, .only_kind = -1};
+  conic_options_give(view, size, &own);
 }
 
 /* A cluster that is drawn, or, after all clusters by its number, a node; and where its parts go. The level is among all
@@ -391,8 +392,9 @@ static void copy_task(void *data, size_t i_task, int i_thread) {
   }
 }
 
-static conic_status check_view(conic_context *context, const conic_hybrid_view *view) {
-  if (view->size != sizeof *view)
+static conic_status take_view(conic_context *context, const conic_hybrid_view *given, conic_hybrid_view *view) {
+  conic_hybrid_view_init(view);
+  if (!conic_options_take(view, given))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "a view of a hybrid that was not set by its init function");
   if (!(view->error_px >= 0.0) || view->only_kind > CONIC_HYBRID_SURFELS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
@@ -404,8 +406,11 @@ static conic_status check_view(conic_context *context, const conic_hybrid_view *
 
 /* On success there is scratch. */
 static conic_status begin(hybrid_selecting *s, const conic_camera *camera, const conic_render_options *render) {
+  conic_render_options known;
+  conic_status status = conic_view_arguments_take(s->hybrid->context, "hybrid", camera, render, &known);
+  if (status != CONIC_OK)
+    return status;
   hybrid_scratch *kept = s->selection->scratch;
-  conic_render_options known = *render;
   conic_hybrid_info info;
   if (!kept) {
     kept = conic_memory_allocate_zeroed(s->hybrid->context, 1, sizeof *kept);
@@ -423,10 +428,11 @@ static conic_status begin(hybrid_selecting *s, const conic_camera *camera, const
 }
 
 conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera *camera,
-                                 const conic_render_options *render, const conic_hybrid_view *view,
+                                 const conic_render_options *render, const conic_hybrid_view *given,
                                  conic_hybrid_selection *selection) {
-  hybrid_selecting s = {.hybrid = hybrid, .view = view, .selection = selection};
-  conic_status status = check_view(hybrid->context, view);
+  conic_hybrid_view view;
+  hybrid_selecting s = {.hybrid = hybrid, .view = &view, .selection = selection};
+  conic_status status = take_view(hybrid->context, given, &view);
   if (status == CONIC_OK)
     status = begin(&s, camera, render);
   if (status == CONIC_OK)
@@ -434,7 +440,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   if (status == CONIC_OK)
     status = choose_all(&s);
   if (status == CONIC_OK) {
-    if (is_together(view))
+    if (is_together(&view))
       status = choose_together(&s);
     else
       note_stages(&s);

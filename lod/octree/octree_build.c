@@ -3,7 +3,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/splats/columns.h"
 #include "lod/octree/leaf_code.h"
 #include "lod/octree/octree_fit.h"
 #include "lod/octree/octree_split.h"
@@ -259,26 +261,30 @@ static conic_status build(conic_octree *octree, const conic_octree_options *opti
   return status == CONIC_OK ? conic_octree_fit(octree) : status;
 }
 
-static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *options) {
-  if (options->size != sizeof *options || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
+static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *given,
+                                 conic_octree_options *options) {
+  conic_octree_options_init(options);
+  if (!conic_options_take(options, given) || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
     return "the options have no meaning";
-  if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
+  if (!splats->tangent_u[0])
     return "the splats have no tangent axes";
   if (splats->count > UINT32_MAX / 2) /* and inner nodes are numbered after them */
     return "there are more than 2,147,483,647 splats";
   return NULL;
 }
 
-conic_status conic_octree_build(conic_context *context, conic_splats *splats, const conic_octree_options *options,
+conic_status conic_octree_build(conic_context *context, conic_splats *splats, const conic_octree_options *given,
                                 conic_octree **octree) {
-  const char *wrong = what_is_wrong(splats, options);
-  conic_status status = CONIC_OK;
+  conic_octree_options options;
   *octree = NULL;
+  conic_status status = conic_splats_check_own(context, "octree", splats);
+  if (status != CONIC_OK)
+    return status;
+  const char *wrong = what_is_wrong(splats, given, &options);
   conic_octree *made = wrong ? NULL : conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made) {
-    status = wrong ? conic_fail(context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_ERROR_MEMORY;
     conic_splats_release(context, splats);
-    return status;
+    return wrong ? conic_fail(context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_ERROR_MEMORY;
   }
   made->context = context;
   made->n_points = splats->count;
@@ -293,7 +299,7 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
     conic_memory_release(context, made->owned.normal[axis]);
     made->owned.normal[axis] = NULL;
   }
-  status = build(made, options);
+  status = build(made, &options);
   if (status == CONIC_OK)
     *octree = made;
   else

@@ -1,4 +1,5 @@
 #include "lod/octree/octree_nodes.h"
+#include "core/base/options.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,10 +11,9 @@
 
 static const size_t chunk_nodes = 4096;
 
-void conic_octree_options_init(conic_octree_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cutoff = 1.5f;
+void conic_octree_options_init_sized(conic_octree_options *options, size_t size) {
+  static const conic_octree_options own = {.size = sizeof own, .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 void conic_octree_destroy(conic_octree *octree) {

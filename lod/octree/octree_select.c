@@ -3,7 +3,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
 #include "lod/octree/octree_kernels.h"
 
 /* What becomes part of the selection, in the order of the hierarchy. */
@@ -35,10 +37,9 @@ typedef struct octree_selecting {
   conic_put_function *put;
 } octree_selecting;
 
-void conic_selection_options_init(conic_selection_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->error_px = 1.0;
+void conic_selection_options_init_sized(conic_selection_options *options, size_t size) {
+  static const conic_selection_options own = {.size = sizeof own, .error_px = 1.0};
+  conic_options_give(options, size, &own);
 }
 
 void conic_selection_release(conic_context *context, conic_selection *selection) {
@@ -257,10 +258,11 @@ static conic_status keep_scratch(const conic_octree *octree, conic_selection *se
                    sizeof *kept->sources);
 }
 
-static const char *what_is_wrong(const conic_octree *octree, const conic_camera *camera,
-                                 const conic_render_options *render, const conic_selection_options *options) {
-  if (!camera || !render || !options || options->size != sizeof *options || render->size != sizeof *render)
-    return "an argument is null, or the options were not initialised";
+static const char *what_is_wrong(const conic_octree *octree, const conic_render_options *render,
+                                 const conic_selection_options *given, conic_selection_options *options) {
+  conic_selection_options_init(options);
+  if (!conic_options_take(options, given))
+    return "the options were not initialised";
   if ((double)render->kernel.cutoff != octree->scale.cutoff)
     return "the octree was built for another cutoff of the kernel";
   if (!options->budget && !(options->error_px > 0.0))
@@ -268,16 +270,20 @@ static const char *what_is_wrong(const conic_octree *octree, const conic_camera 
   return NULL;
 }
 
-conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
-                                 const conic_selection_options *options, conic_selection *selection) {
-  const char *wrong = what_is_wrong(octree, camera, render, options);
+conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera, const conic_render_options *given,
+                                 const conic_selection_options *wanted, conic_selection *selection) {
+  conic_render_options render;
+  conic_selection_options options;
+  conic_status status = conic_view_arguments_take(octree->context, "octree", camera, given, &render);
+  if (status != CONIC_OK)
+    return status;
+  const char *wrong = what_is_wrong(octree, &render, wanted, &options);
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
-  octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options->error_px};
-  conic_render_options drawn = *render;
+  octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options.error_px};
   conic_octree_kernels kernels;
-  conic_status status = conic_isa_choose(octree->context, render->isa, &drawn.isa);
-  conic_octree_kernels_init(&kernels, drawn.isa);
+  status = conic_isa_choose(octree->context, render.isa, &render.isa);
+  conic_octree_kernels_init(&kernels, render.isa);
   s.put = kernels.put;
   if (status == CONIC_OK)
     status = conic_octree_decode_all(octree);
@@ -286,11 +292,11 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   if (status != CONIC_OK)
     return status;
   s.scratch = selection->scratch;
-  conic_octree_view_init(octree, camera, &drawn, render->near_z > 0.0 ? render->near_z : conic_octree_near(octree),
+  conic_octree_view_init(octree, camera, &render, render.near_z > 0.0 ? render.near_z : conic_octree_near(octree),
                          &s.view);
-  if (options->budget && octree->n_nodes)
-    status = conic_octree_fit_budget(octree, &s.view, options->budget, &s.error_px);
-  selection->error_px = options->budget ? (double)s.error_px : options->error_px;
+  if (options.budget && octree->n_nodes)
+    status = conic_octree_fit_budget(octree, &s.view, options.budget, &s.error_px);
+  selection->error_px = options.budget ? (double)s.error_px : options.error_px;
   return status == CONIC_OK ? select_splats(&s) : status;
 }
 

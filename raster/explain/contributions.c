@@ -1,3 +1,4 @@
+#include "core/image/view_arguments.h"
 #include "raster/explain/pixel_contributions.h"
 
 #include <string.h>
@@ -95,9 +96,6 @@ static conic_status prepare_triangles(conic_contributions *c, const conic_camera
   if (status != CONIC_OK || !triangles)
     return status;
   conic_raster_kernels_init(&kernels, isa);
-  status = conic_triangles_check(c->context, triangles, "contributions");
-  if (status != CONIC_OK)
-    return status;
   conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
   c->triangles.first_id = (uint32_t)c->splats->count;
   conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
@@ -106,11 +104,10 @@ static conic_status prepare_triangles(conic_contributions *c, const conic_camera
 
 conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                         const conic_render_options *options, conic_contributions **contributions) {
-  const conic_drawing alone = {splats, NULL};
+  const conic_drawing alone = {.splats = splats};
   *contributions = NULL;
   if (!splats)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "contributions: an argument is null, or the options were not initialised");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "contributions: the splats are null");
   return conic_contributions_create_drawing(context, &alone, camera, options, contributions);
 }
 
@@ -118,17 +115,19 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
                                                 const conic_camera *camera, const conic_render_options *options,
                                                 conic_contributions **contributions) {
   *contributions = NULL;
-  if (!drawing || !camera || !options || options->size != sizeof *options)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "contributions: an argument is null, or the options were not initialised");
+  conic_render_options own;
+  conic_status status = conic_view_arguments_take(context, "contributions", camera, options, &own);
+  if (status != CONIC_OK)
+    return status;
   conic_contributions *c = conic_memory_allocate_zeroed(context, 1, sizeof *c);
   if (!c)
     return CONIC_ERROR_MEMORY;
   c->context = context;
-  conic_whole_drawing_of(drawing, &c->drawing);
+  status = conic_whole_drawing_enter(context, "contributions", drawing, &c->drawing);
   c->splats = c->drawing.splats;
-  c->options = *options;
-  conic_status status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
+  c->options = own;
+  if (status == CONIC_OK)
+    status = conic_whole_drawing_scale(context, &c->drawing, &c->options);
   if (status == CONIC_OK)
     status =
         conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
@@ -155,6 +154,7 @@ void conic_contributions_destroy(conic_contributions *c) {
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(c->context, all[i]);
   conic_triangle_frame_release(c->context, &c->triangles);
+  conic_drawing_leave(c->context, &c->drawing.entered);
   conic_memory_release(c->context, c);
 }
 

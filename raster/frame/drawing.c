@@ -6,21 +6,24 @@
 #include "raster/triangles/triangle_frame.h"
 #include "raster/view/scene_scale.h"
 
-void conic_whole_drawing_of(const conic_drawing *drawing, conic_whole_drawing *whole) {
+conic_status conic_whole_drawing_enter(conic_context *context, const char *who, const conic_drawing *drawing,
+                                       conic_whole_drawing *whole) {
+  conic_splats *splats = &whole->entered.splats;
   memset(whole, 0, sizeof *whole);
-  whole->splats = drawing->splats;
-  if (drawing->triangles && drawing->triangles->count)
-    whole->triangles = drawing->triangles;
-  if (whole->splats && (whole->splats->count || !whole->triangles))
-    return;
-  for (int axis = 0; axis < 3; axis++)
-    whole->none.position[axis] = whole->none.tangent_u[axis] = whole->none.tangent_v[axis] = &whole->nothing;
-  whole->splats = &whole->none;
+  conic_status status = conic_drawing_enter(context, who, drawing, &whole->entered);
+  if (status != CONIC_OK)
+    return status;
+  whole->splats = splats;
+  if (whole->entered.triangles.count)
+    whole->triangles = &whole->entered.triangles;
+  for (int axis = 0; axis < 3 && !splats->count && (whole->triangles || !drawing->splats); axis++)
+    splats->position[axis] = splats->tangent_u[axis] = splats->tangent_v[axis] = &whole->nothing;
+  return CONIC_OK;
 }
 
 conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole_drawing *drawing,
                                        conic_render_options *options) {
-  const conic_drawing both = {drawing->splats, drawing->triangles};
+  const conic_drawing both = {.splats = drawing->splats, .triangles = drawing->triangles};
   if (!(options->near_z > 0.0) && drawing->triangles)
     options->near_z = conic_drawing_near(&both);
   return conic_scene_scale(context, drawing->splats, options);

@@ -3,6 +3,7 @@
 #define CONIC_DRAWING_H
 
 #include "conic/triangles.h"
+#include "core/splats/columns.h"
 #include "raster/view/view.h"
 
 /* A drawing whose parts are there: an absent or empty set of splats is an empty one with axes, absent triangles are
@@ -10,12 +11,15 @@
 typedef struct conic_whole_drawing {
   const conic_splats *splats;
   const conic_triangles *triangles; /* null: none */
-  conic_splats none;
+  conic_entered_drawing entered;
   float nothing;
 } conic_whole_drawing;
 
-/* `whole` must not move afterwards. */
-void conic_whole_drawing_of(const conic_drawing *drawing, conic_whole_drawing *whole);
+/* Checks what a caller gave. `whole` must not move afterwards, and the caller leaves the drawing that
+ * was entered, on failure too. Errors:
+ * ARGUMENT, INPUT (conic_triangles_check), MEMORY. */
+conic_status conic_whole_drawing_enter(conic_context *context, const char *who, const conic_drawing *drawing,
+                                       conic_whole_drawing *whole);
 
 /* conic_render of both. */
 conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_drawing *drawing,

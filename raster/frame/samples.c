@@ -6,8 +6,10 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/image_common.h"
+#include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
@@ -229,17 +231,6 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
                                    conic_image *image, conic_render_statistics *statistics) {
   conic_render_statistics sum;
   double start = conic_seconds_now();
-  if (samples == 1)
-    return conic_render_whole(renderer, drawing, camera, options, image, statistics);
-  if (!drawing->splats || !camera || !options || !image || options->size != sizeof *options)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "render: an argument is null, or the options were not initialised");
-  if (image->width != camera->width || image->height != camera->height)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
-  if (samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > CONIC_IMAGE_MAX_SIZE / samples ||
-      camera->height > CONIC_IMAGE_MAX_SIZE / samples)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "samples: 1 to %d, and that times the picture's size at most %d",
-                      CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
   conic_render_options same = *options;
   reduction r = {.image = image, .samples = (size_t)samples};
   conic_status status = conic_whole_drawing_scale(context, drawing, &same);
@@ -261,19 +252,42 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
   return status;
 }
 
+/* What every drawing of a whole picture starts with. */
+static conic_status render_checked(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
+                                   const conic_camera *camera, const conic_render_options *given, int samples,
+                                   conic_image *image, conic_render_statistics *statistics) {
+  conic_render_options options;
+  conic_whole_drawing whole;
+  conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
+  if (status != CONIC_OK)
+    return status;
+  if (!image || !conic_is_zero(image->reserved, sizeof image->reserved))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image is null, or its reserved words are not zero");
+  if (image->width != camera->width || image->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the image and the camera differ in size");
+  if (samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > CONIC_IMAGE_MAX_SIZE / samples ||
+      camera->height > CONIC_IMAGE_MAX_SIZE / samples)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "samples: 1 to %d, and that times the picture's size at most %d",
+                      CONIC_MAX_SAMPLES, CONIC_IMAGE_MAX_SIZE);
+  status = conic_whole_drawing_enter(context, "render", drawing, &whole);
+  if (status == CONIC_OK)
+    status = samples == 1 ? conic_render_whole(renderer, &whole, camera, &options, image, statistics)
+                          : render_samples(context, renderer, &whole, camera, &options, samples, image, statistics);
+  conic_drawing_leave(context, &whole.entered);
+  return status;
+}
+
 conic_status conic_render_samples(conic_context *context, conic_renderer *renderer, const conic_splats *splats,
                                   const conic_camera *camera, const conic_render_options *options, int samples,
                                   conic_image *image, conic_render_statistics *statistics) {
-  const conic_whole_drawing alone = {.splats = splats};
-  return render_samples(context, renderer, &alone, camera, options, samples, image, statistics);
+  const conic_drawing alone = {.splats = splats};
+  if (!splats)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the splats are null");
+  return render_checked(context, renderer, &alone, camera, options, samples, image, statistics);
 }
 
 conic_status conic_render_drawing(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
                                   const conic_camera *camera, const conic_render_options *options, int samples,
                                   conic_image *image, conic_render_statistics *statistics) {
-  conic_whole_drawing whole;
-  if (!drawing)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "render: the drawing is null");
-  conic_whole_drawing_of(drawing, &whole);
-  return render_samples(context, renderer, &whole, camera, options, samples, image, statistics);
+  return render_checked(context, renderer, drawing, camera, options, samples, image, statistics);
 }

@@ -6,22 +6,6 @@
 #include "core/base/message.h"
 #include "raster/view/method.h"
 
-static int camera_makes_sense(const conic_camera *camera) {
-  if (camera->width < 1 || camera->width > 65535 || camera->height < 1 || camera->height > 65535)
-    return 0;
-  if (!(camera->fx > 0.0 && camera->fx < 1e12 && camera->fy > 0.0 && camera->fy < 1e12 && fabs(camera->cx) < 1e12 &&
-        fabs(camera->cy) < 1e12))
-    return 0;
-  for (int i = 0; i < 3; i++) {
-    double length_squared = 0.0;
-    for (int j = 0; j < 3; j++)
-      length_squared += camera->cam_from_world[i][j] * camera->cam_from_world[i][j];
-    if (!(fabs(length_squared - 1.0) < 1e-3) || !(fabs(camera->cam_from_world[i][3]) < 1e30))
-      return 0;
-  }
-  return 1;
-}
-
 static int kernel_makes_sense(const conic_kernel *kernel) {
   if (!(kernel->cutoff >= 0.25f && kernel->cutoff <= 5.0f))
     return 0;
@@ -31,14 +15,11 @@ static int kernel_makes_sense(const conic_kernel *kernel) {
   return kernel->type == CONIC_KERNEL_GAUSS || kernel->type == CONIC_KERNEL_HAT || kernel->type == CONIC_KERNEL_BOX;
 }
 
-static const char *what_is_wrong(const conic_splats *splats, const conic_camera *camera,
-                                 const conic_render_options *options) {
+static const char *what_is_wrong(const conic_splats *splats, const conic_render_options *options) {
   if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
     return "the splats have no tangent axes";
   if (splats->count > UINT32_MAX - 1)
     return "there are more than 4,294,967,294 splats";
-  if (!camera_makes_sense(camera))
-    return "the camera makes no sense";
   if (!kernel_makes_sense(&options->kernel))
     return "the kernel's cutoff or parameters are out of range";
   if (!(options->prefilter >= 0.0f && options->prefilter <= 1e4f))
@@ -80,18 +61,14 @@ static void place_eye(conic_view *view) {
     view->eye[i] = (float)eye;
     reach += fabs(eye);
   }
-  double determinant =
-      (m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])) +
-      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  int is_usual = farthest_from_rotation < 1e-5 && determinant > 0.0 && view->fx > 0.1 && view->fy > 0.1 &&
-                 view->fx < 1e6 && view->fy < 1e6;
+  int is_usual = farthest_from_rotation < 1e-5 && view->fx > 0.1 && view->fy > 0.1 && view->fx < 1e6 && view->fy < 1e6;
   view->nearest_sure = is_usual ? (float)fmax(1e-3 * reach, 1e-15) : HUGE_VALF;
 }
 
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length,
                              conic_view *view) {
-  const char *wrong = what_is_wrong(splats, camera, options);
+  const char *wrong = what_is_wrong(splats, options);
   if (wrong)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s", wrong);
   memset(view, 0, sizeof *view);

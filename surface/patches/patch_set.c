@@ -1,5 +1,7 @@
 /* Laying patches: a polynomial about every point, and how far it is to be trusted. */
 #include "surface/patches/patch_set.h"
+#include "core/base/options.h"
+#include "core/splats/columns.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,17 +19,15 @@ static const double MOST_GAIN = 4.0, MOST_SLOPE = 3.0;
  * it just covers the cell of the tangent plane that the splat was made for. */
 static const double SHRINKAGE = 0.85, LEAST_SHARE = 0.6;
 
-void conic_patches_options_init(conic_patches_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  conic_surface_options_init(&options->surface);
-  options->cutoff = 1.5f;
-  options->step_px = 2.0;
+void conic_patches_options_init_sized(conic_patches_options *options, size_t size) {
+  conic_patches_options own = {.size = sizeof own, .cutoff = 1.5f, .step_px = 2.0};
+  conic_surface_options_init(&own.surface);
+  conic_options_give(options, size, &own);
 }
 
 static conic_status check_options(conic_context *context, const conic_splats *splats, const conic_patches_options *o) {
-  if (o->size != sizeof *o || o->surface.type != CONIC_SURFACE_MLS)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: options that were not initialised, or no polynomials");
+  if (o->surface.type != CONIC_SURFACE_MLS)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: spheres are no polynomials");
   if (!(o->cutoff >= 0.25f && o->cutoff <= 5.0f) || !(o->step_px >= 0.25 && o->step_px <= 16.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: cutoff %g or step %g is out of range", (double)o->cutoff,
                       o->step_px);
@@ -68,7 +68,7 @@ static double length_of(float *const axes[3], size_t i) {
 
 /* How far a point's own splat reaches; 0 where that is no number. */
 static double outline_of(const conic_patches *patches, size_t point) {
-  double u = length_of(patches->splats->tangent_u, point), v = length_of(patches->splats->tangent_v, point);
+  double u = length_of(patches->splats.tangent_u, point), v = length_of(patches->splats.tangent_v, point);
   double outline = (double)patches->options.cutoff * (u > v ? u : v);
   return outline < 1e30 ? outline : 0.0;
 }
@@ -195,7 +195,7 @@ static conic_status lay_all(laying *work) {
 
 /* Clip lines stand for creases, which no polynomial has. */
 static void take_clipped_away(conic_patches *patches) {
-  const conic_splats *splats = patches->splats;
+  const conic_splats *splats = &patches->splats;
   for (size_t i = 0; i < splats->n_clips; i++)
     if (splats->clips[i].splat < splats->count) {
       uint32_t slot = patches->surface->tree.slot_of_point[splats->clips[i].splat];
@@ -269,7 +269,7 @@ static conic_status allocate(conic_patches *patches) {
 static conic_status lay(conic_patches *patches) {
   conic_context *context = patches->context;
   laying work = {patches, NULL, NULL};
-  conic_status status = conic_surface_create(context, patches->splats, &patches->options.surface, &patches->surface);
+  conic_status status = conic_surface_create(context, &patches->splats, &patches->options.surface, &patches->surface);
   if (status == CONIC_OK)
     status = allocate(patches);
   if (status != CONIC_OK)
@@ -288,14 +288,15 @@ static conic_status lay(conic_patches *patches) {
 }
 
 conic_status conic_patches_create(conic_context *context, const conic_splats *splats,
-                                  const conic_patches_options *options, conic_patches **patches) {
-  conic_patches_options defaults;
+                                  const conic_patches_options *given, conic_patches **patches) {
+  conic_patches_options own, *options = &own;
   *patches = NULL;
-  if (!options) {
-    conic_patches_options_init(&defaults);
-    options = &defaults;
-  }
-  conic_status status = check_options(context, splats, options);
+  conic_patches_options_init(options);
+  if (given && !conic_options_take(options, given))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the options were not initialised");
+  conic_status status = conic_splats_check(context, "patches", splats);
+  if (status == CONIC_OK)
+    status = check_options(context, splats, options);
   if (status != CONIC_OK)
     return status;
   conic_patches *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -303,8 +304,9 @@ conic_status conic_patches_create(conic_context *context, const conic_splats *sp
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->options = *options;
-  made->splats = splats;
-  status = lay(made);
+  status = conic_splats_enter(context, "patches", splats, &made->splats, &made->block);
+  if (status == CONIC_OK)
+    status = lay(made);
   if (status == CONIC_OK)
     *patches = made;
   else
@@ -317,6 +319,7 @@ void conic_patches_destroy(conic_patches *patches) {
     return;
   conic_context *context = patches->context;
   conic_surface_destroy(patches->surface);
+  conic_memory_release(context, patches->block);
   conic_memory_release(context, patches->patches);
   conic_patches_release_frames(patches);
   conic_memory_release(context, patches->counts);

@@ -26,11 +26,12 @@ typedef struct conic_patches_frame {
 struct conic_patches {
   conic_context *context;
   conic_patches_options options;
-  const conic_splats *splats; /* the caller's */
-  conic_surface *surface;     /* whose tree is the hierarchy */
-  conic_patch *patches;       /* by slot */
-  float *node_reach;          /* by node of the tree: the greatest reach of its points, as patches and as splats */
-  float *node_radius;         /* and the greatest radius of its patches */
+  conic_splats splats;    /* the caller's */
+  float *block;           /* what of them was strided */
+  conic_surface *surface; /* whose tree is the hierarchy */
+  conic_patch *patches;   /* by slot */
+  float *node_reach;      /* by node of the tree: the greatest reach of its points, as patches and as splats */
+  float *node_radius;     /* and the greatest radius of its patches */
   conic_patches_report report;
 
   uint32_t *counts;              /* by slot: samples, where its plan is DEEP */

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/image/view_arguments.h"
 #include "surface/patches/patch_set.h"
 
 enum { CHUNK = 256 };
@@ -81,7 +82,7 @@ static void make_grid(const patches_selecting *work, uint32_t slot, size_t at) {
 
 /* The samples of a point's patch, with the point's colour and opacity. */
 static void put_grid(const patches_selecting *work, size_t point, uint32_t slot, size_t at, size_t n) {
-  const conic_splats *from = work->patches->splats;
+  const conic_splats *from = &work->patches->splats;
   const conic_splats *to = &work->frame->splats;
   make_grid(work, slot, at);
   for (int axis = 0; axis < 3 && from->color[0]; axis++)
@@ -98,7 +99,7 @@ static void put_fading(const patches_selecting *work, size_t point, uint32_t slo
   put_grid(work, point, slot, at, n - 1);
   for (size_t i = at; i < at + n - 1; i++)
     to->opacity[i] *= (float)share;
-  copy_samples(work->patches->splats, point, to, at + n - 1, 1);
+  copy_samples(&work->patches->splats, point, to, at + n - 1, 1);
   to->opacity[at + n - 1] *= (float)(1.0 - share);
 }
 
@@ -116,7 +117,7 @@ static size_t put_point(const patches_selecting *work, size_t point, size_t at, 
   if (n == 0)
     return 0;
   if (slot == CONIC_NO_SLOT || work->frame->plans[slot] == CONIC_PLAN_SPLAT)
-    copy_samples(work->patches->splats, point, &work->frame->splats, at, 1);
+    copy_samples(&work->patches->splats, point, &work->frame->splats, at, 1);
   else if (work->frame->plans[slot] & CONIC_PLAN_FADING)
     put_fading(work, point, slot, at, n);
   else if (is_kept(work, point, slot)) {
@@ -143,7 +144,7 @@ static void fill_chunk(void *data, size_t i_item, int i_thread) {
 
 /* The clip lines of the splats that are drawn as such. */
 static void put_clips(const patches_selecting *work, size_t n) {
-  const conic_splats *from = work->patches->splats;
+  const conic_splats *from = &work->patches->splats;
   conic_splats *to = &work->frame->splats;
   const uint32_t *points = work->frame->points;
   size_t at = 0;
@@ -183,7 +184,7 @@ void conic_patches_release_frames(conic_patches *patches) {
 static conic_status reserve(const patches_selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
-  unsigned fields = conic_splats_fields(work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
+  unsigned fields = conic_splats_fields(&work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
   if (n <= frame->room && frame->points) /* with nothing in sight, too, the arrays are there */
     return CONIC_OK;
   release_samples(context, frame);
@@ -243,34 +244,36 @@ static conic_status select_samples(patches_selecting *work, conic_patch_selectio
   }
   conic_parallel_for(patches->context, work->n_chunks, fill_chunk, work);
   work->frame->splats.count = work->chunk_starts[work->n_chunks];
-  memcpy(work->frame->splats.origin, patches->splats->origin, sizeof work->frame->splats.origin);
+  memcpy(work->frame->splats.origin, patches->splats.origin, sizeof work->frame->splats.origin);
   put_clips(work, work->frame->splats.count);
   describe(work, selection);
   return CONIC_OK;
 }
 
-conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera,
-                                  const conic_render_options *render, conic_patch_selection *selection) {
+conic_status conic_patches_select(conic_patches *patches, const conic_camera *camera, const conic_render_options *given,
+                                  conic_patch_selection *selection) {
   conic_context *context = patches->context;
   const conic_neighbours *tree = &patches->surface->tree;
   double diagonal2 = 0.0;
   patches_selecting work = {.patches = patches, .n_chunks = (tree->n_points + CHUNK - 1) / CHUNK};
+  conic_render_options render;
   memset(selection, 0, sizeof *selection);
-  if (!(camera->fx > 0.0 && camera->fy > 0.0 && camera->width > 0 && camera->height > 0) ||
-      render->kernel.cutoff != patches->options.cutoff || !(render->prefilter >= 0.0f))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "patches: the camera makes no sense, or the kernel's cutoff is not that of the patches");
+  conic_status status = conic_view_arguments_take(context, "patches", camera, given, &render);
+  if (status != CONIC_OK)
+    return status;
+  if (render.kernel.cutoff != patches->options.cutoff || !(render.prefilter >= 0.0f))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the kernel's cutoff is not that of the patches");
   for (int axis = 0; axis < 3; axis++) {
     double side = (double)tree->boxes[0][3 + axis] - (double)tree->boxes[0][axis];
     diagonal2 += side * side;
   }
-  conic_patches_view_init(&work.view, camera, render, patches->splats->origin,
+  conic_patches_view_init(&work.view, camera, &render, patches->splats.origin,
                           diagonal2 > 0.0 ? 1e-4 * sqrt(diagonal2) : 1e-4, patches->options.step_px);
   work.last = &patches->frames[patches->i_frame];
   work.frame = &patches->frames[patches->i_frame ^= 1];
   work.chunk_starts = conic_memory_allocate(context, work.n_chunks + 1, sizeof *work.chunk_starts);
   work.chunk_kept = conic_memory_allocate(context, work.n_chunks, sizeof *work.chunk_kept);
-  conic_status status = CONIC_ERROR_MEMORY;
+  status = CONIC_ERROR_MEMORY;
   if (work.chunk_starts && work.chunk_kept)
     status = select_samples(&work, selection);
   else

@@ -79,6 +79,7 @@ static void check_texts(void) {
   check_text("", "\"\"");
   check_text("a \"b\" \\ c", "\"a \\\"b\\\" \\\\ c\"");
   check_text("line\nnext\t\x01", "\"line\\u000anext\\u0009\\u0001\"");
+  check_text("\x1f \x7f", "\"\\u001f \x7f\"");
   check_text("Stra\xC3\x9F\x65 \xF0\x9F\x90\x87", "\"Stra\xC3\x9F\x65 \xF0\x9F\x90\x87\"");
   check_text("\xFF", "\"\xEF\xBF\xBD\"");                                 /* no UTF-8 at all */
   check_text("\xC3", "\"\xEF\xBF\xBD\"");                                 /* cut off */

@@ -48,9 +48,27 @@ static void test_sheets(conic_context *context) {
   CHECK(gap_of(context, 1.2, 1).radius == 0.0);
 }
 
+/* Three on a circle: there is a gap at its middle, unless that sees nobody over more than 150°. */
+static void test_open(conic_context *context) {
+  for (double apart_deg = 120.0; apart_deg < 180.0; apart_deg += 7.0) {
+    double half = 0.5 * apart_deg * 3.14159265358979 / 180.0;
+    float x[3] = {0.0f, (float)(1.0 + cos(half)), (float)(1.0 + cos(half))}, z[3] = {0};
+    float y[3] = {0.0f, (float)sin(half), (float)-sin(half)};
+    const float *const positions[3] = {x, y, z};
+    const double center[3] = {0.0, 0.0, 0.0}, normal[3] = {0.0, 0.0, 1.0};
+    conic_neighbours tree;
+    conic_gap gap;
+    CHECK_OK(conic_neighbours_build(context, positions, 3, &tree));
+    conic_gap_find(&tree, tree.slot_of_point[0], center, normal, 0.1, 1.5, &gap);
+    CHECK_NEAR(gap.radius, apart_deg < 150.0 ? 1.0 : 0.0, 1e-6);
+    conic_neighbours_release(context, &tree);
+  }
+}
+
 int main(void) {
   conic_context *context = check_context(1);
   test_bends(context);
+  test_open(context);
   test_sheets(context);
   conic_context_destroy(context);
   return check_result();

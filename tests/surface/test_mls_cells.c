@@ -79,13 +79,32 @@ static double farthest(float *const a[3], float *const b[3], size_t n) {
   return most;
 }
 
-/* A noisy sphere over eight cells, whose borders cut it aslant: feet of points in one cell are in another. With points
- * that are none, twins, and one alone in a cell of its own. */
+/* Moves a point half of h off the surface, to one side or the other, where that brings it to a border of cells, which
+ * all go through the origin: then its foot and what is about that lie in another cell as far as they ever do. */
+static void move_to_border(conic_splats *points, size_t i) {
+  for (int side = -1; side <= 1; side += 2) {
+    float moved[3];
+    int is_there = 0;
+    for (int axis = 0; axis < 3; axis++) {
+      moved[axis] = points->position[axis][i] + 0.024f * (float)side * points->normal[axis][i];
+      is_there |= fabsf(moved[axis]) < 0.002f;
+    }
+    for (int axis = 0; is_there && axis < 3; axis++)
+      points->position[axis][i] = moved[axis];
+    if (is_there)
+      return;
+  }
+}
+
+/* A sphere over eight cells, whose borders cut it aslant. With points that are none, twins, and one alone in a cell of
+ * its own. */
 static conic_splats make_points(conic_context *context) {
-  conic_splats points = shape_sample(context, SHAPE_SPHERE, 20000, 0.3, 5);
-  for (int axis = 0; axis < 3; axis++)
-    for (size_t i = 0; i < points.count; i++)
-      points.position[axis][i] += 0.6f - 0.1f * (float)axis;
+  conic_splats points = shape_sample(context, SHAPE_SPHERE, 20000, 0.1, 5);
+  for (size_t i = 0; i < points.count; i++) {
+    for (int axis = 0; axis < 3; axis++)
+      points.position[axis][i] += 0.3f - 0.05f * (float)axis;
+    move_to_border(&points, i);
+  }
   points.position[1][3] = NAN;
   for (int axis = 0; axis < 3; axis++) {
     points.position[axis][7000] = points.position[axis][70];

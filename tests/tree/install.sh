@@ -22,6 +22,13 @@ mv "$work/first" "$work/prefix"
 library_folder=$(dirname "$(find "$work/prefix" -name libconic.so)")
 export LD_LIBRARY_PATH=$library_folder
 
+# A program asks for a library that the package's version file takes for as good: of the same major and minor version.
+interface_version=$(sed -nE 's/^#define CONIC_VERSION_(MAJOR|MINOR) //p' "$source_folder/include/conic/version.h" | paste -sd.)
+readelf -d "$library_folder/libconic.so" | grep -q "SONAME.*\[libconic\.so\.$interface_version\]" ||
+  { echo "the SONAME is not of version $interface_version"; exit 1; }
+symbols=$(nm -D --defined-only --with-symbol-versions "$library_folder/libconic.so" | awk '$2 != "A" {print $3}')
+[[ -n $symbols ]] && ! grep -vq "@@CONIC_$interface_version\$" <<< "$symbols" || { echo "symbols without a version"; exit 1; }
+
 module=$library_folder/conic/conic-openimageio.so # where OpenImageIO was there to build it
 
 not_black() { # PFM: some byte behind the header is not zero

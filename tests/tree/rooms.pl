@@ -23,7 +23,7 @@ my @library = qw(include core raster oracle lod surface source opencl);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;
 
 # Rooms that still include each other in a circle. A circle that is gone must leave the list.
-my @circles = ('raster/kernels raster/tiles raster/triangles');
+my @circles = ();
 
 # Calls that the library leaves to others: output, the end of the program, memory past the context, state of the whole
 # process, and mathematics whose last bit depends on the machine.

@@ -7,7 +7,9 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "core/files/file.h"
+#include "core/splats/columns.h"
 #include "lod/layers/build/layers_file.h"
 #include "lod/layers/build/layers_intake.h"
 #include "lod/layers/build/layers_normals.h"
@@ -27,19 +29,19 @@ struct conic_layers_builder {
 
 enum { LEAST_CLOUD = 64, MOST_CLOUD = 32768 };
 
-void conic_layers_options_init(conic_layers_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->cloud_size = 2048;
-  options->memory_bytes = UINT64_C(1) << 30;
-  options->quantum = 0.5;
-  options->quantum_in_spacings = 1;
-  options->cutoff = 1.5f;
+void conic_layers_options_init_sized(conic_layers_options *options, size_t size) {
+  static const conic_layers_options own = {.size = sizeof own,
+                                    .cloud_size = 2048,
+                                    .memory_bytes = UINT64_C(1) << 30,
+                                    .quantum = 0.5,
+                                    .quantum_in_spacings = 1,
+                                    .cutoff = 1.5f};
+  conic_options_give(options, size, &own);
 }
 
 static int is_sound(const conic_layers_options *options) {
-  return options->size == sizeof *options && options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD &&
-         options->quantum > 0.0 && options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f;
+  return options->cloud_size >= LEAST_CLOUD && options->cloud_size <= MOST_CLOUD && options->quantum > 0.0 &&
+         options->quantum < 1e15 && options->cutoff > 0.0f && options->cutoff < 1e3f;
 }
 
 /* Of the memory that building may take: what comes in, its rough order, one chunk a thread with room to sort it, and
@@ -62,7 +64,9 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
                                        conic_layers_builder **builder) {
   conic_zstd *zstd;
   *builder = NULL;
-  if (options && !is_sound(options))
+  conic_layers_options own;
+  conic_layers_options_init(&own);
+  if ((options && !conic_options_take(&own, options)) || !is_sound(&own))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the options of a layered point cloud have no meaning", path);
   conic_status status = conic_zstd_create(context, &zstd); /* told before hours of work, not after */
   if (status != CONIC_OK)
@@ -73,10 +77,7 @@ conic_status conic_layers_builder_open(conic_context *context, const char *path,
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->started = conic_seconds_now();
-  if (options)
-    made->options = *options;
-  else
-    conic_layers_options_init(&made->options);
+  made->options = own;
   size_t n_path = strlen(path) + 1;
   made->path = conic_memory_allocate(context, n_path, 1);
   status = made->path ? CONIC_OK : CONIC_ERROR_MEMORY;
@@ -103,7 +104,13 @@ void conic_layers_builder_abandon(conic_layers_builder *builder) {
 }
 
 conic_status conic_layers_builder_append(conic_layers_builder *builder, const conic_splats *batch) {
-  return conic_layers_intake_append(&builder->intake, batch);
+  conic_splats close;
+  float *block;
+  conic_status status = conic_splats_enter(builder->context, "layers", batch, &close, &block);
+  if (status == CONIC_OK)
+    status = conic_layers_intake_append(&builder->intake, &close);
+  conic_memory_release(builder->context, block);
+  return status;
 }
 
 /* The grid: steps of the quantum, as many as the box takes; it lies evenly about the box. Where there would be too

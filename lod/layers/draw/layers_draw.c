@@ -6,6 +6,8 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/image/view_arguments.h"
 #include "lod/layers/draw/layers_bands.h"
 #include "lod/layers/draw/layers_hidden.h"
 
@@ -27,17 +29,14 @@ typedef struct layers_drawing {
   conic_layers_drawn drawn;
 } layers_drawing;
 
-void conic_layers_draw_options_init(conic_layers_draw_options *options) {
-  memset(options, 0, sizeof *options);
-  options->size = sizeof *options;
-  options->samples = 1;
+void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, size_t size) {
+  static const conic_layers_draw_options own = {.size = sizeof own, .samples = 1};
+  conic_options_give(options, size, &own);
 }
 
 static const char *what_is_wrong(const conic_camera *camera, const conic_render_options *render,
                                  const conic_layers_draw_options *options, const conic_image *image) {
-  if (!camera || !render || !options || !image || options->size != sizeof *options || render->size != sizeof *render)
-    return "an argument is null, or the options were not initialised";
-  if (image->width != camera->width || image->height != camera->height)
+  if (!image || image->width != camera->width || image->height != camera->height)
     return "the image and the camera differ in size";
   if (!(options->error_px >= 0.0) || (options->error_px > 0.0 && options->budget))
     return "the error must not be below 0, nor stand beside a budget";
@@ -164,22 +163,29 @@ static void end(layers_drawing *d) {
 }
 
 conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
-                               const conic_render_options *render, const conic_layers_draw_options *options,
+                               const conic_render_options *given, const conic_layers_draw_options *wanted,
                                conic_image *image, conic_render_statistics *statistics, conic_layers_drawn *drawn) {
-  const char *wrong = what_is_wrong(camera, render, options, image);
   conic_render_statistics counted;
+  conic_render_options render;
+  conic_layers_draw_options options;
+  conic_status status = conic_view_arguments_take(layers->context, "layers", camera, given, &render);
+  if (status != CONIC_OK)
+    return status;
+  conic_layers_draw_options_init(&options);
+  const char *wrong = conic_options_take(&options, wanted) ? what_is_wrong(camera, &render, &options, image)
+                                                           : "the options were not initialised";
   if (wrong)
     return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
   if (!layers->set)
     layers->set = conic_memory_allocate_zeroed(layers->context, 1, sizeof *layers->set);
   if (!layers->set)
     return CONIC_ERROR_MEMORY;
-  layers_drawing d = {.layers = layers, .camera = camera, .options = options, .set = layers->set};
+  layers_drawing d = {.layers = layers, .camera = camera, .options = &options, .set = layers->set};
   uint64_t n_read = layers->store.n_read;
-  begin(&d, render);
+  begin(&d, &render);
   d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);
   d.held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.held);
-  conic_status status = d.needed && d.held ? draw_all(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
+  status = d.needed && d.held ? draw_all(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
   end(&d);
   if (status != CONIC_OK)
     return status;

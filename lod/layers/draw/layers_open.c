@@ -4,22 +4,25 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/options.h"
 #include "lod/layers/draw/layers_gather.h"
 
 /* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
 enum { PIECE_BYTES = 1 << 22 };
 
-void conic_layers_access_init(conic_layers_access *access) {
+void conic_layers_access_init_sized(conic_layers_access *access, size_t size) {
   conic_ranges_options ranges;
   conic_ranges_options_init(&ranges);
-  memset(access, 0, sizeof *access);
-  access->size = sizeof *access;
-  access->memory_bytes = (uint64_t)512 << 20;
-  access->connect_seconds = ranges.connect_seconds;
-  access->stall_seconds = ranges.stall_seconds;
-  access->n_retries = ranges.n_retries;
-  access->pause_seconds = ranges.pause_seconds;
-  access->n_connections = ranges.n_connections;
+  conic_layers_access own;
+  memset(&own, 0, sizeof own);
+  own.size = sizeof own;
+  own.memory_bytes = (uint64_t)512 << 20;
+  own.connect_seconds = ranges.connect_seconds;
+  own.stall_seconds = ranges.stall_seconds;
+  own.n_retries = ranges.n_retries;
+  own.pause_seconds = ranges.pause_seconds;
+  own.n_connections = ranges.n_connections;
+  conic_options_give(access, size, &own);
 }
 
 int conic_layers_is_url(const char *name) {
@@ -126,15 +129,15 @@ static conic_status open_ranges(conic_layers *layers) {
 conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,
                                conic_layers **layers) {
   *layers = NULL;
-  if (access && access->size != sizeof *access)
+  conic_layers_access own;
+  conic_layers_access_init(&own);
+  if (access && !conic_options_take(&own, access))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "layers: the access options were not initialised");
   conic_layers *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  conic_layers_access_init(&made->access);
-  if (access)
-    made->access = *access;
+  made->access = own;
   made->is_remote = conic_ranges_is_url(name);
   made->name = conic_memory_allocate(context, strlen(name) + 1, 1);
   conic_status status = made->name ? CONIC_OK : CONIC_ERROR_MEMORY;

@@ -1,0 +1,56 @@
+#include "core/image/view_arguments.h"
+
+#include <math.h>
+
+#include "core/base/message.h"
+#include "core/base/options.h"
+
+/* How far the rotation's rows may be from orthonormal: files are written with few digits. */
+static const double rotation_tolerance = 1e-3;
+
+void conic_render_options_init_sized(conic_render_options *options, size_t size) {
+  static const conic_render_options own = {.size = sizeof own,
+                                    .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5},
+                                    .prefilter = 1.0f,
+                                    .epsilon = -1.0,
+                                    .passes = 3,
+                                    .shading = CONIC_SHADE_PHONG,
+                                    .tile = 64};
+  conic_options_give(options, size, &own);
+}
+
+const char *conic_rotation_fault(const double rows[3][4]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) {
+      double dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1] + rows[i][2] * rows[j][2];
+      if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < rotation_tolerance))
+        return "is no rotation and translation: its rows are not orthonormal";
+    }
+  double determinant = rows[0][0] * (rows[1][1] * rows[2][2] - rows[1][2] * rows[2][1]) -
+                       rows[0][1] * (rows[1][0] * rows[2][2] - rows[1][2] * rows[2][0]) +
+                       rows[0][2] * (rows[1][0] * rows[2][1] - rows[1][1] * rows[2][0]);
+  return determinant > 0.0 ? NULL : "mirrors";
+}
+
+static conic_status check_camera(conic_context *context, const char *who, const conic_camera *c) {
+  if (!conic_is_zero(c->reserved, sizeof c->reserved))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's reserved words are not zero", who);
+  if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's picture is 1 to 65535 pixels wide and high",
+                      who);
+  if (!(c->fx > 0.0 && c->fx < 1e12 && c->fy > 0.0 && c->fy < 1e12 && fabs(c->cx) < 1e12 && fabs(c->cy) < 1e12))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's focal lengths or centre are out of range", who);
+  const char *fault = conic_rotation_fault(c->cam_from_world);
+  for (int i = 0; i < 3 && !fault; i++)
+    fault = fabs(c->cam_from_world[i][3]) < 1e30 ? NULL : "has a translation that is out of range";
+  return fault ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's cam_from_world %s", who, fault) : CONIC_OK;
+}
+
+conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
+                                       const conic_render_options *options, conic_render_options *own) {
+  conic_render_options_init(own);
+  if (!camera || !conic_options_take(own, options))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an argument is null, or the options were not initialised",
+                      who);
+  return check_camera(context, who, camera);
+}

@@ -1,0 +1,16 @@
+/* What is asked of the camera and the options of whoever draws, or chooses what to draw. */
+#ifndef CONIC_VIEW_ARGUMENTS_H
+#define CONIC_VIEW_ARGUMENTS_H
+
+#include "conic/camera.h"
+#include "conic/render.h"
+
+/* What makes a matrix no rotation and translation, or null. */
+const char *conic_rotation_fault(const double cam_from_world[3][4]);
+
+/* Copies what the caller gave (conic_options_take) to `own`. Errors: ARGUMENT: one is null, the options were not
+ * initialised, or the camera is none to look through. */
+conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
+                                       const conic_render_options *options, conic_render_options *own);
+
+#endif
