@@ -72,7 +72,7 @@ static void print(const cli_session *session, const cli_bench_job *job) {
     cli_bench_print_comparison(job->old_path, job->lines, job->n_lines);
 }
 
-static int report(cli_session *session, const cli_bench_job *job) {
+static int report_bench(cli_session *session, const cli_bench_job *job) {
   cli_json_file *file;
   int exit_code = CLI_DONE;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -105,7 +105,7 @@ static conic_status find_device(cli_session *session, cli_bench_job *job) {
   return status;
 }
 
-static int measure(cli_session *session, cli_bench_job *job) {
+static int measure_plan(cli_session *session, cli_bench_job *job) {
   if (job->old_path) { /* that it can be read is known before the minutes are spent */
     conic_status status = cli_bench_read_old(session, job->old_path, NULL, 0);
     if (status != CONIC_OK)
@@ -119,11 +119,11 @@ static int measure(cli_session *session, cli_bench_job *job) {
   if (exit_code != CLI_DONE)
     return exit_code;
   print(session, job);
-  exit_code = report(session, job);
+  exit_code = report_bench(session, job);
   return exit_code == CLI_DONE && job->n_wrong ? CLI_DIFFERENT : exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_bench(cli_session *session, int argc, char **argv) {
   cli_bench_job *job = calloc(1, sizeof *job);
   if (!job)
     return cli_error(CLI_RESOURCE, "bench: out of memory");
@@ -136,7 +136,7 @@ static int run(cli_session *session, int argc, char **argv) {
   else if (exit_code == CLI_DONE)
     exit_code = cli_session_open(session);
   if (exit_code == CLI_DONE && !job->is_kernels)
-    exit_code = measure(session, job);
+    exit_code = measure_plan(session, job);
   free(job->lines);
   free(job->files);
   free(job);
@@ -144,4 +144,4 @@ static int run(cli_session *session, int argc, char **argv) {
 }
 
 const cli_command cli_bench = {"bench", "measures stages, methods and instruction sets", "conic bench [IN…] [options]",
-                               run};
+                               run_bench};

@@ -1,20 +1,15 @@
 /* One line of a benchmark: frames drawn, timed, and compared with what plain C draws. */
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench/bench.h"
+#include "core/base/real.h"
 
 const cli_bench_method cli_bench_methods[CLI_BENCH_N_METHODS] = {
     {"conic", CONIC_METHOD_CONIC, 3},  {"ray", CONIC_METHOD_RAY, 3},   {"affine", CONIC_METHOD_AFFINE, 3},
     {"point", CONIC_METHOD_POINT, 3},  {"disc", CONIC_METHOD_DISC, 3}, {"auto", CONIC_METHOD_AUTO, 3},
     {"nearest", CONIC_METHOD_CONIC, 1}};
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 /* The value that a share of the sorted ones is below, straight between neighbours. */
 static double quantile(const double *sorted, size_t n, double share) {
@@ -25,7 +20,7 @@ static double quantile(const double *sorted, size_t n, double share) {
 }
 
 double cli_bench_median(double *values, size_t n, double quartiles[2]) {
-  qsort(values, n, sizeof *values, compare_doubles);
+  qsort(values, n, sizeof *values, conic_compare_doubles);
   if (quartiles) {
     quartiles[0] = quantile(values, n, 0.25);
     quartiles[1] = quantile(values, n, 0.75);
@@ -60,7 +55,7 @@ static void note_difference(const conic_image *reference, const conic_image *dra
     line->i_wrong_plane = plane;
 }
 
-static conic_render_options options_of(const cli_bench_scene *scene, const cli_bench_line *line) {
+static conic_render_options options_of_frame(const cli_bench_scene *scene, const cli_bench_line *line) {
   conic_render_options options;
   conic_render_options_init(&options);
   options.method = cli_bench_methods[line->i_method].method;
@@ -125,8 +120,8 @@ static void take_medians(bench *b, cli_bench_line *line) {
 
 /* The pictures of the first and of the last timed frame are compared, and one with all planes; nothing is compared
  * between the warm ones, which would take the caches from them. */
-static conic_status draw_all(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
-                             cli_bench_line *line) {
+static conic_status draw_frames(bench *b, const cli_bench_patience *patience, cli_bench_pictures *pictures,
+                                cli_bench_line *line) {
   spoil(&pictures->drawn);
   conic_status status = draw_timed(b, &line->statistics);
   if (status != CONIC_OK)
@@ -149,7 +144,7 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
                              conic_image *reference) {
   conic_renderer *renderer = NULL;
   conic_camera camera;
-  conic_render_options options = options_of(scene, line);
+  conic_render_options options = options_of_frame(scene, line);
   options.isa = CONIC_ISA_SCALAR;
   conic_status status = cli_bench_scene_camera(scene, line->width, line->height, &camera);
   if (status == CONIC_OK)
@@ -163,7 +158,7 @@ conic_status cli_bench_refer(cli_session *session, const cli_bench_scene *scene,
 conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene, const cli_bench_patience *patience,
                                int counter, cli_bench_pictures *pictures, cli_bench_line *line) {
   size_t most = (size_t)patience->most + 1;
-  bench b = {.scene = scene, .counter = counter, .options = options_of(scene, line)};
+  bench b = {.scene = scene, .counter = counter, .options = options_of_frame(scene, line)};
   line->i_wrong_plane = -1;
   b.timed = with_planes(&pictures->drawn, pictures->timed_planes);
   b.cycles = calloc(most * (CLI_BENCH_N_STAGES + 2), sizeof *b.cycles);
@@ -176,7 +171,7 @@ conic_status cli_bench_measure(cli_session *worker, const cli_bench_scene *scene
     status = line->device ? cli_device_open(worker, line->device, &b.renderer)
                           : conic_renderer_create(worker->context, &b.renderer);
   if (status == CONIC_OK)
-    status = draw_all(&b, patience, pictures, line);
+    status = draw_frames(&b, patience, pictures, line);
   if (status == CONIC_OK) {
     cli_bench_work_of(&line->statistics, scene->splats, &b.timed, b.options.passes, line->work);
     for (int plane = 0; plane < CONIC_N_PLANES; plane++)

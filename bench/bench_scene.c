@@ -1,6 +1,5 @@
 /* The scenes of `conic bench`: analytic ones, mixes of splats by their size on the screen, files. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bench/bench.h"
@@ -186,8 +185,8 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
   return status;
 }
 
-static conic_status read_file(cli_session *session, const char *path, const cli_bench_look *look,
-                              cli_bench_scene *scene) {
+static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
+                                    cli_bench_scene *scene) {
   conic_source_options options;
   conic_source_options_init(&options);
   const char *slash = strrchr(path, '/');
@@ -224,7 +223,7 @@ int cli_bench_scene_open(cli_session *session, const char *name, const cli_bench
   int exit_code = look ? CLI_DONE : understand(name, &w);
   if (exit_code != CLI_DONE)
     return exit_code;
-  conic_status status = look ? read_file(session, name, look, scene) : make(session, &w, name, scene);
+  conic_status status = look ? read_bench_file(session, name, look, scene) : make(session, &w, name, scene);
   if (status == CONIC_OK)
     scene->splats = conic_source_chosen(scene->source)->drawing.splats;
   return cli_exit_of(status);
@@ -236,6 +235,7 @@ void cli_bench_scene_release(cli_bench_scene *scene) {
 }
 
 static void build_in(conic_camera *camera) {
+  memset(camera, 0, sizeof *camera);
   camera->width = camera->height = 1024;
   camera->fx = camera->fy = focal_px;
   camera->cx = camera->cy = 512.0;

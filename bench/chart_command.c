@@ -399,7 +399,7 @@ static int chart(chart_job *job) {
   return exit_code == CLI_DONE ? write_statistics(job, cli_seconds() - start) : exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_chart(cli_session *session, int argc, char **argv) {
   chart_job *job = calloc(1, sizeof *job);
   const char *positional[argc];
   int n_positional;
@@ -408,19 +408,10 @@ static int run(cli_session *session, int argc, char **argv) {
   job->session = session;
   job->only = -1;
   const cli_option options[] = {
-      {.name = "o", .type = CLI_TEXT, .value = &job->folder, .argument = "DIR", .help = "the folder of the chart"},
-      {.name = "quick", .type = CLI_FLAG, .value = &job->is_quick, .help = "a small chart in seconds, to try it"},
-      {.name = "only",
-       .type = CLI_CHOICE,
-       .value = &job->only,
-       .argument = "CHART",
-       .help = "methods or representations [both]",
-       .choices = only_words},
-      {.name = "mesh",
-       .type = CLI_TEXT,
-       .value = &job->mesh.path,
-       .argument = "MESH",
-       .help = "whose representations are charted [a generated terrain]"},
+      {"o", CLI_TEXT, &job->folder, "DIR", "the folder of the chart"},
+      {"quick", CLI_FLAG, &job->is_quick, NULL, "a small chart in seconds, to try it"},
+      {"only", CLI_CHOICE, &job->only, "CHART", "methods or representations [both]", .choices = only_words},
+      {"mesh", CLI_TEXT, &job->mesh.path, "MESH", "whose representations are charted [a generated terrain]"},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
@@ -443,5 +434,5 @@ const cli_command cli_chart = {
     .name = "chart",
     .summary = "charts error over time: of every method and kernel, and of every representation of a mesh",
     .usage = "conic chart -o DIR [--only methods|representations] [--mesh MESH] [--quick]",
-    .run = run,
+    .run = run_chart,
 };

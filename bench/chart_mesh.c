@@ -28,7 +28,7 @@ static conic_status frame(const mesh_job *job, int edge, double zoom, conic_came
 }
 
 /* Where a vertex is on the screen; 0 where it is not finite or not before the camera. */
-static int project(const conic_triangles *mesh, const conic_camera *camera, uint32_t vertex, double at[2]) {
+static int project_vertex(const conic_triangles *mesh, const conic_camera *camera, uint32_t vertex, double at[2]) {
   double p[3];
   for (int row = 0; row < 3; row++) {
     const double *m = camera->cam_from_world[row];
@@ -49,7 +49,7 @@ static double mean_area_px(const conic_triangles *mesh, const conic_camera *came
     double at[3][2];
     int is_seen = 1;
     for (int k = 0; k < 3; k++)
-      is_seen &= project(mesh, camera, mesh->corners[i][k], at[k]);
+      is_seen &= project_vertex(mesh, camera, mesh->corners[i][k], at[k]);
     if (!is_seen)
       continue;
     n++;
@@ -89,8 +89,8 @@ static conic_render_options plain_options(void) {
 }
 
 /* A frame, with the choice of what to draw in it; `point` keeps the fastest. */
-static conic_status draw(mesh_job *job, cli_chart_model model, const conic_camera *camera, conic_image *image,
-                         cli_mesh_point *point) {
+static conic_status draw_picture(mesh_job *job, cli_chart_model model, const conic_camera *camera, conic_image *image,
+                                 cli_mesh_point *point) {
   conic_render_options options = plain_options();
   conic_render_statistics statistics;
   conic_drawing drawing;
@@ -111,8 +111,8 @@ static conic_status draw(mesh_job *job, cli_chart_model model, const conic_camer
 }
 
 /* The error is over the pixels that the mesh touches, the same number for all; what is drawn beside them counts. */
-static conic_status measure(conic_context *context, const conic_image *truth, const conic_image *image,
-                            cli_mesh_size *size, cli_mesh_point *point) {
+static conic_status measure_picture(conic_context *context, const conic_image *truth, const conic_image *image,
+                                    cli_mesh_size *size, cli_mesh_point *point) {
   const float *seen = truth->planes[CONIC_PLANE_RGBA], *drawn = image->planes[CONIC_PLANE_RGBA];
   size->covered = 0;
   for (size_t i = 0; i < conic_image_pixels(truth); i++) {
@@ -141,7 +141,7 @@ static conic_status time_models(mesh_job *job, const conic_camera *camera, conic
     for (int model = 0; model < CLI_N_CHART_MODELS; model++)
       for (int i = 0; i <= repeat && status == CONIC_OK; i++) {
         cli_mesh_point *point = &job->chart->points[model][i_size], warm = {.ms = HUGE_VAL};
-        status = draw(job, (cli_chart_model)model, camera, image, i ? point : &warm);
+        status = draw_picture(job, (cli_chart_model)model, camera, image, i ? point : &warm);
       }
   return status;
 }
@@ -152,10 +152,10 @@ static conic_status measure_models(mesh_job *job, const conic_camera *camera, co
   for (int model = 0; model < CLI_N_CHART_MODELS && status == CONIC_OK; model++) {
     cli_mesh_point *point = &job->chart->points[model][i_size];
     *point = (cli_mesh_point){.ms = HUGE_VAL};
-    status = draw(job, (cli_chart_model)model, camera, image, point);
+    status = draw_picture(job, (cli_chart_model)model, camera, image, point);
     point->ms = HUGE_VAL; /* memory grew in this one */
     if (status == CONIC_OK)
-      status = measure(job->context, truth, image, &job->chart->sizes[i_size], point);
+      status = measure_picture(job->context, truth, image, &job->chart->sizes[i_size], point);
   }
   return status == CONIC_OK ? time_models(job, camera, image, i_size) : status;
 }

@@ -1,7 +1,6 @@
 /* The chart of representations: its table, what is printed, and gnuplot's script. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "bench/chart_mesh.h"
 
@@ -98,7 +97,7 @@ static double border_of(const cli_mesh_chart *chart, int i_size, int step) {
 }
 
 /* The errors of all, widened a little. */
-static void find_errors(const cli_mesh_chart *chart, double range[2]) {
+static void find_chart_errors(const cli_mesh_chart *chart, double range[2]) {
   range[0] = HUGE_VAL;
   range[1] = 0.0;
   for (int model = 0; model < CLI_N_CHART_MODELS; model++)
@@ -191,7 +190,7 @@ conic_status cli_mesh_chart_write_script(cli_session *session, const char *folde
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);
-  find_errors(chart, range);
+  find_chart_errors(chart, range);
   for (int i = 0; i < CLI_N_CHART_MODELS; i++)
     n_boxes[i] = write_boxes(to, chart, i, range);
   write_style(to, chart);

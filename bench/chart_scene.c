@@ -133,8 +133,8 @@ static void finish_row(const cli_chart_scene *scene, const conic_camera *camera,
 
 /* Rays lie on a grid that is RAYS times as fine; a pixel's are symmetric about its centre. The rows of rays that a
  * pixel needs are kept as they move down. */
-static void fill(const cli_chart_scene *scene, const conic_camera *camera, float (*rows)[4], double (*sums)[4],
-                 conic_image *truth, unsigned char *is_inside) {
+static void fill_rows(const cli_chart_scene *scene, const conic_camera *camera, float (*rows)[4], double (*sums)[4],
+                      conic_image *truth, unsigned char *is_inside) {
   float table[256];
   double weights[N_WEIGHTS], sum = 0.0;
   size_t n = (size_t)(camera->width + MARGINS) * RAYS;
@@ -166,7 +166,7 @@ conic_status cli_chart_truth(conic_context *context, const cli_chart_scene *scen
   float(*rows)[4] = malloc(N_ROWS * n * sizeof *rows);
   double(*sums)[4] = malloc((size_t)camera->width * sizeof *sums);
   if (rows && sums)
-    fill(scene, camera, rows, sums, truth, is_inside);
+    fill_rows(scene, camera, rows, sums, truth, is_inside);
   else {
     conic_image_release(context, truth);
     status = CONIC_ERROR_MEMORY;

@@ -122,7 +122,7 @@ static int parse_choice(const char *text, const char *const *choices, int *value
   return 0;
 }
 
-static int is_within(const cli_option *option, double value) {
+static int is_within_limits(const cli_option *option, double value) {
   return (option->minimum == 0.0 && option->maximum == 0.0) || (value >= option->minimum && value <= option->maximum);
 }
 
@@ -148,7 +148,7 @@ static int refuse_text(const cli_session *session, const cli_option *option, con
 }
 
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */
-static int store(const cli_session *session, const cli_option *option, const char *text) {
+static int store_value(const cli_session *session, const cli_option *option, const char *text) {
   int is_understood = 1, is_in_range = 1;
   switch (option->type) {
   case CLI_FLAG:
@@ -156,15 +156,15 @@ static int store(const cli_session *session, const cli_option *option, const cha
     break;
   case CLI_INT:
     is_understood = parse_int(text, option->value);
-    is_in_range = is_understood && is_within(option, *(int *)option->value);
+    is_in_range = is_understood && is_within_limits(option, *(int *)option->value);
     break;
   case CLI_COUNT:
     is_understood = cli_parse_count(text, option->value);
-    is_in_range = is_understood && is_within(option, (double)*(unsigned long long *)option->value);
+    is_in_range = is_understood && is_within_limits(option, (double)*(unsigned long long *)option->value);
     break;
   case CLI_NUMBER:
     is_understood = parse_number(text, option->value);
-    is_in_range = is_understood && is_within(option, *(double *)option->value);
+    is_in_range = is_understood && is_within_limits(option, *(double *)option->value);
     break;
   case CLI_TEXT:
     *(const char **)option->value = text;
@@ -178,8 +178,8 @@ static int store(const cli_session *session, const cli_option *option, const cha
     break;
   case CLI_SIZE:
     is_understood = parse_size(text, option->value);
-    is_in_range =
-        is_understood && is_within(option, ((int *)option->value)[0]) && is_within(option, ((int *)option->value)[1]);
+    is_in_range = is_understood && is_within_limits(option, ((int *)option->value)[0]) &&
+                  is_within_limits(option, ((int *)option->value)[1]);
     break;
   case CLI_PARSED:
     is_understood = option->parse(text, option->value);
@@ -240,12 +240,12 @@ static int parse_option(const cli_session *session, const option_set *set, int a
     value = name + length + is_long; /* behind the equals sign, or a short option's rest */
   if (option->type == CLI_FLAG)
     return value ? cli_usage("%s: %s%s takes no value", session->command, dashes(option), option->name)
-                 : store(session, option, NULL);
+                 : store_value(session, option, NULL);
   if (!value && (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0))
     return cli_usage("%s: %s%s needs a value: %s", session->command, dashes(option), option->name, option->argument);
   if (!value)
     value = argv[++*i];
-  return store(session, option, value);
+  return store_value(session, option, value);
 }
 
 /* Whether help is asked for anywhere, whatever else is wrong with the arguments. */

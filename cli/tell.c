@@ -10,7 +10,7 @@ typedef struct text_line {
   size_t length;
 } text_line;
 
-static void append(text_line *to, const char *piece) {
+static void append_piece(text_line *to, const char *piece) {
   int n = snprintf(to->text + to->length, sizeof to->text - to->length, "%s%s", to->length ? ", " : "", piece);
   to->length += n > 0 ? (size_t)n : 0;
   if (to->length >= sizeof to->text)
@@ -33,7 +33,7 @@ void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages
       continue;
     print_seconds(seconds, sizeof seconds, stages[i].seconds);
     snprintf(piece, sizeof piece, "%s %s", stages[i].name, seconds);
-    append(&told, piece);
+    append_piece(&told, piece);
   }
   print_seconds(seconds, sizeof seconds, whole_seconds);
   conic_log(session->context, CONIC_LOG_INFO, "%s; %s %s", told.text, seconds, whole);

@@ -9,6 +9,7 @@
 typedef struct cli_stage {
   const char *name;
   double seconds;
+  const char *key; /* in JSON; null: the name */
 } cli_stage;
 
 /* The stages in their order, and what they are together: "a frame", "in all". */

@@ -24,7 +24,7 @@ void conic_cache_path(const char *folder, const char *name, uint64_t hash, char 
     path[0] = 0;
 }
 
-static int read_whole(conic_context *context, FILE *file, unsigned char **bytes, size_t *n_bytes) {
+static int read_whole_entry(conic_context *context, FILE *file, unsigned char **bytes, size_t *n_bytes) {
   struct stat about;
   cache_head head;
   if (fstat(fileno(file), &about) != 0 || fread(&head, sizeof head, 1, file) != 1 ||
@@ -43,7 +43,7 @@ int conic_cache_read(conic_context *context, const char *path, unsigned char **b
   FILE *file = fopen(path, "rbe");
   if (!file)
     return 0;
-  int is_read = read_whole(context, file, bytes, n_bytes);
+  int is_read = read_whole_entry(context, file, bytes, n_bytes);
   fclose(file);
   return is_read;
 }

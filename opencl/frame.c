@@ -270,7 +270,7 @@ static void set_finish(const conic_finish *finish, conic_device_frame *c) {
   c->exposure = finish->exposure;
 }
 
-static void report(const conic_frame *f, conic_render_statistics *s) {
+static void report_frame(const conic_frame *f, conic_render_statistics *s) {
   const double *ms = f->opencl->queue.ms;
   s->splats_culled = f->counts[CONIC_DEVICE_CULLED];
   s->splats_skipped = f->counts[CONIC_DEVICE_SKIPPED];
@@ -289,7 +289,7 @@ static void report(const conic_frame *f, conic_render_statistics *s) {
 }
 
 /* The splats part by part, between the triangles' two stages. */
-static conic_status draw_all(conic_frame *f) {
+static conic_status draw_parts(conic_frame *f) {
   size_t part = part_of(f), count = f->splats->count;
   int draws_splats = count || !f->triangles, is_single = f->constants.is_single_pass;
   conic_status status = conic_progress(f->opencl->context, "render", 0.0);
@@ -313,7 +313,7 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
   set_finish(finish, &f.constants);
   conic_status status = triangles ? conic_frame_set_up_triangles(&f, finish->options->isa) : CONIC_OK;
   if (status == CONIC_OK)
-    status = draw_all(&f);
+    status = draw_parts(&f);
   if (status == CONIC_OK)
     status = conic_frame_end(&f, &statistics->pixels_covered);
   if (status == CONIC_OK && triangles)
@@ -322,6 +322,6 @@ conic_status conic_frame_draw(conic_backend *backend, const conic_view *view, co
   status = status == CONIC_OK ? closed : status;
   if (status != CONIC_OK)
     return status;
-  report(&f, statistics);
+  report_frame(&f, statistics);
   return conic_progress(opencl->context, "render", 1.0);
 }

@@ -7,7 +7,6 @@
 #include "core/base/message.h"
 #include "core/image/texture_levels.h"
 #include "opencl/frame.h"
-#include "opencl/program.h"
 #include "raster/kernels/raster_kernels.h"
 #include "raster/triangles/triangle_frame.h"
 
@@ -153,7 +152,7 @@ static conic_status write_chunks(const conic_frame *f) {
 }
 
 /* Notes how much of the device's memory the triangles take; all of them have to be there at once. */
-static conic_status measure(conic_frame *f, const host_array arrays[N_ARRAYS]) {
+static conic_status measure_arrays(conic_frame *f, const host_array arrays[N_ARRAYS]) {
   const conic_opencl_device *device = &f->opencl->device;
   double greatest = (double)materials_bytes(f->triangles->triangles), sum = greatest;
   for (int i = 0; i < N_ARRAYS; i++) {
@@ -194,7 +193,7 @@ conic_status conic_frame_set_up_triangles(conic_frame *f, conic_isa isa) {
     return status;
   list_arrays(f->triangles, arrays);
   f->opencl->queue.ms[CONIC_STAGE_SETUP] += 1e3 * (conic_seconds_now() - start);
-  return measure(f, arrays);
+  return measure_arrays(f, arrays);
 }
 
 static conic_status give_all(const conic_frame *f) {
@@ -206,7 +205,7 @@ static conic_status give_all(const conic_frame *f) {
   return status == CONIC_OK ? write_materials(f) : status;
 }
 
-static conic_status make_room(const conic_frame *f) {
+static conic_status make_room_on_device(const conic_frame *f) {
   size_t tile_pixels = (size_t)f->opencl->tile * (size_t)f->opencl->tile;
   conic_status status = conic_frame_room(f, CONIC_BUFFER_TRIANGLE_IZ, f->n_tiles, tile_pixels * sizeof(float));
   if (status == CONIC_OK)
@@ -242,7 +241,7 @@ conic_status conic_frame_draw_triangles(conic_frame *f) {
   set_constants(f);
   conic_status status = give_all(f);
   if (status == CONIC_OK)
-    status = make_room(f);
+    status = make_room_on_device(f);
   if (status == CONIC_OK)
     status = conic_frame_write_constants(f);
   take_arguments(f, buffers, N, arguments);

@@ -30,7 +30,7 @@ static void project_item(void *data, size_t i_item, int i_thread) {
   h->n_drawn[i_item] = (uint32_t)chunk->n_drawn;
 }
 
-static conic_status allocate(host_setup *h) {
+static conic_status allocate_setup(host_setup *h) {
   const conic_frame *f = h->frame;
   conic_context *context = f->opencl->context;
   conic_projected *p = &h->projected;
@@ -49,7 +49,7 @@ static conic_status allocate(host_setup *h) {
              : CONIC_ERROR_MEMORY;
 }
 
-static void release(host_setup *h) {
+static void release_setup(host_setup *h) {
   conic_context *context = h->frame->opencl->context;
   conic_projected *p = &h->projected;
   void *all[] = {p->chunks, p->footprints, p->boxes, p->surfaces, p->rays, p->clips, h->n_drawn};
@@ -89,11 +89,11 @@ static conic_status upload(const host_setup *h) {
 
 conic_status conic_frame_project_on_host(conic_frame *f) {
   host_setup h = {.frame = f};
-  conic_status status = allocate(&h);
+  conic_status status = allocate_setup(&h);
   if (status == CONIC_OK) {
     conic_parallel_for(f->opencl->context, f->n_items, project_item, &h);
     status = upload(&h);
   }
-  release(&h);
+  release_setup(&h);
   return status;
 }

@@ -47,7 +47,7 @@ static int has_extension(cl_device_id id, const char *name) {
   return strstr(extensions, name) != NULL;
 }
 
-static void describe(cl_platform_id platform, cl_device_id id, conic_opencl_device *device) {
+static void describe_device(cl_platform_id platform, cl_device_id id, conic_opencl_device *device) {
   cl_device_type type = 0;
   cl_device_fp_config single = 0;
   cl_uint units = 0;
@@ -106,7 +106,7 @@ conic_status conic_opencl_devices(conic_context *context, conic_opencl_device **
   if (!*devices)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n; i++) {
-    describe(found[i].platform, found[i].id, &(*devices)[i]);
+    describe_device(found[i].platform, found[i].id, &(*devices)[i]);
     (*devices)[i].i_platform = found[i].i_platform;
     (*devices)[i].i_device = found[i].i_device;
   }
@@ -149,13 +149,13 @@ static int parse_name(const char *text, int *i_platform, int *i_device) {
 }
 
 /* GPUs before others, what rounds correctly before what does not. */
-static const found_device *choose(const found_device *found, size_t n) {
+static const found_device *choose_device(const found_device *found, size_t n) {
   const found_device *best = NULL;
   int best_rank = -1;
   for (size_t i = 0; i < n; i++) {
     conic_opencl_device device;
     memset(&device, 0, sizeof device);
-    describe(found[i].platform, found[i].id, &device);
+    describe_device(found[i].platform, found[i].id, &device);
     int rank = 2 * device.rounds_correctly + ((found[i].type & CL_DEVICE_TYPE_GPU) != 0);
     if (rank > best_rank) {
       best = &found[i];
@@ -165,8 +165,8 @@ static const found_device *choose(const found_device *found, size_t n) {
   return best;
 }
 
-static conic_status refuse(conic_context *context, const conic_opencl_options *options,
-                           const conic_opencl_device *device) {
+static conic_status refuse_device(conic_context *context, const conic_opencl_options *options,
+                                  const conic_opencl_device *device) {
   if (device->rounds_correctly)
     return CONIC_OK;
   if (!options->allow_inexact)
@@ -195,7 +195,7 @@ conic_status conic_opencl_find(conic_context *context, const conic_opencl_option
                       "%s: there is no OpenCL platform with a device (a driver, such as PoCL, is a package of its own)",
                       options->device);
   if (i_platform < 0)
-    chosen = choose(found, n);
+    chosen = choose_device(found, n);
   for (size_t i = 0; i < n && i_platform >= 0; i++)
     if (found[i].i_platform == i_platform && found[i].i_device == i_device)
       chosen = &found[i];
@@ -203,10 +203,10 @@ conic_status conic_opencl_find(conic_context *context, const conic_opencl_option
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: no such device; conic devices lists what there is",
                       options->device);
   memset(device, 0, sizeof *device);
-  describe(chosen->platform, chosen->id, device);
+  describe_device(chosen->platform, chosen->id, device);
   device->i_platform = chosen->i_platform;
   device->i_device = chosen->i_device;
   *platform = chosen->platform;
   *id = chosen->id;
-  return refuse(context, options, device);
+  return refuse_device(context, options, device);
 }

@@ -11,7 +11,7 @@
 static const char exact_options[] = "-cl-std=CL1.2 -w -cl-fp32-correctly-rounded-divide-sqrt";
 static const char inexact_options[] = "-cl-std=CL1.2 -w";
 
-static const char *options_of(const conic_opencl_device *device) {
+static const char *options_of_device(const conic_opencl_device *device) {
   return device->rounds_correctly ? exact_options : inexact_options;
 }
 
@@ -28,8 +28,8 @@ static void write_prelude(const conic_opencl_device *device, int tile_bits, char
 
 /* What a built program depends on. */
 static uint64_t hash_of(const conic_opencl_device *device, const char *prelude, const conic_opencl_text *text) {
-  const char *parts[] = {prelude,          text->text,      options_of(device), device->name,
-                         device->platform, device->version, device->driver};
+  const char *parts[] = {prelude,         text->text,    options_of_device(device), device->name, device->platform,
+                         device->version, device->driver};
   uint64_t hashes[sizeof parts / sizeof parts[0]];
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
     hashes[i] = conic_hash_bytes(parts[i], strlen(parts[i]));
@@ -59,9 +59,9 @@ static void log_build(conic_context *context, cl_device_id id, cl_program progra
   conic_memory_release(context, log);
 }
 
-static conic_status build(conic_context *context, cl_device_id id, const conic_opencl_device *device, const char *name,
-                          cl_program program) {
-  cl_int answer = clBuildProgram(program, 1, &id, options_of(device), NULL, NULL);
+static conic_status build_program(conic_context *context, cl_device_id id, const conic_opencl_device *device,
+                                  const char *name, cl_program program) {
+  cl_int answer = clBuildProgram(program, 1, &id, options_of_device(device), NULL, NULL);
   if (answer == CL_SUCCESS)
     return CONIC_OK;
   log_build(context, id, program, name);
@@ -81,7 +81,7 @@ static cl_program from_cache(conic_context *context, cl_context cl, cl_device_id
   cl_program program = clCreateProgramWithBinary(cl, 1, &id, &n, &binary, &of_binary, &answer);
   conic_memory_release(context, bytes);
   if (answer == CL_SUCCESS && of_binary == CL_SUCCESS &&
-      clBuildProgram(program, 1, &id, options_of(device), NULL, NULL) == CL_SUCCESS)
+      clBuildProgram(program, 1, &id, options_of_device(device), NULL, NULL) == CL_SUCCESS)
     return program;
   if (program)
     clReleaseProgram(program);
@@ -114,7 +114,7 @@ conic_status conic_opencl_build(conic_context *context, cl_context cl, cl_device
   conic_status status = conic_opencl_check(context, answer, "clCreateProgramWithSource");
   if (status != CONIC_OK)
     return status;
-  status = build(context, id, device, text->name, *program);
+  status = build_program(context, id, device, text->name, *program);
   if (status != CONIC_OK) {
     clReleaseProgram(*program);
     *program = NULL;

@@ -11,7 +11,7 @@
 #define half half_part
 /* and functions that it has already: */
 #define rotate conic_rotate
-#define dot conic_dot
+#define dot conic_dot_of_floats
 
 #include <math.h>
 #include <stddef.h>

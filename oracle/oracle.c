@@ -96,7 +96,7 @@ static void release_room(conic_context *context, worker *w) {
   conic_memory_release(context, w->fragments);
 }
 
-static int make_room(const job *j, worker *w, size_t n) {
+static int make_room_for_block(const job *j, worker *w, size_t n) {
   if (w->fragments && n <= w->room)
     return 1;
   release_room(j->context, w);
@@ -130,7 +130,7 @@ static ptrdiff_t find_candidates(const job *j, worker *w, double x, double y) {
   size_t n = 0;
   for (size_t i = 0; i < scene->n; i++)
     n += (size_t)touches(&scene->splats[i], x, y);
-  if (!make_room(j, w, n))
+  if (!make_room_for_block(j, w, n))
     return -1;
   n = 0;
   for (size_t i = 0; i < scene->n; i++) {
@@ -181,7 +181,7 @@ static void weigh_exactly(const job *j, worker *w, double x, double y, size_t n_
   }
 }
 
-static void store(const job *j, size_t at, const oracle_pixel *pixel, const double rgba[4]) {
+static void store_pixel(const job *j, size_t at, const oracle_pixel *pixel, const double rgba[4]) {
   double *const *planes = j->reference->planes;
   memcpy(planes[CONIC_PLANE_RGBA] + 4 * at, rgba, 4 * sizeof *rgba);
   memcpy(planes[CONIC_PLANE_NORMAL] + 3 * at, pixel->normal, sizeof pixel->normal);
@@ -218,7 +218,7 @@ static void do_pixel(const job *j, worker *w, int column, int row, size_t n_cand
   } else
     conic_oracle_background(j->options, rgba);
   doubt |= pixel.doubt;
-  store(j, at, &pixel, rgba);
+  store_pixel(j, at, &pixel, rgba);
   j->reference->unstable[at] = (uint8_t)doubt;
   j->reference->tied_id[at] = pixel.tied_id;
   w->covered += (size_t)is_covered;
@@ -264,7 +264,7 @@ static void add_histogram(histogram *to, const histogram *from) {
 }
 
 /* What the threads have counted, put together. */
-static void gather(job *j, int n_threads) {
+static void gather_workers(job *j, int n_threads) {
   conic_reference *r = j->reference;
   worker *sum = &j->workers[0];
   for (int t = 0; t < n_threads; t++) {
@@ -301,7 +301,7 @@ static conic_status compute(job *j) {
       status = conic_progress(j->context, "verify", (double)(row + 1) / (double)blocks_down);
   }
   if (status == CONIC_OK)
-    gather(j, n_threads);
+    gather_workers(j, n_threads);
   j->reference->samples = 1;
   j->reference->covered_samples = j->reference->covered_pixels;
   j->reference->unstable_samples = j->reference->unstable_pixels;

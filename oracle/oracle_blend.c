@@ -87,7 +87,7 @@ static unsigned doubt_precision(const oracle_fragment *f, size_t n, const oracle
   return doubt;
 }
 
-static void add(const oracle_fragment *f, oracle_pixel *pixel) {
+static void add_fragment(const oracle_fragment *f, oracle_pixel *pixel) {
   for (int c = 0; c < 3; c++) {
     pixel->albedo[c] += f->weight * f->candidate->splat->color[c];
     pixel->mean_normal[c] += f->weight * f->candidate->splat->normal[c];
@@ -101,11 +101,11 @@ void conic_oracle_blend(const oracle_fragment *f, size_t n, int passes, int is_e
   size_t nearest = find_first(f, n, 0), heaviest = passes == 1 ? nearest : find_first(f, n, 1);
   memset(pixel, 0, sizeof *pixel);
   if (passes == 1)
-    add(&f[nearest], pixel);
+    add_fragment(&f[nearest], pixel);
   else
     for (size_t i = 0; i < n; i++)
       if (f[i].is_visible)
-        add(&f[i], pixel);
+        add_fragment(&f[i], pixel);
   for (int c = 0; c < 3; c++) {
     pixel->albedo[c] /= pixel->weight;
     pixel->mean_normal[c] /= pixel->weight;

@@ -60,7 +60,7 @@ static void add_chord(const oracle_view *view, const oracle_placed *s, const dou
 
 /* Extremes lie where lines meet the outline or each other, or where a column or row of the screen touches the outline.
  */
-static void find_places(const oracle_view *view, const oracle_placed *s, clipped_part *part) {
+static void find_corner_places(const oracle_view *view, const oracle_placed *s, clipped_part *part) {
   part->n_points = 0;
   for (int axis = 0; axis < 2; axis++) {
     /* The lines of all columns run through the point of the plane at which x and z are 0, in homogeneous coordinates;
@@ -105,7 +105,7 @@ static void set_box(const oracle_view *view, const oracle_placed *s, const conic
           part.lines[part.n_lines][j] = lines[i][j];
         part.n_lines++;
       }
-    find_places(view, s, &part);
+    find_corner_places(view, s, &part);
     for (int i = 0; i < 2 && part.n_points; i++) {
       clip->box[0][i] = oracle_min(clip->box[0][i], part.places[0][i] - view->reach_px - overlap_px);
       clip->box[1][i] = oracle_max(clip->box[1][i], part.places[1][i] + view->reach_px + overlap_px);

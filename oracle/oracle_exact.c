@@ -27,7 +27,7 @@ typedef struct spot {
   double at[2], u[2], iz, jacobian[2][2];
 } spot;
 
-static spot look(const oracle_exact *exact, double x, double y) {
+static spot look_at_spot(const oracle_exact *exact, double x, double y) {
   const double(*rows)[3] = exact->from_screen;
   spot s = {{x, y}, {0.0, 0.0}, rows[0][2] * x + rows[1][2] * y + rows[2][2], {{0.0, 0.0}, {0.0, 0.0}}};
   for (int i = 0; i < 2; i++) {
@@ -52,10 +52,10 @@ static oracle_symmetric curvature(const spot *s, double h) {
 
 /* Where the integrand is greatest: Gauss and Newton, with steps halved until they lead down. */
 static spot find_mode(const oracle_exact *exact, const double x[2], double h) {
-  spot best = look(exact, x[0], x[1]);
+  spot best = look_at_spot(exact, x[0], x[1]);
   double depth = depth_of(&best, x, h);
   if (exact->is_center_in_front) {
-    spot center = look(exact, exact->center_px[0], exact->center_px[1]);
+    spot center = look_at_spot(exact, exact->center_px[0], exact->center_px[1]);
     double center_depth = depth_of(&center, x, h);
     if (center_depth < depth) {
       best = center;
@@ -69,7 +69,7 @@ static spot find_mode(const oracle_exact *exact, const double x[2], double h) {
     oracle_apply(oracle_inverse(curvature(&best, h)), slope, step);
     int is_lower = 0;
     for (int k = 0; k < 30 && !is_lower; k++, factor *= 0.5) {
-      spot next = look(exact, best.at[0] - factor * step[0], best.at[1] - factor * step[1]);
+      spot next = look_at_spot(exact, best.at[0] - factor * step[0], best.at[1] - factor * step[1]);
       double next_depth = depth_of(&next, x, h);
       is_lower = next_depth < depth;
       if (is_lower) {
@@ -162,7 +162,7 @@ double conic_oracle_exact_weight(const oracle_view *view, const oracle_exact *ex
   if (!exact->has_plane)
     return 0.0;
   if (!(view->prefilter > 0.0)) {
-    spot s = look(exact, x, y);
+    spot s = look_at_spot(exact, x, y);
     return s.iz > 0.0 ? conic_oracle_kernel(&view->kernel, s.u[0] * s.u[0] + s.u[1] * s.u[1]) : 0.0;
   }
   int is_smooth = view->kernel.type == CONIC_KERNEL_GAUSS;

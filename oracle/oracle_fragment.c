@@ -34,8 +34,8 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
 
 /* What the inputs' rounding and the evaluation's own may add up to: every disturbed splat the worst way at once. For
  * the weight also `spread`, what they come to where they are independent. */
-static void find_errors(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
-                        const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES], double *spread) {
+static void find_fragment_errors(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+                                 const double values[ORACLE_N_VALUES], double errors[ORACLE_N_VALUES], double *spread) {
   conic_oracle_rounding(view, &candidate->shape, x, y, values, errors);
   double squares = errors[ORACLE_WEIGHT] * errors[ORACLE_WEIGHT];
   for (int i = 0; i < candidate->n_disturbed; i++) {
@@ -139,7 +139,7 @@ int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candi
     /* Twice the cutoff's square away nothing is in doubt. */
     if (fragment->values[ORACLE_MARGIN_Q] > -view->support) {
       covers = conic_oracle_covers(fragment->values);
-      find_errors(view, candidate, x, y, fragment->values, errors, &spread);
+      find_fragment_errors(view, candidate, x, y, fragment->values, errors, &spread);
       doubt = doubt_coverage(fragment->values, errors);
     }
   }

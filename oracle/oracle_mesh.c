@@ -85,8 +85,8 @@ static double snap(double px, int *is_unsure) {
 }
 
 /* Appends a piece; 0 where it can't be seen. */
-static int add_piece(const oracle_mesh *mesh, const oracle_view *view, const corner *const corners[3],
-                     oracle_triangle *t) {
+static int add_seen_piece(const oracle_mesh *mesh, const oracle_view *view, const corner *const corners[3],
+                          oracle_triangle *t) {
   const conic_camera *c = &view->camera;
   t->is_unsure = 0;
   for (int k = 0; k < 3; k++) {
@@ -108,7 +108,7 @@ static int add_piece(const oracle_mesh *mesh, const oracle_view *view, const cor
 }
 
 /* Appends what of triangle i may be seen, at most six pieces. */
-static void add_triangle(oracle_mesh *mesh, const oracle_view *view, size_t i) {
+static void add_seen_triangle(oracle_mesh *mesh, const oracle_view *view, size_t i) {
   const conic_triangles *set = mesh->triangles;
   corner polygon[MOST_CORNERS];
   for (int k = 0; k < 3; k++) {
@@ -128,7 +128,7 @@ static void add_triangle(oracle_mesh *mesh, const oracle_view *view, size_t i) {
   for (int k = 1; k + 1 < n; k++) {
     const corner *const corners[3] = {&polygon[0], &polygon[k], &polygon[k + 1]};
     mesh->pieces[mesh->n].index = (uint32_t)i;
-    mesh->n += (size_t)add_piece(mesh, view, corners, &mesh->pieces[mesh->n]);
+    mesh->n += (size_t)add_seen_piece(mesh, view, corners, &mesh->pieces[mesh->n]);
   }
 }
 
@@ -146,7 +146,7 @@ conic_status conic_oracle_mesh_create(conic_context *context, const conic_drawin
   if (!mesh->pieces)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < mesh->triangles->count; i++)
-    add_triangle(mesh, &scene->view, i);
+    add_seen_triangle(mesh, &scene->view, i);
   return CONIC_OK;
 }
 

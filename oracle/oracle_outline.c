@@ -2,8 +2,8 @@
 #include "oracle/oracle_splat.h"
 
 /* Adds the place that a point of camera space projects to. */
-static void add(const oracle_view *view, const double point[3], const double e[2], oracle_extreme extremes[2],
-                int *n_found) {
+static void add_extreme(const oracle_view *view, const double point[3], const double e[2], oracle_extreme extremes[2],
+                        int *n_found) {
   const conic_camera *c = &view->camera;
   oracle_extreme found;
   found.inverse_depth = 1.0 / point[2];
@@ -54,14 +54,14 @@ int conic_oracle_extremes(const oracle_view *view, const oracle_placed *s, const
   for (int i = 0; i < n_angles; i++) {
     point_at(view, s, angles[i], point);
     if (point[2] > view->near_z)
-      add(view, point, e, extremes, &n_found);
+      add_extreme(view, point, e, extremes, &n_found);
   }
   /* The chord in which the near plane cuts the disc ends on the outline. */
   n_angles = solve_angle(d[1], d[2], d[0] - view->near_z, angles);
   for (int i = 0; i < n_angles; i++) {
     point_at(view, s, angles[i], point);
     point[2] = view->near_z;
-    add(view, point, e, extremes, &n_found);
+    add_extreme(view, point, e, extremes, &n_found);
   }
   return n_found > 0;
 }

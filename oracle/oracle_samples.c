@@ -65,7 +65,7 @@ static unsigned mean_normal(const fine_pixel *p, double normal[3]) {
   return length < shortest_mean * n_covered ? 1u << CONIC_UNSTABLE_PRECISION : 0u;
 }
 
-static void reduce(const fine_pixel *p, size_t at, conic_reference *r) {
+static void reduce_pixel(const fine_pixel *p, size_t at, conic_reference *r) {
   static const conic_plane averaged[] = {CONIC_PLANE_RGBA, CONIC_PLANE_ALBEDO, CONIC_PLANE_WEIGHT};
   size_t middle = p->n % 2 ? p->n / 2 : p->n / 2 - 1, center = sample_at(p, middle, middle);
   unsigned doubt = 0;
@@ -102,7 +102,7 @@ static void reduce_all(const conic_reference *fine, int samples, conic_reference
     for (size_t x = 0; x < (size_t)r->width; x++) {
       p.left = x * p.n;
       p.top = y * p.n;
-      reduce(&p, y * (size_t)r->width + x, r);
+      reduce_pixel(&p, y * (size_t)r->width + x, r);
     }
 }
 

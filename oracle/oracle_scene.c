@@ -20,7 +20,7 @@ static void read_axis(float *const components[3], size_t i, double axis[3]) {
     axis[c] = (double)components[c][i];
 }
 
-static void rotate(const conic_camera *camera, const double v[3], double result[3]) {
+static void rotate_to_camera(const conic_camera *camera, const double v[3], double result[3]) {
   for (int i = 0; i < 3; i++)
     result[i] = oracle_dot(camera->cam_from_world[i], v);
 }
@@ -142,7 +142,7 @@ static void add_other(oracle_splat *splat, oracle_formula formula) {
 }
 
 /* Chooses the formula, and those that it might be if one of the answers were rounded to the other side. */
-static void choose(const oracle_view *view, oracle_splat *splat) {
+static void choose_splats(const oracle_view *view, oracle_splat *splat) {
   double answers[ORACLE_N_QUESTIONS], errors[ORACLE_N_QUESTIONS];
   int is_so[ORACLE_N_QUESTIONS];
   conic_oracle_ask(view, &splat->placed, answers);
@@ -188,7 +188,7 @@ static void set_appearance(const oracle_view *view, const conic_render_options *
                            double longest, oracle_splat *splat) {
   double normal[3], turned[3], length = longer_axis(world);
   oracle_cross(world->tu, world->tv, normal);
-  rotate(&view->camera, normal, turned);
+  rotate_to_camera(&view->camera, normal, turned);
   double scale = (oracle_dot(splat->placed.p, turned) > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
   for (int c = 0; c < 3; c++)
     splat->normal[c] = normal[c] * scale;
@@ -199,25 +199,25 @@ static void set_appearance(const oracle_view *view, const conic_render_options *
 }
 
 /* Places a splat; 0 where it can't show. */
-static int place(const oracle_view *view, const conic_splats *splats, const conic_render_options *options, size_t i,
-                 double longest, oracle_splat *splat) {
+static int place_splat(const oracle_view *view, const conic_splats *splats, const conic_render_options *options,
+                       size_t i, double longest, oracle_splat *splat) {
   oracle_placed world;
   if (!read_splat(splats, i, &world, splat))
     return 0;
   for (int c = 0; c < 3; c++)
     world.p[c] += splats->origin[c];
-  rotate(&view->camera, world.p, splat->placed.p);
+  rotate_to_camera(&view->camera, world.p, splat->placed.p);
   for (int c = 0; c < 3; c++)
     splat->placed.p[c] += view->camera.cam_from_world[c][3];
-  rotate(&view->camera, world.tu, splat->placed.tu);
-  rotate(&view->camera, world.tv, splat->placed.tv);
+  rotate_to_camera(&view->camera, world.tu, splat->placed.tu);
+  rotate_to_camera(&view->camera, world.tv, splat->placed.tv);
   size_t i_clip = conic_clip_find(splats, i);
   int has_clip = i_clip < splats->n_clips && splats->clips[i_clip].splat == i;
   double extent = oracle_length(world.p);
   for (int c = 0; c < 3; c++)
     extent += fabs(view->camera.cam_from_world[c][3]);
   conic_oracle_clip(view, &splat->placed, has_clip ? &splats->clips[i_clip] : NULL, extent, &splat->clip);
-  choose(view, splat);
+  choose_splats(view, splat);
   if (splat->formula == ORACLE_NOT_DRAWN && !splat->n_others)
     return 0;
   set_appearance(view, options, &world, longest, splat);
@@ -234,7 +234,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
   if (status == CONIC_OK && !(median > 0.0))
     status = median_length(context, splats, &median);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
-    if (place(&scene->view, splats, options, i, median, &scene->splats[scene->n]))
+    if (place_splat(&scene->view, splats, options, i, median, &scene->splats[scene->n]))
       scene->n++;
     if (i % 65536 == 0)
       status = conic_progress(context, "verify", 0.0);

@@ -41,7 +41,7 @@ static int cover(const oracle_triangle *t, double x, double y, sample *s) {
 }
 
 /* The attribute's component, from the weights of the second and third corner. */
-static double blend(const float *values, const uint32_t corners[3], const double at[2]) {
+static double blend_corners(const float *values, const uint32_t corners[3], const double at[2]) {
   double first = (double)values[corners[0]];
   return first + at[0] * ((double)values[corners[1]] - first) + at[1] * ((double)values[corners[2]] - first);
 }
@@ -68,14 +68,14 @@ static void find_texel(const conic_triangles *set, const oracle_triangle *t, con
   float uv[2], sides[2][2], color[3];
   find_weights(t, x, y, at);
   for (int i = 0; i < 2; i++)
-    uv[i] = (float)blend(set->texture_coordinate[i], corners, at);
+    uv[i] = (float)blend_corners(set->texture_coordinate[i], corners, at);
   for (int side = 0; side < 2; side++) {
     find_weights(t, x - (side ? 0.0 : step), y - (side ? step : 0.0), low);
     find_weights(t, x + (side ? 0.0 : step), y + (side ? step : 0.0), high);
     for (int i = 0; i < 2; i++)
-      sides[side][i] =
-          (float)((blend(set->texture_coordinate[i], corners, high) - blend(set->texture_coordinate[i], corners, low)) *
-                  (256.0 / (2.0 * step)));
+      sides[side][i] = (float)((blend_corners(set->texture_coordinate[i], corners, high) -
+                                blend_corners(set->texture_coordinate[i], corners, low)) *
+                               (256.0 / (2.0 * step)));
   }
   conic_texture_sample(texture, uv, sides[0], sides[1], color);
   for (int c = 0; c < 3; c++)
@@ -105,7 +105,7 @@ static void find_color(const conic_triangles *set, const oracle_triangle *t, dou
     color[c] *= (double)material->color[c] * texel[c];
 }
 
-static void face_normal(const conic_triangles *set, const uint32_t corners[3], double normal[3]) {
+static void normal_of_triangle(const conic_triangles *set, const uint32_t corners[3], double normal[3]) {
   double a[3], b[3];
   for (int axis = 0; axis < 3; axis++) {
     a[axis] = (double)set->position[axis][corners[1]] - (double)set->position[axis][corners[0]];
@@ -116,16 +116,16 @@ static void face_normal(const conic_triangles *set, const uint32_t corners[3], d
 
 /* World, unit, towards the viewer; *length is that of the mean that it comes from, and *away how far that points away.
  */
-static void find_normal(const conic_triangles *set, const oracle_triangle *t, const conic_camera *camera, double x,
-                        double y, double normal[3], double *away) {
+static void find_shading_normal(const conic_triangles *set, const oracle_triangle *t, const conic_camera *camera,
+                                double x, double y, double normal[3], double *away) {
   double at[2], ray[3] = {(x / 256.0 - camera->cx) / camera->fx, (y / 256.0 - camera->cy) / camera->fy, 1.0}, d[3];
-  face_normal(set, set->corners[t->index], normal);
+  normal_of_triangle(set, set->corners[t->index], normal);
   if (set->normal[0]) {
     const uint32_t *corners = set->normal_corners ? set->normal_corners[t->index] : set->corners[t->index];
     double mean[3];
     find_weights(t, x, y, at);
     for (int axis = 0; axis < 3; axis++)
-      mean[axis] = blend(set->normal[axis], corners, at);
+      mean[axis] = blend_corners(set->normal[axis], corners, at);
     double squared = oracle_dot(mean, mean);
     if (squared > 1e-30 && squared < 1e30)
       memcpy(normal, mean, sizeof mean);
@@ -195,8 +195,8 @@ static const oracle_triangle *find_nearest(const oracle_mesh *mesh, const uint32
   return found;
 }
 
-static void look(const oracle_mesh *mesh, const oracle_view *view, const oracle_triangle *t, double x, double y,
-                 const sample *s, oracle_seen_triangle *seen) {
+static void look_at_piece(const oracle_mesh *mesh, const oracle_view *view, const oracle_triangle *t, double x,
+                          double y, const sample *s, oracle_seen_triangle *seen) {
   oracle_splat *splat = &seen->splat;
   double ray[3] = {(x / 256.0 - view->camera.cx) / view->camera.fx, (y / 256.0 - view->camera.cy) / view->camera.fy,
                    1.0},
@@ -206,7 +206,7 @@ static void look(const oracle_mesh *mesh, const oracle_view *view, const oracle_
   splat->opacity = 1.0;
   splat->behind = 1.0 / (1.0 + mesh->epsilon * s->iz / oracle_length(ray));
   find_color(mesh->triangles, t, x, y, splat->color);
-  find_normal(mesh->triangles, t, &view->camera, x, y, splat->normal, &away);
+  find_shading_normal(mesh->triangles, t, &view->camera, x, y, splat->normal, &away);
   splat->is_facing_unsure = fabs(away) < 4.0 * ORACLE_ROUNDINGS * ORACLE_UNIT;
   seen->candidate.splat = splat;
   seen->candidate.is_drawn = 1;
@@ -223,7 +223,7 @@ int conic_oracle_mesh_at(const oracle_mesh *mesh, const oracle_view *view, const
   const oracle_triangle *t = find_nearest(mesh, which, n, x, y, &s, &rival, &doubt);
   if (!t)
     return 0;
-  look(mesh, view, t, x, y, &s, seen);
+  look_at_piece(mesh, view, t, x, y, &s, seen);
   memset(fragment, 0, sizeof *fragment);
   fragment->candidate = &seen->candidate;
   fragment->covers = 1;

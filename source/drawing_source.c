@@ -3,6 +3,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/message.h"
+#include "core/splats/columns.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -157,7 +158,13 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
 
 conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
                                      conic_source **source) {
-  conic_status status = conic_source_create(context, &conic_source_kind_drawing, "drawing", source);
+  *source = NULL;
+  conic_status status = conic_splats_check_own(context, "source", splats);
+  if (status == CONIC_OK && triangles)
+    status = conic_triangles_check_own(context, "source", triangles);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_source_create(context, &conic_source_kind_drawing, "drawing", source);
   if (status != CONIC_OK) {
     conic_splats_release(context, splats);
     if (triangles)

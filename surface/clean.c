@@ -16,8 +16,8 @@ typedef struct points_cleaning {
   conic_workspace *workspaces;
 } points_cleaning;
 
-static void keep(points_cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
-                 const conic_workspace *workspace) {
+static void keep_projection(points_cleaning *work, size_t slot, const double r[3], const conic_landing *projection,
+                            const conic_workspace *workspace) {
   const conic_surface *surface = work->surface;
   conic_own_points *own = work->own;
   double side[3], color[3], turn = 0.0, moved2 = 0.0;
@@ -49,7 +49,7 @@ static void clean_leaf(points_cleaning *work, size_t i_leaf, conic_workspace *wo
     const double r[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                          (double)tree->position[2][slot]};
     conic_surface_project_one(surface, r, (double)surface->h[slot], CONIC_NO_SLOT, 1, workspace, &projection);
-    keep(work, slot, r, &projection, workspace);
+    keep_projection(work, slot, r, &projection, workspace);
   }
 }
 

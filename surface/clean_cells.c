@@ -221,7 +221,7 @@ static conic_status reserve_subset(cleaning *work, size_t n) {
   return status;
 }
 
-static int is_within(const record *r, const double low[3], const double high[3]) {
+static int is_record_within(const record *r, const double low[3], const double high[3]) {
   int is_inside = 1;
   for (int axis = 0; axis < 3; axis++)
     is_inside &= (double)r->point.position[axis] >= low[axis] && (double)r->point.position[axis] <= high[axis];
@@ -246,7 +246,7 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
       if (status == CONIC_OK)
         status = reserve_subset(work, n);
       for (size_t k = 0; k < n && status == CONIC_OK; k++)
-        if (i == 0 || is_within(&work->page[k], low, high))
+        if (i == 0 || is_record_within(&work->page[k], low, high))
           put_sample(&work->page[k].point, &work->subset, work->subset.count++);
     }
   }
@@ -320,7 +320,7 @@ static uint64_t most_in(const cleaning *work) {
 }
 
 /* Once it is known how many there are: room for one cell, and where the others are put. */
-static conic_status reserve(cleaning *work) {
+static conic_status reserve_page(cleaning *work) {
   const conic_clean_options *o = work->options;
   uint64_t most = most_in(work), kept_bytes = work->n_points * (sizeof(record) + sizeof(result));
   conic_status status = check_room(work, most);
@@ -361,7 +361,7 @@ static conic_status clean_all(cleaning *work, conic_points_source *source, void 
   if (status != CONIC_OK)
     return status;
   conic_cells_sort(&work->cells);
-  status = reserve(work);
+  status = reserve_page(work);
   if (status == CONIC_OK)
     status = source(source_cookie, place_batch, work);
   if (status == CONIC_OK && work->n_placed != work->n_points)

@@ -102,7 +102,7 @@ static void find_gaps(void *data, size_t i_item, int i_thread) {
 
 /* --- filling --- */
 
-static conic_status reserve(densifying *work) {
+static conic_status reserve_points(densifying *work) {
   conic_context *context = work->surface->context;
   size_t n = work->points->count, capacity = n + n / 2 + 1024;
   if (n < work->capacity)
@@ -125,7 +125,7 @@ static void touch(densifying *work, const double place[3], double radius) {
     work->sites[work->tree.point_of_slot[slots[i]]].is_dirty = 1;
 }
 
-static void append(densifying *work, const double place[3], const conic_landing *projection) {
+static void append_point(densifying *work, const double place[3], const conic_landing *projection) {
   conic_splats *points = work->points;
   size_t i = points->count++;
   double side[3], color[3], turn = 0.0;
@@ -147,7 +147,7 @@ static void append(densifying *work, const double place[3], const conic_landing 
 
 /* Puts a point of the surface into the gap; a gap where there is none stays, and is not tried again until something
  * changes about it. Errors: MEMORY. */
-static conic_status fill(densifying *work, size_t i) {
+static conic_status fill_round(densifying *work, size_t i) {
   conic_gap gap = work->sites[i].gap;
   conic_landing projection;
   double place[3], distance2;
@@ -162,10 +162,10 @@ static conic_status fill(densifying *work, size_t i) {
   conic_neighbours_nearest(&work->tree, place, CONIC_NO_SLOT, 1, HUGE_VAL, &slot, &distance2);
   if (!(distance2 >= LEAST_CLEARANCE * LEAST_CLEARANCE * gap.radius * gap.radius))
     return CONIC_OK;
-  conic_status status = reserve(work);
+  conic_status status = reserve_points(work);
   if (status != CONIC_OK)
     return status;
-  append(work, place, &projection);
+  append_point(work, place, &projection);
   touch(work, place, 2.0 * gap.radius);
   return CONIC_OK;
 }
@@ -212,7 +212,7 @@ static conic_status fill_gaps(densifying *work, size_t *n_tried) {
       break;
     }
     if (!work->sites[list[i].point].is_dirty)
-      status = fill(work, list[i].point);
+      status = fill_round(work, list[i].point);
   }
   conic_memory_release(work->surface->context, list);
   return status;
@@ -234,7 +234,7 @@ static conic_status run_round(densifying *work, size_t *n_tried) {
 
 /* --- the whole --- */
 
-static conic_status begin(densifying *work) {
+static conic_status begin_densifying(densifying *work) {
   conic_context *context = work->surface->context;
   const conic_splats *from = &work->surface->points;
   memcpy(work->points->origin, from->origin, sizeof from->origin);
@@ -260,7 +260,7 @@ conic_status conic_surface_densify(conic_surface *surface, const conic_densify_o
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "densify: no spacing is given");
   conic_status status = conic_workspaces_create(context, &work.workspaces);
   if (status == CONIC_OK)
-    status = begin(&work);
+    status = begin_densifying(&work);
   for (size_t n_tried = 1; status == CONIC_OK && n_tried;) {
     status = run_round(&work, &n_tried);
     double share = work.widest_left > 0.0 ? options->spacing / work.widest_left : 1.0;

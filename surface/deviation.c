@@ -38,7 +38,7 @@ static void measure_chunk(void *data, size_t i_item, int i_thread) {
     work->distances2[slot] = distance2_to(work, slot, &work->workspaces[i_thread]);
 }
 
-static conic_status measure(measuring *work) {
+static conic_status measure_slots(measuring *work) {
   conic_context *context = work->from->context;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
   for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
@@ -76,7 +76,7 @@ conic_status conic_surface_deviation(conic_surface *from, conic_surface *to, con
   if (status != CONIC_OK)
     return status;
   work.distances2 = conic_memory_allocate(context, from->tree.n_slots, sizeof *work.distances2);
-  status = work.distances2 ? measure(&work) : CONIC_ERROR_MEMORY;
+  status = work.distances2 ? measure_slots(&work) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     sum_up(&work, distance);
   conic_memory_release(context, work.distances2);

@@ -29,7 +29,7 @@ static double least_eigenvalue(const double m[6]) {
 }
 
 /* Across the rows of the matrix less the eigenvalue, which span a plane; the two that do so best. 0 where none do. */
-static int find_normal(const double m[6], double normal[3]) {
+static int find_least_axis(const double m[6], double normal[3]) {
   double value = least_eigenvalue(m), best2 = LEAST_GAPS * LEAST_GAPS;
   const double rows[3][3] = {{m[0] - value, m[1], m[2]}, {m[1], m[3] - value, m[4]}, {m[2], m[4], m[5] - value}};
   int is_found = 0;
@@ -51,7 +51,7 @@ void conic_least_spread(const double covariance[6], double frame[3][3]) {
   double m[6], trace = covariance[0] + covariance[3] + covariance[5], values[3];
   for (int i = 0; i < 6; i++)
     m[i] = covariance[i] / trace;
-  if (!find_normal(m, frame[2])) {
+  if (!find_least_axis(m, frame[2])) {
     conic_eigen3(covariance, values, frame);
     conic_cross(frame[2], frame[0], frame[1]);
     return;

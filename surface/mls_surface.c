@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
@@ -26,7 +27,7 @@ const char *conic_surface_outcome_name(conic_surface_outcome outcome) {
   return (unsigned)outcome < CONIC_N_SURFACE_OUTCOMES ? names[outcome] : NULL;
 }
 
-static conic_status check_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
+static conic_status check_surface_options(conic_context *context, const conic_surface_options *o, unsigned fields) {
   if ((unsigned)o->type > CONIC_SURFACE_APSS || (unsigned)o->plane > CONIC_PLANE_FAST ||
       (unsigned)o->weight > CONIC_WEIGHT_FLAT)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: options that were not initialised");
@@ -129,18 +130,13 @@ static void find_local_h(void *data, size_t i_item, int i_thread) {
   }
 }
 
-static int compare_floats(const void *a, const void *b) {
-  float first = *(const float *)a, second = *(const float *)b;
-  return (first > second) - (first < second);
-}
-
 static conic_status find_median_h(conic_surface *surface) {
   size_t n = surface->tree.n_slots;
   float *sorted = conic_memory_allocate(surface->context, n, sizeof *sorted);
   if (!sorted)
     return CONIC_ERROR_MEMORY;
   memcpy(sorted, surface->h, n * sizeof *sorted);
-  qsort(sorted, n, sizeof *sorted, compare_floats);
+  qsort(sorted, n, sizeof *sorted, conic_compare_floats);
   surface->median_h = (double)sorted[(n - 1) / 2];
   conic_memory_release(surface->context, sorted);
   return CONIC_OK;
@@ -186,7 +182,7 @@ static conic_status find_scales(conic_surface *surface) {
   return status;
 }
 
-static conic_status prepare(conic_surface *surface, const conic_splats *points) {
+static conic_status prepare_surface(conic_surface *surface, const conic_splats *points) {
   conic_context *context = surface->context;
   conic_status status = copy_points(context, points, &surface->points);
   if (status == CONIC_OK)
@@ -216,7 +212,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "surface: the options were not initialised");
   conic_status status = conic_splats_check(context, "surface", points);
   if (status == CONIC_OK)
-    status = check_options(context, options, conic_splats_fields(points));
+    status = check_surface_options(context, options, conic_splats_fields(points));
   if (status != CONIC_OK)
     return status;
   conic_isa isa;
@@ -236,7 +232,7 @@ conic_status conic_surface_create(conic_context *context, const conic_splats *po
   float *block;
   status = conic_splats_enter(context, "surface", points, &close, &block);
   if (status == CONIC_OK)
-    status = prepare(made, &close);
+    status = prepare_surface(made, &close);
   conic_memory_release(context, block);
   if (status == CONIC_OK)
     *surface = made;

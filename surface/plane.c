@@ -44,8 +44,8 @@ typedef struct well {
   double slope[3][3];
 } well;
 
-static well look(const conic_surface *surface, const conic_workspace *workspace, double h, double frame[3][3],
-                 double t) {
+static well look_at_well(const conic_surface *surface, const conic_workspace *workspace, double h, double frame[3][3],
+                         double t) {
   double sums[CONIC_N_PLANE_SUMS], inverse = 1.0 / h, inverse2 = inverse * inverse;
   well here;
   surface->kernels.plane(&workspace->near, &surface->weighing, frame, t, sums);
@@ -111,7 +111,7 @@ static int search_along(const conic_surface *surface, double h, double margin, c
   double low = -margin, high = margin;
   int is_low_sure = 0, is_high_sure = 0;
   for (int i = 0; i < MAX_SEARCH; i++) {
-    well here = look(surface, workspace, h, frame, *t);
+    well here = look_at_well(surface, workspace, h, frame, *t);
     double downhill = here.misfit[2]; /* K: -½ of the energy's derivative, so that it points down */
     if (downhill > 0.0) {
       low = *t;
@@ -171,7 +171,7 @@ static conic_surface_outcome close_in(const conic_surface *surface, double h, do
   double before = LONGEST_STEP;
   for (int i = 0; i < MAX_STEPS; i++) {
     double step[3];
-    well here = look(surface, workspace, h, frame, *t);
+    well here = look_at_well(surface, workspace, h, frame, *t);
     if (!is_hollow(&here) || !newton_step(&here, step))
       return CONIC_SURFACE_NO_MINIMUM;
     double length = conic_length(step) / h;

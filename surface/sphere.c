@@ -29,7 +29,7 @@ static int fit_sphere(const double sums[CONIC_N_SPHERE_SUMS], fitted_sphere *s) 
 }
 
 /* From `from` along the sphere's gradient to its surface; 0 where there is none. */
-static int drop(const fitted_sphere *s, const double from[3], double foot[3], double normal[3]) {
+static int drop_to_sphere(const fitted_sphere *s, const double from[3], double foot[3], double normal[3]) {
   double gradient[3], value = s->constant + conic_dot(s->linear, from) + s->square * conic_dot(from, from);
   for (int axis = 0; axis < 3; axis++)
     gradient[axis] = s->linear[axis] + 2.0 * s->square * from[axis];
@@ -58,7 +58,7 @@ conic_surface_outcome conic_surface_find_sphere(const conic_surface *surface, do
       return CONIC_SURFACE_TOO_FEW;
     for (int axis = 0; axis < 3; axis++)
       from[axis] = -foot[axis]; /* the point itself, seen from the foot */
-    if (!fit_sphere(sums, &s) || !drop(&s, from, step, normal))
+    if (!fit_sphere(sums, &s) || !drop_to_sphere(&s, from, step, normal))
       return CONIC_SURFACE_NO_MINIMUM;
     double moved = conic_length(step);
     for (int axis = 0; axis < 3; axis++)

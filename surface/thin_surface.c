@@ -99,7 +99,7 @@ static void remove_slot(thinning *work, uint32_t slot) {
   }
 }
 
-static int allocate(thinning *work) {
+static int allocate_thinning(thinning *work) {
   size_t n = work->surface->tree.n_slots;
   conic_context *context = work->surface->context;
   work->heap.slots = conic_memory_allocate(context, n, sizeof *work->heap.slots);
@@ -171,7 +171,7 @@ static conic_status thin_stage(conic_context *context, const conic_surface_optio
   status = conic_workspaces_create(context, &work.workspaces);
   for (int i = 0; status == CONIC_OK && i < conic_context_threads(context); i++)
     work.workspaces[i].is_trusting = 1;
-  if (status == CONIC_OK && !allocate(&work))
+  if (status == CONIC_OK && !allocate_thinning(&work))
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = remove_slots(&work, wanted->count > n_stage ? wanted->count : n_stage, wanted->max_error, &n_left);

@@ -30,7 +30,7 @@ static void report_device(cli_json *json, const conic_opencl_device *d) {
   cli_json_close(json);
 }
 
-static int report(cli_session *session, const conic_opencl_device *devices, size_t n) {
+static int report_devices(cli_session *session, const conic_opencl_device *devices, size_t n) {
   int exit_code = CLI_DONE;
   cli_json_file *file;
   cli_json *json = cli_json_open(session, &file, &exit_code);
@@ -57,12 +57,12 @@ static int list(cli_session *session) {
     print_device(&devices[i]);
   if (n == 0 && prints)
     puts("no OpenCL device; pictures are drawn on the CPU");
-  exit_code = report(session, devices, n);
+  exit_code = report_devices(session, devices, n);
   conic_opencl_devices_release(session->context, devices);
   return exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_devices(cli_session *session, int argc, char **argv) {
   const char *positional[64];
   int n_positional = 0;
   if (argc > 64)
@@ -76,4 +76,4 @@ static int run(cli_session *session, int argc, char **argv) {
 }
 
 const cli_command cli_devices = {"devices", "lists the OpenCL devices that can draw", "conic devices [--json FILE]",
-                                 run};
+                                 run_devices};

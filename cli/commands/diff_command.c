@@ -175,37 +175,20 @@ static int run_job(diff_job *job) {
   return exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
+static int run_diff(cli_session *session, int argc, char **argv) {
   static const char *const heatmap_words[] = {"samples", "flip", NULL};
   diff_job job = {.session = session};
   const char *positional[argc];
   int n_positional;
   const cli_option options[] = {
-      {.name = "heatmap",
-       .type = CLI_TEXT,
-       .value = &job.heatmap_path,
-       .argument = "H.png",
-       .help = "write a picture of where they differ"},
-      {.name = "heatmap-of",
-       .type = CLI_CHOICE,
-       .value = &job.is_flip_map,
-       .argument = "WHAT",
-       .help = "what it paints: samples, their largest difference; flip, what is seen of it [samples]",
+      {"heatmap", CLI_TEXT, &job.heatmap_path, "H.png", "write a picture of where they differ"},
+      {"heatmap-of", CLI_CHOICE, &job.is_flip_map, "WHAT",
+       "what it paints: samples, their largest difference; flip, what is seen of it [samples]",
        .choices = heatmap_words},
-      {.name = "max-abs",
-       .type = CLI_NUMBER,
-       .value = &job.max_abs,
-       .argument = "X",
-       .help = "let no sample differ by more [identical]",
-       .minimum = 0.0,
-       .maximum = INFINITY,
+      {"max-abs", CLI_NUMBER, &job.max_abs, "X", "let no sample differ by more [identical]", 0.0, INFINITY,
        .is_given = &job.has_max_abs},
-      {.name = "min-psnr",
-       .type = CLI_NUMBER,
-       .value = &job.min_psnr,
-       .argument = "DB",
-       .help = "let the colour's peak signal-to-noise ratio be no lower [identical]",
-       .is_given = &job.has_min_psnr},
+      {"min-psnr", CLI_NUMBER, &job.min_psnr, "DB",
+       "let the colour's peak signal-to-noise ratio be no lower [identical]", .is_given = &job.has_min_psnr},
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
@@ -226,5 +209,5 @@ const cli_command cli_diff = {
     .name = "diff",
     .summary = "compares two images",
     .usage = "conic diff A B [--heatmap H.png] [--heatmap-of samples|flip] [--max-abs X] [--min-psnr DB]",
-    .run = run,
+    .run = run_diff,
 };

@@ -1,5 +1,4 @@
 /* conic explain: why a pixel is as it is, and where a splat lies on the screen. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -22,7 +22,7 @@ typedef struct info_job {
 
 static int parse(cli_session *session, int argc, char **argv, info_job *job) {
   const cli_option options[] = {
-      {.name = "check", .type = CLI_FLAG, .value = &job->is_check, .help = "also look for what cannot be drawn"},
+      {"check", CLI_FLAG, &job->is_check, NULL, "also look for what cannot be drawn"},
   };
   const char *positional[64] = {NULL};
   int n_positional = 0;

@@ -14,7 +14,7 @@ static conic_status feed(void *cookie, conic_batch_receiver *receive, void *to) 
                      : conic_model_stream(job->session->context, job->input, NULL, receive, to);
 }
 
-static conic_status begin(void *cookie, const conic_surface_report *report, unsigned fields) {
+static conic_status begin_cells(void *cookie, const conic_surface_report *report, unsigned fields) {
   cells_cleaning *job = cookie;
   job->work_end = cli_seconds();
   if (report->n_out == 0)
@@ -22,7 +22,7 @@ static conic_status begin(void *cookie, const conic_surface_report *report, unsi
   return conic_splats_writer_open(job->session->context, job->output, report->n_out, fields, NULL, &job->writer);
 }
 
-static conic_status append(void *cookie, const conic_splats *batch) {
+static conic_status append_cleaned(void *cookie, const conic_splats *batch) {
   cells_cleaning *job = cookie;
   return conic_splats_writer_append(job->writer, batch);
 }
@@ -30,7 +30,7 @@ static conic_status append(void *cookie, const conic_splats *batch) {
 conic_status cli_mls_clean(cli_session *session, const conic_clean_options *options, const conic_splats *points,
                            const char *input, const char *output, conic_surface_report *report, double *work_seconds) {
   cells_cleaning job = {session, points, input, output, NULL, 0.0};
-  const conic_points_sink sink = {begin, append, &job};
+  const conic_points_sink sink = {begin_cells, append_cleaned, &job};
   double start = cli_seconds();
   conic_status status = conic_surface_clean_cells(session->context, options, feed, &job, &sink, report);
   if (status == CONIC_OK && job.writer)

@@ -1,13 +1,10 @@
 /* conic mls: point-set surfaces. Points in; cleaner, fewer or more of them out. */
 #include <string.h>
 
-#include "cli/arguments.h"
 #include "cli/command.h"
+#include "cli/commands/build_steps.h"
 #include "cli/commands/mls_cells.h"
 #include "cli/device_option.h"
-#include "cli/json_write.h"
-#include "cli/outputs.h"
-#include "cli/tell.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
 
@@ -20,9 +17,8 @@ static const char *const weight_names[] = {"gauss", "compact", "flat", NULL};
 static const char *const isa_names[] = {"auto", "scalar", "sse2", "avx2", "avx512", "neon", NULL};
 
 typedef struct mls_job {
-  cli_session *session;
+  cli_build base;
   mls_action action;
-  const char *input, *output;
   int type, plane, weight, isa; /* indices of the words above, which are in the order of the enumerations */
   conic_surface_options options;
   cli_length h, max_error, spacing, hole;
@@ -38,35 +34,35 @@ typedef struct mls_job {
   conic_repairs repairs;
   size_t n_in, n_out;
   double unit; /* the median spacing, where a length is in it */
-  double read_seconds, estimate_seconds, work_seconds, write_seconds;
 } mls_job;
+
+enum { READ, ESTIMATE, WORK, WRITE };
 
 /* Where a length is in spacings: the median one of the points. */
 static conic_status find_unit(mls_job *job) {
   if (!job->h.is_in_spacings && !job->max_error.is_in_spacings && !job->spacing.is_in_spacings &&
       !job->hole.is_in_spacings)
     return CONIC_OK;
-  conic_status status = conic_splats_spacing(job->session->context, &job->model.points, &job->unit);
+  conic_status status = conic_splats_spacing(job->base.session->context, &job->model.points, &job->unit);
   if (status != CONIC_OK || job->unit > 0.0)
     return status;
-  cli_error(CLI_INPUT, "%s: no two points are apart, so that a length in spacings has no meaning", job->input);
+  cli_error(CLI_INPUT, "%s: no two points are apart, so that a length in spacings has no meaning", job->base.input);
   return CONIC_ERROR_INPUT;
 }
 
 /* Spheres lean on normals, and surfaces are given sides by them: where the file has none, they are estimated. */
 static conic_status read_points(mls_job *job) {
-  conic_context *context = job->session->context;
+  conic_context *context = job->base.session->context;
   double start = cli_seconds();
-  conic_status status = conic_model_read(context, job->input, NULL, &job->model);
-  double read = cli_seconds();
-  job->read_seconds = read - start;
+  conic_status status = conic_model_read(context, job->base.input, NULL, &job->model);
+  start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
   conic_splats *points = &job->model.points;
   double low[3], high[3];
   job->n_in = points->count;
   if (conic_splats_bounds(points, low, high) == 0) {
-    cli_error(CLI_INPUT, "%s: %s", job->input, points->count ? "no point is finite" : "it holds no points");
+    cli_error(CLI_INPUT, "%s: %s", job->base.input, points->count ? "no point is finite" : "it holds no points");
     return CONIC_ERROR_INPUT;
   }
   if (!(conic_splats_fields(points) & (CONIC_SPLATS_NORMALS | CONIC_SPLATS_TANGENTS))) {
@@ -76,7 +72,7 @@ static conic_status read_points(mls_job *job) {
   }
   if (status == CONIC_OK)
     status = find_unit(job);
-  job->estimate_seconds = cli_seconds() - read;
+  cli_build_end_stage(&job->base.stages[ESTIMATE], start);
   return status;
 }
 
@@ -102,7 +98,7 @@ static conic_status densify(mls_job *job) {
   return conic_surface_densify(job->surface, &options, &job->result, &job->report);
 }
 
-static conic_status project(mls_job *job) {
+static conic_status project_all_points(mls_job *job) {
   return conic_surface_clean(job->surface, &job->result, &job->report);
 }
 
@@ -115,13 +111,13 @@ static conic_status clean_cells(mls_job *job) {
   conic_clean_options options;
   conic_clean_options_init(&options);
   options.surface = job->options;
-  options.name = job->input;
+  options.name = job->base.input;
   options.memory_bytes = (size_t)job->memory_mib << 20;
-  options.scratch = strcmp(job->output, "-") == 0 ? job->input : job->output;
+  options.scratch = strcmp(job->base.output, "-") == 0 ? job->base.input : job->base.output;
   double start = cli_seconds();
-  conic_status status = cli_mls_clean(job->session, &options, job->has_memory ? NULL : &job->model.points, job->input,
-                                      job->output, &job->report, &job->work_seconds);
-  job->write_seconds = cli_seconds() - start - job->work_seconds;
+  conic_status status = cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points,
+                                      job->base.input, job->base.output, &job->report, &job->base.stages[WORK].seconds);
+  job->base.stages[WRITE].seconds = cli_seconds() - start - job->base.stages[WORK].seconds;
   job->n_in = job->report.n_in;
   job->n_out = job->report.n_out;
   return status;
@@ -134,7 +130,7 @@ static conic_status act(mls_job *job) {
   case MLS_DENSIFY:
     return densify(job);
   default:
-    return project(job);
+    return project_all_points(job);
   }
 }
 
@@ -147,11 +143,12 @@ static conic_status work(mls_job *job) {
   job->options.h = in_world(job, &job->h);
   if (is_by_cells(job))
     return clean_cells(job);
-  conic_status status = conic_surface_create(job->session->context, &job->model.points, &job->options, &job->surface);
+  conic_status status =
+      conic_surface_create(job->base.session->context, &job->model.points, &job->options, &job->surface);
   if (status == CONIC_OK)
     status = act(job);
   job->n_out = job->result.count;
-  job->work_seconds = cli_seconds() - start;
+  cli_build_end_stage(&job->base.stages[WORK], start);
   return status;
 }
 
@@ -161,46 +158,43 @@ static void warn(const mls_job *job) {
   size_t n_lost = job->action == MLS_PROJECT ? job->n_in - job->n_out : 0;
   if (n_lost > job->n_in / 10)
     conic_log(
-        job->session->context, CONIC_LOG_WARNING,
+        job->base.session->context, CONIC_LOG_WARNING,
         "%s: %zu of %zu points are left out: %zu too few neighbours, %zu no minimum, %zu ill-conditioned; a larger "
         "--h reaches more",
-        job->input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
+        job->base.input, n_lost, job->n_in, outcomes[CONIC_SURFACE_TOO_FEW], outcomes[CONIC_SURFACE_NO_MINIMUM],
         outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
 }
 
-static void tell(const mls_job *job, double total_seconds) {
-  conic_context *context = job->session->context;
+static void tell_points(const void *cookie) {
+  const mls_job *job = cookie;
+  conic_context *context = job->base.session->context;
   const conic_surface_report *r = &job->report;
-  const cli_stage stages[] = {{"read", job->read_seconds},
-                              {"estimate", job->estimate_seconds},
-                              {"work", job->work_seconds},
-                              {"write", job->write_seconds}};
-  conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->input, job->n_in,
+  warn(job);
+  conic_log(context, CONIC_LOG_INFO, "%s: %zu points in, %zu out; h %.4g, the median", job->base.input, job->n_in,
             job->n_out, r->h);
-  conic_repairs_log(job->session->context, job->input, &job->repairs);
+  conic_repairs_log(job->base.session->context, job->base.input, &job->repairs);
   if (job->action == MLS_PROJECT)
     conic_log(context, CONIC_LOG_INFO,
               "%s: moved by %.3g (root of the mean square), %.3g at most; left out %zu not finite, %zu with too few "
               "neighbours, %zu without a minimum, %zu ill-conditioned",
-              job->input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
+              job->base.input, r->moved_rms, r->moved_max, r->outcomes[CONIC_SURFACE_NOT_FINITE],
               r->outcomes[CONIC_SURFACE_TOO_FEW], r->outcomes[CONIC_SURFACE_NO_MINIMUM],
               r->outcomes[CONIC_SURFACE_ILL_CONDITIONED]);
   if (job->action == MLS_THIN)
-    conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->input,
+    conic_log(context, CONIC_LOG_INFO, "%s: the thinned surface is within %.3g of it", job->base.input,
               r->there.max > r->back.max ? r->there.max : r->back.max);
-  cli_tell_run(job->session, stages, 4, total_seconds);
 }
 
 static int write_points(mls_job *job) {
   double start = cli_seconds();
   if (job->n_out == 0)
     return cli_error(CLI_INPUT, "%s: no point has a surface about it (%zu too few neighbours, %zu no minimum)",
-                     job->input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
+                     job->base.input, job->report.outcomes[CONIC_SURFACE_TOO_FEW],
                      job->report.outcomes[CONIC_SURFACE_NO_MINIMUM]);
   if (is_by_cells(job)) /* it is written */
     return CLI_DONE;
-  int exit_code = cli_exit_of(conic_splats_write(job->session->context, job->output, &job->result, NULL));
-  job->write_seconds = cli_seconds() - start;
+  int exit_code = cli_exit_of(conic_splats_write(job->base.session->context, job->base.output, &job->result, NULL));
+  cli_build_end_stage(&job->base.stages[WRITE], start);
   return exit_code;
 }
 
@@ -240,22 +234,8 @@ static void write_distance(cli_json *json, const char *key, const conic_surface_
   cli_json_close(json);
 }
 
-static void write_seconds(cli_json *json, const mls_job *job, double total_seconds) {
-  cli_json_object(json, "seconds");
-  cli_json_number(json, "read", job->read_seconds);
-  cli_json_number(json, "estimate", job->estimate_seconds);
-  cli_json_number(json, "work", job->work_seconds);
-  cli_json_number(json, "write", job->write_seconds);
-  cli_json_number(json, "total", total_seconds);
-  cli_json_close(json);
-}
-
-static int write_statistics(mls_job *job, double total_seconds) {
-  int exit_code = CLI_DONE;
-  cli_json_file *file;
-  cli_json *json = cli_json_open(job->session, &file, &exit_code);
-  if (!json)
-    return exit_code;
+static void report_points(cli_json *json, const void *cookie) {
+  const mls_job *job = cookie;
   const conic_surface_report *report = &job->report;
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->n_out);
@@ -269,36 +249,28 @@ static int write_statistics(mls_job *job, double total_seconds) {
     cli_json_number(json, "hausdorff", report->there.max > report->back.max ? report->there.max : report->back.max);
   }
   cli_json_count(json, "evaluations", report->n_evaluations);
-  write_seconds(json, job, total_seconds);
-  cli_json_number(json, "points_per_s", (double)job->n_in / job->work_seconds);
+  cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
-  job->repairs.nan = report->outcomes[CONIC_SURFACE_NOT_FINITE];
-  job->repairs.failed = report->outcomes[CONIC_SURFACE_TOO_FEW] + report->outcomes[CONIC_SURFACE_NO_MINIMUM] +
-                        report->outcomes[CONIC_SURFACE_ILL_CONDITIONED];
-  cli_json_skipped(json, &job->repairs);
-  return cli_json_finish(file);
+  conic_repairs repairs = job->repairs;
+  repairs.nan = report->outcomes[CONIC_SURFACE_NOT_FINITE];
+  repairs.failed = report->outcomes[CONIC_SURFACE_TOO_FEW] + report->outcomes[CONIC_SURFACE_NO_MINIMUM] +
+                   report->outcomes[CONIC_SURFACE_ILL_CONDITIONED];
+  cli_json_skipped(json, &repairs);
 }
 
-static int run_job(mls_job *job) {
-  double start = cli_seconds();
-  job->session->isa = (conic_isa)job->isa;
-  int exit_code = cli_session_open(job->session);
-  if (exit_code != CLI_DONE)
-    return exit_code;
+static int make_points(void *cookie) {
+  mls_job *job = cookie;
   conic_status status = job->has_memory ? CONIC_OK : read_points(job);
   if (status == CONIC_OK)
     status = work(job);
-  exit_code = status == CONIC_OK ? write_points(job) : cli_exit_of(status);
-  double total_seconds = cli_seconds() - start;
-  if (exit_code == CLI_DONE) {
-    warn(job);
-    tell(job, total_seconds);
-    exit_code = write_statistics(job, total_seconds);
-  }
-  conic_splats_release(job->session->context, &job->result);
+  return status == CONIC_OK ? write_points(job) : cli_exit_of(status);
+}
+
+static void release_points(void *cookie) {
+  mls_job *job = cookie;
+  conic_splats_release(job->base.session->context, &job->result);
   conic_surface_destroy(job->surface);
-  conic_model_release(job->session->context, &job->model);
-  return exit_code;
+  conic_model_release(job->base.session->context, &job->model);
 }
 
 /* --- arguments --- */
@@ -315,7 +287,7 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (n_positional != 2)
     return cli_usage("mls %s: %s; see conic help mls", name,
                      n_positional > 2 ? "one input at a time" : "no input given");
-  if (!job->output)
+  if (!job->base.output)
     return cli_usage("mls %s: no output given (-o OUT.ply)", name);
   if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
     return cli_usage("mls thin: needs --count N or --max-error E");
@@ -328,22 +300,20 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
                      name);
-  job->input = positional[1];
-  int exit_code = cli_check_ending(job->output, "ply");
-  if (exit_code == CLI_DONE)
-    exit_code = cli_check_outputs(job->session, &job->output, 1);
-  if (exit_code == CLI_DONE) /* the output may be the input: it appears when all is read */
-    exit_code = cli_check_inputs_stay(job->session, &job->input, 1, NULL, 0);
-  return exit_code == CLI_DONE ? cli_isa_check(job->session, (conic_isa)job->isa) : exit_code;
+  job->base.input = positional[1];
+  /* The output may be the input: it appears when all is read. */
+  int exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply", 1);
+  return exit_code == CLI_DONE ? cli_isa_check(job->base.session, (conic_isa)job->isa) : exit_code;
 }
 
-static int run(cli_session *session, int argc, char **argv) {
-  mls_job job = {.session = session, .action = N_MLS_ACTIONS};
+static int run_mls(cli_session *session, int argc, char **argv) {
+  static const cli_build_steps steps = {make_points, tell_points, report_points, release_points};
+  mls_job job = {.base = {session, .stages = {{"read"}, {"estimate"}, {"work"}, {"write"}}}, .action = N_MLS_ACTIONS};
   const char *positional[argc];
   int n_positional;
   conic_surface_options_init(&job.options);
   const cli_option options[] = {
-      {"o", CLI_TEXT, &job.output, "OUT.ply", "the file to write"},
+      {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       {"type", CLI_CHOICE, &job.type, "T", "mls: polynomials over planes; apss: algebraic spheres [mls]",
        .choices = type_names},
       {"plane", CLI_CHOICE, &job.plane, "P",
@@ -374,10 +344,8 @@ static int run(cli_session *session, int argc, char **argv) {
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
-  if (exit_code != CLI_DONE)
-    return exit_code < 0 ? CLI_DONE : exit_code;
-  exit_code = check_job(&job, positional, n_positional);
-  return exit_code == CLI_DONE ? run_job(&job) : exit_code;
+  session->isa = (conic_isa)job.isa;
+  return cli_build_run(&job, &steps, exit_code == CLI_DONE ? check_job(&job, positional, n_positional) : exit_code);
 }
 
 const cli_command cli_mls = {
@@ -385,5 +353,5 @@ const cli_command cli_mls = {
     .summary = "point-set surfaces: smooths, thins or densifies points",
     .usage = "conic mls project|thin|densify IN -o OUT.ply [--type mls|apss] [--h H] [--degree D]\n"
              "                 [--count N] [--max-error E] [--spacing S] [--hole R]",
-    .run = run,
+    .run = run_mls,
 };

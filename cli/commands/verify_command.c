@@ -1,5 +1,4 @@
 /* conic verify: how far a picture is from what the oracle says it should be. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

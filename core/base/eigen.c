@@ -22,7 +22,7 @@ void conic_eigen2(double xx, double xy, double yy, double values[2], double majo
 }
 
 /* One Jacobi rotation that makes matrix[p][q] zero; r is the third index. */
-static void rotate(double matrix[3][3], double vectors[3][3], int p, int q) {
+static void rotate_pair(double matrix[3][3], double vectors[3][3], int p, int q) {
   if (matrix[p][q] == 0.0)
     return;
   int r = 3 - p - q;
@@ -75,9 +75,9 @@ void conic_eigen3(const double matrix[6], double values[3], double vectors[3][3]
     double diagonal = fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]);
     if (!(off > 1e-18 * diagonal))
       break;
-    rotate(m, vectors, 0, 1);
-    rotate(m, vectors, 0, 2);
-    rotate(m, vectors, 1, 2);
+    rotate_pair(m, vectors, 0, 1);
+    rotate_pair(m, vectors, 0, 2);
+    rotate_pair(m, vectors, 1, 2);
   }
   for (int i = 0; i < 3; i++)
     values[i] = m[i][i];

@@ -1,27 +1,18 @@
 #include "core/base/gaussian.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "core/base/color.h"
+#include "core/base/real.h"
 
 /* ln 2 in two parts; the first has zeros in its last bits, so that k·ln2_high is exact. */
 static const double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-
-/* 2^k for a normal result. */
-static double power_of_two(int k) {
-  uint64_t bits = (uint64_t)(k + 1023) << 52;
-  double value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
 
 double conic_gaussian_exp(double x) {
   if (x != x)
     return x;
   if (x > 709.8)
-    return power_of_two(1023) * 2.0;
+    return conic_power_of_two(1023) * 2.0;
   if (x < -745.2)
     return 0.0;
   int k = (int)(x * (1.0 / (ln2_high + ln2_low)) + (x < 0.0 ? -0.5 : 0.5));
@@ -30,7 +21,7 @@ double conic_gaussian_exp(double x) {
     sum = 1.0 + sum * rest / (double)n;
   sum = 1.0 + sum * rest;
   int half = k / 2; /* in two steps, as 2^k alone may be no normal number */
-  return sum * power_of_two(half) * power_of_two(k - half);
+  return sum * conic_power_of_two(half) * conic_power_of_two(k - half);
 }
 
 double conic_gaussian_opacity(double logit) {

@@ -21,7 +21,7 @@ static double cos_near_zero(double x) {
 }
 
 /* x = quarter·π/2 + rest, |rest| ≤ π/4; the quarter modulo 4. */
-static int reduce(double x, double *rest) {
+static int reduce_angle(double x, double *rest) {
   double k = x * (2.0 / CONIC_PI);
   if (!(k > -1e15 && k < 1e15)) {
     *rest = (x - x) / (x - x);
@@ -35,7 +35,7 @@ static int reduce(double x, double *rest) {
 
 double conic_sin(double x_rad) {
   double rest;
-  switch (reduce(x_rad, &rest)) {
+  switch (reduce_angle(x_rad, &rest)) {
   case 0:
     return sin_near_zero(rest);
   case 1:
@@ -49,7 +49,7 @@ double conic_sin(double x_rad) {
 
 double conic_cos(double x_rad) {
   double rest;
-  switch (reduce(x_rad, &rest)) {
+  switch (reduce_angle(x_rad, &rest)) {
   case 0:
     return cos_near_zero(rest);
   case 1:

@@ -27,7 +27,7 @@ static char *copy_text(conic_context *context, const char *text) {
   return copy;
 }
 
-static void release(conic_output *output) {
+static void release_output(conic_output *output) {
   conic_context *context = output->context;
   conic_memory_release(context, output->path);
   conic_memory_release(context, output->temporary_path);
@@ -92,7 +92,7 @@ conic_status conic_output_open(conic_context *context, const char *path, conic_o
   } else
     status = open_temporary(made);
   if (status != CONIC_OK) {
-    release(made);
+    release_output(made);
     return status;
   }
   *output = made;
@@ -116,7 +116,7 @@ conic_status conic_output_commit(conic_output *output) {
     if (output->temporary_path)
       unlink(output->temporary_path);
   }
-  release(output);
+  release_output(output);
   return status;
 }
 
@@ -127,7 +127,7 @@ void conic_output_abandon(conic_output *output) {
     fclose(output->stream);
   if (output->temporary_path)
     unlink(output->temporary_path);
-  release(output);
+  release_output(output);
 }
 
 conic_status conic_output_end(conic_output *output, conic_status status) {

@@ -54,7 +54,7 @@ void conic_input_close(conic_input *input) {
   memset(input, 0, sizeof *input);
 }
 
-static conic_status report(conic_input *input) {
+static conic_status report_progress(conic_input *input) {
   uint64_t end = input->window_offset + input->filled;
   int is_last = end >= input->size_bytes && input->reported_bytes > 0 && input->reported_bytes < end;
   if (!input->has_size || (end - input->reported_bytes < report_bytes && !is_last))
@@ -81,7 +81,7 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
     input->filled += (size_t)n;
     input->is_at_end = n == 0;
   }
-  return report(input);
+  return report_progress(input);
 }
 
 uint64_t conic_input_remaining_bytes(const conic_input *input) {

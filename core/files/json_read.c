@@ -80,7 +80,7 @@ static char peek(conic_json *json) {
   return (char)(json->next < json->end ? *json->next : 0);
 }
 
-static conic_status begin(conic_json *json, char opening, const char *what) {
+static conic_status begin_text(conic_json *json, char opening, const char *what) {
   if (json->status != CONIC_OK)
     return json->status;
   if (peek(json) != opening)
@@ -93,11 +93,11 @@ static conic_status begin(conic_json *json, char opening, const char *what) {
 }
 
 conic_status conic_json_begin_object(conic_json *json) {
-  return begin(json, '{', "an object is expected");
+  return begin_text(json, '{', "an object is expected");
 }
 
 conic_status conic_json_begin_array(conic_json *json) {
-  return begin(json, '[', "an array is expected");
+  return begin_text(json, '[', "an array is expected");
 }
 
 /* Past the comma to the next part of an object or array, or past its end. */

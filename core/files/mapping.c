@@ -71,7 +71,7 @@ void conic_mapping_close(conic_context *context, conic_mapping *mapping) {
   memset(mapping, 0, sizeof *mapping);
 }
 
-static uint64_t mix(uint64_t sum, uint64_t word) {
+static uint64_t mix_word(uint64_t sum, uint64_t word) {
   sum = (sum ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* both steps can be undone, so no word's change is lost */
   return sum << 29 | sum >> 35;
 }
@@ -83,11 +83,11 @@ unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes) {
     for (int lane = 0; lane < 4; lane++) {
       uint64_t word;
       memcpy(&word, bytes + i + (size_t)lane * 8, sizeof word);
-      lanes[lane] = mix(lanes[lane], word);
+      lanes[lane] = mix_word(lanes[lane], word);
     }
   for (int lane = 0; lane < 4; lane++)
-    sum = mix(sum, lanes[lane]);
+    sum = mix_word(sum, lanes[lane]);
   for (; i < n_bytes; i++)
-    sum = mix(sum, bytes[i]);
-  return mix(sum ^ sum >> 32, 0);
+    sum = mix_word(sum, bytes[i]);
+  return mix_word(sum ^ sum >> 32, 0);
 }

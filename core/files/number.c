@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/base/real.h"
+
 /* The powers of ten that a double holds exactly. */
 static const double exact_powers[23] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                         1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -81,9 +83,7 @@ static uint64_t leading_bits(const natural *number, int *n_below, int *has_rest)
 
 static double power_of_two(int exponent) {
   uint64_t bits = exponent >= -1022 ? (uint64_t)(exponent + 1023) << 52 : UINT64_C(1) << (exponent + 1074);
-  double value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
+  return conic_double_of_bits(bits);
 }
 
 static double infinity(void) {
@@ -270,7 +270,7 @@ size_t conic_number_parse(const char *text, size_t length, double *value) {
 }
 
 /* `n` digits, the first worth 10^exponent, as text: plainly where that is short, else with an exponent. */
-static size_t lay_out(char *text, int is_negative, const char *digits, int n, int exponent) {
+static size_t lay_out_digits(char *text, int is_negative, const char *digits, int n, int exponent) {
   char *c = text;
   while (n > 1 && digits[n - 1] == '0')
     n--;
@@ -313,13 +313,12 @@ static size_t print_digits(char text[CONIC_NUMBER_ROOM], double value, int preci
     if (is_digit(*c))
       exponent = exponent * 10 + (*c - '0');
   }
-  return lay_out(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);
+  return lay_out_digits(text, value < 0.0, digits, n, is_negative ? -exponent : exponent);
 }
 
 /* Zero, infinity and NaN, which have no leading digit; 0 for other numbers. */
 static size_t print_special(char text[CONIC_NUMBER_ROOM], double value) {
-  uint64_t bits;
-  memcpy(&bits, &value, sizeof bits);
+  uint64_t bits = conic_bits_of_double(value);
   int is_negative = bits >> 63 != 0;
   const char *name = value != value ? "nan" : value == 0.0 ? (is_negative ? "-0" : "0") : is_negative ? "-inf" : "inf";
   if (value == value && value != 0.0 && value - value == 0.0)
@@ -358,7 +357,7 @@ static size_t print_float_fast(char text[CONIC_NUMBER_ROOM], float value) {
     if ((float)again != (float)size)
       continue;
     int n = snprintf(digits, sizeof digits, "%u", number); /* one digit more where rounding carried */
-    return lay_out(text, value < 0.0f, digits, n, exponent + n - precision);
+    return lay_out_digits(text, value < 0.0f, digits, n, exponent + n - precision);
   }
   return 0;
 }

@@ -40,7 +40,7 @@ static conic_status read_focal_length(conic_json *json, double *value) {
 
 static const char wrong_shape[] = "world_to_camera has 4 rows of 4 numbers";
 
-static conic_status read_row(conic_json *json, double row[4]) {
+static conic_status read_matrix_row(conic_json *json, double row[4]) {
   int n = 0;
   conic_json_begin_array(json);
   while (conic_json_next_item(json)) {
@@ -67,7 +67,7 @@ static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {
   while (conic_json_next_item(json)) {
     if (n == 4)
       return conic_json_wrong(json, wrong_shape);
-    read_row(json, rows[n++]);
+    read_matrix_row(json, rows[n++]);
   }
   if (json->status != CONIC_OK)
     return json->status;

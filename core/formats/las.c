@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/files/file_fields.h"
 #include "core/formats/ply_source.h"
 #include "core/formats/raw_colors.h"
@@ -52,7 +53,7 @@ typedef struct las_reader {
   double block[3][BLOCK];
 } las_reader;
 
-static conic_status wrong(const las_reader *reader, const char *what, uint64_t at) {
+static conic_status wrong_las(const las_reader *reader, const char *what, uint64_t at) {
   return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (at byte %llu)", reader->input->name, what,
                     (unsigned long long)at);
 }
@@ -62,7 +63,7 @@ static uint64_t unsigned_at(const las_reader *reader, int at, size_t n_bytes) {
 }
 
 /* Copies what there is of the public header, of the size that its version has. */
-static conic_status read_header(las_reader *reader) {
+static conic_status read_las_header(las_reader *reader) {
   conic_status status = conic_input_fill(reader->input, HEADER_BYTES_1_4);
   size_t available = conic_input_available(reader->input);
   if (status != CONIC_OK)
@@ -70,7 +71,7 @@ static conic_status read_header(las_reader *reader) {
   memset(reader->header, 0, sizeof reader->header);
   memcpy(reader->header, conic_input_bytes(reader->input), available < HEADER_BYTES_1_4 ? available : HEADER_BYTES_1_4);
   if (available < LEAST_HEADER_BYTES)
-    return wrong(reader, "the file ends within the header", available);
+    return wrong_las(reader, "the file ends within the header", available);
   unsigned major = reader->header[AT_MAJOR], minor = reader->header[AT_MINOR];
   if (major != 1 || minor > 4)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
@@ -78,9 +79,9 @@ static conic_status read_header(las_reader *reader) {
                       AT_MAJOR);
   uint64_t least = minor == 4 ? HEADER_BYTES_1_4 : minor == 3 ? HEADER_BYTES_1_3 : LEAST_HEADER_BYTES;
   if (unsigned_at(reader, AT_HEADER_BYTES, 2) < least)
-    return wrong(reader, "the header is shorter than that of its version", AT_HEADER_BYTES);
+    return wrong_las(reader, "the header is shorter than that of its version", AT_HEADER_BYTES);
   if (available < least)
-    return wrong(reader, "the file ends within the header", available);
+    return wrong_las(reader, "the file ends within the header", available);
   return CONIC_OK;
 }
 
@@ -88,13 +89,14 @@ static conic_status check_format(las_reader *reader) {
   unsigned format = reader->header[AT_FORMAT];
   reader->point_bytes = (size_t)unsigned_at(reader, AT_POINT_BYTES, 2);
   if (format & 0xC0u)
-    return wrong(reader, "the points are compressed (LAZ), which is not read: decompress the file first", AT_FORMAT);
+    return wrong_las(reader, "the points are compressed (LAZ), which is not read: decompress the file first",
+                     AT_FORMAT);
   if (format >= N_FORMATS || !formats[format].n_bytes)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
                       "%s: point format %u; 0 to 3 and 6 to 8 are read (at byte %d)", reader->input->name, format,
                       AT_FORMAT);
   if (reader->point_bytes < (size_t)formats[format].n_bytes)
-    return wrong(reader, "a point is shorter than its format", AT_POINT_BYTES);
+    return wrong_las(reader, "a point is shorter than its format", AT_POINT_BYTES);
   reader->color = formats[format].color;
   return CONIC_OK;
 }
@@ -105,12 +107,12 @@ static conic_status read_scale(las_reader *reader) {
     memcpy(&reader->scale[axis], reader->header + at_scale, sizeof(double));
     memcpy(&reader->offset[axis], reader->header + at_offset, sizeof(double));
     if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
-      return wrong(reader, "a scale is zero or not finite", (uint64_t)at_scale);
+      return wrong_las(reader, "a scale is zero or not finite", (uint64_t)at_scale);
     if (!(reader->offset[axis] - reader->offset[axis] == 0.0))
-      return wrong(reader, "an offset is not finite", (uint64_t)at_offset);
+      return wrong_las(reader, "an offset is not finite", (uint64_t)at_offset);
     double farthest = fabs(reader->scale[axis]) * 0x1p31 + fabs(reader->offset[axis]);
     if (!(farthest - farthest == 0.0))
-      return wrong(reader, "a scale is too large", (uint64_t)at_scale);
+      return wrong_las(reader, "a scale is too large", (uint64_t)at_scale);
   }
   return CONIC_OK;
 }
@@ -128,13 +130,13 @@ static conic_status check_sizes(las_reader *reader) {
     count_at = AT_N_POINTS_64;
   }
   if (reader->points_offset < header_bytes)
-    return wrong(reader, "the points begin within the header", AT_POINTS);
+    return wrong_las(reader, "the points begin within the header", AT_POINTS);
   if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
-    return wrong(reader, "more variable-length records than fit before the points", AT_N_RECORDS);
+    return wrong_las(reader, "more variable-length records than fit before the points", AT_N_RECORDS);
   if (reader->points_offset > remaining)
-    return wrong(reader, "the points begin past the end of the file", AT_POINTS);
+    return wrong_las(reader, "the points begin past the end of the file", AT_POINTS);
   if (reader->n_points > CONIC_MAX_POINTS)
-    return wrong(reader, "too many points", (uint64_t)count_at);
+    return wrong_las(reader, "too many points", (uint64_t)count_at);
   if (reader->n_points > (remaining - reader->points_offset) / reader->point_bytes)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
                       "%s: the file is too short for the %llu points that it declares (at byte %d)",
@@ -163,7 +165,7 @@ static void convert(las_reader *reader, size_t at, size_t step, conic_ply_type t
 }
 
 /* Differences of the integers are exact, and rounded once. */
-static void store(las_reader *reader, size_t n) {
+static void store_records(las_reader *reader, size_t n) {
   conic_splats *points = &reader->builder.model->points;
   convert(reader, 0, 4, CONIC_PLY_INT32, n);
   for (int axis = 0; axis < 3; axis++) {
@@ -201,7 +203,7 @@ static conic_status read_points(las_reader *reader) {
     n = n < left ? n : (size_t)left;
     status = conic_builder_reserve_points(&reader->builder, points->count + n);
     if (status == CONIC_OK) {
-      store(reader, n);
+      store_records(reader, n);
       status = conic_builder_deliver(&reader->builder, 0);
     }
     input->next += n * reader->point_bytes;
@@ -211,7 +213,7 @@ static conic_status read_points(las_reader *reader) {
 
 conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
   las_reader reader = {.input = input};
-  conic_status status = read_header(&reader);
+  conic_status status = read_las_header(&reader);
   if (status == CONIC_OK)
     status = check_format(&reader);
   if (status == CONIC_OK)

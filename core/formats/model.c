@@ -66,7 +66,7 @@ static int is_obj(const char *bytes, size_t n) {
   return 0;
 }
 
-static conic_status refuse(const conic_input *input, const char *bytes, size_t n) {
+static conic_status refuse_model(const conic_input *input, const char *bytes, size_t n) {
   if (n == 0)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
   for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds; i++)
@@ -81,7 +81,7 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   const char *bytes = (const char *)conic_input_bytes(input);
   size_t n = conic_input_available(input);
   int is_xyz_name = conic_file_has_ending(path, "xyz") || conic_file_has_ending(path, "pts");
-  conic_status status = refuse(input, bytes, n);
+  conic_status status = refuse_model(input, bytes, n);
   if (status != CONIC_OK)
     return status;
   if (is_ply(bytes, n))

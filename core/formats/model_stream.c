@@ -46,7 +46,7 @@ static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver 
   return status;
 }
 
-static conic_status read_whole(streaming *s, conic_input *input) {
+static conic_status read_whole_stream(streaming *s, conic_input *input) {
   conic_model model;
   conic_status status = conic_model_read_kind(input, s->kind, s->options, NULL, &model);
   if (status == CONIC_OK)
@@ -87,7 +87,7 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
     status = pass(&s, &input, receive, cookie);
   else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || is_pipe))
-    status = read_whole(&s, &input);
+    status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);
   conic_input_close(&input);

@@ -205,7 +205,8 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
   return status;
 }
 
-static conic_status add_triangle(obj_reader *reader, const face_corner a, const face_corner b, const face_corner c) {
+static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, const face_corner b,
+                                     const face_corner c) {
   const uint32_t normals[3] = {a[NORMAL], b[NORMAL], c[NORMAL]};
   const uint32_t coordinates[3] = {a[TEXTURE], b[TEXTURE], c[TEXTURE]};
   conic_status status = conic_builder_add_triangle(&reader->builder, a[VERTEX], b[VERTEX], c[VERTEX]);
@@ -227,7 +228,7 @@ static conic_status read_face(void *data) {
       return n < 3 ? conic_input_wrong(reader->input, "a face has at least 3 corners") : CONIC_OK;
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
-      status = add_triangle(reader, first, previous, current);
+      status = add_obj_triangle(reader, first, previous, current);
     if (status != CONIC_OK)
       return status;
     if (n == 0)

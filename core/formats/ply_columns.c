@@ -1,6 +1,5 @@
 #include "core/formats/ply_columns.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -170,7 +169,7 @@ static void find_origin(conic_ply_layout *layout, const conic_ply_block block, s
   }
 }
 
-static void store(const double *values, size_t n, double origin, float *to) {
+static void store_column(const double *values, size_t n, double origin, float *to) {
   for (size_t i = 0; i < n; i++)
     to[i] = (float)(values[i] - origin);
 }
@@ -178,7 +177,7 @@ static void store(const double *values, size_t n, double origin, float *to) {
 static void store_vectors(const conic_ply_block block, conic_ply_column first_column, size_t n, size_t first,
                           float *const to[3]) {
   for (int axis = 0; axis < 3; axis++)
-    store(block[(int)first_column + axis], n, 0.0, to[axis] + first);
+    store_column(block[(int)first_column + axis], n, 0.0, to[axis] + first);
 }
 
 static void store_axes(conic_splats *points, size_t i, const double tangent_u[3], const double tangent_v[3]) {
@@ -244,7 +243,7 @@ void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block bl
   if (layout->has_origin_positions && !layout->is_origin_set)
     find_origin(layout, block, n, points);
   for (int axis = 0; axis < 3; axis++)
-    store(block[CONIC_PLY_X + axis], n, points->origin[axis], points->position[axis] + first);
+    store_column(block[CONIC_PLY_X + axis], n, points->origin[axis], points->position[axis] + first);
   if (layout->form == CONIC_PLY_AXES) {
     store_vectors(block, CONIC_PLY_TANGENT_U, n, first, points->tangent_u);
     store_vectors(block, CONIC_PLY_TANGENT_V, n, first, points->tangent_v);

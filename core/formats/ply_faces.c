@@ -74,7 +74,7 @@ static conic_status skip_property(conic_ply_source *source, const conic_ply_prop
   return status == CONIC_OK ? conic_ply_skip_values(source, property->type, count) : status;
 }
 
-static conic_status read_row(triangulation *faces, const conic_ply_property *properties, size_t i_indices) {
+static conic_status read_face_row(triangulation *faces, const conic_ply_property *properties, size_t i_indices) {
   size_t n_before = faces->builder->model->n_triangles;
   conic_status status = conic_ply_begin_row(faces->source);
   conic_ply_face_texture_begin_row(&faces->texture);
@@ -109,6 +109,6 @@ conic_status conic_ply_read_faces(conic_ply_source *source, const conic_ply_head
                       element->name, (unsigned long long)element->line);
   conic_ply_face_texture_find(header, element, builder->model, &faces.texture);
   for (uint64_t i = 0; status == CONIC_OK && i < element->count; i++)
-    status = read_row(&faces, properties, (size_t)i_indices);
+    status = read_face_row(&faces, properties, (size_t)i_indices);
   return status;
 }

@@ -59,7 +59,7 @@ static int is_comment(const header_line *line) {
   return line->n_words == 0 || is_word(line, 0, "comment") || is_word(line, 0, "obj_info");
 }
 
-static conic_status wrong(conic_input *input, const header_line *line, const char *what, const char *word) {
+static conic_status wrong_header(conic_input *input, const header_line *line, const char *what, const char *word) {
   return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s%s%s%s (line %llu)", input->name, what, word ? " '" : "",
                     word ? word : "", word ? "'" : "", (unsigned long long)line->line);
 }
@@ -84,13 +84,13 @@ static conic_status read_comment(conic_input *input, const header_line *line, co
   while (name < end && is_blank(*name))
     name++;
   if (!name_end || name_end - name > CONIC_INPUT_LONGEST_WORD / 2)
-    return wrong(input, line, "a texture's name is too long", NULL);
+    return wrong_header(input, line, "a texture's name is too long", NULL);
   while (name_end > name && is_blank(name_end[-1]))
     name_end--;
   if (name_end <= name)
-    return wrong(input, line, "a texture without a name", NULL);
+    return wrong_header(input, line, "a texture without a name", NULL);
   if (textures->count == CONIC_MAX_MATERIALS)
-    return wrong(input, line, "too many textures", NULL);
+    return wrong_header(input, line, "too many textures", NULL);
   return conic_texts_add(input->context, textures, name, (size_t)(name_end - name));
 }
 
@@ -124,15 +124,15 @@ static conic_status read_line(conic_input *input, header_line *line, conic_texts
 static conic_status parse_format(conic_input *input, const header_line *line, conic_ply_header *header) {
   static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
   if (line->n_words != 3)
-    return wrong(input, line, "a format line is 'format ENCODING 1.0'", NULL);
+    return wrong_header(input, line, "a format line is 'format ENCODING 1.0'", NULL);
   if (!is_word(line, 2, "1.0"))
-    return wrong(input, line, "unknown PLY version", line->words[2]);
+    return wrong_header(input, line, "unknown PLY version", line->words[2]);
   for (int i = 0; i < 3; i++)
     if (is_word(line, 1, names[i])) {
       header->format = (conic_ply_format)i;
       return CONIC_OK;
     }
-  return wrong(input, line, "unknown PLY encoding", line->words[1]);
+  return wrong_header(input, line, "unknown PLY encoding", line->words[1]);
 }
 
 /* A natural number without sign; 0 where it is none or does not fit. */
@@ -149,10 +149,10 @@ static int parse_count(const char *text, uint64_t *count) {
 static conic_status parse_element(conic_input *input, const header_line *line, conic_ply_header *header) {
   conic_ply_element element = {.line = line->line, .first_property = header->n_properties};
   if (line->n_words != 3 || !parse_count(line->words[2], &element.count))
-    return wrong(input, line, "an element line is 'element NAME COUNT'", NULL);
+    return wrong_header(input, line, "an element line is 'element NAME COUNT'", NULL);
   copy_word(element.name, sizeof element.name, line->words[1], strlen(line->words[1]));
   if (conic_ply_find_element(header, element.name))
-    return wrong(input, line, "a second element", element.name);
+    return wrong_header(input, line, "a second element", element.name);
   conic_status status = conic_memory_reserve(input->context, &header->elements, header->n_elements,
                                              header->n_elements + 1, &header->element_capacity, sizeof element);
   if (status == CONIC_OK)
@@ -166,7 +166,7 @@ static conic_status parse_type(conic_input *input, const header_line *line, int 
       *type = (conic_ply_type)i;
       return CONIC_OK;
     }
-  return wrong(input, line, "unknown type", line->words[i_word]);
+  return wrong_header(input, line, "unknown type", line->words[i_word]);
 }
 
 static conic_status parse_property(conic_input *input, const header_line *line, conic_ply_header *header) {
@@ -174,13 +174,13 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
   int n_words = property.is_list ? 5 : 3;
   conic_status status = CONIC_OK;
   if (header->n_elements == 0)
-    return wrong(input, line, "a property before any element", NULL);
+    return wrong_header(input, line, "a property before any element", NULL);
   if (line->n_words != n_words)
-    return wrong(input, line, "a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'", NULL);
+    return wrong_header(input, line, "a property line is 'property TYPE NAME' or 'property list TYPE TYPE NAME'", NULL);
   if (property.is_list)
     status = parse_type(input, line, 2, &property.count_type);
   if (status == CONIC_OK && !conic_ply_type_is_integer(property.count_type))
-    status = wrong(input, line, "the length of a list cannot be of type", line->words[2]);
+    status = wrong_header(input, line, "the length of a list cannot be of type", line->words[2]);
   if (status == CONIC_OK)
     status = parse_type(input, line, n_words - 2, &property.type);
   if (status == CONIC_OK)
@@ -203,7 +203,7 @@ static conic_status read_lines(conic_input *input, conic_ply_header *header) {
   int has_format = 0;
   conic_status status = read_line(input, &line, &header->textures);
   if (status == CONIC_OK && !(line.n_words == 1 && is_word(&line, 0, "ply")))
-    status = wrong(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
+    status = wrong_header(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
   while (status == CONIC_OK) {
     status = read_line(input, &line, &header->textures);
     if (status != CONIC_OK || is_comment(&line))
@@ -218,10 +218,10 @@ static conic_status read_lines(conic_input *input, conic_ply_header *header) {
     else if (is_word(&line, 0, "property"))
       status = parse_property(input, &line, header);
     else
-      status = wrong(input, &line, "a header line cannot begin with", line.words[0]);
+      status = wrong_header(input, &line, "a header line cannot begin with", line.words[0]);
   }
   if (status == CONIC_OK && !has_format)
-    status = wrong(input, &line, "the header has no format line", NULL);
+    status = wrong_header(input, &line, "the header has no format line", NULL);
   return status;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/files/number.h"
 
 conic_status conic_ply_wrong(const conic_ply_source *source, const char *what) {
@@ -193,9 +194,7 @@ static uint64_t load_64(const unsigned char *p, int is_big) {
 static void convert_floats(const unsigned char *bytes, size_t stride, size_t n, int is_big, double *values) {
   for (size_t i = 0; i < n; i++) {
     uint32_t bits = load_32(bytes + i * stride, is_big);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    values[i] = (double)value;
+    values[i] = (double)conic_float_of_bits(bits);
   }
 }
 

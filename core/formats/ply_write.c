@@ -1,5 +1,4 @@
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 
 #include "conic/model.h"
@@ -45,8 +44,8 @@ void conic_write_options_init_sized(conic_write_options *options, size_t size) {
   conic_options_give(options, size, &own);
 }
 
-static conic_status check_options(conic_context *context, const char *path, const conic_write_options *options,
-                                  unsigned fields) {
+static conic_status check_write_options(conic_context *context, const char *path, const conic_write_options *options,
+                                        unsigned fields) {
   int is_cutoff_usable = options->cutoff > 0.0f && options->cutoff - options->cutoff == 0.0f;
   if ((options->encoding != CONIC_PLY_BINARY && options->encoding != CONIC_PLY_ASCII) ||
       (options->circles && !is_cutoff_usable))
@@ -63,7 +62,7 @@ conic_status conic_splats_writer_open(conic_context *context, const char *path, 
   conic_write_options_init(&settings);
   if (options && !conic_options_take(&settings, options))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options were not initialised", path);
-  conic_status status = check_options(context, path, &settings, fields);
+  conic_status status = check_write_options(context, path, &settings, fields);
   if (status != CONIC_OK)
     return status;
   conic_splats_writer *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -142,7 +141,7 @@ static void print_header(const conic_splats_writer *writer) {
 }
 
 /* The first batch decides how positions and colours are stored; there may be none. */
-static void begin(conic_splats_writer *writer, const conic_splats *first) {
+static void begin_rows(conic_splats_writer *writer, const conic_splats *first) {
   writer->has_double_positions = writer->options.double_positions != 0;
   for (int axis = 0; first && axis < 3; axis++)
     writer->has_double_positions |= first->origin[axis] != 0.0;
@@ -260,7 +259,7 @@ static conic_status append_rows(conic_splats_writer *writer, const conic_splats 
     return conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: a batch lacks arrays that were announced",
                       writer->path);
   if (!writer->has_header && batch->count > 0)
-    begin(writer, batch);
+    begin_rows(writer, batch);
   writer->next_clip = 0;
   for (size_t first = 0; first < batch->count; first += BLOCK) {
     size_t n = batch->count - first < BLOCK ? batch->count - first : BLOCK;
@@ -291,7 +290,7 @@ conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
     status = conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: %zu splats were announced, but %zu written",
                         writer->path, writer->count, writer->written);
   else if (!writer->has_header)
-    begin(writer, NULL);
+    begin_rows(writer, NULL);
   status = conic_output_end(writer->output, status);
   writer->output = NULL;
   conic_splats_writer_abandon(writer);

@@ -10,7 +10,7 @@ float conic_raw_colors_largest(const conic_splats *points, float largest) {
   return largest;
 }
 
-static void drop(conic_context *context, conic_splats *points) {
+static void drop_colors(conic_context *context, conic_splats *points) {
   for (int channel = 0; channel < 3; channel++) {
     conic_memory_release(context, points->color[channel]);
     points->color[channel] = NULL;
@@ -50,7 +50,7 @@ conic_status conic_raw_colors_decode(conic_context *context, conic_splats *point
   if (status != CONIC_OK)
     return status;
   if (!scale.table)
-    drop(context, points);
+    drop_colors(context, points);
   for (int channel = 0; channel < 3 && scale.table; channel++)
     conic_raw_colors_apply(&scale, points->color[channel], points->count);
   conic_memory_release(context, scale.table);

@@ -43,7 +43,7 @@ static void rotation_from_y(const double up[3], double rotation[3][3]) {
   memcpy(rotation, made, sizeof made);
 }
 
-static void rotate(const double rotation[3][3], const double v[3], double result[3]) {
+static void rotate_vector(const double rotation[3][3], const double v[3], double result[3]) {
   for (int i = 0; i < 3; i++)
     result[i] = rotation[i][0] * v[0] + rotation[i][1] * v[1] + rotation[i][2] * v[2];
 }
@@ -88,7 +88,7 @@ conic_status conic_camera_frame(conic_context *context, const conic_framing *giv
   camera->cy = 0.5 * (double)framing->height;
   for (int i = 0; i < 3; i++) {
     double row[3];
-    rotate((const double(*)[3])rotation, rows[i], row);
+    rotate_vector((const double(*)[3])rotation, rows[i], row);
     memcpy(camera->cam_from_world[i], row, sizeof row);
     camera->cam_from_world[i][3] =
         (i == 2 ? distance : 0.0) - (row[0] * center[0] + row[1] * center[1] + row[2] * center[2]);

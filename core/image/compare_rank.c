@@ -1,5 +1,7 @@
 /* Percentiles and counts of the pixels' differences, without memory for them: what is not negative is ordered as the
  * bits of its float are, so that three counts, of 2¹¹ classes each, find a rank exactly. */
+#include "core/base/color.h"
+#include "core/base/real.h"
 #include "core/image/compare.h"
 #include "core/image/image_common.h"
 
@@ -28,12 +30,6 @@ static float pixel_difference(const conic_image *a, const conic_image *b, unsign
   return (float)largest;
 }
 
-static uint32_t bits_of(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
 /* The class in which the rank falls; *rank becomes its rank in there. */
 static uint32_t find_class(const size_t *counts, size_t *rank) {
   uint32_t i = 0;
@@ -48,16 +44,14 @@ double conic_compare_p999(const conic_image *a, const conic_image *b, unsigned p
   for (int shift = 2 * CLASS_BITS; shift >= 0; shift -= CLASS_BITS) { /* 33 bits, the first of them 0 */
     size_t counts[N_CLASSES] = {0};
     for (size_t i = 0; i < n; i++) {
-      uint64_t bits = bits_of(pixel_difference(a, b, planes, i));
+      uint64_t bits = conic_bits_of_float(pixel_difference(a, b, planes, i));
       if (bits >> shift >> CLASS_BITS == known)
         counts[bits >> shift & (N_CLASSES - 1)]++;
     }
     known = known << CLASS_BITS | find_class(counts, &rank);
   }
   uint32_t bits = (uint32_t)known;
-  float value;
-  memcpy(&value, &bits, sizeof value);
-  return (double)value;
+  return (double)conic_float_of_bits(bits);
 }
 
 size_t conic_compare_codes(const conic_image *a, const conic_image *b) {

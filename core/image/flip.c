@@ -156,7 +156,7 @@ static double color_difference(const flip_work *work, const double a_rgb[3], con
   return 0.95 + 0.05 * (distance - knee) / (work->greatest - knee);
 }
 
-static double length_of(double x, double y) {
+static double length_of_slope(double x, double y) {
   return sqrt(x * x + y * y) / 116.0; /* Y is 116 wide */
 }
 
@@ -165,8 +165,8 @@ static double feature_difference(const flip_buffers *buffers, size_t x) {
   double edges[2], points[2];
   for (int k = 0; k < 2; k++) {
     const double(*sums)[TILE_WIDTH] = buffers->sums[k];
-    edges[k] = length_of(sums[SLOPE_X][x], sums[SLOPE_Y][x]);
-    points[k] = length_of(sums[BEND_X][x], sums[BEND_Y][x]);
+    edges[k] = length_of_slope(sums[SLOPE_X][x], sums[SLOPE_Y][x]);
+    points[k] = length_of_slope(sums[BEND_X][x], sums[BEND_Y][x]);
   }
   double edge = fabs(edges[0] - edges[1]), point = fabs(points[0] - points[1]);
   return sqrt((edge > point ? edge : point) * 0.70710678118654752);

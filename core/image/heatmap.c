@@ -47,7 +47,8 @@ static double pixel_difference(const float *a, const float *b) {
 }
 
 /* A picture for the heat map of two images, all zero. */
-static conic_status begin(conic_context *context, const conic_image *a, const conic_image *b, conic_image *heatmap) {
+static conic_status begin_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
+                                  conic_image *heatmap) {
   if (heatmap)
     memset(heatmap, 0, sizeof *heatmap);
   if (!a || !b || !heatmap || !a->planes[CONIC_PLANE_RGBA] || !b->planes[CONIC_PLANE_RGBA])
@@ -60,7 +61,7 @@ static conic_status begin(conic_context *context, const conic_image *a, const co
 
 conic_status conic_image_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                  conic_image *heatmap) {
-  conic_status status = begin(context, a, b, heatmap);
+  conic_status status = begin_heatmap(context, a, b, heatmap);
   if (status != CONIC_OK)
     return status;
   const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
@@ -77,7 +78,7 @@ conic_status conic_image_heatmap(conic_context *context, const conic_image *a, c
 conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                       conic_image *heatmap) {
   double mean;
-  conic_status status = begin(context, a, b, heatmap);
+  conic_status status = begin_heatmap(context, a, b, heatmap);
   if (status != CONIC_OK)
     return status;
   float *map = conic_memory_allocate(context, conic_image_pixels(a), sizeof *map);

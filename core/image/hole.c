@@ -1,5 +1,4 @@
 /* The largest hole: what the first image covers and the second does not. */
-#include <string.h>
 
 #include "core/base/memory.h"
 #include "core/image/compare.h"
@@ -41,7 +40,7 @@ static size_t push(unsigned char *is_hole, uint32_t *stack, size_t n_stack, size
 }
 
 /* The size of the hole that pixel `first` is in, which is then no longer on the map. */
-static size_t fill(unsigned char *is_hole, uint32_t *stack, size_t width, size_t height, size_t first) {
+static size_t fill_hole(unsigned char *is_hole, uint32_t *stack, size_t width, size_t height, size_t first) {
   size_t n_filled = 0, n_stack = push(is_hole, stack, 0, first);
   while (n_stack > 0) {
     size_t i = stack[--n_stack], x = i % width, y = i / width;
@@ -79,7 +78,7 @@ conic_status conic_largest_hole(conic_context *context, const conic_image *a, co
   for (size_t i = 0; i < n && n_missing > *n_pixels; i++) {
     if (!is_hole[i])
       continue;
-    size_t n_filled = fill(is_hole, stack, (size_t)a->width, (size_t)a->height, i);
+    size_t n_filled = fill_hole(is_hole, stack, (size_t)a->width, (size_t)a->height, i);
     n_missing -= n_filled;
     if (n_filled > *n_pixels)
       *n_pixels = n_filled;

@@ -55,7 +55,8 @@ static exr_result_t write_header(exr_context_t file, int width, int height, uint
   return result;
 }
 
-static conic_status begin(conic_deep_writer *writer, int height, uint32_t most_samples, const conic_image *header) {
+static conic_status begin_parts(conic_deep_writer *writer, int height, uint32_t most_samples,
+                                const conic_image *header) {
   exr_context_initializer_t settings;
   conic_exr_stream_init(&writer->stream, writer->context, writer->path, conic_output_stream(writer->output), &settings);
   writer->ends = conic_memory_allocate(writer->context, (size_t)writer->width, sizeof *writer->ends);
@@ -78,7 +79,7 @@ conic_status conic_deep_open(conic_context *context, const char *path, int width
   opened->path = path;
   conic_status status = conic_output_open(context, path, &opened->output);
   if (status == CONIC_OK)
-    status = begin(opened, height, most_samples, header);
+    status = begin_parts(opened, height, most_samples, header);
   if (status == CONIC_OK)
     *writer = opened;
   else
@@ -122,7 +123,7 @@ conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_line 
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-static void release(conic_deep_writer *writer) {
+static void release_writer(conic_deep_writer *writer) {
   conic_memory_release(writer->context, writer->ends);
   conic_memory_release(writer->context, writer->packed);
   conic_memory_release(writer->context, writer);
@@ -133,7 +134,7 @@ conic_status conic_deep_finish(conic_deep_writer *writer) {
   conic_status status =
       result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
   status = conic_output_end(writer->output, status);
-  release(writer);
+  release_writer(writer);
   return status;
 }
 
@@ -143,7 +144,7 @@ void conic_deep_abandon(conic_deep_writer *writer) {
   if (writer->file)
     exr_finish(&writer->file);
   conic_output_abandon(writer->output);
-  release(writer);
+  release_writer(writer);
 }
 
 #else

@@ -99,7 +99,7 @@ typedef struct reading {
   void *samples;
 } reading;
 
-static void *make_room(void *cookie, const conic_bridge_picture *picture) {
+static void *make_room_for_picture(void *cookie, const conic_bridge_picture *picture) {
   reading *work = cookie;
   if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
       picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
@@ -140,7 +140,7 @@ static conic_status read_samples(conic_context *context, const char *path, conic
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: %s", path, message);
   if (!bridge)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
-  conic_bridge_result result = bridge->read(path, picture, make_room, work, message);
+  conic_bridge_result result = bridge->read(path, picture, make_room_for_picture, work, message);
   if (result == CONIC_BRIDGE_OK)
     return CONIC_OK;
   if (work->status != CONIC_OK)

@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
@@ -103,8 +104,7 @@ static int parse_scale_sign(const char *word) {
 }
 
 static float swap_bytes(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
+  uint32_t bits = conic_bits_of_float(value);
   bits = bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
   memcpy(&value, &bits, sizeof value);
   return value;
@@ -147,7 +147,7 @@ static int is_long_enough(FILE *file, int width, int height, int n_channels) {
   return end - here >= 4LL * n_channels * width * height;
 }
 
-static conic_status read_file(conic_context *context, const char *path, FILE *file, conic_image *image) {
+static conic_status read_pfm(conic_context *context, const char *path, FILE *file, conic_image *image) {
   char magic[32], word[32];
   int size[2], sign;
   if (!read_word(file, magic) || (strcmp(magic, "PF") != 0 && strcmp(magic, "Pf") != 0))
@@ -175,7 +175,7 @@ conic_status conic_pfm_read(conic_context *context, const char *path, conic_imag
   FILE *file = fopen(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-  conic_status status = read_file(context, path, file, image);
+  conic_status status = read_pfm(context, path, file, image);
   fclose(file);
   return status;
 }

@@ -1,6 +1,5 @@
 #include "core/image/image_samples.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"

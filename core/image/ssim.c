@@ -1,6 +1,5 @@
 /* Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) and squared differences of the sRGB-encoded colour, a
  * channel at a time, row by row in memory of a few rows. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -1,7 +1,5 @@
 #include "core/image/texture_levels.h"
 
-#include <string.h>
-
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
@@ -18,7 +16,7 @@ static int shares_of(int i, int n, int m, int *first, double shares[3]) {
   return count;
 }
 
-static void reduce(const conic_texture_level *from, conic_texture_level *to) {
+static void reduce_level(const conic_texture_level *from, conic_texture_level *to) {
   for (int y = 0; y < to->height; y++) {
     double row_shares[3], column_shares[3];
     int first_row, first_column, n_rows = shares_of(y, from->height, to->height, &first_row, row_shares);
@@ -83,7 +81,7 @@ conic_status conic_texture_create(conic_context *context, const conic_image *ima
     height = (height + 1) / 2;
     status = add_level(made, width, height);
     if (status == CONIC_OK)
-      reduce(&made->levels[made->n_levels - 2], &made->levels[made->n_levels - 1]);
+      reduce_level(&made->levels[made->n_levels - 2], &made->levels[made->n_levels - 1]);
   }
   if (status == CONIC_OK)
     *texture = made;

@@ -9,6 +9,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/random.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
 #include "core/splats/columns.h"
@@ -51,16 +52,13 @@ unsigned conic_scene_fields(conic_scene_type type) {
 }
 
 void conic_scene_options_init_sized(conic_scene_options *options, size_t size) {
-  static const conic_scene_options own = {.size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
+  static const conic_scene_options own = {
+      .size = sizeof own, .type = CONIC_SCENE_SPHERE, .count = 100000, .cutoff = 1.5f};
   conic_options_give(options, size, &own);
 }
 
-static int is_finite(double value) {
-  return value * 0.0 == 0.0;
-}
-
-static conic_status check_options(conic_context *context, const conic_scene_options *given,
-                                  conic_scene_options *options) {
+static conic_status check_scene_options(conic_context *context, const conic_scene_options *given,
+                                        conic_scene_options *options) {
   conic_scene_options_init(options);
   if (!conic_options_take(options, given) || !kind_of(options->type))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: options that are none");
@@ -71,10 +69,10 @@ static conic_status check_options(conic_context *context, const conic_scene_opti
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the jitter must be from 0 to %g spacings", MAX_SPACINGS);
   if (!(options->noise >= 0.0 && options->noise <= MAX_SPACINGS))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the noise must be from 0 to %g spacings", MAX_SPACINGS);
-  if (!(options->cutoff > 0.0f && is_finite((double)options->cutoff)))
+  if (!(options->cutoff > 0.0f && conic_is_finite((double)options->cutoff)))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the cutoff must be finite and above 0");
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(options->offset[axis]))
+    if (!conic_is_finite(options->offset[axis]))
       return conic_fail(context, CONIC_ERROR_ARGUMENT, "scene: the offset must be finite");
   return CONIC_OK;
 }
@@ -82,7 +80,7 @@ static conic_status check_options(conic_context *context, const conic_scene_opti
 conic_status conic_scene_create(conic_context *context, const conic_scene_options *given, conic_scene **scene) {
   conic_scene_options options;
   *scene = NULL;
-  conic_status status = check_options(context, given, &options);
+  conic_status status = check_scene_options(context, given, &options);
   if (status != CONIC_OK)
     return status;
   conic_scene *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -139,8 +137,8 @@ void conic_scene_blend(const uint8_t (*stops)[3], int n, double t, uint8_t color
 }
 
 /* Moves the place by jitter and noise, and makes it splat `at` of the set. */
-static void finish(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
-                   size_t at) {
+static void finish_splat(const conic_scene *scene, uint64_t i, const conic_scene_point *point, conic_splats *splats,
+                         size_t at) {
   const conic_scene_options *options = &scene->options;
   double sigma = 1.5 * scene->spacing / (double)options->cutoff;
   double u[3], v[3], along_u = 0.0, along_v = 0.0, along_normal = 0.0;
@@ -177,7 +175,7 @@ static void place_chunk(void *data, size_t i_item, int i_thread) {
   for (uint64_t k = begin; k < end; k++) {
     conic_scene_point point;
     work->scene->kind->place(work->scene, work->first + k, &point);
-    finish(work->scene, work->first + k, &point, work->splats, (size_t)k);
+    finish_splat(work->scene, work->first + k, &point, work->splats, (size_t)k);
   }
 }
 
@@ -195,7 +193,7 @@ static void sample_lattice_point(void *cookie, const double start[3]) {
     return;
   conic_scene_point point;
   work->scene->kind->project(work->scene->surface, start, &point);
-  finish(work->scene, i, &point, work->splats, (size_t)(i - work->first));
+  finish_splat(work->scene, i, &point, work->splats, (size_t)(i - work->first));
 }
 
 static void sample_slab(void *data, size_t i_item, int i_thread) {

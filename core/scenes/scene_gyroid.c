@@ -1,7 +1,5 @@
 #include <math.h>
 
-#include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/scenes/scene_kind.h"
 
@@ -24,7 +22,7 @@ enum { TILE = 512 };
 static const uint8_t palette[][3] = {
     {0xb8, 0x32, 0x2a}, {0xee, 0x96, 0x4b}, {0xf4, 0xe0, 0xb0}, {0x5f, 0x9e, 0x8f}, {0x1d, 0x3f, 0x72}};
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_gyroid(conic_scene *scene) {
   uint64_t count = scene->options.count;
   scene->area = AREA_OF_PERIOD * 8.0 / (2.0 / PERIODS); /* the cube's volume over the period, times the constant */
   return conic_lattice_fit(scene->context, scene->kind->walk, NULL, scene->area, count, MIN_CELLS, &scene->lattice);
@@ -90,7 +88,7 @@ static void walk(const void *surface, const conic_lattice *lattice, size_t i_sla
 }
 
 /* f and its gradient at a place in phases. */
-static double evaluate(const double phase[3], double gradient[3]) {
+static double evaluate_gyroid(const double phase[3], double gradient[3]) {
   double sx = conic_sin(phase[0]), cx = conic_cos(phase[0]);
   double sy = conic_sin(phase[1]), cy = conic_cos(phase[1]);
   double sz = conic_sin(phase[2]), cz = conic_cos(phase[2]);
@@ -101,13 +99,13 @@ static double evaluate(const double phase[3], double gradient[3]) {
 }
 
 /* Newton's iteration along the gradient; it starts less than a radian away. */
-static void project(const void *surface, const double start[3], conic_scene_point *point) {
+static void project_on_gyroid(const void *surface, const double start[3], conic_scene_point *point) {
   double phase[3], gradient[3], squared = 1.0;
   (void)surface;
   for (int axis = 0; axis < 3; axis++)
     phase[axis] = WAVE_NUMBER * start[axis];
   for (int i = 0; i < 8; i++) {
-    double f = evaluate(phase, gradient);
+    double f = evaluate_gyroid(phase, gradient);
     squared = gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
     if (fabs(f) < 1e-9)
       break;
@@ -125,6 +123,6 @@ static void project(const void *surface, const double start[3], conic_scene_poin
 
 const conic_scene_kind conic_scene_gyroid = {.name = "gyroid",
                                              .summary = "an iso-surface in a cube, over 20 sheets deep; from 4M on",
-                                             .prepare = prepare,
+                                             .prepare = prepare_gyroid,
                                              .walk = walk,
-                                             .project = project};
+                                             .project = project_on_gyroid};

@@ -34,7 +34,7 @@ static double step_length(double from, double to) {
   return (to - from) / 6.0 * (speed(from) + 4.0 * speed(0.5 * (from + to)) + speed(to));
 }
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_knot(conic_scene *scene) {
   const double step = 2.0 * CONIC_PI / NODES;
   knot *made = conic_scene_surface(scene, sizeof *made);
   if (!made)
@@ -89,7 +89,7 @@ static void frame_at(double parameter, curve_frame *frame) {
   frame->curvature = turning / (pace * pace * pace);
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+static void place_on_knot(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   double along, around;
   curve_frame frame;
   conic_scene_golden(i, scene->options.count, &along, &around);
@@ -106,5 +106,7 @@ static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point
     point->color[c] = (uint8_t)(point->color[c] / 2);
 }
 
-const conic_scene_kind conic_scene_knot = {
-    .name = "knot", .summary = "a (2, 3) torus knot as a tube, colours along it", .prepare = prepare, .place = place};
+const conic_scene_kind conic_scene_knot = {.name = "knot",
+                                           .summary = "a (2, 3) torus knot as a tube, colours along it",
+                                           .prepare = prepare_knot,
+                                           .place = place_on_knot};

@@ -51,8 +51,8 @@ static void count_slab(void *data, size_t i_slab, int i_thread) {
 }
 
 /* Fills found_before and n_found for the lattice's n_cells. */
-static conic_status count(conic_context *context, conic_lattice_walk *walk, const void *surface,
-                          conic_lattice *lattice) {
+static conic_status count_cells(conic_context *context, conic_lattice_walk *walk, const void *surface,
+                                conic_lattice *lattice) {
   counting work = {lattice, walk, surface};
   size_t slabs_a_run = 8 * (size_t)conic_context_threads(context);
   lattice->found_before[0] = 0;
@@ -79,7 +79,7 @@ conic_status conic_lattice_fit(conic_context *context, conic_lattice_walk *walk,
     lattice->spacing = 2.0 / (double)n_cells;
     lattice->found_before = conic_memory_allocate(context, n_cells + 1, sizeof *lattice->found_before);
     if (lattice->found_before)
-      status = count(context, walk, surface, lattice);
+      status = count_cells(context, walk, surface, lattice);
     if (status == CONIC_OK && lattice->n_found >= n_wanted)
       return CONIC_OK;
     conic_lattice_release(context, lattice);

@@ -11,7 +11,7 @@ static uint64_t exact_root(uint64_t count) {
   return root * root == count ? root : 0;
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+static void place_on_plane(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   uint64_t count = scene->options.count, edge = exact_root(count);
   double u, v;
   if (edge) {
@@ -27,12 +27,12 @@ static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point
     point->color[c] = is_white ? WHITE : DARK;
 }
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_plane(conic_scene *scene) {
   scene->area = 1.0;
   return CONIC_OK;
 }
 
 const conic_scene_kind conic_scene_plane = {.name = "plane",
                                             .summary = "the unit square in z = 0, a checkerboard of 8 x 8",
-                                            .prepare = prepare,
-                                            .place = place};
+                                            .prepare = prepare_plane,
+                                            .place = place_on_plane};

@@ -1,6 +1,5 @@
 /* Scenes of flat faces that meet in sharp edges: a cube, and a cube that lacks an octant. All faces are across an axis.
  */
-#include <math.h>
 
 #include "core/scenes/scene_kind.h"
 
@@ -75,7 +74,7 @@ static const sharp_box *box_of(const conic_scene *scene) {
   return scene->options.type == CONIC_SCENE_CUBE ? &cube : &corner;
 }
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_box(conic_scene *scene) {
   scene->area = 6.0; /* an octant takes three quarters from the outside and adds three inside */
   return CONIC_OK;
 }
@@ -96,7 +95,7 @@ static const box_piece *piece_at(const conic_scene *scene, uint64_t i, uint64_t 
   }
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+static void place_on_box(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   uint64_t i_in_piece, n;
   double at[2];
   const box_piece *piece = piece_at(scene, i, &i_in_piece, &n);
@@ -162,11 +161,11 @@ static void edges_at(const conic_scene *scene, uint64_t i, const double position
 
 const conic_scene_kind conic_scene_cube = {.name = "cube",
                                            .summary = "edge 1, sharp by clip lines; from 60 splats on",
-                                           .prepare = prepare,
-                                           .place = place,
+                                           .prepare = prepare_box,
+                                           .place = place_on_box,
                                            .edges = edges_at};
 const conic_scene_kind conic_scene_corner = {.name = "corner",
                                              .summary = "a cube without an octant: concave edges too; from 220 on",
-                                             .prepare = prepare,
-                                             .place = place,
+                                             .prepare = prepare_box,
+                                             .place = place_on_box,
                                              .edges = edges_at};

@@ -13,7 +13,7 @@ typedef struct scene_sphere {
   double parallels[PARALLELS - 1];
 } scene_sphere;
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_sphere(conic_scene *scene) {
   scene->area = 4.0 * CONIC_PI;
   scene_sphere *made = conic_scene_surface(scene, sizeof *made);
   if (!made)
@@ -25,7 +25,7 @@ static conic_status prepare(conic_scene *scene) {
 
 /* The Fibonacci lattice: heights in even steps (a zone's area is its height's), longitudes turning by the golden ratio.
  */
-static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+static void place_on_sphere(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   const scene_sphere *surface = scene->surface;
   uint64_t n = scene->options.count;
   double from_pole, turns;
@@ -49,5 +49,5 @@ static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point
 
 const conic_scene_kind conic_scene_sphere = {.name = "sphere",
                                              .summary = "radius 1, the Fibonacci lattice, checker colours",
-                                             .prepare = prepare,
-                                             .place = place};
+                                             .prepare = prepare_sphere,
+                                             .place = place_on_sphere};

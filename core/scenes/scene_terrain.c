@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "core/base/memory.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/scenes/noise.h"
@@ -78,7 +77,7 @@ static double clamp01(double t) {
   return t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;
 }
 
-static void mix(const uint8_t to[3], double part, uint8_t color[3]) {
+static void mix_colors(const uint8_t to[3], double part, uint8_t color[3]) {
   for (int c = 0; c < 3; c++)
     color[c] = (uint8_t)((double)color[c] * (1.0 - part) + (double)to[c] * part + 0.5);
 }
@@ -95,9 +94,9 @@ static void paint(uint64_t seed, double x, double z, const conic_terrain_place *
   uint8_t stone[3];
   conic_scene_blend(land, 6, height / SNOW_HEIGHT, color);
   conic_scene_blend(rock, 2, 0.5 + speckle.value, stone);
-  mix(stone, clamp01((slope - STEEP_SLOPE + 0.2 * speckle.value) / 0.35), color);
+  mix_colors(stone, clamp01((slope - STEEP_SLOPE + 0.2 * speckle.value) / 0.35), color);
   double cover = (height - SNOW_HEIGHT) / 0.04 + 1.0 - clamp01((slope - 1.1) / 0.5);
-  mix(snow, clamp01(cover), color);
+  mix_colors(snow, clamp01(cover), color);
 }
 
 typedef struct terrain {
@@ -129,7 +128,7 @@ static void measure_row(void *data, size_t i_row, int i_thread) {
   work->rows[i_row] = sum * step * step;
 }
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_terrain(conic_scene *scene) {
   terrain *made = conic_scene_surface(scene, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
@@ -167,7 +166,7 @@ static void walk(const void *surface, const conic_lattice *lattice, size_t i_sla
 }
 
 /* Up onto the surface. */
-static void project(const void *surface, const double start[3], conic_scene_point *point) {
+static void project_on_terrain(const void *surface, const double start[3], conic_scene_point *point) {
   const terrain *self = surface;
   conic_terrain_place place;
   conic_terrain_at(self->seed, start[0], start[2], &place);
@@ -179,6 +178,6 @@ static void project(const void *surface, const double start[3], conic_scene_poin
 
 const conic_scene_kind conic_scene_terrain = {.name = "terrain",
                                               .summary = "fractal mountains in a sea, y up; another island a seed",
-                                              .prepare = prepare,
+                                              .prepare = prepare_terrain,
                                               .walk = walk,
-                                              .project = project};
+                                              .project = project_on_terrain};

@@ -9,12 +9,12 @@ enum { SECTORS = 32, BANDS = 12 };
 
 static const uint8_t cream[3] = {0xf7, 0xec, 0xdc}, coral[3] = {0xd8, 0x4f, 0x3c};
 
-static conic_status prepare(conic_scene *scene) {
+static conic_status prepare_torus(conic_scene *scene) {
   scene->area = 4.0 * CONIC_PI * CONIC_PI * RING_RADIUS * TUBE_RADIUS;
   return CONIC_OK;
 }
 
-static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
+static void place_on_torus(const conic_scene *scene, uint64_t i, conic_scene_point *point) {
   double around_axis, around_tube;
   conic_scene_golden(i, scene->options.count, &around_axis, &around_tube);
   double longitude = 2.0 * CONIC_PI * around_axis;
@@ -34,5 +34,5 @@ static void place(const conic_scene *scene, uint64_t i, conic_scene_point *point
 
 const conic_scene_kind conic_scene_torus = {.name = "torus",
                                             .summary = "radii 1 and 0.4, around the y axis, checker colours",
-                                            .prepare = prepare,
-                                            .place = place};
+                                            .prepare = prepare_torus,
+                                            .place = place_on_torus};

@@ -9,6 +9,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
 #include "core/splats/clip.h"
@@ -24,10 +25,6 @@ int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
   for (int axis = 0; axis < 3; axis++)
     unit[axis] = (double)arrays[axis][i];
   return conic_normalize(unit);
-}
-
-static int is_finite(float value) {
-  return value * 0.0f == 0.0f;
 }
 
 /* The unit normal of tangent axes; 0 where they span no ellipse. */
@@ -48,16 +45,16 @@ static int has_good_axes(const conic_splats *points, size_t point) {
 }
 
 static int has_bad_color(const conic_splats *points, size_t point) {
-  return points->color[0] && !(is_finite(points->color[0][point]) && is_finite(points->color[1][point]) &&
-                               is_finite(points->color[2][point]));
+  return points->color[0] && !(conic_is_finite(points->color[0][point]) && conic_is_finite(points->color[1][point]) &&
+                               conic_is_finite(points->color[2][point]));
 }
 
 static void classify_points(void *data, size_t begin, size_t end) {
   conic_estimate *estimate = data;
   const conic_splats *points = &estimate->model->points;
   for (size_t i = begin; i < end; i++) {
-    int is_somewhere =
-        is_finite(points->position[0][i]) && is_finite(points->position[1][i]) && is_finite(points->position[2][i]);
+    int is_somewhere = conic_is_finite(points->position[0][i]) && conic_is_finite(points->position[1][i]) &&
+                       conic_is_finite(points->position[2][i]);
     estimate->states[i] = (uint8_t)(!is_somewhere              ? CONIC_POINT_NOWHERE
                                     : has_good_axes(points, i) ? CONIC_POINT_KEPT
                                                                : CONIC_POINT_RAW);
@@ -184,7 +181,7 @@ static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
 
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
  */
-static void hand_over(conic_estimate *estimate, conic_model *model) {
+static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
   for (int axis = 0; axis < 3; axis++)
     for (int i_tangent = 0; i_tangent < 2; i_tangent++) {
       float **own = i_tangent ? &model->points.tangent_v[axis] : &model->points.tangent_u[axis];
@@ -242,7 +239,7 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
   if (status == CONIC_OK) {
     count_repairs(&estimate, &counted);
     counted.clip = drop_clips(&estimate, &model->points);
-    hand_over(&estimate, model);
+    hand_over_axes(&estimate, model);
     if (repairs)
       *repairs = counted;
   }
@@ -293,7 +290,7 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   conic_estimate_options own, *options = &own;
   conic_estimate_options_init(options);
   if (!model || !conic_options_take(options, given) || options->n_neighbours < 6 ||
-      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !is_finite(options->cutoff) ||
+      options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !conic_is_finite(options->cutoff) ||
       !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",

@@ -9,7 +9,7 @@ enum { MAX_CANDIDATES = 16 };
 /* Lines whose directions are less than 15° apart are taken for one crease. */
 #define SAME_DIRECTION 0.966
 
-static double length_of(const float line[3]) {
+static double length_of_line(const float line[3]) {
   return sqrt((double)line[0] * (double)line[0] + (double)line[1] * (double)line[1]);
 }
 
@@ -55,7 +55,7 @@ int conic_clip_choose(const conic_clip_choice *choice, const double (*places)[2]
   const float *first = choice->lines[0];
   while (second < choice->n &&
          (double)first[0] * (double)choice->lines[second][0] + (double)first[1] * (double)choice->lines[second][1] >
-             SAME_DIRECTION * length_of(first) * length_of(choice->lines[second]))
+             SAME_DIRECTION * length_of_line(first) * length_of_line(choice->lines[second]))
     second++;
   clip->n_lines = second < choice->n ? 2 : 1;
   clip->operation = CONIC_CLIP_AND;

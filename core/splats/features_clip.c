@@ -1,5 +1,4 @@
 /* The clip lines of a mesh's splats: where a splat's plane meets the planes of the mates across its creases. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -35,7 +35,7 @@ typedef struct splitting {
   size_t n_creases, crease_capacity;
 } splitting;
 
-static void find_normal(const conic_model *model, const uint32_t triangle[3], double normal[3]) {
+static void find_face_normal(const conic_model *model, const uint32_t triangle[3], double normal[3]) {
   double edges[2][3];
   for (int i = 0; i < 2; i++)
     for (int axis = 0; axis < 3; axis++)
@@ -55,7 +55,7 @@ static uint32_t root_of(uint32_t *parents, uint32_t member) {
 }
 
 /* The smaller root stays, so that the order in which trees are joined does not show. */
-static void join(uint32_t *parents, uint32_t a, uint32_t b) {
+static void join_wedges(uint32_t *parents, uint32_t a, uint32_t b) {
   a = root_of(parents, a);
   b = root_of(parents, b);
   if (a < b)
@@ -135,7 +135,7 @@ static conic_status split_vertex(splitting *s, size_t vertex) {
   for (size_t i = 0, run; i < n; i += run) {
     run = run_of(s->spokes, i, n);
     if (run == 2 && is_smooth(s, &s->spokes[i], &s->spokes[i + 1]))
-      join(s->parents, s->spokes[i].member, s->spokes[i + 1].member);
+      join_wedges(s->parents, s->spokes[i].member, s->spokes[i + 1].member);
   }
   conic_status status = number_wedges(s, vertex);
   for (size_t i = 0, run; status == CONIC_OK && i < n; i += run) {
@@ -204,7 +204,7 @@ static conic_status sort_creases(splitting *s, conic_creases *creases) {
 }
 
 /* All but what hangs on the greatest number of triangles at a vertex. */
-static int make_room(splitting *s) {
+static int make_room_for_split(splitting *s) {
   const conic_model *model = s->model;
   conic_context *context = s->context;
   size_t n_corners = 3 * model->n_triangles;
@@ -234,7 +234,7 @@ static conic_status split_vertices(splitting *s) {
   return CONIC_OK;
 }
 
-static void release(splitting *s) {
+static void release_splitting(splitting *s) {
   void *all[] = {s->normals, s->spokes, s->parents, s->wedges, s->sources, s->creases};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(s->context, all[i]);
@@ -242,10 +242,10 @@ static void release(splitting *s) {
 }
 
 static conic_status split_model(splitting *s, conic_model *split, conic_creases *creases) {
-  if (!make_room(s))
+  if (!make_room_for_split(s))
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < s->model->n_triangles; i++)
-    find_normal(s->model, s->model->triangles[i], s->normals[i]);
+    find_face_normal(s->model, s->model->triangles[i], s->normals[i]);
   conic_status status = split_vertices(s);
   if (status == CONIC_OK)
     status = conic_splats_gather(s->context, &s->model->points, s->sources, s->n_vertices, &split->points);
@@ -266,7 +266,7 @@ conic_status conic_creases_split(conic_context *context, double cosine, const co
   conic_status status = conic_incidence_create(context, model, UINT32_MAX / 3, &s.ring);
   if (status == CONIC_OK)
     status = split_model(&s, split, creases);
-  release(&s);
+  release_splitting(&s);
   split->kind = model->kind;
   if (status != CONIC_OK) {
     conic_model_release(context, split);

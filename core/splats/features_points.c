@@ -175,7 +175,7 @@ static double axis_length(float *const axes[3], size_t i) {
   return sqrt(squared);
 }
 
-static slot_splat place_of(const feature_search *s, size_t slot) {
+static slot_splat place_of_slot(const feature_search *s, size_t slot) {
   slot_splat p = {.slot = slot, .point = s->neighbourhood->tree.point_of_slot[slot]};
   double greater = axis_length(s->splats->tangent_u, p.point), lesser = axis_length(s->splats->tangent_v, p.point);
   normal_of(&s->final[slot], p.normal);
@@ -224,7 +224,7 @@ static double find_lines(const feature_search *s, const slot_splat *p, double re
 }
 
 /* The neighbours in the same plane: a crease leaves them whole. */
-static void find_places(const feature_search *s, slot_splat *p) {
+static void find_slot_places(const feature_search *s, slot_splat *p) {
   const uint32_t *list = conic_neighbourhood_of(s->neighbourhood, p->slot);
   p->n_places = 0;
   for (size_t i = 0; i < s->neighbourhood->n_neighbours; i++) {
@@ -266,14 +266,14 @@ static void scale_lines(const feature_search *s, const slot_splat *p, conic_clip
 }
 
 static void clip_slot(const feature_search *s, size_t slot) {
-  slot_splat p = place_of(s, slot);
+  slot_splat p = place_of_slot(s, slot);
   conic_clip_choice choice = {.n = 0};
   conic_clip *clip = &s->clips[slot];
   *clip = (conic_clip){.splat = (uint32_t)p.point};
   if (!(p.radius > 0.0) || !(p.radius * 0.0 == 0.0)) /* no splat */
     return;
   double reach = REACH * p.radius, border = BORDER * p.spacing;
-  find_places(s, &p);
+  find_slot_places(s, &p);
   double nearest = find_lines(s, &p, reach > border ? reach : border, &choice);
   int is_clipped = conic_clip_choose(&choice, (const double(*)[2])p.places, p.n_places, 0.2, clip);
   if (!is_clipped)
@@ -327,7 +327,7 @@ static size_t follow_slot(const feature_search *s, size_t point) {
 }
 
 /* Slots are in the tree's order, records in that of the splats. */
-static conic_status hand_over(conic_context *context, const feature_search *s, conic_splats *splats) {
+static conic_status hand_over_slots(conic_context *context, const feature_search *s, conic_splats *splats) {
   size_t n = 0;
   for (size_t i = 0; i < splats->count; i++)
     n += follow_slot(s, i) != CONIC_NO_SLOT;
@@ -350,8 +350,8 @@ static conic_status hand_over(conic_context *context, const feature_search *s, c
   return CONIC_OK;
 }
 
-static conic_status run(conic_context *context, feature_search *s, conic_neighbourhood *neighbourhood,
-                        conic_splats *splats) {
+static conic_status run_passes(conic_context *context, feature_search *s, conic_neighbourhood *neighbourhood,
+                               conic_splats *splats) {
   size_t n = neighbourhood->tree.n_slots;
   s->neighbourhood = neighbourhood;
   s->small = conic_memory_allocate(context, n, sizeof *s->small);
@@ -372,7 +372,7 @@ static conic_status run(conic_context *context, feature_search *s, conic_neighbo
   if (status == CONIC_OK)
     status = conic_slots_for(context, n, clip_slots, s, 0.9, 1.0);
   if (status == CONIC_OK)
-    status = hand_over(context, s, splats);
+    status = hand_over_slots(context, s, splats);
   conic_memory_release(context, s->small);
   conic_memory_release(context, s->final);
   conic_memory_release(context, s->clips);
@@ -389,7 +389,7 @@ conic_status conic_features_in_points(conic_context *context, double cosine, con
   if (status != CONIC_OK)
     return status;
   set_normals(splats, &neighbourhood);
-  status = run(context, &s, &neighbourhood, splats);
+  status = run_passes(context, &s, &neighbourhood, splats);
   conic_neighbourhood_release(context, &neighbourhood);
   return status;
 }

@@ -43,7 +43,7 @@ static int view_corner(const conic_model *model, const uint32_t triangle[3], siz
 
 /* The faces' normals, each weighted by sine over the product of the edges' lengths: exact on a sphere (Max 1999), and
  * no angle is needed. */
-static int face_normal(const spreading *in, size_t vertex, double normal[3]) {
+static int normal_of_vertex(const spreading *in, size_t vertex, double normal[3]) {
   const conic_model *model = in->estimate->model;
   double sum[3] = {0.0, 0.0, 0.0};
   vertex_triangle c;
@@ -149,7 +149,7 @@ static void find_normals(void *data, size_t begin, size_t end) {
   float *const *given = in->estimate->model->points.normal;
   for (size_t vertex = begin; vertex < end; vertex++) {
     double of_file[3];
-    if (!face_normal(in, vertex, in->normals[vertex])) {
+    if (!normal_of_vertex(in, vertex, in->normals[vertex])) {
       in->normals[vertex][0] = NAN;
       continue;
     }

@@ -1,7 +1,5 @@
 #include "core/splats/neighbours.h"
 
-#include <math.h>
-
 enum { MAX_DEPTH = 34 };
 
 /* The least squared distance from the query to the box. Rounding is monotonic, and this sum is formed like that of a

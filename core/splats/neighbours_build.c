@@ -37,8 +37,8 @@ static int same_position(const float a[3], const float b[3]) {
 
 /* Gathers the finite positions into `records`, coincident ones once; slot_of_point becomes the number of the point's
  * record, for the time being. */
-static conic_status gather(conic_context *context, const float *const positions[3], conic_neighbours *tree,
-                           point_record *records) {
+static conic_status gather_points(conic_context *context, const float *const positions[3], conic_neighbours *tree,
+                                  point_record *records) {
   size_t n_buckets = 16;
   while (n_buckets < tree->n_points + tree->n_points / 2)
     n_buckets *= 2;
@@ -222,7 +222,7 @@ static conic_status allocate_tree(conic_context *context, conic_neighbours *tree
 
 static conic_status build_with(conic_context *context, const float *const positions[3], conic_neighbours *tree,
                                point_record *records) {
-  conic_status status = gather(context, positions, tree, records);
+  conic_status status = gather_points(context, positions, tree, records);
   if (status == CONIC_OK)
     status = allocate_tree(context, tree);
   if (status != CONIC_OK || tree->n_slots == 0)

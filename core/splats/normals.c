@@ -125,7 +125,7 @@ static uint32_t find_root(linking *l, uint32_t slot, unsigned *flip) {
 
 /* Joins what two slots hang together with, so that their signs are as wanted; the given normals stay the root, else the
  * lower slot. */
-static void join(linking *l, uint32_t a, uint32_t b, unsigned is_opposite) {
+static void join_parts(linking *l, uint32_t a, uint32_t b, unsigned is_opposite) {
   unsigned flip_a, flip_b;
   uint32_t root_a = find_root(l, a, &flip_a), root_b = find_root(l, b, &flip_b);
   uint32_t given = (uint32_t)l->neighbourhood->tree.n_slots;
@@ -152,7 +152,7 @@ static conic_status join_links(conic_context *context, linking *l, const uint64_
     uint32_t other = conic_neighbourhood_of(neighbourhood, slot)[order[i] % LINKS];
     const float *normal = neighbourhood->normals[other];
     if (normal[0] != 0.0f || normal[1] != 0.0f || normal[2] != 0.0f)
-      join(l, (uint32_t)slot, other, agreement(neighbourhood, slot, other) < 0.0);
+      join_parts(l, (uint32_t)slot, other, agreement(neighbourhood, slot, other) < 0.0);
   }
   return CONIC_OK;
 }

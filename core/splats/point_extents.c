@@ -3,7 +3,6 @@
  * that was not seen. */
 #include <math.h>
 
-#include "core/base/memory.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/estimate.h"
 #include "core/splats/voronoi_cell.h"

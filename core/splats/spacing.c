@@ -3,15 +3,11 @@
 
 #include "conic/splats.h"
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/splats/columns.h"
 #include "core/splats/neighbours.h"
 
 enum { N_NEAREST = 8, MAX_SAMPLES = 20000 };
-
-static int compare_doubles(const void *a, const void *b) {
-  double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
 
 /* The spacing about a slot: √(area a point), its nearest neighbours' share of the disc that holds them. 0 where it
  * stands alone. */
@@ -25,14 +21,14 @@ static double spacing_at(const conic_neighbours *tree, size_t slot) {
 }
 
 /* The lower median over at most MAX_SAMPLES slots, evenly taken. */
-static conic_status median_spacing(conic_context *context, const conic_neighbours *tree, double *spacing) {
+static conic_status median_of_slots(conic_context *context, const conic_neighbours *tree, double *spacing) {
   size_t n = tree->n_slots < MAX_SAMPLES ? tree->n_slots : MAX_SAMPLES;
   double *sampled = conic_memory_allocate(context, n, sizeof *sampled);
   if (!sampled)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n; i++)
     sampled[i] = spacing_at(tree, (size_t)((uint64_t)i * (uint64_t)tree->n_slots / (uint64_t)n));
-  qsort(sampled, n, sizeof *sampled, compare_doubles);
+  qsort(sampled, n, sizeof *sampled, conic_compare_doubles);
   *spacing = n ? sampled[(n - 1) / 2] : 0.0;
   conic_memory_release(context, sampled);
   return CONIC_OK;
@@ -47,7 +43,7 @@ conic_status conic_splats_spacing(conic_context *context, const conic_splats *sp
   if (status == CONIC_OK)
     status = conic_neighbours_build(context, (const float *const *)close.position, close.count, &tree);
   if (status == CONIC_OK) {
-    status = median_spacing(context, &tree, spacing);
+    status = median_of_slots(context, &tree, spacing);
     conic_neighbours_release(context, &tree);
   }
   conic_memory_release(context, block);

@@ -4,6 +4,7 @@
 #include "conic/splats.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/splats/columns.h"
 
 /* The longer axis as the bits of a float, which order like the lengths themselves; 0 for a splat that is not usable. */
@@ -20,9 +21,7 @@ static uint32_t length_bits(const conic_splats *splats, size_t i) {
   float length = sqrtf(uu > vv ? uu : vv);
   if (!(length * 0.0f == 0.0f))
     return 0;
-  uint32_t bits;
-  memcpy(&bits, &length, sizeof bits);
-  return bits;
+  return conic_bits_of_float(length);
 }
 
 /* The bucket that holds the element of that rank; *rank becomes its rank within the bucket. */
@@ -57,8 +56,7 @@ static conic_status find_length(conic_context *context, const conic_splats *spla
         histogram[bits & 0xffff]++;
     }
     uint32_t bits = upper << 16 | find_bucket(histogram, &rank);
-    float median;
-    memcpy(&median, &bits, sizeof median);
+    float median = conic_float_of_bits(bits);
     *length = (double)median;
   }
   conic_memory_release(context, histogram);

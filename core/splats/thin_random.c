@@ -34,7 +34,7 @@ static uint64_t select_rank(uint64_t *ranks, size_t n, size_t count) {
   return ranks[count];
 }
 
-static void keep(float *values, size_t n, uint64_t seed, uint64_t below) {
+static void keep_points(float *values, size_t n, uint64_t seed, uint64_t below) {
   size_t n_kept = 0;
   for (size_t i = 0; values && i < n; i++)
     if (rank_of(seed, i) < below)
@@ -71,13 +71,13 @@ conic_status conic_splats_thin(conic_context *context, conic_splats *splats, siz
   uint64_t below = select_rank(ranks, n, count);
   conic_memory_release(context, ranks);
   for (int axis = 0; axis < 3; axis++) {
-    keep(splats->position[axis], n, seed, below);
-    keep(splats->tangent_u[axis], n, seed, below);
-    keep(splats->tangent_v[axis], n, seed, below);
-    keep(splats->normal[axis], n, seed, below);
-    keep(splats->color[axis], n, seed, below);
+    keep_points(splats->position[axis], n, seed, below);
+    keep_points(splats->tangent_u[axis], n, seed, below);
+    keep_points(splats->tangent_v[axis], n, seed, below);
+    keep_points(splats->normal[axis], n, seed, below);
+    keep_points(splats->color[axis], n, seed, below);
   }
-  keep(splats->opacity, n, seed, below);
+  keep_points(splats->opacity, n, seed, below);
   keep_clips(splats, seed, below);
   splats->count = count;
   return CONIC_OK;

@@ -46,7 +46,7 @@ static void join_corners(const conic_triangles *set, const attribute *a, size_t 
       to[i][k] = (uint32_t)(shift + (a->values[0] ? from[i][k] : 0));
 }
 
-static conic_status join(const attribute_joining *j, size_t *n, float **values, uint32_t (**corners)[3]) {
+static conic_status join_attribute(const attribute_joining *j, size_t *n, float **values, uint32_t (**corners)[3]) {
   if (!j->of_first.values[0] && !j->of_next.values[0])
     return CONIC_OK;
   *corners = conic_memory_allocate(j->context, j->first->count + j->next->count, sizeof **corners);
@@ -62,7 +62,7 @@ static conic_status join_normals(attribute_joining *j, conic_triangles *a, conic
                                  conic_triangles *joined) {
   j->of_first = (attribute){a->normal_corners ? a->n_normals : a->n_vertices, a->normal, 3, a->normal_corners};
   j->of_next = (attribute){b->normal_corners ? b->n_normals : b->n_vertices, b->normal, 3, b->normal_corners};
-  return join(j, &joined->n_normals, joined->normal, &joined->normal_corners);
+  return join_attribute(j, &joined->n_normals, joined->normal, &joined->normal_corners);
 }
 
 static conic_status join_coordinates(attribute_joining *j, conic_triangles *a, conic_triangles *b,
@@ -71,7 +71,7 @@ static conic_status join_coordinates(attribute_joining *j, conic_triangles *a, c
                             a->texture_corners};
   j->of_next = (attribute){b->texture_corners ? b->n_texture_coordinates : b->n_vertices, b->texture_coordinate, 2,
                            b->texture_corners};
-  return join(j, &joined->n_texture_coordinates, joined->texture_coordinate, &joined->texture_corners);
+  return join_attribute(j, &joined->n_texture_coordinates, joined->texture_coordinate, &joined->texture_corners);
 }
 
 /* How many materials a set has; one that is white where it names none. */

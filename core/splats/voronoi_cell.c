@@ -5,7 +5,7 @@
 /* Cosines of 0°, 22.5°, 45°, 67.5° and 90°. */
 static const double COSINES[5] = {1.0, 0.92387953251128674, 0.70710678118654752, 0.38268343236508977, 0.0};
 
-static void measure(conic_voronoi_cell *cell) {
+static void measure_cell(conic_voronoi_cell *cell) {
   cell->greatest2 = 0.0;
   for (int i = 0; i < cell->n_corners; i++) {
     double x = cell->corners[i][0], y = cell->corners[i][1], distance2 = x * x + y * y;
@@ -46,7 +46,7 @@ void conic_voronoi_cell_cut(conic_voronoi_cell *cell, double x, double y) {
   }
   memcpy(cell->corners, corners, (size_t)n_corners * sizeof corners[0]);
   cell->n_corners = n_corners;
-  measure(cell);
+  measure_cell(cell);
 }
 
 double conic_voronoi_cell_area(const conic_voronoi_cell *cell) {

@@ -70,7 +70,7 @@ CONIC_API conic_status conic_source_open(conic_context *context, const char *con
                                          const conic_source_options *options, conic_source **source);
 
 /* Sources of what is in memory already, which they take over: the arguments are empty afterwards, or no longer the
- * caller's, on failure too. `triangles` may be null; splats are to have tangent axes. Errors: MEMORY. */
+ * caller's, on failure too. `triangles` may be null; splats are to have tangent axes. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
                                                conic_source **source);
 CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);

@@ -17,7 +17,7 @@ typedef struct box_sampling {
   double low[3]; /* of the cluster's box: where the grids begin */
 } box_sampling;
 
-static void find_box(box_sampling *b) {
+static void find_cluster_box(box_sampling *b) {
   const conic_clustered_mesh *mesh = b->job->mesh;
   b->low[0] = b->low[1] = b->low[2] = HUGE_VAL;
   for (size_t i = mesh->starts[b->job->cluster]; i < mesh->starts[b->job->cluster + 1]; i++)
@@ -106,7 +106,7 @@ static conic_status sample_face(box_sampling *b, uint32_t face, int axis) {
 conic_status conic_cluster_sample_box(conic_context *context, const conic_sampling_job *job, conic_surfels *surfels) {
   box_sampling b = {.context = context, .job = job, .surfels = surfels};
   conic_status status = CONIC_OK;
-  find_box(&b);
+  find_cluster_box(&b);
   for (int axis = 0; axis < 3; axis++)
     for (size_t i = job->mesh->starts[job->cluster]; i < job->mesh->starts[job->cluster + 1] && status == CONIC_OK; i++)
       status = sample_face(&b, job->mesh->faces[i], axis);

@@ -29,7 +29,7 @@ typedef struct finding {
 
 enum { CROWD = 3 };
 
-static uint32_t place_of(const finding *f, uint32_t face, int corner) {
+static uint32_t place_of_vertex(const finding *f, uint32_t face, int corner) {
   return f->mesh->adjacency->place[f->mesh->mesh.faces[face][corner]];
 }
 
@@ -46,8 +46,8 @@ static int is_between(const finding *f, uint32_t face, int corner, uint32_t *acr
 static void add_edge(finding *f, uint32_t face, int corner, uint32_t other) {
   uint32_t own = f->mesh->clusters->of_face[face], i = (uint32_t)f->n_edges++;
   border_edge *edge = &f->edges[i];
-  edge->ends[0] = place_of(f, face, corner);
-  edge->ends[1] = place_of(f, face, (corner + 1) % 3);
+  edge->ends[0] = place_of_vertex(f, face, corner);
+  edge->ends[1] = place_of_vertex(f, face, (corner + 1) % 3);
   edge->clusters[0] = own < other ? own : other;
   edge->clusters[1] = own < other ? other : own;
   edge->is_taken = 0;
@@ -69,7 +69,7 @@ static void find_edges(finding *f) {
       if (!conic_cluster_ends_at(f->mesh, face, corner))
         continue;
       if (!is_between(f, face, corner, &other))
-        f->places[place_of(f, face, corner)].n = f->places[place_of(f, face, (corner + 1) % 3)].n = CROWD;
+        f->places[place_of_vertex(f, face, corner)].n = f->places[place_of_vertex(f, face, (corner + 1) % 3)].n = CROWD;
       else if (f->mesh->adjacency->across[3 * (size_t)face + (size_t)corner] / 3 > face)
         add_edge(f, face, corner, other);
     }

@@ -96,8 +96,8 @@ static uint32_t face_near(const conic_sampler *s, const conic_site *site, const 
 
 /* As conic_face_tree_bound. Most places are near enough to the face that is tried first, many others to that of the
  * support that is nearest. */
-static double measure(const conic_sampler *s, const conic_site *site, const double at[3], uint32_t *near,
-                      double enough) {
+static double measure_place(const conic_sampler *s, const conic_site *site, const double at[3], uint32_t *near,
+                            double enough) {
   double distance = conic_face_distance(&s->job->mesh->mesh, *near, at);
   if (distance <= enough)
     return distance;
@@ -131,7 +131,7 @@ static double measure_ends(const conic_sampler *s, const conic_site *site, doubl
   memcpy(near, site->end_faces, sizeof near);
   find_ends(site, at);
   for (int k = largest_of(bounds); bounds[k] > known; k = largest_of(bounds)) {
-    double distance = measure(s, site, at[k], &near[end_of(k)], known);
+    double distance = measure_place(s, site, at[k], &near[end_of(k)], known);
     known = distance > known ? distance : known;
     bound_by((const double(*)[3])at, k, distance, bounds);
   }

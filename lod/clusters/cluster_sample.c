@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "lod/clusters/cluster_error.h"
 #include "lod/clusters/cluster_reuse.h"
 #include "lod/clusters/cluster_shape.h"
@@ -81,8 +82,7 @@ static conic_status order_by_bound(conic_sampler *s, double known, size_t *n) {
   *n = 0;
   for (uint32_t i = 0; i < s->n_sites && status == CONIC_OK; i++) {
     float bound = (float)s->sites[i].error_bound;
-    uint32_t bits;
-    memcpy(&bits, &bound, sizeof bits); /* of positive numbers these are in the numbers' order */
+    uint32_t bits = conic_bits_of_float(bound); /* of positive numbers these are in the numbers' order */
     if (s->sites[i].is_drawn && s->sites[i].error_bound > known)
       s->candidates[(*n)++] = (conic_radix_item){UINT32_MAX - bits, i};
   }
@@ -108,7 +108,7 @@ static conic_status find_largest_error(conic_sampler *s, double *known) {
   return status;
 }
 
-static conic_status find_errors(conic_sampler *s, conic_surfels *surfels) {
+static conic_status find_site_errors(conic_sampler *s, conic_surfels *surfels) {
   conic_status status = find_largest_error(s, &surfels->error);
   surfels->refined_error = surfels->error;
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
@@ -213,6 +213,6 @@ conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *jo
     status = emit(s, &s->sites[i], surfels);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
   if (status == CONIC_OK && surfels->n <= job->useful)
-    status = find_errors(s, surfels);
+    status = find_site_errors(s, surfels);
   return status;
 }

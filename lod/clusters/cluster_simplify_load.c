@@ -1,5 +1,4 @@
 /* The region as simplifying has it. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -9,7 +8,7 @@
 /* How much more a border's planes weigh than the faces' (HQP §3.2.4). */
 static const double border_weight = 10.0;
 
-static void release(conic_simplifier *s) {
+static void release_region(conic_simplifier *s) {
   for (size_t i = 0; i < sizeof s->memory / sizeof *s->memory; i++) {
     conic_memory_release(s->context, s->memory[i]);
     s->memory[i] = NULL;
@@ -19,9 +18,9 @@ static void release(conic_simplifier *s) {
 }
 
 /* Edges have a point each, and at most two on a border; they are at most three a face. */
-static conic_status make_room(conic_simplifier *s, size_t n_vertices, size_t n_faces) {
+static conic_status make_room_for_region(conic_simplifier *s, size_t n_vertices, size_t n_faces) {
   size_t n_clusters = s->end - s->begin;
-  release(s);
+  release_region(s);
   s->memory[0] = s->vertices = conic_memory_allocate(s->context, n_vertices, sizeof *s->vertices);
   s->memory[1] = s->triangles = conic_memory_allocate(s->context, n_faces, sizeof *s->triangles);
   s->memory[2] = s->points = conic_memory_allocate(s->context, n_vertices + 7 * n_faces, sizeof *s->points);
@@ -85,7 +84,7 @@ static uint32_t use_vertex(conic_simplifier *s, uint32_t original, uint32_t mate
   return i;
 }
 
-static void add_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
+static void add_region_triangle(conic_simplifier *s, uint32_t cluster, uint32_t face) {
   uint32_t i = (uint32_t)s->n_triangles++;
   conic_simplifier_triangle *t = &s->triangles[i];
   double middle[3] = {0.0, 0.0, 0.0};
@@ -172,7 +171,7 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   const size_t *starts = mesh->starts + s->begin;
   uint32_t n_clusters = s->end - s->begin;
   number_places(s);
-  conic_status status = make_room(s, s->n_vertices, starts[n_clusters] - starts[0]);
+  conic_status status = make_room_for_region(s, s->n_vertices, starts[n_clusters] - starts[0]);
   if (status != CONIC_OK)
     return status;
   s->n_triangles = s->n_points = s->queue.n = 0;
@@ -183,7 +182,7 @@ conic_status conic_simplifier_load(conic_simplifier *s) {
   for (uint32_t cluster = 0; cluster < n_clusters; cluster++) {
     s->point_starts[0][cluster] = s->n_points;
     for (size_t i = starts[cluster]; i < starts[cluster + 1]; i++)
-      add_triangle(s, cluster, mesh->faces[i]);
+      add_region_triangle(s, cluster, mesh->faces[i]);
   }
   s->point_starts[0][n_clusters] = s->n_points;
   memcpy(s->taken, s->alive, n_clusters * sizeof *s->taken);

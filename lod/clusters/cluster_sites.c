@@ -1,6 +1,5 @@
 #include "lod/clusters/cluster_sites.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"

@@ -27,7 +27,8 @@ static size_t bucket_of(const conic_place_table *t, int depth, uint64_t row, int
   return (size_t)(depth - t->places.coarsest) * (t->mask + 1) + (size_t)((row + (uint64_t)x) & t->mask);
 }
 
-static conic_status make_room(conic_context *context, conic_place_table *t, size_t n_places, size_t n_starts) {
+static conic_status make_room_for_places(conic_context *context, conic_place_table *t, size_t n_places,
+                                         size_t n_starts) {
   if (n_starts > t->starts_room) {
     conic_memory_release(context, t->starts);
     t->starts = conic_memory_allocate(context, n_starts, sizeof *t->starts);
@@ -60,7 +61,7 @@ conic_status conic_place_table_fill(conic_context *context, conic_place_table *t
                                     uint32_t *owner) {
   size_t side = (size_t)1 << conic_bits_below(places->n / 4 + 16);
   size_t n_buckets = (size_t)(places->finest - places->coarsest + 1) * side;
-  conic_status status = make_room(context, t, places->n, n_buckets + 2);
+  conic_status status = make_room_for_places(context, t, places->n, n_buckets + 2);
   if (status != CONIC_OK)
     return status;
   t->places = *places;

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
@@ -79,7 +80,7 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
 }
 
 /* Lets nodes stand for clusters where that is fewer. Returns how many fewer. */
-static uint64_t cut(fitting *f) {
+static uint64_t cut_tree(fitting *f) {
   const conic_hybrid_cutting cutting = {f->hybrid, f->counts, ask_node, f, f->below};
   for (size_t i = 0; i < f->n; i++)
     f->counts[f->clusters[i]] = f->only_kind == CONIC_HYBRID_TRIANGLES ? NAN : (double)chosen(f, i)->count;
@@ -123,7 +124,7 @@ static uint64_t choose_all(fitting *f, double error_px, double *greatest_px, dou
   }
   for (size_t i = 0; i < h->n_nodes; i++)
     note_next(errors_of_node(f, &h->nodes[i]), h->nodes[i].n_levels + 1, error_px, next_px);
-  count -= cut(f);
+  count -= cut_tree(f);
   *greatest_px = greatest_error(f);
   return count;
 }
@@ -174,32 +175,20 @@ static conic_status measure_nodes(fitting *f, const conic_hybrid_camera *view) {
   return CONIC_OK;
 }
 
-static double error_of(uint64_t bits) {
-  double error;
-  memcpy(&error, &bits, sizeof error);
-  return error;
-}
-
-static uint64_t bits_of(double error) {
-  uint64_t bits;
-  memcpy(&bits, &error, sizeof bits);
-  return bits;
-}
-
 /* Halves the errors, which order like their bits as none is negative, down to the least at which the levels alone are
  * no more than the budget. */
 static double least_error(fitting *f, uint64_t budget) {
   double error_px, next_px;
   choose_all(f, HUGE_VAL, &error_px, &next_px);
-  uint64_t low = 0, high = bits_of(error_px);
+  uint64_t low = 0, high = conic_bits_of_double(error_px);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
-    if (choose_all(f, error_of(middle), &error_px, &next_px) > budget)
+    if (choose_all(f, conic_double_of_bits(middle), &error_px, &next_px) > budget)
       low = middle;
     else /* what was chosen may be better than what was asked for */
-      high = error_px < error_of(middle) ? bits_of(error_px) : middle;
+      high = error_px < conic_double_of_bits(middle) ? conic_bits_of_double(error_px) : middle;
   }
-  return error_of(high);
+  return conic_double_of_bits(high);
 }
 
 /* With what fits them to each other the number may go up and down with the error; so from there on each is tried.
@@ -239,7 +228,7 @@ static conic_status fit_kinds(fitting *f, uint64_t budget, uint32_t *levels, uin
                                (unsigned long long)fewest_count, (unsigned long long)budget);
 }
 
-static conic_status begin(fitting *f, const conic_hybrid_camera *view) {
+static conic_status begin_budget(fitting *f, const conic_hybrid_camera *view) {
   const conic_hybrid *h = f->hybrid;
   f->levels = conic_memory_allocate(h->context, f->n, sizeof *f->levels);
   f->stages = conic_memory_allocate(h->context, h->n_clusters, sizeof *f->stages);
@@ -259,7 +248,7 @@ conic_status conic_hybrid_fit_budget(const conic_hybrid *hybrid, const conic_hyb
                                      uint64_t budget, const uint32_t *clusters, size_t n, uint32_t *levels,
                                      uint32_t *nodes) {
   fitting f = {.hybrid = hybrid, .only_kind = only_kind, .clusters = clusters, .n = n};
-  conic_status status = begin(&f, view);
+  conic_status status = begin_budget(&f, view);
   if (status == CONIC_OK)
     status = fit_kinds(&f, budget, levels, nodes);
   void *parts[] = {f.errors_px, f.node_errors, f.first_errors, f.nodes, f.below,

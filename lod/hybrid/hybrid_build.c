@@ -30,7 +30,7 @@ typedef struct building {
   conic_hybrid_report *report;
 } building;
 
-static void release(building *b) {
+static void release_building(building *b) {
   for (size_t i = 0; b->ways && i < b->clusters.n_clusters; i++)
     conic_cluster_ways_release(b->context, &b->ways[i]);
   conic_memory_release(b->context, b->ways);
@@ -153,7 +153,7 @@ static conic_status take_options(conic_context *context, const conic_hybrid_opti
                  : conic_fail(context, CONIC_ERROR_ARGUMENT, "an option of the hybrid model is out of range");
 }
 
-static conic_status build(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
+static conic_status build_hybrid(building *b, conic_triangles *mesh, conic_hybrid **hybrid) {
   double start = conic_seconds_now();
   conic_status status = conic_flat_mesh(b->context, mesh, &b->flat);
   if (status != CONIC_OK)
@@ -192,8 +192,8 @@ conic_status conic_hybrid_build(conic_context *context, conic_triangles *mesh, c
   if (status == CONIC_OK)
     status = conic_triangles_check(context, mesh, "the mesh");
   if (status == CONIC_OK)
-    status = build(&b, mesh, hybrid);
-  release(&b);
+    status = build_hybrid(&b, mesh, hybrid);
+  release_building(&b);
   conic_triangles_release(context, mesh);
   if (status != CONIC_OK) {
     conic_hybrid_destroy(*hybrid);

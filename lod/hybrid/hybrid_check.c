@@ -2,15 +2,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 #include "lod/hybrid/hybrid_model.h"
 
 /* What floats lose between the finding of a bound and its use. */
 static const double hair = 1e-5;
-
-static int is_number(float value) {
-  return value - value == 0.0f;
-}
 
 static double distance_of(const conic_hybrid_bound *bound, const double at[3]) {
   double way[3];
@@ -78,11 +75,11 @@ static void check_joined(const conic_hybrid *h, const conic_hybrid_node *node, c
   found->spheres += (size_t)is_out;
   found->levels += (size_t)is_wrong;
   for (int channel = 0; channel < 3; channel++)
-    found->values += !is_number(node->point.color[channel]);
+    found->values += !conic_is_finite(node->point.color[channel]);
 }
 
 /* All that is drawn of a node's clusters lies in its sphere, and their cones in its cone. */
-static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
+static void check_hybrid_node(const conic_hybrid *h, const conic_hybrid_node *node, conic_hybrid_defects *found) {
   int is_out = 0, is_turned = 0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_cluster *cluster = &h->clusters[i];
@@ -110,7 +107,7 @@ static void check_node(const conic_hybrid *h, const conic_hybrid_node *node, con
 static size_t count_wrong(const float *values, size_t n) {
   size_t n_wrong = 0;
   for (size_t i = 0; i < n && values; i++)
-    n_wrong += !is_number(values[i]);
+    n_wrong += !conic_is_finite(values[i]);
   return n_wrong;
 }
 
@@ -118,7 +115,7 @@ conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *def
   memset(defects, 0, sizeof *defects);
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < h->n_listed; i++)
-      defects->values += !is_number(h->position[axis][h->listed[i]]);
+      defects->values += !conic_is_finite(h->position[axis][h->listed[i]]);
     defects->values += count_wrong(h->color[axis], h->n_vertices);
   }
   for (int k = 0; k < 12; k++)
@@ -126,7 +123,7 @@ conic_status conic_hybrid_check(const conic_hybrid *h, conic_hybrid_defects *def
   for (size_t i = 0; i < h->n_clusters; i++)
     check_cluster(h, &h->clusters[i], defects);
   for (size_t i = 0; i < h->n_nodes; i++) {
-    check_node(h, &h->nodes[i], defects);
+    check_hybrid_node(h, &h->nodes[i], defects);
     check_joined(h, &h->nodes[i], defects);
   }
   return CONIC_OK;

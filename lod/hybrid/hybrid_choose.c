@@ -15,7 +15,7 @@ static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_side(double side[3], int axis, double a, double b) {
+static void set_hybrid_side(double side[3], int axis, double a, double b) {
   double length = sqrt(a * a + b * b);
   side[0] = side[1] = 0.0;
   side[axis] = a / length;
@@ -34,10 +34,10 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   for (int axis = 0; axis < 3; axis++)
     for (int row = 0; row < 3; row++)
       view->eye[axis] -= view->rotation[row][axis] * view->translation[row];
-  set_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  set_hybrid_side(view->side[0], 0, camera->fx, camera->cx + margin);
+  set_hybrid_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
+  set_hybrid_side(view->side[2], 1, camera->fy, camera->cy + margin);
+  set_hybrid_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->focal_px = camera->fx > camera->fy ? camera->fx : camera->fy;
   view->near_z = render->near_z;
   view->n_pixels = (double)camera->width * (double)camera->height;
@@ -86,7 +86,7 @@ typedef struct sight {
   double scale2, facing; /* pixels that a unit of area covers if it faces the camera, and how far it does */
 } sight;
 
-static sight look_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
+static sight look_at_bound(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
   double at[3];
   to_camera(view, bound->center, at);
   return (sight){.z = at[2], .distance = conic_length(at), .radius = (double)bound->radius};
@@ -100,7 +100,7 @@ static double pixels_a_unit(const conic_hybrid_camera *view, const sight *seen, 
 }
 
 double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
-  sight seen = look_at(view, bound);
+  sight seen = look_at_bound(view, bound);
   return pixels_a_unit(view, &seen, reach);
 }
 
@@ -110,7 +110,7 @@ static double error_px_of(const conic_hybrid_camera *view, const sight *seen, co
 
 double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
                              const conic_hybrid_level *level) {
-  sight seen = look_at(view, bound);
+  sight seen = look_at_bound(view, bound);
   return error_px_of(view, &seen, level);
 }
 
@@ -144,7 +144,7 @@ double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2
 
 /* With what it takes to know costs. */
 static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
-  sight seen = look_at(view, bound);
+  sight seen = look_at_bound(view, bound);
   double z = seen.z > view->near_z ? seen.z : view->near_z;
   seen.scale2 = view->focal_px * view->focal_px / (z * z);
   seen.facing = facing_of(view, bound, &seen);

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
 #include "core/files/file_header.h"
@@ -103,10 +104,6 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
 
 /* --- reading --- */
 
-static int is_finite(double value) {
-  return value - value == 0.0;
-}
-
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const conic_chy_header *h) {
   const uint64_t counts[] = {h->n_vertices, h->n_triangles, h->n_listed,    h->n_surfels, h->n_levels, h->n_clusters,
@@ -123,13 +120,13 @@ static const char *check_header(const conic_chy_header *h) {
   if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->splat_length >= 0.0 && h->splat_length < 1e30))
     return "a cutoff or length out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
-        !is_finite((double)h->high[axis]))
+    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
       return "a box that is none";
   return NULL;
 }
 
-static conic_status read_header(conic_hybrid *hybrid, const char *path, conic_chy_header *h) {
+static conic_status read_hybrid_header(conic_hybrid *hybrid, const char *path, conic_chy_header *h) {
   const conic_mapping *file = &hybrid->mapping;
   conic_status status = conic_file_read_header(hybrid->context, path, &kind, file->bytes, file->n_bytes, h);
   const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
@@ -157,11 +154,11 @@ static conic_status check_body(const conic_hybrid *hybrid, const char *path, con
   return CONIC_OK;
 }
 
-static conic_status read_file(conic_hybrid *hybrid, const char *path) {
+static conic_status read_hybrid_file(conic_hybrid *hybrid, const char *path) {
   conic_chy_header h;
   conic_status status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
   if (status == CONIC_OK)
-    status = read_header(hybrid, path, &h);
+    status = read_hybrid_header(hybrid, path, &h);
   if (status == CONIC_OK)
     status = check_body(hybrid, path, &h);
   if (status != CONIC_OK)
@@ -180,7 +177,7 @@ conic_status conic_hybrid_read(conic_context *context, const char *path, conic_h
   if (!read)
     return CONIC_ERROR_MEMORY;
   read->context = context;
-  conic_status status = read_file(read, path);
+  conic_status status = read_hybrid_file(read, path);
   if (status == CONIC_OK)
     *hybrid = read;
   else

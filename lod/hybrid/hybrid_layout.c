@@ -46,7 +46,7 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
 }
 
 /* Null for an array that is not there. */
-static const void *array_at(const conic_chy_layout *l, const unsigned char *bytes, int i) {
+static const void *array_in_layout(const conic_chy_layout *l, const unsigned char *bytes, int i) {
   return l->arrays[i].n_bytes ? bytes + l->arrays[i].offset : NULL;
 }
 
@@ -68,25 +68,25 @@ void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hyb
   hybrid->n_borders = (size_t)h->n_borders;
   hybrid->n_materials = (size_t)h->n_materials;
   hybrid->n_texels = (size_t)h->n_texels;
-  hybrid->nodes = array_at(&l, bytes, CONIC_CHY_NODES);
-  hybrid->clusters = array_at(&l, bytes, CONIC_CHY_CLUSTERS);
-  hybrid->levels = array_at(&l, bytes, CONIC_CHY_LEVELS);
-  hybrid->slots = array_at(&l, bytes, CONIC_CHY_SLOTS);
-  hybrid->borders = array_at(&l, bytes, CONIC_CHY_BORDERS);
-  hybrid->corners = array_at(&l, bytes, CONIC_CHY_CORNERS);
-  hybrid->listed = array_at(&l, bytes, CONIC_CHY_LISTED);
-  hybrid->material = array_at(&l, bytes, CONIC_CHY_MATERIAL_OF);
-  hybrid->material_list = array_at(&l, bytes, CONIC_CHY_MATERIAL_LIST);
-  hybrid->texels = array_at(&l, bytes, CONIC_CHY_TEXELS);
+  hybrid->nodes = array_in_layout(&l, bytes, CONIC_CHY_NODES);
+  hybrid->clusters = array_in_layout(&l, bytes, CONIC_CHY_CLUSTERS);
+  hybrid->levels = array_in_layout(&l, bytes, CONIC_CHY_LEVELS);
+  hybrid->slots = array_in_layout(&l, bytes, CONIC_CHY_SLOTS);
+  hybrid->borders = array_in_layout(&l, bytes, CONIC_CHY_BORDERS);
+  hybrid->corners = array_in_layout(&l, bytes, CONIC_CHY_CORNERS);
+  hybrid->listed = array_in_layout(&l, bytes, CONIC_CHY_LISTED);
+  hybrid->material = array_in_layout(&l, bytes, CONIC_CHY_MATERIAL_OF);
+  hybrid->material_list = array_in_layout(&l, bytes, CONIC_CHY_MATERIAL_LIST);
+  hybrid->texels = array_in_layout(&l, bytes, CONIC_CHY_TEXELS);
   for (int axis = 0; axis < 3; axis++) {
-    hybrid->position[axis] = array_at(&l, bytes, CONIC_CHY_POSITION + axis);
-    hybrid->normal[axis] = array_at(&l, bytes, CONIC_CHY_NORMAL + axis);
-    hybrid->color[axis] = array_at(&l, bytes, CONIC_CHY_COLOR + axis);
+    hybrid->position[axis] = array_in_layout(&l, bytes, CONIC_CHY_POSITION + axis);
+    hybrid->normal[axis] = array_in_layout(&l, bytes, CONIC_CHY_NORMAL + axis);
+    hybrid->color[axis] = array_in_layout(&l, bytes, CONIC_CHY_COLOR + axis);
   }
   for (int k = 0; k < 2; k++)
-    hybrid->texture_coordinate[k] = array_at(&l, bytes, CONIC_CHY_TEXTURE + k);
+    hybrid->texture_coordinate[k] = array_in_layout(&l, bytes, CONIC_CHY_TEXTURE + k);
   for (int k = 0; k < 12; k++)
-    hybrid->surfels[k] = array_at(&l, bytes, CONIC_CHY_SURFELS + k);
+    hybrid->surfels[k] = array_in_layout(&l, bytes, CONIC_CHY_SURFELS + k);
 }
 
 static conic_status make_texture(conic_hybrid *hybrid, const conic_chy_material *from, conic_texture **texture) {

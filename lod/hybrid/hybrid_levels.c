@@ -5,7 +5,6 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/radix.h"
 #include "core/base/threads.h"
 #include "core/base/vectors.h"

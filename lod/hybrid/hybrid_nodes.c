@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/base/trigonometry.h"
@@ -44,7 +43,7 @@ typedef struct nodes_pass {
 
 /* --- pieces --- */
 
-static conic_status add_piece(const nodes_pass *pass, node_worker *w, const conic_surfel *surfel) {
+static conic_status add_surfel_piece(const nodes_pass *pass, node_worker *w, const conic_surfel *surfel) {
   conic_status status =
       conic_memory_reserve(w->sampler->context, &w->pieces, w->n_pieces, w->n_pieces + 1, &w->room, sizeof *w->pieces);
   if (status != CONIC_OK)
@@ -75,7 +74,8 @@ static const conic_surfels *fine_enough(const conic_cluster_ways *ways, double s
 }
 
 /* All of a node's clusters as surfels, shuffled; none where there is a cluster without. */
-static conic_status gather(const nodes_pass *pass, node_worker *w, const conic_hybrid_node *node, double spacing) {
+static conic_status gather_pieces(const nodes_pass *pass, node_worker *w, const conic_hybrid_node *node,
+                                  double spacing) {
   conic_status status = CONIC_OK;
   w->n_pieces = 0;
   w->error = 0.0;
@@ -87,7 +87,7 @@ static conic_status gather(const nodes_pass *pass, node_worker *w, const conic_h
     const conic_surfels *surfels = fine_enough(&pass->job->ways[i], spacing);
     w->error = surfels->error > w->error ? surfels->error : w->error;
     for (size_t k = 0; k < surfels->n && status == CONIC_OK; k++)
-      status = add_piece(pass, w, &surfels->items[k]);
+      status = add_surfel_piece(pass, w, &surfels->items[k]);
   }
   for (size_t i = w->n_pieces; i > 1 && status == CONIC_OK; i--) {
     size_t other = (size_t)(conic_random_bits(node->begin, i, node->end) % i);
@@ -186,7 +186,7 @@ static conic_status shape_sites(node_worker *w) {
 
 /* What the pieces are off, and the site is off from them; or its ellipse from the mesh, if that is more. Where it is
  * more than `known`; else `known`. */
-static double error_of(const node_worker *w, const conic_site *site, double known) {
+static double error_of_level(const node_worker *w, const conic_site *site, double known) {
   double error = w->error + site->least_error;
   return conic_site_off_mesh(w->sampler, site, error > known ? error : known);
 }
@@ -206,7 +206,7 @@ static conic_status emit(node_worker *w, const conic_site *site, conic_surfels *
   surfel->face = site->face;
   surfels->n++;
   surfels->reach = site->ellipse.reach > surfels->reach ? site->ellipse.reach : surfels->reach;
-  surfels->error = error_of(w, site, surfels->error);
+  surfels->error = error_of_level(w, site, surfels->error);
   return CONIC_OK;
 }
 
@@ -248,7 +248,7 @@ static conic_status find_levels(const nodes_pass *pass, node_worker *w, size_t i
   for (int k = 0; k < CONIC_MOST_NODE_LEVELS && status == CONIC_OK; k++, spacing *= 2.0) {
     conic_surfels *surfels = &ways->surfels[ways->n_surfels];
     surfels->error = ways->n_surfels ? surfels[-1].error : 0.0;
-    status = gather(pass, w, node, spacing);
+    status = gather_pieces(pass, w, node, spacing);
     if (status == CONIC_OK && w->n_pieces > 0)
       status = make_level(pass, w, spacing, surfels);
     if (surfels->n > 0 && 4 * surfels->n <= 3 * n_last) {
@@ -266,7 +266,7 @@ static conic_status find_point(const nodes_pass *pass, node_worker *w, size_t i)
   const conic_clustered_mesh *mesh = pass->job->mesh;
   conic_hybrid_node *node = &pass->job->nodes[i];
   double center[3], farthest2 = 0.0, color[3] = {0.0, 0.0, 0.0}, area = 0.0;
-  conic_status status = gather(pass, w, node, HUGE_VAL);
+  conic_status status = gather_pieces(pass, w, node, HUGE_VAL);
   if (status != CONIC_OK || w->n_pieces == 0)
     return status;
   for (int axis = 0; axis < 3; axis++)
@@ -332,7 +332,7 @@ static conic_status find_ways(conic_ways_job *job) {
 }
 
 /* How far each cluster's surfels may stand out of its sphere. */
-static float reach_of(const conic_cluster_ways *ways) {
+static float reach_of_surfels(const conic_cluster_ways *ways) {
   float longest = 0.0f;
   for (int k = 0; k < ways->n_surfels; k++) {
     float reach = (float)(ways->surfels[k].reach * (1.0 + 1e-6));
@@ -350,7 +350,7 @@ conic_status conic_find_nodes(conic_ways_job *job) {
   conic_status status = job->nodes && bounds && reach ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n && status == CONIC_OK; i++) {
     bounds[i] = job->ways[i].bound;
-    reach[i] = reach_of(&job->ways[i]);
+    reach[i] = reach_of_surfels(&job->ways[i]);
   }
   if (status == CONIC_OK) {
     conic_hybrid_fill_nodes(bounds, reach, n, job->nodes);

@@ -59,7 +59,7 @@ static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *no
 }
 
 /* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
-static double cut(const hybrid_planning *p) {
+static double cut_nodes(const hybrid_planning *p) {
   const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
   for (size_t i = 0; i < p->n; i++) {
     const plan_candidate *c = &p->candidates[i];
@@ -173,7 +173,7 @@ static double total(const hybrid_planning *p) {
       if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
         sum += p->links[c->first_link + k].own_ns;
   }
-  sum -= cut(p);
+  sum -= cut_nodes(p);
   return is_both ? sum / margin : sum;
 }
 
@@ -186,7 +186,7 @@ static void take_kind(hybrid_planning *p, uint8_t kind) {
 /* What each cluster's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
 static void share(hybrid_planning *p) {
   take_kind(p, CONIC_HYBRID_SURFELS);
-  if (cut(p) > 0.0)
+  if (cut_nodes(p) > 0.0)
     for (size_t i = 0; i < p->hybrid->n_nodes; i++) {
       const conic_hybrid_node *node = &p->hybrid->nodes[i];
       double sum = 0.0;
@@ -263,7 +263,7 @@ static conic_status plan_kinds(hybrid_planning *p) {
   return status;
 }
 
-static conic_status begin(hybrid_planning *p) {
+static conic_status begin_plan(hybrid_planning *p) {
   conic_context *context = p->hybrid->context;
   p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
   p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
@@ -284,7 +284,7 @@ conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_ca
   conic_context *context = hybrid->context;
   hybrid_planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
   p.nodes = nodes;
-  conic_status status = begin(&p);
+  conic_status status = begin_plan(&p);
   if (status == CONIC_OK) {
     ask(&p);
     if (only_kind < 0)
@@ -293,7 +293,7 @@ conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_ca
       obey(&p, only_kind);
   }
   if (status == CONIC_OK)
-    cut(&p);
+    cut_nodes(&p);
   for (size_t i = 0; i < n && status == CONIC_OK; i++)
     levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
   conic_memory_release(context, p.links);

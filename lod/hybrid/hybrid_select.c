@@ -1,5 +1,4 @@
 /* What of a hybrid model is drawn in one picture. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -69,7 +68,7 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   memset(selection, 0, sizeof *selection);
 }
 
-static double reach_of(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
+static double reach_of_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
   float reach = 0.0f;
   for (uint32_t k = 0; k < cluster->n_levels; k++) {
     float own = h->levels[cluster->first_level + k].reach;
@@ -108,7 +107,7 @@ static conic_status choose_all(hybrid_selecting *s) {
       continue;
     }
     for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
-      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, reach_of(h, &h->clusters[k])))
+      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, reach_of_cluster(h, &h->clusters[k])))
         s->selection->n_culled++;
       else
         status = add_choice(s, k);
@@ -190,7 +189,7 @@ static void judge_cluster(const hybrid_selecting *s, const choice *c) {
 }
 
 /* What the choices come to. */
-static void judge(const hybrid_selecting *s) {
+static void judge_choices(const hybrid_selecting *s) {
   conic_hybrid_selection *selection = s->selection;
   selection->n_simpler = selection->n_joined;
   for (size_t i = 0; i < s->scratch->n_choices; i++) {
@@ -283,7 +282,7 @@ static conic_status make_triangles(conic_context *context, hybrid_scratch *kept,
 }
 
 /* Room for all parts of the choices. */
-static conic_status make_room(hybrid_selecting *s) {
+static conic_status make_room_for_parts(hybrid_selecting *s) {
   conic_context *context = s->hybrid->context;
   const conic_hybrid_selection *selection = s->selection;
   place_parts(s);
@@ -340,7 +339,7 @@ static void put_point(const hybrid_selecting *s, const choice *c) {
   kept->splat_cluster[c->splat] = c->cluster;
 }
 
-static void gather(float *to, const float *from, const uint32_t *listed, size_t n) {
+static void gather_listed(float *to, const float *from, const uint32_t *listed, size_t n) {
   for (size_t i = 0; i < n && to; i++)
     to[i] = from[listed[i]];
 }
@@ -350,14 +349,14 @@ static void copy_triangles(const hybrid_selecting *s, const choice *c, const con
   const conic_triangles *to = &s->selection->triangles;
   const uint32_t *listed = h->listed + level->first_vertex;
   for (int axis = 0; axis < 3; axis++) {
-    gather(to->position[axis] + c->vertex, h->position[axis], listed, level->n_vertices);
+    gather_listed(to->position[axis] + c->vertex, h->position[axis], listed, level->n_vertices);
     if (to->normal[0])
-      gather(to->normal[axis] + c->vertex, h->normal[axis], listed, level->n_vertices);
+      gather_listed(to->normal[axis] + c->vertex, h->normal[axis], listed, level->n_vertices);
     if (to->color[0])
-      gather(to->color[axis] + c->vertex, h->color[axis], listed, level->n_vertices);
+      gather_listed(to->color[axis] + c->vertex, h->color[axis], listed, level->n_vertices);
   }
   for (int k = 0; k < 2 && to->texture_coordinate[0]; k++)
-    gather(to->texture_coordinate[k] + c->vertex, h->texture_coordinate[k], listed, level->n_vertices);
+    gather_listed(to->texture_coordinate[k] + c->vertex, h->texture_coordinate[k], listed, level->n_vertices);
   for (size_t i = 0; i < level->count; i++) {
     for (int corner = 0; corner < 3; corner++)
       to->corners[c->triangle + i][corner] = (uint32_t)c->vertex + h->corners[level->first + i][corner];
@@ -405,7 +404,8 @@ static conic_status take_view(conic_context *context, const conic_hybrid_view *g
 }
 
 /* On success there is scratch. */
-static conic_status begin(hybrid_selecting *s, const conic_camera *camera, const conic_render_options *render) {
+static conic_status begin_selection(hybrid_selecting *s, const conic_camera *camera,
+                                    const conic_render_options *render) {
   conic_render_options known;
   conic_status status = conic_view_arguments_take(s->hybrid->context, "hybrid", camera, render, &known);
   if (status != CONIC_OK)
@@ -434,7 +434,7 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
   hybrid_selecting s = {.hybrid = hybrid, .view = &view, .selection = selection};
   conic_status status = take_view(hybrid->context, given, &view);
   if (status == CONIC_OK)
-    status = begin(&s, camera, render);
+    status = begin_selection(&s, camera, render);
   if (status == CONIC_OK)
     status = make_stages(&s);
   if (status == CONIC_OK)
@@ -446,10 +446,10 @@ conic_status conic_hybrid_select(const conic_hybrid *hybrid, const conic_camera 
       note_stages(&s);
   }
   if (status == CONIC_OK)
-    status = make_room(&s);
+    status = make_room_for_parts(&s);
   if (status != CONIC_OK)
     return status;
-  judge(&s);
+  judge_choices(&s);
   attach(&s);
   conic_parallel_for(hybrid->context, (s.scratch->n_choices + CHOICES_A_TASK - 1) / CHOICES_A_TASK, copy_task, &s);
   return CONIC_OK;

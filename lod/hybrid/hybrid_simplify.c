@@ -94,7 +94,7 @@ static conic_status simplify(regions_job *job, size_t n_now) {
 }
 
 /* As many regions at a time as there are threads, so that progress is told. */
-static conic_status run(regions_job *job) {
+static conic_status run_regions(regions_job *job) {
   conic_context *context = job->ways->context;
   size_t n_threads = (size_t)conic_context_threads(context);
   conic_status status = CONIC_OK;
@@ -122,7 +122,7 @@ conic_status conic_find_simpler(conic_ways_job *ways) {
     part(&job, 0, n);
     status = conic_cluster_chains_find(context, ways->mesh, job.of_cluster, &ways->chains);
     if (status == CONIC_OK)
-      status = run(&job);
+      status = run_regions(&job);
     for (size_t i = 0; i < n; i++)
       ways->ways[i].triangles = job.levels[i];
   }

@@ -57,7 +57,7 @@ static size_t put_triangle(conic_hybrid_stitching *s, size_t from, uint32_t a, u
 
 /* Cuts the triangle `host` from its opposite corner to what is put into the edge that begins at `begin`. Returns the
  * piece at the edge's end; the host itself becomes that at its beginning. */
-static size_t cut(conic_hybrid_stitching *s, size_t host, uint32_t begin, const conic_cluster_border *border) {
+static size_t cut_triangle(conic_hybrid_stitching *s, size_t host, uint32_t begin, const conic_cluster_border *border) {
   const uint32_t *corners = s->to->corners[host];
   uint32_t k = corners[0] == begin ? 0 : corners[1] == begin ? 1 : 2;
   uint32_t end = corners[(k + 1) % 3], opposite = corners[(k + 2) % 3], stage = s->stages[border->across];
@@ -80,7 +80,7 @@ static size_t stitch_triangle(conic_hybrid_stitching *s, const conic_cluster_bor
     uint32_t corner = borders[i].edge % 4, next = (corner + 1) % 3;
     if (is_free(&borders[i], s->stages[borders[i].across]))
       continue;
-    size_t host = hosts[corner], piece = cut(s, host, corners[corner], &borders[i]);
+    size_t host = hosts[corner], piece = cut_triangle(s, host, corners[corner], &borders[i]);
     if (hosts[next] == host)
       hosts[next] = piece;
   }

@@ -1,13 +1,13 @@
 /* Who lies beside whom in a mesh. */
 #include "lod/mesh/mesh.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/radix.h"
 #include "core/base/random.h"
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 
 static const uint32_t none = UINT32_MAX;
@@ -18,8 +18,7 @@ static uint64_t position_hash(const conic_mesh *mesh, size_t i) {
   uint64_t hash = 0;
   for (int axis = 0; axis < 3; axis++) {
     float value = mesh->position[axis][i] + 0.0f; /* no -0 */
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    uint32_t bits = conic_bits_of_float(value);
     hash = conic_random_mix(hash ^ bits) + (uint64_t)axis;
   }
   return conic_random_mix(hash);

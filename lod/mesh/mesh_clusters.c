@@ -112,7 +112,7 @@ static uint32_t stamp_of(const joining *j, uint32_t i) {
   return j->grown[j->joints[i].ends[0]] + j->grown[j->joints[i].ends[1]];
 }
 
-static void evaluate(joining *j, uint32_t i) {
+static void evaluate_joint(joining *j, uint32_t i) {
   j->keys[i] = cost_of(j, i);
   j->joints[i].stamp = stamp_of(j, i);
   j->n_evaluations++;
@@ -133,7 +133,7 @@ static void evaluate_task(void *data, size_t i_chunk, int i_thread) {
 
 /* --- joining --- */
 
-static void join(joining *j, uint32_t i) {
+static void join_clusters(joining *j, uint32_t i) {
   uint32_t a = j->joints[i].ends[0], b = j->joints[i].ends[1];
   uint32_t kept = j->degree[a] > j->degree[b] || (j->degree[a] == j->degree[b] && a < b) ? a : b;
   uint32_t gone = kept == a ? b : a;
@@ -180,9 +180,9 @@ static conic_status run_phase(joining *j, int phase, double limit) {
       if (j->joints[i].length < 0.0)
         continue;
       if (j->joints[i].stamp == stamp_of(j, i)) {
-        join(j, i);
+        join_clusters(j, i);
       } else {
-        evaluate(j, i);
+        evaluate_joint(j, i);
         if (j->keys[i] <= j->limit)
           conic_heap_push(&j->queue, i);
       }
@@ -198,7 +198,7 @@ static conic_status run_phase(joining *j, int phase, double limit) {
 
 /* --- beginning and end --- */
 
-static conic_status begin(joining *j, const conic_mesh *mesh, const conic_adjacency *adjacency) {
+static conic_status begin_joining(joining *j, const conic_mesh *mesh, const conic_adjacency *adjacency) {
   conic_unit_box box = conic_unit_box_of(mesh, adjacency);
   j->n_clusters = mesh->n_faces;
   j->n_joints = adjacency->n_joints;
@@ -240,7 +240,7 @@ static conic_status begin(joining *j, const conic_mesh *mesh, const conic_adjace
   return CONIC_OK;
 }
 
-static void end(joining *j) {
+static void end_joining(joining *j) {
   conic_memory_release(j->context, j->joints);
   conic_memory_release(j->context, j->keys);
   conic_memory_release(j->context, j->queue.slots);
@@ -268,7 +268,7 @@ static size_t count_roots(joining *j, const conic_adjacency *adjacency) {
 }
 
 /* Numbers the clusters by their first faces. The rings are not needed any more and hold the numbers. */
-static conic_status collect(joining *j, const conic_adjacency *adjacency, conic_mesh_clusters *clusters) {
+static conic_status collect_clusters(joining *j, const conic_adjacency *adjacency, conic_mesh_clusters *clusters) {
   size_t n = count_roots(j, adjacency);
   clusters->of_face = conic_memory_allocate(j->context, j->n_clusters, sizeof *clusters->of_face);
   clusters->is_gathered = conic_memory_allocate(j->context, n, 1);
@@ -296,7 +296,7 @@ conic_status conic_mesh_clusters_find(conic_context *context, const conic_mesh *
                                       const conic_clustering_options *options, conic_mesh_clusters *clusters) {
   joining j = {.context = context, .options = options};
   memset(clusters, 0, sizeof *clusters);
-  conic_status status = begin(&j, mesh, adjacency);
+  conic_status status = begin_joining(&j, mesh, adjacency);
   if (status == CONIC_OK)
     status = run_phase(&j, 1, options->phase1);
   if (status == CONIC_OK) {
@@ -304,8 +304,8 @@ conic_status conic_mesh_clusters_find(conic_context *context, const conic_mesh *
     status = run_phase(&j, 2, options->phase2);
   }
   if (status == CONIC_OK)
-    status = collect(&j, adjacency, clusters);
-  end(&j);
+    status = collect_clusters(&j, adjacency, clusters);
+  end_joining(&j);
   if (status != CONIC_OK)
     conic_mesh_clusters_release(context, clusters);
   return status;

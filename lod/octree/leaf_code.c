@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/splats/ellipse.h"
 
@@ -32,8 +33,7 @@ typedef struct leaf_box {
 } leaf_box;
 
 static void put_float(unsigned char *to, float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
+  uint32_t bits = conic_bits_of_float(value);
   for (int i = 0; i < 4; i++)
     to[i] = (unsigned char)(bits >> 8 * i);
 }
@@ -47,7 +47,7 @@ static float get_float(const unsigned char *from) {
   return value;
 }
 
-static leaf_box find_box(const conic_splats *leaves, size_t begin, size_t end) {
+static leaf_box find_leaf_box(const conic_splats *leaves, size_t begin, size_t end) {
   leaf_box box;
   for (int axis = 0; axis < 3; axis++) {
     const float *x = leaves->position[axis];
@@ -148,7 +148,7 @@ static void code_block(const leaf_job *job, size_t i_block) {
   leaf_box box;
   end = end < leaves->count ? end : leaves->count;
   if (job->is_encoding) {
-    box = find_box(leaves, begin, end);
+    box = find_leaf_box(leaves, begin, end);
     for (int axis = 0; axis < 3; axis++) {
       put_float(head + (size_t)axis * 4, box.low[axis]);
       put_float(head + 12 + (size_t)axis * 4, box.step[axis]);

@@ -1,6 +1,5 @@
 #include "lod/octree/moments.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/vectors.h"

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "lod/octree/octree_view.h"
 
 /* A node gives way to its children once the error asked for is below `pixels`: its own and those of all nodes above,
@@ -17,12 +18,6 @@ typedef struct budget_node {
   float pixels;
   size_t i_opening;
 } budget_node;
-
-static uint32_t bits_of(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
 
 /* Every node in sight, in preorder. Returns how many there are. */
 static size_t list_openings(const conic_octree *octree, const conic_octree_view *view, opening *openings) {
@@ -41,7 +36,8 @@ static size_t list_openings(const conic_octree *octree, const conic_octree_view 
     float above = depth > 0 ? path[depth - 1].pixels : pixels, least = pixels < above ? pixels : above;
     if (depth > 0)
       openings[path[depth - 1].i_opening].change++;
-    openings[n] = (opening){bits_of(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
+    openings[n] =
+        (opening){conic_bits_of_float(least), (int32_t)(octree->first_leaf[i + 1] - octree->first_leaf[i]) - 1};
     path[depth++] = (budget_node){octree->end[i], least, n++};
     i++;
   }

@@ -94,7 +94,7 @@ static void gather_chunk(void *data, size_t i_chunk, int i_thread) {
 }
 
 /* Brings an array into the order of the index; null stays null. */
-static conic_status gather(const conic_octree *octree, float **array) {
+static conic_status gather_floats(const conic_octree *octree, float **array) {
   gathering g = {.index = octree->index, .from = *array, .n = octree->n_points};
   if (!*array)
     return CONIC_OK;
@@ -113,9 +113,9 @@ static conic_status gather_rest(conic_octree *octree) {
   for (int axis = 0; axis < 3; axis++) {
     float **arrays[] = {&leaves->tangent_u[axis], &leaves->tangent_v[axis], &leaves->color[axis]};
     for (int i = 0; i < 3 && status == CONIC_OK; i++)
-      status = gather(octree, arrays[i]);
+      status = gather_floats(octree, arrays[i]);
   }
-  return status == CONIC_OK ? gather(octree, &leaves->opacity) : status;
+  return status == CONIC_OK ? gather_floats(octree, &leaves->opacity) : status;
 }
 
 /* The structure, and the splats in its order. */
@@ -125,7 +125,7 @@ static conic_status split(conic_octree *octree) {
   conic_split work = {.index = octree->index, .n = octree->n_leaves};
   conic_status status = CONIC_OK;
   for (int axis = 0; axis < 3 && status == CONIC_OK && octree->n_leaves < octree->n_points; axis++)
-    status = gather(octree, &leaves->position[axis]);
+    status = gather_floats(octree, &leaves->position[axis]);
   memcpy(work.position, leaves->position, sizeof work.position);
   work.children = conic_memory_allocate(context, octree->n_leaves, 1);
   if (!work.children)
@@ -217,7 +217,7 @@ static conic_status quantize(conic_octree *octree) {
   return CONIC_OK;
 }
 
-static conic_status lay_out(conic_octree *octree) {
+static conic_status lay_out_leaves(conic_octree *octree) {
   octree->end = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *octree->end);
   octree->first_leaf = conic_memory_allocate(octree->context, octree->n_nodes + 1, sizeof *octree->first_leaf);
   if (!octree->end || !octree->first_leaf)
@@ -227,7 +227,7 @@ static conic_status lay_out(conic_octree *octree) {
 }
 
 /* The measures of the whole set, as the renderer would take them. */
-static conic_status measure(conic_octree *octree, const conic_splats *splats) {
+static conic_status measure_octree(conic_octree *octree, const conic_splats *splats) {
   conic_splats local = *splats;
   double low[3], high[3];
   memset(local.origin, 0, sizeof local.origin);
@@ -239,9 +239,9 @@ static conic_status measure(conic_octree *octree, const conic_splats *splats) {
   return conic_splats_length(octree->context, splats, &octree->splat_length);
 }
 
-static conic_status build(conic_octree *octree, const conic_octree_options *options) {
+static conic_status build_octree(conic_octree *octree, const conic_octree_options *options) {
   conic_splats *leaves = &octree->owned;
-  conic_status status = measure(octree, leaves);
+  conic_status status = measure_octree(octree, leaves);
   if (status == CONIC_OK)
     status = sort_out(octree, leaves);
   if (status == CONIC_OK)
@@ -257,12 +257,12 @@ static conic_status build(conic_octree *octree, const conic_octree_options *opti
     status = quantize(octree);
   octree->has_color_codes = conic_octree_colors_are_codes(&octree->scale, &octree->leaves);
   if (status == CONIC_OK)
-    status = lay_out(octree);
+    status = lay_out_leaves(octree);
   return status == CONIC_OK ? conic_octree_fit(octree) : status;
 }
 
-static const char *what_is_wrong(const conic_splats *splats, const conic_octree_options *given,
-                                 conic_octree_options *options) {
+static const char *what_of_splats_is_wrong(const conic_splats *splats, const conic_octree_options *given,
+                                           conic_octree_options *options) {
   conic_octree_options_init(options);
   if (!conic_options_take(options, given) || !(options->cutoff >= 0.25f && options->cutoff <= 5.0f))
     return "the options have no meaning";
@@ -280,7 +280,7 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
   conic_status status = conic_splats_check_own(context, "octree", splats);
   if (status != CONIC_OK)
     return status;
-  const char *wrong = what_is_wrong(splats, given, &options);
+  const char *wrong = what_of_splats_is_wrong(splats, given, &options);
   conic_octree *made = wrong ? NULL : conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made) {
     conic_splats_release(context, splats);
@@ -299,7 +299,7 @@ conic_status conic_octree_build(conic_context *context, conic_splats *splats, co
     conic_memory_release(context, made->owned.normal[axis]);
     made->owned.normal[axis] = NULL;
   }
-  status = build(made, &options);
+  status = build_octree(made, &options);
   if (status == CONIC_OK)
     *octree = made;
   else

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/color.h"
+#include "core/base/real.h"
 #include "core/splats/ellipse.h"
 
 /* Where in the 19 bytes: */
@@ -27,19 +28,11 @@ enum { OCTAVE_STEPS = 1024 };
 /* The upper halves of the bits of 2^-14 and 1. */
 enum { FIRST_GUESS = 0x3880, LAST_GUESS = 0x3f80, GUESSES = LAST_GUESS - FIRST_GUESS };
 
-/* 2^exponent, which is within those of normal doubles. */
-static double power_of_two(int exponent) {
-  uint64_t bits = (uint64_t)(1023 + exponent) << 52;
-  double power;
-  memcpy(&power, &bits, sizeof power);
-  return power;
-}
-
 /* 2^(steps/per_octave); per_octave divides 1024. */
 static double power(const conic_code_scale *scale, int steps, int per_octave) {
   int octaves = steps >= 0 ? steps / per_octave : -((per_octave - 1 - steps) / per_octave);
   int rest = steps - octaves * per_octave;
-  return power_of_two(octaves) * scale->octave[(ptrdiff_t)rest * (OCTAVE_STEPS / per_octave)];
+  return conic_power_of_two(octaves) * scale->octave[(ptrdiff_t)rest * (OCTAVE_STEPS / per_octave)];
 }
 
 void conic_code_scale_init(double length, double cutoff, float color, conic_code_scale *scale) {
@@ -51,8 +44,7 @@ void conic_code_scale_init(double length, double cutoff, float color, conic_code
   conic_srgb_thresholds(scale->steps);
   for (uint32_t i = 0; i <= GUESSES; i++) {
     uint32_t bits = (FIRST_GUESS + i) << 16;
-    float value;
-    memcpy(&value, &bits, sizeof value);
+    float value = conic_float_of_bits(bits);
     scale->guess[i] = conic_srgb_code(scale->steps, value);
   }
   for (int i = 0; i < OCTAVE_STEPS; i++)
@@ -174,9 +166,9 @@ void conic_code_place(const conic_code_scale *scale, const double mean[3], const
   int exponent = 0;
   for (int axis = 0; axis < 3; axis++)
     longest = fabs(mean[axis] - first[axis]) > longest ? fabs(mean[axis] - first[axis]) : longest;
-  while (exponent < 31 && scale->length * power_of_two(-exponent - 1) * (255.0 / 256.0) >= longest)
+  while (exponent < 31 && scale->length * conic_power_of_two(-exponent - 1) * (255.0 / 256.0) >= longest)
     exponent++;
-  double unit = scale->length * power_of_two(-exponent - 8);
+  double unit = scale->length * conic_power_of_two(-exponent - 8);
   for (int axis = 0; axis < 3; axis++) {
     int steps = round_to_int((mean[axis] - first[axis]) / unit);
     steps = steps < -255 ? -255 : steps > 255 ? 255 : steps;
@@ -192,7 +184,7 @@ static void decode_place(const conic_code_scale *scale, const double first[3], c
   uint32_t bits = 0;
   for (int i = 0; i < 4; i++)
     bits |= (uint32_t)code[AT_PLACE + i] << 8 * i;
-  double unit = scale->length * power_of_two(-(int)(bits >> 27) - 8);
+  double unit = scale->length * conic_power_of_two(-(int)(bits >> 27) - 8);
   for (int axis = 0; axis < 3; axis++) /* as a float, as it will be drawn */
     position[axis] = (double)(float)(first[axis] + unit * (double)((int)(bits >> 9 * axis & 511) - 256));
 }
@@ -288,7 +280,7 @@ int conic_code_n_inner(const uint8_t *code) {
   return code[AT_CHILDREN] >> 4;
 }
 
-static double reach_of(const conic_code_scale *scale, const uint8_t *code) {
+static double reach_of_code(const conic_code_scale *scale, const uint8_t *code) {
   return conic_code_length_of(scale, scale->length * scale->cutoff,
                               (uint16_t)(code[AT_REACH] | code[AT_REACH + 1] << 8));
 }
@@ -299,13 +291,13 @@ void conic_code_sphere(const conic_code_scale *scale, const double first[3], con
   decode_place(scale, first, code, position);
   for (int axis = 0; axis < 3; axis++)
     center[axis] = (float)position[axis];
-  *radius = (float)(reach_of(scale, code) * scale->widening[code[AT_RADIUS]]);
+  *radius = (float)(reach_of_code(scale, code) * scale->widening[code[AT_RADIUS]]);
 }
 
 void conic_code_decode(const conic_code_scale *scale, const double first[3], const uint8_t *code, conic_node *node) {
   conic_node_frame frame;
   conic_code_frame(scale, first, code, &frame);
-  double reach = reach_of(scale, code), radius = reach * scale->widening[code[AT_RADIUS]];
+  double reach = reach_of_code(scale, code), radius = reach * scale->widening[code[AT_RADIUS]];
   double major = reach / scale->cutoff;
   for (int axis = 0; axis < 3; axis++) {
     node->position[axis] = (float)frame.position[axis];

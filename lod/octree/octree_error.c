@@ -187,7 +187,7 @@ static void gather_own(neighbourhood *around, size_t root) {
 
 /* Takes the discs of the nodes begin … end that are in the box; while there is room and patience, for everything may be
  * near everything. What is left out makes errors larger than they are, which breaks no promise. */
-static void gather(neighbourhood *around, size_t begin, size_t end, const error_box *b, size_t room) {
+static void gather_discs(neighbourhood *around, size_t begin, size_t end, const error_box *b, size_t room) {
   const conic_octree *octree = around->pass->octree;
   conic_discs *discs = &around->discs;
   size_t patience = 32 * around->room;
@@ -286,7 +286,7 @@ static void find_error(neighbourhood *around, const member *m) {
 }
 
 /* The errors of a member and of those in its subtree. Returns the member after them. */
-static size_t find_errors(neighbourhood *around, size_t begin) {
+static size_t find_member_errors(neighbourhood *around, size_t begin) {
   const conic_octree *octree = around->pass->octree;
   size_t end = begin;
   while (end < around->n_members && around->members[end].i_node < octree->end[around->members[begin].i_node])
@@ -311,7 +311,7 @@ static size_t count_parts(const conic_octree *octree, size_t root, size_t part) 
   return n;
 }
 
-static void release(const neighbourhood *around) {
+static void release_around(const neighbourhood *around) {
   conic_context *context = around->pass->octree->context;
   conic_memory_release(context, around->numbers);
   conic_memory_release(context, around->first_leaf);
@@ -322,7 +322,7 @@ static void release(const neighbourhood *around) {
 }
 
 /* Lays out the arrays of discs: `stride` of each number, and a block's. */
-static void lay_out(float *next, size_t stride, conic_discs *discs) {
+static void lay_out_discs(float *next, size_t stride, conic_discs *discs) {
   float **arrays[] = {discs->center, discs->u, discs->v, discs->half};
   for (int k = 0; k < 4; k++)
     for (int axis = 0; axis < 3; axis++, next += stride)
@@ -344,7 +344,7 @@ static void lay_out_list(float *next, uint32_t *blocks, size_t room, conic_block
 }
 
 /* Makes room for a subtree with so many discs. A node of the class has two parts at least. */
-static conic_status make_room(neighbourhood *around, size_t n_own) {
+static conic_status make_room_for_discs(neighbourhood *around, size_t n_own) {
   enum { NUMBERS = 14, WHOLE = CONIC_DISC_BLOCK * CONIC_DISC_BLOCK }; /* 13, and a block's 6 make less than one */
   conic_context *context = around->pass->octree->context;
   conic_discs *discs = &around->discs;
@@ -352,7 +352,7 @@ static conic_status make_room(neighbourhood *around, size_t n_own) {
   size_t room = 8 * n_own + 512;
   if (around->first_leaf && room <= around->room)
     return CONIC_OK;
-  release(around);
+  release_around(around);
   size_t stride = room + WHOLE - room % WHOLE;
   around->room = room;
   around->numbers = conic_memory_allocate(context, stride, NUMBERS * sizeof *around->numbers);
@@ -365,7 +365,7 @@ static conic_status make_room(neighbourhood *around, size_t n_own) {
   if (!around->numbers || !around->first_leaf || !around->members || !around->near_numbers || !around->near_blocks ||
       !near->flat)
     return CONIC_ERROR_MEMORY;
-  lay_out(around->numbers, stride, discs);
+  lay_out_discs(around->numbers, stride, discs);
   lay_out_list(around->near_numbers, around->near_blocks, n_blocks, &near->blocks);
   lay_out_list(around->near_numbers + 6 * n_blocks, around->near_blocks + n_blocks, n_blocks, &near->of_node);
   return CONIC_OK;
@@ -373,18 +373,18 @@ static conic_status make_room(neighbourhood *around, size_t n_own) {
 
 static conic_status run_group(neighbourhood *around, size_t root) {
   const conic_octree *octree = around->pass->octree;
-  conic_status status = make_room(around, count_parts(octree, root, around->pass->sizes.part));
+  conic_status status = make_room_for_discs(around, count_parts(octree, root, around->pass->sizes.part));
   if (status != CONIC_OK)
     return status;
   gather_own(around, root);
   list_members(around, root);
   error_box b = box_of_group(around);
-  gather(around, 0, root, &b, around->n_own + (around->room - around->n_own) / 2);
-  gather(around, octree->end[root], octree->n_nodes, &b, around->room);
+  gather_discs(around, 0, root, &b, around->n_own + (around->room - around->n_own) / 2);
+  gather_discs(around, octree->end[root], octree->n_nodes, &b, around->room);
   conic_discs_set_half(&around->discs, around->n_own);
   conic_discs_close(&around->discs);
   for (size_t k = 0; k < around->n_members;)
-    k = find_errors(around, k);
+    k = find_member_errors(around, k);
   return CONIC_OK;
 }
 
@@ -398,7 +398,7 @@ static conic_status run_subtree(const error_pass *pass, size_t root) {
       status = run_group(&around, i);
     i = n_leaves <= pass->sizes.group ? octree->end[i] : i + 1;
   }
-  release(&around);
+  release_around(&around);
   return status;
 }
 

@@ -1,10 +1,10 @@
 /* .cot files: docs/reference/format-cot.md. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
 #include "core/files/file_header.h"
@@ -213,10 +213,6 @@ conic_status conic_octree_write(conic_octree *octree, const char *path) {
   return status;
 }
 
-static int is_finite(double value) {
-  return value - value == 0.0;
-}
-
 /* What is wrong with a header whose sum is right, or null. */
 static const char *check_header(const header *h) {
   if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
@@ -233,13 +229,13 @@ static const char *check_header(const header *h) {
       !(h->position_error >= 0.0 && h->position_error < 1e30))
     return "a length out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) || !is_finite((double)h->low[axis]) ||
-        !is_finite((double)h->high[axis]))
+    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
       return "a box that is none";
   return NULL;
 }
 
-static conic_status read_header(conic_octree *octree, const char *path, header *h) {
+static conic_status read_octree_header(conic_octree *octree, const char *path, header *h) {
   const conic_mapping *file = &octree->mapping;
   conic_status status = conic_file_read_header(octree->context, path, &kind, file->bytes, file->n_bytes, h);
   const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
@@ -284,14 +280,14 @@ void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
 }
 
-static void *array_at(const conic_octree *octree, const layout *l, int i) {
+static void *array_in_file(const conic_octree *octree, const layout *l, int i) {
   return octree->mapping.bytes + l->arrays[i].offset;
 }
 
 /* Colours that are kept as codes become floats. */
 static conic_status decode_colors(conic_octree *octree, const layout *l) {
   for (int channel = 0; channel < 3; channel++) {
-    const unsigned char *codes = array_at(octree, l, ARRAY_LEAVES + 9 + channel);
+    const unsigned char *codes = array_in_file(octree, l, ARRAY_LEAVES + 9 + channel);
     float *color = conic_memory_allocate(octree->context, octree->n_points, sizeof *color);
     if (!color)
       return CONIC_ERROR_MEMORY;
@@ -311,7 +307,7 @@ static conic_status read_quantized(conic_octree *octree, const header *h, const 
     return status;
   memcpy(octree->owned.origin, octree->leaves.origin, sizeof octree->owned.origin);
   octree->leaves = octree->owned;
-  octree->leaf_codes = array_at(octree, l, ARRAY_LEAVES);
+  octree->leaf_codes = array_in_file(octree, l, ARRAY_LEAVES);
   conic_leaf_decode(octree->context, &octree->scale, octree->leaf_codes, &octree->leaves);
   return CONIC_OK;
 }
@@ -321,26 +317,26 @@ static conic_status read_leaves(conic_octree *octree, const header *h, const lay
   int next = ARRAY_LEAVES + 9;
   octree->n_clips = (size_t)h->n_clips;
   if (h->n_clips) /* the last of all */
-    octree->clips = array_at(octree, l, l->n - 1);
+    octree->clips = array_in_file(octree, l, l->n - 1);
   memcpy(leaves->origin, h->origin, sizeof leaves->origin);
   if (octree->is_quantized)
     return read_quantized(octree, h, l);
   leaves->count = octree->n_points;
   for (int axis = 0; axis < 3; axis++) {
-    leaves->position[axis] = array_at(octree, l, ARRAY_LEAVES + axis);
-    leaves->tangent_u[axis] = array_at(octree, l, ARRAY_LEAVES + 3 + axis);
-    leaves->tangent_v[axis] = array_at(octree, l, ARRAY_LEAVES + 6 + axis);
+    leaves->position[axis] = array_in_file(octree, l, ARRAY_LEAVES + axis);
+    leaves->tangent_u[axis] = array_in_file(octree, l, ARRAY_LEAVES + 3 + axis);
+    leaves->tangent_v[axis] = array_in_file(octree, l, ARRAY_LEAVES + 6 + axis);
   }
   if (h->flags & FLAG_COLORS) {
     conic_status status = octree->has_color_codes ? decode_colors(octree, l) : CONIC_OK;
     for (int channel = 0; channel < 3 && !octree->has_color_codes; channel++)
-      leaves->color[channel] = array_at(octree, l, next + channel);
+      leaves->color[channel] = array_in_file(octree, l, next + channel);
     if (status != CONIC_OK)
       return status;
     next += 3;
   }
   if (h->flags & FLAG_OPACITIES)
-    leaves->opacity = array_at(octree, l, next++);
+    leaves->opacity = array_in_file(octree, l, next++);
   return CONIC_OK;
 }
 
@@ -390,11 +386,11 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
   return status == CONIC_OK ? conic_octree_index_clips(octree) : status;
 }
 
-static conic_status read_octree(conic_octree *octree, const char *path) {
+static conic_status read_octree_file(conic_octree *octree, const char *path) {
   header h = {.n_points = 0};
   conic_status status = conic_mapping_open(octree->context, path, &octree->mapping);
   if (status == CONIC_OK)
-    status = read_header(octree, path, &h);
+    status = read_octree_header(octree, path, &h);
   if (status != CONIC_OK)
     return status;
   layout l = lay_out_file(&h);
@@ -411,8 +407,8 @@ static conic_status read_octree(conic_octree *octree, const char *path) {
   memcpy(octree->low, h.low, sizeof octree->low);
   memcpy(octree->high, h.high, sizeof octree->high);
   conic_code_scale_init(h.length, (double)h.cutoff, h.color, &octree->scale);
-  octree->codes = array_at(octree, &l, ARRAY_CODES);
-  octree->index = array_at(octree, &l, ARRAY_INDEX);
+  octree->codes = array_in_file(octree, &l, ARRAY_CODES);
+  octree->index = array_in_file(octree, &l, ARRAY_INDEX);
   status = read_leaves(octree, &h, &l);
   return status == CONIC_OK ? read_structure(octree, path, &l) : status;
 }
@@ -423,7 +419,7 @@ conic_status conic_octree_read(conic_context *context, const char *path, conic_o
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  conic_status status = read_octree(made, strcmp(path, "-") == 0 ? "-" : path);
+  conic_status status = read_octree_file(made, strcmp(path, "-") == 0 ? "-" : path);
   if (status == CONIC_OK)
     *octree = made;
   else

@@ -1,6 +1,5 @@
 #include "lod/octree/octree_fit.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/eigen.h"
@@ -70,7 +69,7 @@ static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const
 }
 
 /* The mean normal, weighed by area; where normals cancel, the direction in which the points spread least. */
-static void find_normal(const conic_moments *moments, double normal[3]) {
+static void find_moments_normal(const conic_moments *moments, double normal[3]) {
   double values[3], vectors[3][3];
   if (conic_dot(moments->normal, moments->normal) > 1e-4 * moments->area * moments->area) {
     memcpy(normal, moments->normal, 3 * sizeof *normal);
@@ -91,7 +90,7 @@ static void choose_frame(const fitter *f, const conic_moments *moments, size_t b
   const conic_octree *octree = f->octree;
   double normal[3], u[3], v[3], n[3], first[3];
   conic_octree_place(octree, begin, first);
-  find_normal(moments, normal);
+  find_moments_normal(moments, normal);
   conic_code_place(&octree->scale, moments->mean, first, code);
   conic_code_facing(normal, code);
   conic_code_basis(code, u, v, n);

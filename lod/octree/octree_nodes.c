@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 
 static const size_t chunk_nodes = 4096;
@@ -176,14 +176,9 @@ conic_status conic_octree_decode_all(conic_octree *octree) {
   return CONIC_OK;
 }
 
-static int compare_floats(const void *a, const void *b) {
-  const float *first = a, *second = b;
-  return (*first > *second) - (*first < *second);
-}
-
 /* Least, median, greatest. */
 static void find_quantiles(float *values, size_t n, double quantiles[3]) {
-  qsort(values, n, sizeof *values, compare_floats);
+  qsort(values, n, sizeof *values, conic_compare_floats);
   quantiles[0] = n ? (double)values[0] : 0.0;
   quantiles[1] = n ? (double)values[(n - 1) / 2] : 0.0;
   quantiles[2] = n ? (double)values[n - 1] : 0.0;

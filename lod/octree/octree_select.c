@@ -1,4 +1,3 @@
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -54,7 +53,7 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
   memset(selection, 0, sizeof *selection);
 }
 
-static conic_status add_piece(octree_selecting *s, selection_piece added) {
+static conic_status add_selection_piece(octree_selecting *s, selection_piece added) {
   octree_scratch *kept = s->scratch;
   if (conic_memory_reserve(s->octree->context, &kept->pieces, kept->n_pieces, kept->n_pieces + 1, &kept->pieces_room,
                            sizeof *kept->pieces) != CONIC_OK)
@@ -71,11 +70,11 @@ static conic_status list_pieces(octree_selecting *s) {
   s->scratch->n_pieces = 0;
   s->selection->n_culled = 0;
   if (octree->n_nodes == 0)
-    return add_piece(s, (selection_piece){.begin = 0, .end = 1, .kind = PIECE_LEAVES, .count = 1});
+    return add_selection_piece(s, (selection_piece){.begin = 0, .end = 1, .kind = PIECE_LEAVES, .count = 1});
   for (uint32_t i = 0; i < octree->n_nodes && status == CONIC_OK;) {
     uint32_t end = octree->end[i];
     if (end - i <= CONIC_OCTREE_BLOCK) {
-      status = add_piece(s, (selection_piece){.begin = i, .end = end, .kind = PIECE_BLOCK});
+      status = add_selection_piece(s, (selection_piece){.begin = i, .end = end, .kind = PIECE_BLOCK});
       i = end;
       continue;
     }
@@ -84,10 +83,11 @@ static conic_status list_pieces(octree_selecting *s) {
     if (pixels < 0.0f)
       s->selection->n_culled++;
     else if (pixels <= s->error_px)
-      status = add_piece(s, (selection_piece){.begin = i, .end = i + 1, .kind = PIECE_NODE, .count = 1, .n_inner = 1});
+      status = add_selection_piece(
+          s, (selection_piece){.begin = i, .end = i + 1, .kind = PIECE_NODE, .count = 1, .n_inner = 1});
     else if (last > first)
-      status =
-          add_piece(s, (selection_piece){.begin = first, .end = last, .kind = PIECE_LEAVES, .count = last - first});
+      status = add_selection_piece(
+          s, (selection_piece){.begin = first, .end = last, .kind = PIECE_LEAVES, .count = last - first});
     i = pixels < 0.0f || pixels <= s->error_px ? end : i + 1;
   }
   return status;
@@ -152,7 +152,7 @@ static void fill_task(void *data, size_t i_task, int i_thread) {
 
 /* One block for all arrays, each a few lines of the cache further on in its page than the one before: at the same place
  * in theirs, they would drive each other out of the cache. */
-static conic_status make_room(octree_selecting *s, size_t room) {
+static conic_status make_room_for_arrays(octree_selecting *s, size_t room) {
   enum { PAGE = 1024, SHIFT = 64, N_ARRAYS = 14 }; /* floats */
   conic_context *context = s->octree->context;
   conic_selection *selection = s->selection;
@@ -192,7 +192,7 @@ static conic_status place_pieces(octree_selecting *s) {
     selection->n_culled += p->n_culled;
   }
   if (count > selection->room || !selection->ids) {
-    conic_status status = make_room(s, count + count / 4 + 1024); /* the next picture's may be a few more */
+    conic_status status = make_room_for_arrays(s, count + count / 4 + 1024); /* the next picture's may be a few more */
     if (status != CONIC_OK)
       return status;
   }
@@ -258,8 +258,8 @@ static conic_status keep_scratch(const conic_octree *octree, conic_selection *se
                    sizeof *kept->sources);
 }
 
-static const char *what_is_wrong(const conic_octree *octree, const conic_render_options *render,
-                                 const conic_selection_options *given, conic_selection_options *options) {
+static const char *what_of_view_is_wrong(const conic_octree *octree, const conic_render_options *render,
+                                         const conic_selection_options *given, conic_selection_options *options) {
   conic_selection_options_init(options);
   if (!conic_options_take(options, given))
     return "the options were not initialised";
@@ -277,7 +277,7 @@ conic_status conic_octree_select(conic_octree *octree, const conic_camera *camer
   conic_status status = conic_view_arguments_take(octree->context, "octree", camera, given, &render);
   if (status != CONIC_OK)
     return status;
-  const char *wrong = what_is_wrong(octree, &render, wanted, &options);
+  const char *wrong = what_of_view_is_wrong(octree, &render, wanted, &options);
   if (wrong)
     return conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong);
   octree_selecting s = {.octree = octree, .selection = selection, .error_px = (float)options.error_px};

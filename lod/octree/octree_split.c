@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/base/threads.h"
 #include "lod/octree/octree_code.h"
 
@@ -55,8 +56,7 @@ static void find_mean(const splitter *s, size_t begin, size_t end, double mean[3
 static float round_down(double value) {
   float rounded = (float)value;
   if ((double)rounded > value) { /* the next one down */
-    uint32_t bits;
-    memcpy(&bits, &rounded, sizeof bits);
+    uint32_t bits = conic_bits_of_float(rounded);
     bits = rounded > 0.0f ? bits - 1 : rounded < 0.0f ? bits + 1 : UINT32_C(0x80000001);
     memcpy(&rounded, &bits, sizeof rounded);
   }
@@ -177,7 +177,7 @@ static void split_task(void *data, size_t i_item, int i_thread) {
 }
 
 /* Brings the bytes of the top and of all subtrees into one preorder. */
-static void join(splitter *s) {
+static void join_tasks(splitter *s) {
   conic_split *split = s->split;
   split->n_nodes = 0;
   for (size_t i = 0; i < s->n_top; i++) {
@@ -207,7 +207,7 @@ conic_status conic_octree_split(conic_context *context, conic_split *split) {
     status = split_top(context, &s, 0, split->n, 0);
   if (status == CONIC_OK) {
     conic_parallel_for(context, s.n_top, split_task, &s);
-    join(&s);
+    join_tasks(&s);
   }
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, s.scratch[axis]);

@@ -6,7 +6,7 @@
 #include "lod/octree/octree_kernels.h"
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_side(float side[3], int axis, double a, double b) {
+static void set_octree_side(float side[3], int axis, double a, double b) {
   double length = sqrt(a * a + b * b);
   side[0] = side[1] = 0.0f;
   side[axis] = (float)(a / length);
@@ -30,10 +30,10 @@ void conic_octree_view_init(const conic_octree *octree, const conic_camera *came
     view->eye[axis] =
         (float)-((camera->cam_from_world[0][axis] * translation[0] + camera->cam_from_world[1][axis] * translation[1]) +
                  camera->cam_from_world[2][axis] * translation[2]);
-  set_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  set_octree_side(view->side[0], 0, camera->fx, camera->cx + margin);
+  set_octree_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
+  set_octree_side(view->side[2], 1, camera->fy, camera->cy + margin);
+  set_octree_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->near_z = (float)near_z;
   view->focal_px = (float)(camera->fx > camera->fy ? camera->fx : camera->fy);
   view->slack = 1e-6f;

@@ -19,7 +19,7 @@ static const char *read_number(const char *text, uint64_t *number) {
 }
 
 /* "HTTP/1.1 206 Partial Content": a response begins, and what an earlier one said is void. */
-static void begin(conic_http_response *response, const char *line) {
+static void begin_response(conic_http_response *response, const char *line) {
   uint64_t status = 0;
   size_t n_bytes = response->n_bytes;
   memset(response, 0, sizeof *response);
@@ -83,7 +83,7 @@ int conic_http_header(conic_http_response *response, const char *line, size_t n_
   memcpy(text, line, n_bytes);
   text[n_bytes] = '\0';
   if (strncmp(text, "HTTP/", 5) == 0)
-    begin(response, text);
+    begin_response(response, text);
   else if ((value = value_of(text, "Content-Range")))
     take_range(response, value);
   else if ((value = value_of(text, "Content-Length")))

@@ -37,7 +37,7 @@ static void sink(conic_range_queue *queue, size_t i) {
   }
 }
 
-static void take(conic_range_queue *queue, size_t i, conic_queued_range *item) {
+static void take_item(conic_range_queue *queue, size_t i, conic_queued_range *item) {
   *item = queue->items[i];
   queue->items[i] = queue->items[--queue->n];
   if (i < queue->n) {
@@ -74,7 +74,7 @@ int conic_range_queue_pop(conic_range_queue *queue, double now_s, conic_queued_r
     if (best == queue->n)
       return 0;
   }
-  take(queue, best, item);
+  take_item(queue, best, item);
   return 1;
 }
 

@@ -29,7 +29,7 @@ static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *a
   return 1;
 }
 
-static void release(conic_ranges *ranges, conic_range_answer *answer) {
+static void release_file(conic_ranges *ranges, conic_range_answer *answer) {
   file_ranges *file = (file_ranges *)ranges;
   file->n_read += answer->n_bytes;
   if (!file->mapping.is_mapped || file->n_read < RETURN_BYTES)
@@ -48,7 +48,7 @@ static void close_file(conic_ranges *ranges) {
   conic_memory_release(ranges->context, file);
 }
 
-static const conic_ranges_backend backend = {next, release, cancel, close_file};
+static const conic_ranges_backend backend = {next, release_file, cancel, close_file};
 
 conic_status conic_ranges_open_file(conic_context *context, const char *path, conic_ranges **ranges) {
   file_ranges *file = conic_memory_allocate_zeroed(context, 1, sizeof *file);

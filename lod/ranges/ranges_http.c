@@ -86,7 +86,7 @@ static void let_go(http_ranges *http, body *held) {
 }
 
 /* Keeps what arrives; room grows with it, and not with what a server claims. */
-static int keep(http_ranges *http, body *to, const char *data, size_t n, size_t most) {
+static int keep_received(http_ranges *http, body *to, const char *data, size_t n, size_t most) {
   if (n > to->room - to->n) {
     size_t room = 2 * to->room + n + PROBE_BYTES;
     room = room < most ? room : most;
@@ -100,7 +100,7 @@ static int keep(http_ranges *http, body *to, const char *data, size_t n, size_t 
   return 1;
 }
 
-static int refuse(transfer *t, int is_final, const char *reason) {
+static int refuse_answer(transfer *t, int is_final, const char *reason) {
   snprintf(t->reason, sizeof t->reason, "%s", reason);
   t->is_final = is_final;
   return 0;
@@ -135,27 +135,27 @@ static int accept_response(transfer *t) {
   if (t->is_probe && r->status == 200)
     return accept_whole(t);
   if (r->status == 200)
-    return refuse(t, 0, "the server sends the whole file for a range");
+    return refuse_answer(t, 0, "the server sends the whole file for a range");
   if (r->status != 206)
     return refuse_status(t, r->status);
   if (!r->has_range)
-    return refuse(t, 0, "the server does not say which range it sends");
+    return refuse_answer(t, 0, "the server does not say which range it sends");
   if (t->is_probe) {
     http->base.size = r->size;
     t->n_expected = r->size < PROBE_BYTES ? (size_t)r->size : PROBE_BYTES;
     memcpy(http->tag, r->tag, sizeof http->tag);
   }
   if (r->size != http->base.size || (r->tag[0] && http->tag[0] && strcmp(r->tag, http->tag) != 0))
-    return refuse(t, 1, "the file on the server has changed");
+    return refuse_answer(t, 1, "the file on the server has changed");
   if (r->first != t->offset || r->last != t->offset + t->n_expected - 1)
-    return refuse(t, 0, "the server sends another range than was asked for");
+    return refuse_answer(t, 0, "the server sends another range than was asked for");
   return 1;
 }
 
 static size_t on_header(char *line, size_t one, size_t n, void *cookie) {
   transfer *t = cookie;
   if (!conic_http_header(&t->response, line, one * n)) {
-    refuse(t, 0, "the server's headers do not end");
+    refuse_answer(t, 0, "the server's headers do not end");
     return 0;
   }
   return one * n;
@@ -167,14 +167,14 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
   if (t->body->n == 0 && !accept_response(t))
     return 0;
   if (n > t->n_expected - t->body->n) {
-    refuse(t, t->is_whole,
-           t->is_whole && !t->response.has_length
-               ? "the server sends no ranges, and the whole file is over the memory bound"
-               : "the server sends more than was asked for");
+    refuse_answer(t, t->is_whole,
+                  t->is_whole && !t->response.has_length
+                      ? "the server sends no ranges, and the whole file is over the memory bound"
+                      : "the server sends more than was asked for");
     return 0;
   }
-  if (!keep(t->owner, t->body, data, n, t->n_expected)) {
-    refuse(t, 1, "out of memory");
+  if (!keep_received(t->owner, t->body, data, n, t->n_expected)) {
+    refuse_answer(t, 1, "out of memory");
     return 0;
   }
   return n;
@@ -208,7 +208,7 @@ static int set_up(http_ranges *http, transfer *t) {
 }
 
 /* Sends the transfer's request. On failure nothing is under way. */
-static conic_status begin(transfer *t) {
+static conic_status begin_transfer(transfer *t) {
   http_ranges *http = t->owner;
   char range[64];
   t->body = conic_memory_allocate_zeroed(http->base.context, 1, sizeof *t->body);
@@ -232,7 +232,7 @@ static conic_status begin(transfer *t) {
   return CONIC_OK;
 }
 
-static void end(transfer *t) {
+static void end_transfer(transfer *t) {
   if (!t->is_busy)
     return;
   curl_multi_remove_handle(t->owner->multi, t->easy);
@@ -247,7 +247,7 @@ static int is_stalled(transfer *t) {
   if (elapsed < t->owner->options.stall_seconds)
     return 0;
   if ((double)(t->body->n - t->window_n) < LEAST_BYTES_PER_SECOND * elapsed) {
-    refuse(t, 0, "the server sends nothing more");
+    refuse_answer(t, 0, "the server sends nothing more");
     return 1;
   }
   t->window_s = now;
@@ -317,11 +317,11 @@ static int is_complete(transfer *t, CURLcode code) {
   if (t->body->n == 0 && !accept_response(t)) /* it had no body, so nobody has looked at it yet */
     return 0;
   if (t->is_whole ? t->response.has_length && t->body->n != t->n_expected : t->body->n != t->n_expected)
-    return refuse(t, 0, "the server sends less than was asked for");
+    return refuse_answer(t, 0, "the server sends less than was asked for");
   return 1;
 }
 
-static void finish(transfer *t, CURLcode code) {
+static void finish_transfer(transfer *t, CURLcode code) {
   http_ranges *http = t->owner;
   int is_good = is_complete(t, code);
   http->n_failures = is_good ? 0 : http->n_failures + 1;
@@ -331,7 +331,7 @@ static void finish(transfer *t, CURLcode code) {
     else if (!answer_from(http, t->body, t->offset, &t->parts[i].range))
       http->base.n_pending--;
   t->n_parts = 0;
-  end(t);
+  end_transfer(t);
 }
 
 /* Takes the next range and those behind it that lie next to it: 1, or 0 where none is to be had now. */
@@ -373,7 +373,7 @@ static void send_requests(http_ranges *http, double *wait_s) {
       continue;
     if (!gather_parts(http, t, wait_s))
       return;
-    if (begin(t) != CONIC_OK) {
+    if (begin_transfer(t) != CONIC_OK) {
       for (size_t k = 0; k < t->n_parts; k++)
         give_up(http, &t->parts[k].range, "out of memory");
       t->n_parts = 0;
@@ -389,11 +389,11 @@ static void take_finished(http_ranges *http) {
     char *cookie = NULL;
     CURLcode code = message->data.result;
     if (message->msg == CURLMSG_DONE && curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, &cookie) == CURLE_OK)
-      finish((transfer *)(void *)cookie, code);
+      finish_transfer((transfer *)(void *)cookie, code);
   }
   for (int i = 0; i < http->options.n_connections; i++)
     if (http->transfers[i].is_busy && is_stalled(&http->transfers[i]))
-      finish(&http->transfers[i], CURLE_OPERATION_TIMEDOUT);
+      finish_transfer(&http->transfers[i], CURLE_OPERATION_TIMEDOUT);
 }
 
 /* The server is given up: so is all that waits. */
@@ -444,14 +444,14 @@ static int next(conic_ranges *ranges, double wait_seconds, conic_range_answer *a
   }
 }
 
-static void release(conic_ranges *ranges, conic_range_answer *answer) {
+static void release_answer(conic_ranges *ranges, conic_range_answer *answer) {
   let_go((http_ranges *)ranges, answer->held);
 }
 
 static void cancel(conic_ranges *ranges) {
   http_ranges *http = (http_ranges *)ranges;
   for (int i = 0; i < MOST_CONNECTIONS; i++)
-    end(&http->transfers[i]);
+    end_transfer(&http->transfers[i]);
   for (; http->first_ready < http->n_ready; http->first_ready++)
     let_go(http, http->ready[http->first_ready].answer.held);
   http->is_dead = 0;
@@ -476,7 +476,7 @@ static void close_url(conic_ranges *ranges) {
   conic_memory_release(context, http);
 }
 
-static const conic_ranges_backend backend = {next, release, cancel, close_url};
+static const conic_ranges_backend backend = {next, release_answer, cancel, close_url};
 
 /* The first request, once. */
 static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
@@ -485,7 +485,7 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
   t->offset = 0;
   t->n_expected = PROBE_BYTES;
   *is_good = 0;
-  if (begin(t) != CONIC_OK)
+  if (begin_transfer(t) != CONIC_OK)
     return CONIC_ERROR_MEMORY;
   for (;;) {
     CURLMsg *message;
@@ -508,7 +508,7 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
     http->head = t->body;
     http->head->n_holders++;
   }
-  end(t);
+  end_transfer(t);
   t->is_probe = 0;
   return status;
 }
@@ -525,7 +525,7 @@ static conic_status pause_between(http_ranges *http, double seconds) {
 }
 
 /* Finds the file's size, and takes its beginning along. */
-static conic_status look(http_ranges *http) {
+static conic_status look_at_file(http_ranges *http) {
   transfer *t = &http->transfers[0];
   double pause = http->options.pause_seconds;
   int is_good = 0;
@@ -569,7 +569,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
     http->options.n_connections = http->options.n_connections < 1 ? 1 : MOST_CONNECTIONS;
   conic_status status = start(http, url);
   if (status == CONIC_OK)
-    status = look(http);
+    status = look_at_file(http);
   if (status != CONIC_OK) {
     close_url(&http->base);
     return status;

@@ -29,7 +29,7 @@ static void project_task(void *data, size_t i_chunk, int i_thread) {
     conic_clip_chunk(&c->view, c->splats, i_chunk * CHUNK, &c->projected, &c->projected.chunks[i_chunk]);
 }
 
-static conic_status project(conic_contributions *c) {
+static conic_status project_all(conic_contributions *c) {
   conic_projected *projected = &c->projected;
   size_t n = c->splats->count;
   projected->chunk_size = CHUNK;
@@ -134,7 +134,7 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
   if (status == CONIC_OK)
     status = prepare_triangles(c, camera);
   if (status == CONIC_OK)
-    status = project(c);
+    status = project_all(c);
   if (status == CONIC_OK)
     status = list_bands(c);
   if (status == CONIC_OK)
@@ -250,7 +250,8 @@ static int begin_contribution(const conic_contributions *c, uint32_t i_footprint
   return 1;
 }
 
-static void judge(conic_contribution *list, size_t n, int passes, const conic_triangle_contribution *triangle) {
+static void judge_footprint(conic_contribution *list, size_t n, int passes,
+                            const conic_triangle_contribution *triangle) {
   float threshold = triangle ? triangle->hides : 0.0f, nearest_iz = 0.0f;
   size_t nearest = n;
   for (size_t i = 0; i < n; i++) {
@@ -290,7 +291,7 @@ conic_status conic_contributions_at(conic_contributions *c, int x, int y, const 
   const conic_triangle_contribution *triangle;
   size_t n_triangles;
   conic_status status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
-  judge(c->list, *n, c->options.passes, triangle);
+  judge_footprint(c->list, *n, c->options.passes, triangle);
   *list = c->list;
   return status;
 }

@@ -5,7 +5,7 @@
 #include "raster/explain/pixel_contributions.h"
 #include "raster/triangles/triangle_tile.h"
 
-static conic_status make_room(conic_contributions *c, size_t n) {
+static conic_status make_room_for_triangles(conic_contributions *c, size_t n) {
   if (n <= c->triangle_list_room)
     return CONIC_OK;
   conic_memory_release(c->context, c->triangle_list);
@@ -23,8 +23,8 @@ static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
   ray[1] = (float)(((double)y + 0.5 - view->cy) / view->fy);
 }
 
-static void describe(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
-                     conic_triangle_contribution *to) {
+static void describe_triangle(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
+                              conic_triangle_contribution *to) {
   const conic_view *view = &c->view;
   float ray[2];
   set_ray(view, x, y, ray);
@@ -53,7 +53,7 @@ static size_t list_chunk(conic_contributions *c, size_t i_chunk, size_t i_tile, 
     conic_triangle_edges_of(record, &edges);
     if (x >= record->box.x_begin && x < record->box.x_end && y >= record->box.y_begin && y < record->box.y_end &&
         conic_triangle_sample(record, &edges, x, y, &iz))
-      describe(c, record, x, y, iz, &c->triangle_list[n++]);
+      describe_triangle(c, record, x, y, iz, &c->triangle_list[n++]);
   }
   return n;
 }
@@ -71,7 +71,7 @@ conic_status conic_contribution_triangles(conic_contributions *c, int x, int y,
     const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
     most += begin[1] - begin[0];
   }
-  conic_status status = make_room(c, most);
+  conic_status status = make_room_for_triangles(c, most);
   for (size_t i = 0; i < frame->n_chunks && status == CONIC_OK; i++)
     *n = list_chunk(c, i, i_tile, x, y, *n);
   conic_triangle_contribution *found = NULL;

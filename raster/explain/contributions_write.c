@@ -52,8 +52,8 @@ static void raise_threshold(const conic_contributions *c, line *l, uint32_t i_fo
   l->threshold[x] = l->threshold[x] < hides ? hides : l->threshold[x];
 }
 
-static void keep_nearest(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
-                         const conic_fragment *fragment) {
+static void keep_nearest_footprint(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                                   const conic_fragment *fragment) {
   (void)c;
   if (l->threshold[x] < fragment->iz) {
     l->threshold[x] = fragment->iz;
@@ -92,11 +92,13 @@ static void keep_triangles(const conic_contributions *c, line *l) {
   }
 }
 
-static void count(const conic_contributions *c, line *l, uint32_t i_footprint, int x, const conic_fragment *fragment) {
+static void count_samples(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                          const conic_fragment *fragment) {
   l->counts[x] += (uint32_t)is_visible(c, l, i_footprint, x, fragment);
 }
 
-static void keep(const conic_contributions *c, line *l, uint32_t i_footprint, int x, const conic_fragment *fragment) {
+static void keep_sample(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
+                        const conic_fragment *fragment) {
   if (!is_visible(c, l, i_footprint, x, fragment))
     return;
   conic_contribution contribution = conic_contribution_of(c, i_footprint, x, l->y, fragment);
@@ -106,7 +108,7 @@ static void keep(const conic_contributions *c, line *l, uint32_t i_footprint, in
   l->weights[at] = contribution.weight;
 }
 
-static int make_room(conic_context *context, line *l) {
+static int make_room_for_line(conic_context *context, line *l) {
   if (l->n_samples <= l->room)
     return 1;
   conic_memory_release(context, l->depths);
@@ -131,9 +133,9 @@ static void work_out(void *data, size_t i_item, int i_thread) {
   memset(l->threshold, 0, width * sizeof *l->threshold);
   memset(l->nearest, 0xff, width * sizeof *l->nearest);
   memset(l->counts, 0, width * sizeof *l->counts);
-  walk(c, l, c->options.passes == 1 ? keep_nearest : raise_threshold);
+  walk(c, l, c->options.passes == 1 ? keep_nearest_footprint : raise_threshold);
   judge_triangles(c, l);
-  walk(c, l, count);
+  walk(c, l, count_samples);
   l->n_samples = 0;
   for (size_t x = 0; x < width; x++) {
     l->counts[x] += l->triangles[x].iz > 0.0f;
@@ -142,10 +144,10 @@ static void work_out(void *data, size_t i_item, int i_thread) {
   }
   if (all->is_counting)
     return;
-  l->has_failed = !make_room(c->context, l);
+  l->has_failed = !make_room_for_line(c->context, l);
   if (l->has_failed)
     return;
-  walk(c, l, keep);
+  walk(c, l, keep_sample);
   keep_triangles(c, l);
 }
 
@@ -164,7 +166,7 @@ static void release_line(conic_context *context, line *l) {
     conic_memory_release(context, all[i]);
 }
 
-static conic_status append(conic_deep_writer *writer, const line *l) {
+static conic_status append_sample(conic_deep_writer *writer, const line *l) {
   conic_deep_line whole = {l->counts, l->n_samples, l->depths, l->ids, l->weights};
   return l->has_failed ? CONIC_ERROR_MEMORY : conic_deep_append(writer, &whole);
 }
@@ -182,7 +184,7 @@ static conic_status do_lines(lines *all, size_t n_lines, conic_deep_writer *writ
     for (size_t i = 0; i < n && status == CONIC_OK; i++) {
       for (int x = 0; x < c->view.width; x++)
         *most = all->lines[i].counts[x] > *most ? all->lines[i].counts[x] : *most;
-      status = writer ? append(writer, &all->lines[i]) : CONIC_OK;
+      status = writer ? append_sample(writer, &all->lines[i]) : CONIC_OK;
     }
     double done = (double)(y + (int)n) / (double)c->view.height;
     if (status == CONIC_OK)

@@ -349,7 +349,7 @@ static conic_status prepare_finish(frame *f, const conic_camera *camera, const c
   return CONIC_OK;
 }
 
-static conic_status draw(frame *f, conic_render_milliseconds *ms) {
+static conic_status draw_frame(frame *f, conic_render_milliseconds *ms) {
   conic_context *context = f->renderer->context;
   double start = conic_seconds_now();
   conic_status status = project_and_sort(f);
@@ -392,7 +392,7 @@ static conic_status draw_here(frame *f, const conic_render_options *options, con
   if (status == CONIC_OK)
     status = plan_bins(f);
   if (status == CONIC_OK)
-    status = draw(f, &statistics->ms);
+    status = draw_frame(f, &statistics->ms);
   if (status == CONIC_OK)
     count_up(f, options, statistics);
   return status;

@@ -106,7 +106,7 @@ static tile_range tiles_of(const conic_triangle_frame *frame, const conic_box *b
 /* Turns the counts in `next` into places. Returns how many entries there are; no more than fit into 32 bits have a
  * place.
  */
-static size_t place(const conic_triangle_frame *frame, uint32_t *next, uint32_t *tile_begin) {
+static size_t place_records(const conic_triangle_frame *frame, uint32_t *next, uint32_t *tile_begin) {
   size_t n = 0;
   for (size_t i = 0; i < frame->n_tiles; i++) {
     uint32_t count = next[i];
@@ -126,7 +126,7 @@ static size_t count_entries(const conic_triangle_frame *frame, const conic_trian
       for (int x = range.x_begin; x < range.x_end; x++)
         sorter->next[y * frame->n_tiles_x + x]++;
   }
-  return place(frame, sorter->next, tile_begin);
+  return place_records(frame, sorter->next, tile_begin);
 }
 
 static void enter(const conic_triangle_frame *frame, const conic_triangle_sorter *sorter, uint32_t *entries) {
@@ -139,7 +139,7 @@ static void enter(const conic_triangle_frame *frame, const conic_triangle_sorter
 }
 
 /* Copies what a thread has made of a chunk to its place in the frame, if there is room for it. */
-static void hand_over(conic_triangle_frame *frame, conic_triangle_sorter *sorter, size_t i_chunk) {
+static void hand_over_records(conic_triangle_frame *frame, conic_triangle_sorter *sorter, size_t i_chunk) {
   conic_triangle_chunk *chunk = &frame->chunks[i_chunk];
   size_t n_records = sorter->n_records, n_pieces = sorter->n_pieces;
   size_t n_entries = count_entries(frame, sorter, frame->tile_begin + i_chunk * (frame->n_tiles + 1));
@@ -170,7 +170,7 @@ static void triangles_task(void *data, size_t i_chunk, int i_thread) {
   sorter.pieces = (conic_triangle_piece *)(void *)memory;
   sorter.next = (uint32_t *)(void *)(memory + rounded(most * sizeof *sorter.pieces));
   conic_triangle_set_up(frame, begin, end < n ? end : n, &sorter, &frame->chunks[i_chunk]);
-  hand_over(frame, &sorter, i_chunk);
+  hand_over_records(frame, &sorter, i_chunk);
 }
 
 conic_status conic_triangle_frame_prepare(conic_triangle_frame *frame, const conic_triangle_kernels *kernels) {

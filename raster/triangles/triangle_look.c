@@ -1,7 +1,5 @@
 #include "raster/triangles/triangle_look.h"
 
-#include <math.h>
-
 #include "core/base/vectors.h"
 
 static conic_affine weight_of(const conic_triangle_record *record, const conic_triangle_edges *edges, int k,
@@ -40,8 +38,8 @@ static void take_color(const CONIC_STORED float *values, const uint32_t corners[
 }
 
 /* The attribute's component at three corners, as the first and differences from it. */
-static void take(const CONIC_STORED float *values, const uint32_t corners[3], float *first, float *second,
-                 float *third) {
+static void take_component(const CONIC_STORED float *values, const uint32_t corners[3], float *first, float *second,
+                           float *third) {
   *first = values[corners[0]];
   *second = values[corners[1]] - *first;
   *third = values[corners[2]] - *first;
@@ -77,7 +75,7 @@ static void take_material(const conic_triangles *t, const conic_triangle_record 
       look->color[k][channel] *= material->color[channel];
   look->texture = t->texture_coordinate[0] ? conic_material_texture(material) : NULL;
   for (int axis = 0; axis < 2 && look->texture; axis++)
-    take(t->texture_coordinate[axis], corners, &look->uv[0][axis], &look->uv[1][axis], &look->uv[2][axis]);
+    take_component(t->texture_coordinate[axis], corners, &look->uv[0][axis], &look->uv[1][axis], &look->uv[2][axis]);
 }
 
 void conic_triangle_look_at(const conic_triangle_frame *frame, const conic_triangle_record *record, int x, int y,
@@ -108,7 +106,8 @@ void conic_triangle_look_at(const conic_triangle_frame *frame, const conic_trian
     in_record_order(record, t->normal_corners ? t->normal_corners[record->index] : t->corners[record->index],
                     of_normals);
     for (int axis = 0; axis < 3; axis++)
-      take(t->normal[axis], of_normals, &look->normal[0][axis], &look->normal[1][axis], &look->normal[2][axis]);
+      take_component(t->normal[axis], of_normals, &look->normal[0][axis], &look->normal[1][axis],
+                     &look->normal[2][axis]);
   }
   if (t->n_materials)
     take_material(t, record, look);

@@ -15,7 +15,7 @@ static int kernel_makes_sense(const conic_kernel *kernel) {
   return kernel->type == CONIC_KERNEL_GAUSS || kernel->type == CONIC_KERNEL_HAT || kernel->type == CONIC_KERNEL_BOX;
 }
 
-static const char *what_is_wrong(const conic_splats *splats, const conic_render_options *options) {
+static const char *what_of_camera_is_wrong(const conic_splats *splats, const conic_render_options *options) {
   if (!splats->position[0] || !splats->tangent_u[0] || !splats->tangent_v[0])
     return "the splats have no tangent axes";
   if (splats->count > UINT32_MAX - 1)
@@ -68,7 +68,7 @@ static void place_eye(conic_view *view) {
 conic_status conic_view_init(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                              const conic_render_options *options, double near_z, double splat_length,
                              conic_view *view) {
-  const char *wrong = what_is_wrong(splats, options);
+  const char *wrong = what_of_camera_is_wrong(splats, options);
   if (wrong)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s", wrong);
   memset(view, 0, sizeof *view);

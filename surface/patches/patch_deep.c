@@ -15,7 +15,7 @@ typedef struct descent {
 } descent;
 
 /* The place (s, t) of a patch, in camera space. */
-static void place_of(const descent *d, double s, double t, double p[3]) {
+static void place_on_patch(const descent *d, double s, double t, double p[3]) {
   double height = 0.0, s_power = 1.0, place[3];
   for (int i = 0; i <= d->degree; i++, s_power *= s) {
     double row = 0.0;
@@ -53,7 +53,7 @@ static void descend(descent *d, int depth, int64_t row, int64_t column) {
   double slope = (double)d->patch->slope, stretch = (double)d->patch->radius * sqrt(1.0 + slope * slope);
   double step = 2.0 * half / CELL_ROWS;
   double around = 1.001 * stretch * (1.4143 * half + CONIC_SAMPLE_OUTLINE * step);
-  place_of(d, s, t, p);
+  place_on_patch(d, s, t, p);
   if (!conic_patches_sees(d->view, p, around))
     return;
   if (depth == DEEPEST_CELL || conic_patch_rows(d->view, d->patch, p, around) * half <= CELL_ROWS) {

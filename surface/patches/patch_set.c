@@ -25,7 +25,8 @@ void conic_patches_options_init_sized(conic_patches_options *options, size_t siz
   conic_options_give(options, size, &own);
 }
 
-static conic_status check_options(conic_context *context, const conic_splats *splats, const conic_patches_options *o) {
+static conic_status check_patch_options(conic_context *context, const conic_splats *splats,
+                                        const conic_patches_options *o) {
   if (o->surface.type != CONIC_SURFACE_MLS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: spheres are no polynomials");
   if (!(o->cutoff >= 0.25f && o->cutoff <= 5.0f) || !(o->step_px >= 0.25 && o->step_px <= 16.0))
@@ -61,14 +62,14 @@ static double radius_of(const conic_workspace *workspace, double ball) {
   return sqrt(radius2);
 }
 
-static double length_of(float *const axes[3], size_t i) {
+static double length_of_axis(float *const axes[3], size_t i) {
   double x = (double)axes[0][i], y = (double)axes[1][i], z = (double)axes[2][i];
   return sqrt((x * x + y * y) + z * z);
 }
 
 /* How far a point's own splat reaches; 0 where that is no number. */
 static double outline_of(const conic_patches *patches, size_t point) {
-  double u = length_of(patches->splats.tangent_u, point), v = length_of(patches->splats.tangent_v, point);
+  double u = length_of_axis(patches->splats.tangent_u, point), v = length_of_axis(patches->splats.tangent_v, point);
   double outline = (double)patches->options.cutoff * (u > v ? u : v);
   return outline < 1e30 ? outline : 0.0;
 }
@@ -251,7 +252,7 @@ static void report_patches(conic_patches *patches, const uint8_t *outcomes) {
       tree->n_slots * (sizeof(conic_patch) + 2 + 3 * sizeof(uint32_t)) + 4 * tree->n_leaves * sizeof(float);
 }
 
-static conic_status allocate(conic_patches *patches) {
+static conic_status allocate_patches(conic_patches *patches) {
   conic_context *context = patches->context;
   size_t n = patches->surface->tree.n_slots, n_nodes = 2 * patches->surface->tree.n_leaves;
   patches->patches = conic_memory_allocate_zeroed(context, n, sizeof *patches->patches);
@@ -271,7 +272,7 @@ static conic_status lay(conic_patches *patches) {
   laying work = {patches, NULL, NULL};
   conic_status status = conic_surface_create(context, &patches->splats, &patches->options.surface, &patches->surface);
   if (status == CONIC_OK)
-    status = allocate(patches);
+    status = allocate_patches(patches);
   if (status != CONIC_OK)
     return status;
   work.outcomes = conic_memory_allocate(context, patches->surface->tree.n_slots, sizeof *work.outcomes);
@@ -296,7 +297,7 @@ conic_status conic_patches_create(conic_context *context, const conic_splats *sp
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "patches: the options were not initialised");
   conic_status status = conic_splats_check(context, "patches", splats);
   if (status == CONIC_OK)
-    status = check_options(context, splats, options);
+    status = check_patch_options(context, splats, options);
   if (status != CONIC_OK)
     return status;
   conic_patches *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);

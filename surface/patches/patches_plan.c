@@ -53,7 +53,7 @@ static int faces_away(const conic_patches_view *view, const conic_patch *patch, 
 }
 
 /* A slot's place in camera space; returns how far it reaches. */
-static double place_of(const conic_patches *patches, const conic_patches_view *view, size_t slot, double p[3]) {
+static double place_of_patch(const conic_patches *patches, const conic_patches_view *view, size_t slot, double p[3]) {
   const conic_neighbours *tree = &patches->surface->tree;
   const double place[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                            (double)tree->position[2][slot]};
@@ -62,14 +62,14 @@ static double place_of(const conic_patches *patches, const conic_patches_view *v
 }
 
 double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot) {
-  double p[3], reach = place_of(patches, view, slot, p);
+  double p[3], reach = place_of_patch(patches, view, slot, p);
   double radius_px = conic_patches_pixels(view, p, reach, (double)patches->patches[slot].radius);
   return (radius_px - LEAST_RADIUS_PX) / (SURE_RADIUS_PX - LEAST_RADIUS_PX);
 }
 
 static uint8_t plan_slot(const patches_planning *work, size_t slot) {
   const conic_patch *patch = &work->patches->patches[slot];
-  double p[3], reach = place_of(work->patches, work->view, slot, p);
+  double p[3], reach = place_of_patch(work->patches, work->view, slot, p);
   if (!conic_patches_sees(work->view, p, reach))
     return CONIC_PLAN_CULLED;
   double radius_px = conic_patches_pixels(work->view, p, reach, (double)patch->radius);

@@ -181,7 +181,7 @@ void conic_patches_release_frames(conic_patches *patches) {
   }
 }
 
-static conic_status reserve(const patches_selecting *work, size_t n) {
+static conic_status reserve_samples(const patches_selecting *work, size_t n) {
   conic_context *context = work->patches->context;
   conic_patches_frame *frame = work->frame;
   unsigned fields = conic_splats_fields(&work->patches->splats) & (CONIC_SPLATS_COLORS | CONIC_SPLATS_CLIPS);
@@ -213,11 +213,11 @@ static conic_status count_samples(patches_selecting *work) {
     work->chunk_starts[i + 1] += work->chunk_starts[i];
   if (work->chunk_starts[work->n_chunks] > UINT32_MAX - 1)
     return conic_fail(context, CONIC_ERROR_MEMORY, "patches: the picture needs more than 4294967294 samples");
-  return reserve(work, work->chunk_starts[work->n_chunks]);
+  return reserve_samples(work, work->chunk_starts[work->n_chunks]);
 }
 
 /* By point, as points at one place are drawn each. */
-static void describe(const patches_selecting *work, conic_patch_selection *selection) {
+static void describe_samples(const patches_selecting *work, conic_patch_selection *selection) {
   const conic_neighbours *tree = &work->patches->surface->tree;
   memset(selection, 0, sizeof *selection);
   selection->splats = work->frame->splats;
@@ -246,7 +246,7 @@ static conic_status select_samples(patches_selecting *work, conic_patch_selectio
   work->frame->splats.count = work->chunk_starts[work->n_chunks];
   memcpy(work->frame->splats.origin, patches->splats.origin, sizeof work->frame->splats.origin);
   put_clips(work, work->frame->splats.count);
-  describe(work, selection);
+  describe_samples(work, selection);
   return CONIC_OK;
 }
 

@@ -435,6 +435,13 @@ static void test_refusals(void) {
   CHECK(conic_source_open(f.context, &path, 0, NULL, &source) == CONIC_ERROR_ARGUMENT && !source);
   CHECK(conic_source_open(f.context, &path, 1, &opening, &source) == CONIC_ERROR_ARGUMENT && !source);
   CHECK(conic_source_inspect(f.context, text, 0, &facts) == CONIC_ERROR_INPUT && !facts);
+  fixture_scene(&f, CONIC_SCENE_KNOT, 100);
+  f.splats.strides.position = 12; /* what is taken over has none */
+  CHECK(conic_source_of_drawing(f.context, &f.splats, NULL, &source) == CONIC_ERROR_ARGUMENT && !source);
+  f.splats.strides.position = 0;
+  CHECK_OK(conic_source_of_drawing(f.context, &f.splats, NULL, &source));
+  CHECK(f.splats.count == 0 && conic_source_measure(source)->n_splats == 100);
+  conic_source_close(source);
   conic_source_close(NULL);
   CHECK(remove(text) == 0 && remove(bad) == 0);
   fixture_close(&f);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/base/real.h"
 #include "core/base/vectors.h"
 #include "lod/layers/build/layers_branch.h"
 #include "lod/layers/format/layers_key.h"
@@ -19,8 +20,7 @@ static const double most_over_median = 4.0;
 
 static double size_of(uint16_t code) {
   uint32_t bits = (uint32_t)code << 16;
-  float size;
-  memcpy(&size, &bits, sizeof size);
+  float size = conic_float_of_bits(bits);
   return (double)size;
 }
 
@@ -104,7 +104,7 @@ static double outline_given(const conic_layers_plan *plan, const conic_layers_br
   return (largest < most ? largest : most) / plan->quantum;
 }
 
-static void find_box(conic_layers_branch *branch) {
+static void find_branch_box(conic_layers_branch *branch) {
   for (int axis = 0; axis < 3; axis++) {
     branch->low[axis] = HUGE_VAL;
     branch->high[axis] = -HUGE_VAL;
@@ -165,7 +165,7 @@ conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers
   leaf->area = spacing * spacing * (double)leaf->n_drawn;
   leaf->radius = given > 0.0 ? given : outline_over_spacing * spacing;
   leaf->outline_low = leaf->outline_high = leaf->radius;
-  find_box(leaf);
+  find_branch_box(leaf);
   find_sphere(leaf);
   find_axis(leaf);
   leaf->cone = 1.0;
@@ -241,7 +241,7 @@ static float rounded_up(double value) {
 /* Between what is drawn and what full resolution draws, in steps. A drawn disc reaches past its own sample's there by
  * no more than the difference of the outlines. What is drawn there lies no farther from the disc of a sample within the
  * covering radius than that, and what the two discs part by that are turned against each other. */
-static double error_of(const conic_layers_branch *branch) {
+static double error_of_branch(const conic_layers_branch *branch) {
   double half_turn = branch->cone < 0.0 ? 1.0 : sqrt(1.0 - branch->cone * branch->cone); /* sine of half the cone */
   double past = branch->radius - branch->outline_low;
   double off = branch->covering + (half_turn < 0.5 ? 2.0 * half_turn : 1.0) * branch->outline_high;
@@ -261,7 +261,7 @@ void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_lay
   entry->spacing = (float)(sqrt(branch->area / (double)branch->n_drawn) * q);
   entry->covering = rounded_up((branch->covering + 2.0 * rounding) * q);
   entry->radius = rounded_up(branch->radius * q);
-  entry->error = rounded_up((error_of(branch) + 0.8660254037844387 + rounding) * q);
+  entry->error = rounded_up((error_of_branch(branch) + 0.8660254037844387 + rounding) * q);
   entry->sphere = rounded_up((branch->sphere + branch->radius) * q);
   double slack = 2.0 * rounding * q;
   for (int axis = 0; axis < 3; axis++) {

@@ -39,7 +39,8 @@ static conic_status close_block(conic_layers_buckets *all, conic_layers_bucket *
   return conic_spool_append(&all->spool, bucket->open, n_bytes);
 }
 
-static conic_status add(conic_layers_buckets *all, conic_layers_bucket *bucket, const conic_layers_sample *sample) {
+static conic_status add_sample(conic_layers_buckets *all, conic_layers_bucket *bucket,
+                               const conic_layers_sample *sample) {
   if (!bucket->open) {
     bucket->open = conic_memory_allocate(all->context, all->block_samples, sizeof *bucket->open);
     if (!bucket->open)
@@ -64,7 +65,7 @@ static void begin_split(uint64_t key, unsigned n_bits, split *parts) {
 }
 
 static conic_status add_to_split(conic_layers_buckets *all, split *parts, const conic_layers_sample *sample) {
-  return add(all, &parts->cells[(sample->key - parts->key) >> parts->n_bits], sample);
+  return add_sample(all, &parts->cells[(sample->key - parts->key) >> parts->n_bits], sample);
 }
 
 /* Puts what is left in open blocks away and hands the buckets that hold any over, in place of number `at`, which is

@@ -189,7 +189,7 @@ static conic_status check_samples(const conic_layers_builder *builder) {
   return CONIC_OK;
 }
 
-static conic_status build(conic_layers_builder *builder) {
+static conic_status build_layers(conic_layers_builder *builder) {
   uint64_t most = 0;
   conic_status status = check_samples(builder);
   if (status == CONIC_OK)
@@ -225,7 +225,7 @@ static void fill_statistics(conic_layers_builder *builder, double begun, double 
 
 conic_status conic_layers_builder_finish(conic_layers_builder *builder, conic_layers_statistics *statistics) {
   double begun = conic_seconds_now();
-  conic_status status = build(builder);
+  conic_status status = build_layers(builder);
   double built = conic_seconds_now();
   if (status == CONIC_OK)
     status = conic_layers_write(builder->context, builder->path, &builder->forest, &builder->header);

@@ -85,7 +85,7 @@ static void grow_task(void *data, size_t i_item, int i_thread) {
 }
 
 /* Moves a chunk's nodes behind those that there are, and its bytes to the spool. */
-static conic_status collect(growing *g, chunk *c) {
+static conic_status collect_chunk(growing *g, chunk *c) {
   conic_layers_shelf *all = &g->forest->shelf;
   uint32_t n_before = (uint32_t)all->n_nodes;
   uint64_t offset = conic_spool_bytes(&g->forest->spool);
@@ -122,7 +122,7 @@ static conic_status grow_chunks(growing *g) {
     for (size_t i = first; i < first + n && status == CONIC_OK; i++) {
       status = g->chunks[i].status;
       if (status == CONIC_OK)
-        status = collect(g, &g->chunks[i]);
+        status = collect_chunk(g, &g->chunks[i]);
       n_done += g->chunks[i].n_samples;
     }
     if (status == CONIC_OK)

@@ -75,7 +75,7 @@ static conic_status median_outline(conic_context *context, const conic_layers_he
 }
 
 /* The sizes of all, and where each cloud's bytes will be. */
-static void lay_out(const conic_layers_forest *forest, const plan *p, conic_layers_header *header) {
+static void lay_out_file(const conic_layers_forest *forest, const plan *p, conic_layers_header *header) {
   uint64_t offset = CONIC_LAYERS_HEADER_BYTES + conic_layers_index_bytes(header);
   header->n_levels = p->entries[header->n_clouds - 1].level + 1u;
   for (uint32_t i = 0; i < header->n_clouds; i++) {
@@ -148,7 +148,7 @@ conic_status conic_layers_write(conic_context *context, const char *path, const 
   header->n_clouds = (uint32_t)n;
   if (status == CONIC_OK) {
     order_nodes(forest, &p);
-    lay_out(forest, &p, header);
+    lay_out_file(forest, &p, header);
     status = median_outline(context, header, p.entries, &header->splat_radius);
   }
   if (status == CONIC_OK)

@@ -115,7 +115,7 @@ static void remember_some(conic_layers_intake *intake, const double position[3])
 }
 
 /* One sample into `raw`; whether it can be used. */
-static int take(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
+static int take_sample(conic_layers_intake *intake, const conic_splats *batch, size_t i, conic_layers_raw *raw) {
   double position[3];
   memset(raw, 0, sizeof *raw);
   vector_at(batch->position, i, raw->position);
@@ -153,7 +153,7 @@ conic_status conic_layers_intake_append(conic_layers_intake *intake, const conic
     conic_layers_block block = {.count = 0};
     memcpy(block.origin, batch->origin, sizeof block.origin);
     for (size_t i = first; i < end; i++)
-      block.count += (uint64_t)take(intake, batch, i, &intake->pending[block.count]);
+      block.count += (uint64_t)take_sample(intake, batch, i, &intake->pending[block.count]);
     intake->n_in += end - first;
     conic_status status = conic_spool_append(&intake->spool, &block, sizeof block);
     if (status == CONIC_OK)

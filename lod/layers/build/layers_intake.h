@@ -30,7 +30,7 @@ typedef struct conic_layers_intake {
   conic_code_scale scale; /* for the colours' codes */
   float cutoff;
   conic_layers_raw *pending; /* a block's */
-  int has_started, has_colors, has_bare;
+  int has_started, has_colors;
   uint64_t n_in, n_samples, n_nan, n_bare, n_bright;
   double low[3], high[3];            /* of the finite positions, in world units */
   double some[CONIC_LAYERS_SOME][3]; /* of every stride-th sample, the position */

@@ -54,7 +54,7 @@ static void fill_grid(sample_grid *g, float reach) {
 }
 
 /* Keeps the nearest; of equally near ones those of the lower number. */
-static void keep(neighbours *found, float distance2, uint32_t i_sample) {
+static void keep_found(neighbours *found, float distance2, uint32_t i_sample) {
   int i = MOST_NEIGHBOURS - 1;
   if (distance2 > found->distance2[i] || (distance2 == found->distance2[i] && i_sample > found->sample[i]))
     return;
@@ -75,7 +75,7 @@ static void look_into(const sample_grid *g, const int32_t cell[3], const float a
     cell_of(g, g->at[i], own);
     float x = g->at[i][0] - at[0], y = g->at[i][1] - at[1], z = g->at[i][2] - at[2], d2 = x * x + y * y + z * z;
     if (own[0] == cell[0] && own[1] == cell[1] && own[2] == cell[2] && d2 <= g->reach * g->reach)
-      keep(found, d2, i);
+      keep_found(found, d2, i);
   }
 }
 

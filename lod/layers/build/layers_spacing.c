@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "lod/layers/build/layers_intake.h"
 
 enum { N_PLACES = 256, N_NEAREST = 8, N_CELLS = 16384, MOST_PASSES = 6 };
@@ -31,11 +32,6 @@ typedef struct spacing_search {
   uint32_t first[N_CELLS];
 } spacing_search;
 
-static int compare_doubles(const void *a, const void *b) {
-  double first = *(const double *)a, second = *(const double *)b;
-  return (first > second) - (first < second);
-}
-
 static int64_t cell_on(const spacing_search *s, int axis, double position) {
   return (int64_t)floor((position - s->low[axis]) / s->edge);
 }
@@ -60,7 +56,7 @@ static void mark_cells(spacing_search *s, uint32_t i_place) {
   }
 }
 
-static void lay_out(const conic_layers_intake *intake, double edge, spacing_search *s) {
+static void lay_out_marks(const conic_layers_intake *intake, double edge, spacing_search *s) {
   s->edge = edge;
   s->n_marks = 0;
   s->n_places = intake->n_some < N_PLACES ? intake->n_some : N_PLACES;
@@ -74,14 +70,14 @@ static void lay_out(const conic_layers_intake *intake, double edge, spacing_sear
   }
 }
 
-static void keep(spacing_place *p, double distance2) {
+static void keep_distance(spacing_place *p, double distance2) {
   int i = N_NEAREST;
   for (; i > 0 && p->nearest2[i - 1] > distance2; i--)
     p->nearest2[i] = p->nearest2[i - 1];
   p->nearest2[i] = distance2;
 }
 
-static void look_at(spacing_search *s, const double position[3]) {
+static void look_at_sample(spacing_search *s, const double position[3]) {
   double edge2 = s->edge * s->edge;
   uint32_t i = s->first[hash(cell_on(s, 0, position[0]), cell_on(s, 1, position[1]), cell_on(s, 2, position[2]))];
   for (; i != NO_PLACE; i = s->marks[i].next) {
@@ -89,7 +85,7 @@ static void look_at(spacing_search *s, const double position[3]) {
     double x = position[0] - p->at[0], y = position[1] - p->at[1], z = position[2] - p->at[2];
     double distance2 = x * x + y * y + z * z;
     if (distance2 <= edge2 && distance2 < p->nearest2[N_NEAREST])
-      keep(p, distance2);
+      keep_distance(p, distance2);
   }
 }
 
@@ -103,7 +99,7 @@ static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_
       double position[3];
       for (int axis = 0; axis < 3; axis++)
         position[axis] = block.origin[axis] + (double)samples[i].position[axis];
-      look_at(s, position);
+      look_at_sample(s, position);
     }
     n_done += block.count;
     status = conic_progress(intake->context, "measure", (double)n_done / (double)intake->n_samples);
@@ -114,7 +110,7 @@ static conic_status look_at_all(const conic_layers_intake *intake, conic_layers_
 }
 
 /* The lower median over the places that have neighbours enough; 0 where fewer than half have. */
-static double median_spacing(const spacing_search *s) {
+static double median_of_places(const spacing_search *s) {
   double spacings[N_PLACES];
   size_t n = 0;
   for (size_t i = 0; i < s->n_places; i++)
@@ -122,7 +118,7 @@ static double median_spacing(const spacing_search *s) {
       spacings[n++] = sqrt(3.14159265358979323846 * s->places[i].nearest2[N_NEAREST] / (double)N_NEAREST);
   if (2 * n < s->n_places)
     return 0.0;
-  qsort(spacings, n, sizeof *spacings, compare_doubles);
+  qsort(spacings, n, sizeof *spacings, conic_compare_doubles);
   return spacings[(n - 1) / 2];
 }
 
@@ -153,9 +149,9 @@ conic_status conic_layers_intake_spacing(conic_layers_intake *intake, double *sp
   status = s && samples ? CONIC_OK : CONIC_ERROR_MEMORY;
   *spacing = 0.0;
   for (int i = 0; i < MOST_PASSES && status == CONIC_OK && !(*spacing > 0.0); i++, edge *= 3.0) {
-    lay_out(intake, edge, s);
+    lay_out_marks(intake, edge, s);
     status = look_at_all(intake, samples, s);
-    *spacing = median_spacing(s);
+    *spacing = median_of_places(s);
   }
   if (!(*spacing > 0.0))
     *spacing = guess;

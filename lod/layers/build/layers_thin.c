@@ -115,7 +115,7 @@ static void clear(conic_thinner *thinner, double distance, size_t n_points) {
   memset(thinner->cells, 0xff, n_cells * sizeof *thinner->cells);
 }
 
-static uint64_t place_of(int32_t x, int32_t y, int32_t z) {
+static uint64_t place_of_cell(int32_t x, int32_t y, int32_t z) {
   return (uint64_t)(uint32_t)(x + 1) << 42 | (uint64_t)(uint32_t)(y + 1) << 21 | (uint64_t)(uint32_t)(z + 1);
 }
 
@@ -170,15 +170,15 @@ static float nearest_within_cells(conic_thinner *thinner, point at, float enough
   octant o = octant_of(thinner, at);
   for (int i = 0; i < 8 && !(nearest2 <= enough2); i++)
     nearest2 = look_into(thinner,
-                         place_of(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
-                                  o.cell[2] + (i & 4 ? o.side[2] : 0)),
+                         place_of_cell(o.cell[0] + (i & 1 ? o.side[0] : 0), o.cell[1] + (i & 2 ? o.side[1] : 0),
+                                       o.cell[2] + (i & 4 ? o.side[2] : 0)),
                          at, enough2, nearest2);
   return nearest2;
 }
 
 static void insert(conic_thinner *thinner, uint32_t i_point) {
   octant o = octant_of(thinner, thinner->points[i_point]);
-  uint64_t place = place_of(o.cell[0], o.cell[1], o.cell[2]);
+  uint64_t place = place_of_cell(o.cell[0], o.cell[1], o.cell[2]);
   cell *found = find_cell(thinner, place);
   uint32_t i = (uint32_t)thinner->n_chosen++;
   thinner->chosen[i] = i_point;

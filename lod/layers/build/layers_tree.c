@@ -225,8 +225,8 @@ static double guess_distance(const conic_layers_branch *const children[2], size_
 }
 
 /* Chooses of both children's samples, in the worker's candidates, and copies what is chosen. */
-static conic_status choose(conic_layers_worker *worker, conic_layers_branch *const children[2],
-                           conic_layers_branch **parent) {
+static conic_status choose_samples(conic_layers_worker *worker, conic_layers_branch *const children[2],
+                                   conic_layers_branch **parent) {
   const conic_layers_plan *plan = &worker->plan;
   size_t n_first = children[0]->n_drawn, n = n_first + children[1]->n_drawn;
   uint64_t n_place = children[0]->n_place + children[1]->n_place;
@@ -256,7 +256,7 @@ conic_status conic_layers_join(conic_layers_worker *worker, conic_layers_branch 
                                conic_layers_shelf *shelf, conic_layers_branch **parent) {
   conic_context *context = worker->plan.context;
   size_t n_first = children[0]->n_drawn;
-  conic_status status = choose(worker, children, parent);
+  conic_status status = choose_samples(worker, children, parent);
   if (status != CONIC_OK) {
     conic_layers_branch_destroy(context, children[0]);
     conic_layers_branch_destroy(context, children[1]);

@@ -83,7 +83,7 @@ static int next_window(bands *b, conic_window *window) {
   return 1;
 }
 
-static conic_status gather(bands *b, const conic_window *window, int is_whole) {
+static conic_status gather_band(bands *b, const conic_window *window, int is_whole) {
   const conic_layers_band_drawing *d = b->d;
   b->n_chosen = 0;
   for (size_t i = 0; i < d->cut->n; i++)
@@ -215,7 +215,7 @@ static void add_up(const conic_render_statistics *band, conic_render_statistics 
 static conic_status draw_window(bands *b, const conic_window *window, conic_render_statistics *sum) {
   const conic_layers_band_drawing *d = b->d;
   conic_render_statistics band;
-  conic_status status = gather(b, window, 0);
+  conic_status status = gather_band(b, window, 0);
   if (status == CONIC_OK)
     status = conic_render_window(d->renderer, &d->set->splats, d->camera, d->render, window, d->image, &band);
   if (status == CONIC_OK)
@@ -229,7 +229,7 @@ static conic_status draw_window(bands *b, const conic_window *window, conic_rend
 
 static conic_status draw_whole(bands *b, const conic_window *whole, conic_render_statistics *statistics) {
   const conic_layers_band_drawing *d = b->d;
-  conic_status status = gather(b, whole, 1);
+  conic_status status = gather_band(b, whole, 1);
   if (status == CONIC_OK)
     status = conic_render_samples(d->layers->context, d->renderer, &d->set->splats, d->camera, d->render, d->samples,
                                   d->image, statistics);
@@ -238,7 +238,7 @@ static conic_status draw_whole(bands *b, const conic_window *whole, conic_render
   return status;
 }
 
-static conic_status draw(bands *b, conic_render_statistics *statistics, int *n_bands) {
+static conic_status draw_band(bands *b, conic_render_statistics *statistics, int *n_bands) {
   const conic_layers_band_drawing *d = b->d;
   const conic_window whole = {0, d->camera->width, 0, d->camera->height};
   conic_window window = {0, d->camera->width, 0, 0};
@@ -265,7 +265,7 @@ conic_status conic_layers_draw_bands(const conic_layers_band_drawing *drawing, c
   size_t most = conic_layers_drawing_bytes(drawing->layers) / CONIC_LAYERS_SPLAT_BYTES + 1;
   b.most = (double)most;
   b.chosen = conic_memory_allocate(context, drawing->cut->n, sizeof *b.chosen);
-  conic_status status = b.chosen ? draw(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
+  conic_status status = b.chosen ? draw_band(&b, statistics, n_bands) : CONIC_ERROR_MEMORY;
   conic_memory_release(context, b.chosen);
   return status;
 }

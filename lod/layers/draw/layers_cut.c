@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 
 /* A walk down the tree: what is yet to be looked at. Each level adds one node at most. */
 typedef struct tree_walk {
@@ -18,7 +19,7 @@ typedef struct tree_walk {
 /* Why a node is not refined. */
 typedef enum verdict { VERDICT_REFINE, VERDICT_FINE, VERDICT_STUCK } verdict;
 
-static verdict judge(const tree_walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
+static verdict judge_node(const tree_walk *w, const conic_layers_entry *entry, const conic_layers_sight *sight) {
   const unsigned char *is_in = w->wish->is_in;
   if (entry->child == 0 || sight->error_px <= w->wish->error_px)
     return VERDICT_FINE;
@@ -39,7 +40,7 @@ static int next_place(tree_walk *w, uint32_t *node, conic_layers_sight *sight, v
     const conic_layers_entry *entry = &w->layers->entries[*node];
     if (!conic_layers_look(w->view, entry, sight))
       continue;
-    *why = judge(w, entry, sight);
+    *why = judge_node(w, entry, sight);
     if (*why != VERDICT_REFINE)
       return 1;
     w->open[w->n_open++] = entry->child + 1;
@@ -98,12 +99,6 @@ static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *v
   return n;
 }
 
-static double error_of(uint64_t bits) {
-  double error;
-  memcpy(&error, &bits, sizeof error);
-  return error;
-}
-
 /* Doubles that are not negative order like their bits. */
 conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
                                      uint64_t budget, double *error_px) {
@@ -120,13 +115,13 @@ conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_lay
                       layers->entries[0].n_drawn);
   while (high - low > 1) {
     uint64_t middle = low + (high - low) / 2;
-    wish.error_px = error_of(middle);
+    wish.error_px = conic_double_of_bits(middle);
     if (count_cut(layers, view, &wish, budget) <= budget)
       high = middle;
     else
       low = middle;
   }
-  *error_px = error_of(high);
+  *error_px = conic_double_of_bits(high);
   return CONIC_OK;
 }
 

@@ -23,8 +23,7 @@ typedef struct layers_drawing {
   conic_layers_cut cut;
   conic_layers_set *set; /* the layers', so that its memory is kept from picture to picture */
   unsigned char *needed; /* a cloud */
-  size_t n_needed;
-  uint32_t *held; /* clouds that are kept until the picture is drawn */
+  uint32_t *held;        /* clouds that are kept until the picture is drawn */
   conic_layers_loading holding;
   conic_layers_drawn drawn;
 } layers_drawing;
@@ -34,8 +33,8 @@ void conic_layers_draw_options_init_sized(conic_layers_draw_options *options, si
   conic_options_give(options, size, &own);
 }
 
-static const char *what_is_wrong(const conic_camera *camera, const conic_render_options *render,
-                                 const conic_layers_draw_options *options, const conic_image *image) {
+static const char *what_of_draw_is_wrong(const conic_camera *camera, const conic_render_options *render,
+                                         const conic_layers_draw_options *options, const conic_image *image) {
   if (!image || image->width != camera->width || image->height != camera->height)
     return "the image and the camera differ in size";
   if (!(options->error_px >= 0.0) || (options->error_px > 0.0 && options->budget))
@@ -45,7 +44,7 @@ static const char *what_is_wrong(const conic_camera *camera, const conic_render_
   return NULL;
 }
 
-static conic_status choose(layers_drawing *d, const unsigned char *is_in) {
+static conic_status choose_clouds(layers_drawing *d, const unsigned char *is_in) {
   conic_layers_wish wish = {.error_px = d->drawn.error_px, .most_levels = d->options->most_levels, .is_in = is_in};
   return conic_layers_find_cut(d->layers, &d->view, &wish, &d->cut);
 }
@@ -56,7 +55,7 @@ static conic_status choose_first(layers_drawing *d) {
   if (d->options->budget)
     status =
         conic_layers_fit_budget(d->layers, &d->view, d->options->most_levels, d->options->budget, &d->drawn.error_px);
-  return status == CONIC_OK ? choose(d, NULL) : status;
+  return status == CONIC_OK ? choose_clouds(d, NULL) : status;
 }
 
 /* Reads what the cut needs, as far as there is time and room, and makes it coarser where something is missing. */
@@ -84,7 +83,7 @@ static conic_status make_do(layers_drawing *d, double until_s) {
     d->drawn.n_clouds_missing += d->needed[i] && !is_in;
     d->needed[i] = (unsigned char)(!d->needed[i] || is_in);
   }
-  return choose(d, d->needed);
+  return choose_clouds(d, d->needed);
 }
 
 static int wants_hiding(const layers_drawing *d) {
@@ -115,8 +114,8 @@ static void count_up(layers_drawing *d, const conic_render_statistics *statistic
       drawn->n_levels = d->layers->entries[i].level + 1;
 }
 
-static conic_status draw_all(layers_drawing *d, conic_renderer *renderer, conic_image *image,
-                             conic_render_statistics *statistics) {
+static conic_status draw_layers(layers_drawing *d, conic_renderer *renderer, conic_image *image,
+                                conic_render_statistics *statistics) {
   double start = conic_seconds_now();
   conic_status status = choose_first(d);
   if (status == CONIC_OK && d->options->may_be_coarser)
@@ -143,7 +142,7 @@ static conic_status draw_all(layers_drawing *d, conic_renderer *renderer, conic_
   return CONIC_OK;
 }
 
-static void begin(layers_drawing *d, const conic_render_options *render) {
+static void begin_drawing(layers_drawing *d, const conic_render_options *render) {
   conic_layers_scale scale;
   conic_layers_measure(d->layers, render->kernel.cutoff, &scale);
   d->render = *render;
@@ -154,7 +153,7 @@ static void begin(layers_drawing *d, const conic_render_options *render) {
   conic_layers_view_init(&d->layers->header, d->camera, &d->render, d->render.near_z, &d->view);
 }
 
-static void end(layers_drawing *d) {
+static void end_drawing(layers_drawing *d) {
   conic_context *context = d->layers->context;
   conic_layers_store_unpin(d->layers, &d->holding);
   conic_layers_cut_release(context, &d->cut);
@@ -172,7 +171,7 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
   if (status != CONIC_OK)
     return status;
   conic_layers_draw_options_init(&options);
-  const char *wrong = conic_options_take(&options, wanted) ? what_is_wrong(camera, &render, &options, image)
+  const char *wrong = conic_options_take(&options, wanted) ? what_of_draw_is_wrong(camera, &render, &options, image)
                                                            : "the options were not initialised";
   if (wrong)
     return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "layers: %s", wrong);
@@ -182,11 +181,11 @@ conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, c
     return CONIC_ERROR_MEMORY;
   layers_drawing d = {.layers = layers, .camera = camera, .options = &options, .set = layers->set};
   uint64_t n_read = layers->store.n_read;
-  begin(&d, &render);
+  begin_drawing(&d, &render);
   d.needed = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.needed);
   d.held = conic_memory_allocate(layers->context, layers->header.n_clouds, sizeof *d.held);
-  status = d.needed && d.held ? draw_all(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
-  end(&d);
+  status = d.needed && d.held ? draw_layers(&d, renderer, image, &counted) : CONIC_ERROR_MEMORY;
+  end_drawing(&d);
   if (status != CONIC_OK)
     return status;
   d.drawn.n_clouds_culled = layers->header.n_clouds - d.drawn.n_clouds;

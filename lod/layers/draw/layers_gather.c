@@ -36,7 +36,7 @@ static void place_arrays(const conic_layers *layers, conic_layers_set *set) {
 }
 
 /* Room for `count` splats, of which `used` are kept. */
-static conic_status make_room(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
+static conic_status make_room_for_splats(const conic_layers *layers, conic_layers_set *set, size_t used, size_t count) {
   conic_context *context = layers->context;
   if (count <= set->room)
     return CONIC_OK;
@@ -117,7 +117,7 @@ typedef struct sieve {
   double radius;
 } sieve;
 
-static int is_within(const conic_window *inner, const conic_window *outer) {
+static int is_window_within(const conic_window *inner, const conic_window *outer) {
   return inner->x_begin >= outer->x_begin && inner->x_end <= outer->x_end && inner->y_begin >= outer->y_begin &&
          inner->y_end <= outer->y_end;
 }
@@ -133,7 +133,7 @@ static sieve begin_sieve(const gather *g, const conic_layers_piece *piece, const
   return (sieve){.cloud = cloud,
                  .place = place,
                  .view = g->asked->view,
-                 .window = window && is_within(&place->sight.pixels, window) ? NULL : window,
+                 .window = window && is_window_within(&place->sight.pixels, window) ? NULL : window,
                  .radius = (double)g->layers->entries[place->node].radius};
 }
 
@@ -293,7 +293,7 @@ static conic_status take_pieces(gather *g) {
   conic_parallel_for(context, n_tasks, count_task, g);
   size_t count = place_pieces(g), used = g->set->splats.count;
   size_t wanted = count > g->set->room && used ? count + count / 4 : count;
-  conic_status status = make_room(g->layers, g->set, used, wanted);
+  conic_status status = make_room_for_splats(g->layers, g->set, used, wanted);
   if (status != CONIC_OK)
     return status;
   conic_parallel_for(context, n_tasks, fill_task, g);
@@ -349,7 +349,7 @@ conic_status conic_layers_gather(conic_layers *layers, const conic_layers_gather
   memcpy(set->splats.origin, layers->header.origin, sizeof set->splats.origin);
   conic_status status = list_pieces(&g);
   if (status == CONIC_OK)
-    status = make_room(layers, set, 0, expect(&g) + 1);
+    status = make_room_for_splats(layers, set, 0, expect(&g) + 1);
   if (status != CONIC_OK || set->n_pieces == 0)
     return status;
   uint32_t *clouds = conic_memory_allocate(layers->context, set->n_pieces, sizeof *clouds);

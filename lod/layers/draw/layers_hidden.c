@@ -50,7 +50,7 @@ double conic_layers_depth_complexity(const conic_layers *layers, const conic_lay
 }
 
 /* What is seen of a place behind what was drawn so far. */
-static void judge(const hiding *h, conic_layers_place *place) {
+static void judge_place(const hiding *h, conic_layers_place *place) {
   const conic_layers_entry *entry = &h->layers->entries[place->node];
   const conic_layers_sight *s = &place->sight;
   double hides = (double)conic_horizon_least(&h->horizon, &s->pixels);
@@ -113,7 +113,7 @@ static uint64_t splats_of(const hiding *h, size_t i) {
 static uint64_t judge_rest(hiding *h, size_t begin) {
   uint64_t n_splats = 0;
   for (size_t i = begin; i < h->cut->n; i++) {
-    judge(h, &h->cut->places[h->by_depth[i]]);
+    judge_place(h, &h->cut->places[h->by_depth[i]]);
     n_splats += splats_of(h, i);
   }
   return n_splats;
@@ -156,7 +156,7 @@ static conic_status hide(hiding *h, uint32_t *spare) {
   sort_by_depth(h->cut->places, h->by_depth, spare, h->cut->n);
   conic_status status = draw_shares(h, spare);
   for (size_t i = 0; i < h->cut->n && status == CONIC_OK; i++)
-    judge(h, &h->cut->places[i]);
+    judge_place(h, &h->cut->places[i]);
   return status;
 }
 

@@ -1,5 +1,4 @@
 /* Opening layered point clouds: header and index, from wherever they lie. */
-#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -77,7 +76,7 @@ static conic_status as_read(const conic_layers *layers, conic_status status) {
   return layers->is_remote && status == CONIC_ERROR_INPUT ? CONIC_ERROR_IO : status;
 }
 
-static conic_status read_header(conic_layers *layers) {
+static conic_status read_layers_header(conic_layers *layers) {
   unsigned char *bytes;
   uint64_t size = conic_ranges_size(layers->ranges);
   uint64_t n_bytes = size < CONIC_LAYERS_HEADER_BYTES ? size : CONIC_LAYERS_HEADER_BYTES;
@@ -146,7 +145,7 @@ conic_status conic_layers_open(conic_context *context, const char *name, const c
     status = open_ranges(made);
   }
   if (status == CONIC_OK)
-    status = read_header(made);
+    status = read_layers_header(made);
   if (status == CONIC_OK)
     status = read_index(made);
   if (status == CONIC_OK)

@@ -1,6 +1,5 @@
 #include "lod/layers/draw/layers_store.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -76,7 +75,7 @@ static void link_newest(conic_layers_store *store, uint32_t cloud) {
   store->newest = cloud;
 }
 
-static void drop(conic_layers *layers, uint32_t cloud) {
+static void drop_cloud(conic_layers *layers, uint32_t cloud) {
   conic_layers_store *store = &layers->store;
   unlink_slot(store, cloud);
   conic_memory_release(layers->context, store->slots[cloud].block);
@@ -85,13 +84,13 @@ static void drop(conic_layers *layers, uint32_t cloud) {
 }
 
 /* Drops what was not used for longest, so that there is room for so many bytes more. */
-static void make_room(conic_layers *layers, size_t n_bytes) {
+static void make_room_for_bytes(conic_layers *layers, size_t n_bytes) {
   conic_layers_store *store = &layers->store;
   uint64_t bound = conic_layers_cache_bytes(layers);
   for (uint32_t cloud = store->oldest; cloud != CONIC_NO_CLOUD && store->n_bytes + n_bytes > bound;) {
     uint32_t newer = store->slots[cloud].newer;
     if (store->slots[cloud].n_pins == 0)
-      drop(layers, cloud);
+      drop_cloud(layers, cloud);
     cloud = newer;
   }
 }
@@ -116,7 +115,7 @@ static void decode_task(void *data, size_t i_item, int i_thread) {
                                      one->answer.bytes, &one->cloud);
 }
 
-static void keep(conic_layers *layers, arrival *one) {
+static void keep_cloud(conic_layers *layers, arrival *one) {
   conic_layers_store *store = &layers->store;
   conic_layers_slot *slot = &store->slots[one->answer.id];
   slot->block = one->block;
@@ -149,7 +148,7 @@ static conic_status take_failure(conic_layers *layers, const arrival *one, conic
 }
 
 /* Fetches what has come by now, or within the wait. */
-static void collect(conic_layers *layers, double wait_s, arrivals *a) {
+static void collect_clouds(conic_layers *layers, double wait_s, arrivals *a) {
   for (a->n = 0; a->n < DECODED_TOGETHER; a->n++) {
     arrival *one = &a->all[a->n];
     memset(one, 0, sizeof *one);
@@ -168,7 +167,7 @@ static conic_status allocate_blocks(conic_layers *layers, arrivals *a) {
     if (one->answer.status != CONIC_OK)
       continue;
     size_t n_bytes = bytes_of(layers, one->answer.id);
-    make_room(layers, n_bytes);
+    make_room_for_bytes(layers, n_bytes);
     one->block = conic_memory_allocate(layers->context, n_bytes, 1);
     if (!one->block)
       return CONIC_ERROR_MEMORY;
@@ -184,7 +183,7 @@ static conic_status take_arrivals(conic_layers *layers, arrivals *a, conic_layer
   for (size_t i = 0; i < a->n; i++) {
     arrival *one = &a->all[i];
     if (status == CONIC_OK && one->block && !one->wrong)
-      keep(layers, one);
+      keep_cloud(layers, one);
     else if (status == CONIC_OK)
       status = take_failure(layers, one, loading);
     conic_memory_release(layers->context, one->block);
@@ -201,7 +200,7 @@ static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_
     double left = loading->until_s - conic_seconds_now();
     if (!(left > 0.0))
       break;
-    collect(layers, left < 0.1 ? left : 0.1, &a);
+    collect_clouds(layers, left < 0.1 ? left : 0.1, &a);
     conic_status status = take_arrivals(layers, &a, loading);
     double fraction = 1.0 - (double)conic_ranges_pending(layers->ranges) / (double)n_asked;
     if (status == CONIC_OK && layers->is_remote)

@@ -14,7 +14,7 @@ static const double slack = 1e-4;
 static const double least_slope = 2e-3;
 
 /* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_side(double side[3], int axis, double a, double b) {
+static void set_layers_side(double side[3], int axis, double a, double b) {
   double length = sqrt(a * a + b * b);
   side[0] = side[1] = 0.0;
   side[axis] = a / length;
@@ -48,10 +48,10 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   view->greatest_focal = camera->fx < camera->fy ? camera->fy : camera->fx;
   double widening = (double)render->kernel.cutoff * sqrt((double)render->prefilter);
   double margin = view->growth_px = widening + 1.0;
-  set_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  set_layers_side(view->side[0], 0, camera->fx, camera->cx + margin);
+  set_layers_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
+  set_layers_side(view->side[2], 1, camera->fy, camera->cy + margin);
+  set_layers_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
   view->near_z = near_z;
   view->cull_back = render->cull_back;
   view->is_exact_outline =

@@ -175,7 +175,7 @@ static int is_parted(const layers_checking *c, const conic_layers_entry *entry) 
   return entry->depth == 3 * c->file->header.bits;
 }
 
-static conic_status check_node(layers_checking *c, uint32_t i_node);
+static conic_status check_layers_node(layers_checking *c, uint32_t i_node);
 
 static conic_status check_below(layers_checking *c, stage *s, const char *wrong, uint32_t i_node) {
   const conic_layers_entry *entry = s->entry;
@@ -192,12 +192,12 @@ static conic_status check_below(layers_checking *c, stage *s, const char *wrong,
     for (int i = 0; i < c->n_stages; i++)
       hold_against(s, &c->stages[i]);
   for (uint32_t k = 0; k < 2 && entry->child != 0 && status == CONIC_OK; k++)
-    status = check_node(c, entry->child + k);
+    status = check_layers_node(c, entry->child + k);
   count_defects(c, s);
   return status;
 }
 
-static conic_status check_node(layers_checking *c, uint32_t i_node) {
+static conic_status check_layers_node(layers_checking *c, uint32_t i_node) {
   const conic_layers_entry *entry = &c->file->entries[i_node];
   const stage *above = c->n_stages ? &c->stages[c->n_stages - 1] : NULL;
   stage *s = &c->stages[c->n_stages];
@@ -231,7 +231,7 @@ conic_status conic_layers_check(conic_context *context, const char *path, conic_
     c->context = context;
     c->file = &file;
     c->defects = defects;
-    status = check_node(c, 0);
+    status = check_layers_node(c, 0);
   }
   if (c)
     conic_layers_decoder_destroy(c->decoder);

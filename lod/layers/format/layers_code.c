@@ -26,7 +26,7 @@ static const int part_of_stream[MOST_STREAMS] = {CONIC_LAYERS_POSITION, CONIC_LA
 struct conic_layers_coder {
   conic_context *context;
   conic_zstd *zstd;
-  size_t most_samples, stream_room;
+  size_t most_samples;
   int n_streams;
   unsigned char *streams[MOST_STREAMS];
   size_t n_bytes[MOST_STREAMS];

@@ -74,17 +74,17 @@ void conic_layers_decoder_destroy(conic_layers_decoder *decoder) {
 }
 
 /* The middle of its cell of the grid. */
-static float place(const conic_layers_header *header, uint64_t key, int axis) {
+static float place_cloud(const conic_layers_header *header, uint64_t key, int axis) {
   return (float)(((double)conic_layers_step(key, axis) + 0.5) * header->quantum);
 }
 
-static void store(const conic_layers_decoder *decoder, size_t i, conic_layers_cloud *cloud) {
+static void store_sample(const conic_layers_decoder *decoder, size_t i, conic_layers_cloud *cloud) {
   const conic_layers_sample *sample = &decoder->samples[i];
   float normal[3];
   cloud->keys[i] = sample->key;
   conic_layers_normal_of(sample->normal, normal);
   for (int axis = 0; axis < 3; axis++) {
-    cloud->position[axis][i] = place(&decoder->header, sample->key, axis);
+    cloud->position[axis][i] = place_cloud(&decoder->header, sample->key, axis);
     cloud->normal[axis][i] = normal[axis];
     if (cloud->color[0])
       cloud->color[axis][i] = decoder->colors[sample->color[axis]];
@@ -98,7 +98,7 @@ const char *conic_layers_decode(conic_layers_decoder *decoder, const conic_layer
   const char *wrong = conic_layers_unpack(decoder->coder, bytes, entry->n_bytes, entry->n_samples, entry->key,
                                           conic_layers_last_key(&decoder->header, entry), decoder->samples);
   for (size_t i = 0; i < entry->n_samples && !wrong; i++)
-    store(decoder, i, cloud);
+    store_sample(decoder, i, cloud);
   return wrong;
 }
 

@@ -1,6 +1,5 @@
 #include "lod/layers/format/layers_format.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "conic/layers.h"
@@ -38,7 +37,7 @@ enum {
   N_ENTRY_FIELDS = sizeof entry_fields / sizeof *entry_fields
 };
 
-static int is_within(double value, double limit) {
+static int is_finite_within(double value, double limit) {
   return value >= -limit && value <= limit; /* false where it is not a number */
 }
 
@@ -68,8 +67,8 @@ static const char *check_counts(const conic_layers_header *header) {
 static const char *check_lengths(const conic_layers_header *header) {
   double edge = header->quantum * (double)(UINT64_C(1) << header->bits);
   for (int axis = 0; axis < 3; axis++)
-    if (!is_within(header->origin[axis], farthest) || !is_within(header->low[axis], farthest) ||
-        !is_within(header->high[axis], farthest) || header->low[axis] > header->high[axis])
+    if (!is_finite_within(header->origin[axis], farthest) || !is_finite_within(header->low[axis], farthest) ||
+        !is_finite_within(header->high[axis], farthest) || header->low[axis] > header->high[axis])
       return "the box is out of range";
   if (!(header->quantum > 0.0 && edge <= 4.0 * farthest))
     return "the quantum is out of range";
@@ -143,9 +142,10 @@ static const char *check_entry(const conic_layers_header *header, const conic_la
     if (!(lengths[i] >= 0.0f && (double)lengths[i] <= 8.0 * farthest))
       return "a length is out of range";
   for (int axis = 0; axis < 3; axis++)
-    if (!is_within((double)entry->center[axis], 8.0 * farthest) || !is_within((double)entry->axis[axis], 1.001))
+    if (!is_finite_within((double)entry->center[axis], 8.0 * farthest) ||
+        !is_finite_within((double)entry->axis[axis], 1.001))
       return "its sphere or cone is out of range";
-  if (!is_within((double)entry->cone, 1.0))
+  if (!is_finite_within((double)entry->cone, 1.0))
     return "its cone is out of range";
   return NULL;
 }

@@ -46,7 +46,7 @@ static double bits_a_sample(uint64_t n_bytes, const conic_layers_header *header)
   return 8.0 * (double)n_bytes / (double)header->n_samples;
 }
 
-static void describe(const conic_layers_header *header, conic_layers_info *info) {
+static void describe_header(const conic_layers_header *header, conic_layers_info *info) {
   memset(info, 0, sizeof *info);
   info->n_samples = header->n_samples;
   info->n_clouds = header->n_clouds;
@@ -74,7 +74,7 @@ conic_status conic_layers_describe(conic_context *context, const char *path, con
   conic_status status = conic_layers_file_open(context, path, &file);
   if (status != CONIC_OK)
     return status;
-  describe(&file.header, info);
+  describe_header(&file.header, info);
   conic_layers_file_close(&file);
   return CONIC_OK;
 }

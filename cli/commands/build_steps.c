@@ -1,0 +1,82 @@
+#include "cli/commands/build_steps.h"
+
+#include "cli/outputs.h"
+
+int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending,
+                    int may_replace) {
+  int exit_code = cli_check_ending(build->output, ending);
+  if (exit_code == CLI_DONE)
+    exit_code = cli_check_outputs(build->session, &build->output, 1);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(build->session, inputs, n_inputs, &build->output, !may_replace)
+                               : exit_code;
+}
+
+int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
+                    const char *ending, int may_replace) {
+  const char *positional[argc], *command = build->session->command;
+  int n_positional;
+  int exit_code = cli_parse(build->session, options, n_options, argc, argv, positional, &n_positional);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  if (n_positional != 1)
+    return cli_usage("%s: %s; see conic help %s", command, n_positional ? "one input at a time" : "no input given",
+                     command);
+  if (!build->output)
+    return cli_usage("%s: no output given (-o OUT.%s)", command, ending);
+  build->input = positional[0];
+  return cli_build_check(build, &build->input, 1, ending, may_replace);
+}
+
+static int count_stages(const cli_build *build) {
+  int n = 0;
+  while (n < (int)(sizeof build->stages / sizeof *build->stages) && build->stages[n].name)
+    n++;
+  return n;
+}
+
+static int write_report(cli_build *build, const cli_build_steps *steps) {
+  int exit_code = CLI_DONE;
+  cli_json_file *file;
+  cli_json *json = cli_json_open(build->session, &file, &exit_code);
+  if (!json)
+    return exit_code;
+  steps->report(json, build);
+  return cli_json_finish(file);
+}
+
+int cli_build_run(void *job, const cli_build_steps *steps, int parsed) {
+  cli_build *build = job;
+  double start = cli_seconds();
+  if (parsed != CLI_DONE)
+    return parsed < 0 ? CLI_DONE : parsed;
+  int exit_code = cli_session_open(build->session);
+  if (exit_code != CLI_DONE)
+    return exit_code;
+  exit_code = steps->make(job);
+  build->total_seconds = cli_seconds() - start;
+  if (exit_code == CLI_DONE) {
+    steps->tell(job);
+    cli_tell_run(build->session, build->stages, count_stages(build), build->total_seconds);
+    exit_code = write_report(build, steps);
+  }
+  if (steps->release)
+    steps->release(job);
+  return exit_code;
+}
+
+double cli_build_end_stage(cli_stage *stage, double start) {
+  double now = cli_seconds();
+  stage->seconds = now - start;
+  return now;
+}
+
+void cli_build_report_seconds(cli_json *json, const cli_build *build, const char *rate_key, double rate) {
+  cli_json_object(json, "seconds");
+  for (int i = 0; i < count_stages(build); i++) {
+    const cli_stage *stage = &build->stages[i];
+    cli_json_number(json, stage->key ? stage->key : stage->name, stage->seconds > 0.0 ? stage->seconds : 0.0);
+  }
+  cli_json_number(json, "total", build->total_seconds);
+  cli_json_close(json);
+  cli_json_number(json, rate_key, rate);
+}
