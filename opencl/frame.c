@@ -15,6 +15,22 @@ conic_status conic_frame_room(const conic_frame *f, int buffer, size_t count, si
   return conic_queue_room(&f->opencl->queue, &f->opencl->buffers[buffer], count * size);
 }
 
+conic_status conic_frame_give(const conic_frame *f, int i_buffer, const void *from, size_t bytes) {
+  conic_queue *queue = &f->opencl->queue;
+  conic_buffer *buffer = &f->opencl->buffers[i_buffer];
+  cl_int answer;
+  if (bytes == 0 || f->opencl->device.is_cpu)
+    conic_queue_release(buffer);
+  if (bytes == 0)
+    return CONIC_OK;
+  if (!f->opencl->device.is_cpu) {
+    conic_status status = conic_queue_room(queue, buffer, bytes);
+    return status == CONIC_OK ? conic_queue_write(queue, buffer, from, bytes) : status;
+  }
+  buffer->memory = clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, (void *)from, &answer);
+  return conic_opencl_check(queue->context, answer, "clCreateBuffer");
+}
+
 conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
   int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;

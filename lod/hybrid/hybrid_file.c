@@ -10,13 +10,13 @@
 #include "core/files/file_header.h"
 #include "lod/hybrid/hybrid_layout.h"
 
-#define FIELD(member, n_values) CONIC_FILE_FIELD(conic_chy_header, member, n_values)
+#define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
 
-static const conic_file_field fields[] = {
-    FIELD(version, 1),   FIELD(flags, 1),    FIELD(n_vertices, 1), FIELD(n_triangles, 1), FIELD(n_listed, 1),
-    FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_clusters, 1), FIELD(n_nodes, 1),     FIELD(n_materials, 1),
-    FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
-    FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1),   FIELD(n_slots, 1),     FIELD(n_borders, 1)};
+static const conic_file_field fields[] = {FIELD(version),  FIELD(flags),       FIELD(n_vertices),   FIELD(n_triangles),
+                                          FIELD(n_listed), FIELD(n_surfels),   FIELD(n_levels),     FIELD(n_clusters),
+                                          FIELD(n_nodes),  FIELD(n_materials), FIELD(n_texels),     FIELD(origin),
+                                          FIELD(low),      FIELD(high),        FIELD(splat_length), FIELD(cutoff),
+                                          FIELD(zero),     FIELD(body_sum),    FIELD(n_slots),      FIELD(n_borders)};
 
 static const conic_file_kind kind = {
     {'C', 'O', 'N', 'I', 'C', 'H', 'Y', '\n'}, ".chy", CONIC_CHY_VERSION, fields, sizeof fields / sizeof *fields};
@@ -86,27 +86,20 @@ conic_status conic_hybrid_write(conic_hybrid *hybrid, const char *path) {
   conic_chy_header h = header_of(hybrid);
   conic_chy_layout l = conic_chy_lay_out(&h);
   conic_output *output;
-  conic_status status = conic_file_refuse_order(hybrid->context, path, &kind);
-  if (status != CONIC_OK)
-    return status;
   h.body_sum = sum_body(hybrid->context, &l, body);
   conic_file_make_header(&kind, &h, bytes);
-  status = conic_output_open(hybrid->context, path, &output);
+  conic_status status = conic_output_open(hybrid->context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);
   fwrite(bytes, 1, sizeof bytes, stream); /* a failure is seen when the file is committed */
-  for (size_t at = sizeof bytes, n; at < l.n_bytes; at += n) {
+  for (size_t at = sizeof bytes, n; at < l.n_bytes && status == CONIC_OK; at += n) {
     n = l.n_bytes - at < (size_t)1 << 24 ? l.n_bytes - at : (size_t)1 << 24;
     if (fwrite(body + at, 1, n, stream) != n)
       break;
     status = conic_progress(hybrid->context, "write", (double)(at + n) / (double)l.n_bytes);
-    if (status != CONIC_OK) {
-      conic_output_abandon(output);
-      return status;
-    }
   }
-  return conic_output_commit(output);
+  return conic_output_end(output, status);
 }
 
 /* --- reading --- */
@@ -163,9 +156,7 @@ static conic_status check_body(const conic_hybrid *hybrid, const char *path, con
 
 static conic_status read_hybrid_file(conic_hybrid *hybrid, const char *path) {
   conic_chy_header h;
-  conic_status status = conic_file_refuse_order(hybrid->context, path, &kind);
-  if (status == CONIC_OK)
-    status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
+  conic_status status = conic_mapping_open(hybrid->context, path, &hybrid->mapping);
   if (status == CONIC_OK)
     status = read_hybrid_header(hybrid, path, &h);
   if (status == CONIC_OK)

@@ -30,12 +30,12 @@ typedef struct header {
   uint64_t body_sum; /* over the arrays' sums */
 } header;
 
-#define FIELD(member, n_values) CONIC_FILE_FIELD(header, member, n_values)
+#define FIELD(member) CONIC_FILE_FIELD(header, member)
 
-static const conic_file_field fields[] = {
-    FIELD(version, 1), FIELD(flags, 1),        FIELD(n_points, 1),       FIELD(n_leaves, 1), FIELD(n_nodes, 1),
-    FIELD(origin, 3),  FIELD(low, 3),          FIELD(high, 3),           FIELD(cutoff, 1),   FIELD(color, 1),
-    FIELD(length, 1),  FIELD(splat_length, 1), FIELD(position_error, 1), FIELD(n_clips, 1),  FIELD(body_sum, 1)};
+static const conic_file_field fields[] = {FIELD(version),        FIELD(flags),   FIELD(n_points), FIELD(n_leaves),
+                                          FIELD(n_nodes),        FIELD(origin),  FIELD(low),      FIELD(high),
+                                          FIELD(cutoff),         FIELD(color),   FIELD(length),   FIELD(splat_length),
+                                          FIELD(position_error), FIELD(n_clips), FIELD(body_sum)};
 
 static const conic_file_kind kind = {
     {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'}, ".cot", VERSION, fields, sizeof fields / sizeof *fields};
@@ -188,28 +188,22 @@ static conic_status write_body(conic_octree *octree, const char *path, header *h
     return status;
   FILE *stream = conic_output_stream(output);
   size_t written = fwrite(bytes, 1, HEADER_BYTES, stream);
-  for (int i = 0; i < l.n; i++) { /* a failure is seen when the file is committed */
+  for (int i = 0; i < l.n && status == CONIC_OK; i++) { /* a failure is seen when the file is committed */
     written += fwrite(sources[i], 1, l.arrays[i].n_bytes, stream);
     size_t next = i + 1 < l.n ? l.arrays[i + 1].offset : l.n_bytes;
     written += fwrite(zeros, 1, next - l.arrays[i].offset - l.arrays[i].n_bytes, stream);
     if (written != next)
       break;
     status = conic_progress(octree->context, "write", (double)next / (double)l.n_bytes);
-    if (status != CONIC_OK) {
-      conic_output_abandon(output);
-      return status;
-    }
   }
-  return conic_output_commit(output);
+  return conic_output_end(output, status);
 }
 
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
   const void *sources[MOST_ARRAYS];
   unsigned char *color_codes[3] = {NULL, NULL, NULL};
   header h = describe_header(octree);
-  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
-  if (status == CONIC_OK)
-    status = encode_colors(octree, color_codes);
+  conic_status status = encode_colors(octree, color_codes);
   if (status == CONIC_OK) {
     list_sources(octree, color_codes, sources);
     status = write_body(octree, path, &h, sources);
@@ -394,9 +388,7 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
 
 static conic_status read_octree_file(conic_octree *octree, const char *path) {
   header h = {.n_points = 0};
-  conic_status status = conic_file_refuse_order(octree->context, path, &kind);
-  if (status == CONIC_OK)
-    status = conic_mapping_open(octree->context, path, &octree->mapping);
+  conic_status status = conic_mapping_open(octree->context, path, &octree->mapping);
   if (status == CONIC_OK)
     status = read_octree_header(octree, path, &h);
   if (status != CONIC_OK)
