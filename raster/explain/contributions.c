@@ -209,12 +209,10 @@ conic_status conic_contributions_project(const conic_contributions *c, size_t i,
 conic_contribution conic_contribution_of(const conic_contributions *c, uint32_t i_footprint, int x, int y,
                                          const conic_fragment *fragment) {
   const conic_footprint *footprint = &c->projected.footprints[i_footprint];
-  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
-  float plane_iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx; /* as resolving has it */
   return (conic_contribution){.splat = c->projected.surfaces[i_footprint].index,
                               .q = fragment->q,
                               .weight = conic_final_weight(&c->view, footprint, fragment->q, fragment->scale),
-                              .depth = 1.0f / conic_clamp_iz(footprint, plane_iz),
+                              .depth = conic_plane_z(footprint, x, y),
                               .inverse_depth = fragment->iz,
                               .plane_inverse_depth = fragment->plane_iz,
                               .hides = conic_hiding_iz(footprint, fragment)};

@@ -57,13 +57,4 @@ static inline conic_reach conic_reach_of(const conic_contributions *contribution
   return reach;
 }
 
-/* By what a fragment hides others, and by what it is seen: docs/reference/picture.md, "Visible". */
-static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
-  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
-}
-
-static inline float conic_seen_iz(const conic_fragment *fragment) {
-  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
-}
-
 #endif
