@@ -5,22 +5,10 @@
 #include "opencl/layout.h"
 #include "raster/project/clip_disc.c"
 
-#define cross conic_cross_of_rays
 #include "raster/project/project_ray.c"
-#undef cross
 #include "raster/project/project_splats.c"
-#define consider conic_consider_of_parts
 #include "raster/project/clip_box.c"
-#undef consider
-#define cross conic_cross_of_lines
-#define row_times conic_row_times_of_lines
-#define set_box conic_set_box_of_lines
-#define set_range conic_set_range_of_lines
 #include "raster/project/clip_lines.c"
-#undef cross
-#undef row_times
-#undef set_box
-#undef set_range
 
 /* Where the splats are that a device has; `first` is the index of its splat 0 in the whole set. */
 typedef struct splat_columns {
