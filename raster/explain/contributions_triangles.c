@@ -13,6 +13,7 @@ static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
 static void describe_triangle(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
                               conic_triangle_contribution *to) {
   const conic_view *view = &c->view;
+  conic_triangle_sight sight;
   float ray[2];
   set_ray(view, x, y, ray);
   float world_from_cam[3][3];
@@ -24,7 +25,10 @@ static void describe_triangle(const conic_contributions *c, const conic_triangle
   to->inverse_depth = iz;
   to->depth = 1.0f / iz;
   to->hides = conic_triangle_hides(c->triangles.epsilon, iz, ray[0], ray[1]);
-  conic_triangle_color_at(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, to->color, to->normal);
+  conic_triangle_see(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, &sight);
+  conic_triangle_lay_texture(&sight);
+  memcpy(to->color, sight.color, sizeof to->color);
+  memcpy(to->normal, sight.normal, sizeof to->normal);
 }
 
 /* The records of one chunk that cover the pixel; those of a triangle stand together, so that its number is that of the
