@@ -55,13 +55,10 @@ static void point_to(one_splat *one, uint fields, conic_splats *splats) {
 }
 
 static void count_outcome(const conic_view *view, conic_outcome outcome, uint counts[CONIC_DEVICE_N_COUNTS]) {
-  int is_ray = outcome == CONIC_DRAWN_RAY;
-  int is_own = is_ray ? conic_method_has_rays(view->method)
-                      : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
   counts[CONIC_DEVICE_CULLED] += outcome == CONIC_CULLED;
   counts[CONIC_DEVICE_SKIPPED] += outcome == CONIC_SKIPPED;
-  counts[CONIC_DEVICE_FALLBACK] += outcome < CONIC_CULLED && !is_own;
-  counts[CONIC_DEVICE_RAYS] += is_ray;
+  counts[CONIC_DEVICE_FALLBACK] += outcome < CONIC_CULLED && is_fallback(view->method, outcome);
+  counts[CONIC_DEVICE_RAYS] += outcome == CONIC_DRAWN_RAY;
 }
 
 /* Makes i_clip the first record that is not before the splat. */

@@ -433,6 +433,12 @@ static conic_outcome project_splat(splat_setup *s) {
   return is_finite_record(s->footprint, s->ray, s->surface) ? outcome : CONIC_SKIPPED;
 }
 
+/* Whether a splat that is drawn is not by its method's own formula. */
+static int is_fallback(conic_method method, conic_outcome outcome) {
+  return outcome == CONIC_DRAWN_RAY ? !conic_method_has_rays(method)
+                                    : outcome == CONIC_DRAWN_SEGMENT || !conic_method_has_ellipses(method);
+}
+
 void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
                        conic_chunk *chunk) {
   splat_setup s = {.view = view, .splats = splats, .i = i};
@@ -448,9 +454,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else {
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first_ray + chunk->n_rays++);
-    int is_own = outcome == CONIC_DRAWN_RAY ? conic_method_has_rays(view->method)
-                                            : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
-    chunk->n_fallback += !is_own;
+    chunk->n_fallback += (size_t)is_fallback(view->method, outcome);
     chunk->n_drawn++;
   }
 }
