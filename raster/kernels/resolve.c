@@ -10,12 +10,16 @@ static void store(const conic_image *image, conic_plane plane, size_t at, const 
       to[at * n + i] = values[i];
 }
 
-static void resolve_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int x, int y,
-                          int is_covered, conic_image *image) {
+/* Pixel l of a block; returns whether it is covered. */
+static unsigned resolve_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays,
+                              int block, int l, conic_image *image) {
   conic_finished_pixel pixel;
-  int block = (x - band->x) / CONIC_BLOCK_EDGE, l = (x - band->x) % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + (y - band->y);
+  int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
   size_t at = (size_t)y * (size_t)image->width + (size_t)x;
   float weight = 0.0f, z = 0.0f;
+  if (x >= image->width || y >= image->height)
+    return 0;
+  unsigned is_covered = !conic_block_is_empty(band, block) && band->sums[block].weight[l] > 0.0f;
   if (is_covered) {
     const conic_block_sums *sums = &band->sums[block];
     const float color[3] = {sums->color[0][l], sums->color[1][l], sums->color[2][l]};
@@ -33,6 +37,7 @@ static void resolve_pixel(const conic_band *band, const conic_finish *finish, co
   store(image, CONIC_PLANE_ALBEDO, at, pixel.albedo, 3);
   store(image, CONIC_PLANE_WEIGHT, at, &weight, 1);
   store(image, CONIC_PLANE_Z, at, &z, 1);
+  return is_covered;
 }
 
 /* Of the nearest that is seen. */
@@ -70,13 +75,7 @@ void conic_band_resolve_indices(const conic_band *band, conic_image *image) {
 
 void conic_band_resolve(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, conic_image *image) {
   for (int block = 0; block < band->n_blocks; block++)
-    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++) {
-      int x = band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, y = band->y + l % CONIC_BLOCK_EDGE;
-      if (x >= image->width || y >= image->height)
-        continue;
-      int is_covered = !conic_block_is_empty(band, block) && band->sums[block].weight[l] > 0.0f;
-      resolve_pixel(band, finish, rays, x, y, is_covered, image);
-      band->n_covered += (unsigned)is_covered;
-    }
+    for (int l = 0; l < CONIC_BLOCK_PIXELS; l++)
+      band->n_covered += resolve_pixel(band, finish, rays, block, l, image);
   conic_band_resolve_indices(band, image);
 }
