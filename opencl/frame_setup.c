@@ -32,13 +32,10 @@ static conic_status write_clips(const conic_frame *f, uint32_t *n_clips) {
   *n_clips = (uint32_t)(end - begin);
   if (end == begin)
     return CONIC_OK;
-  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIPS, end - begin, sizeof *s->clips);
-  if (status == CONIC_OK)
-    status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
-  if (status != CONIC_OK)
-    return status;
-  return conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_CLIPS], s->clips + begin,
-                           (end - begin) * sizeof *s->clips);
+  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
+  return status == CONIC_OK
+             ? conic_frame_copy(f, CONIC_BUFFER_CLIPS, s->clips + begin, (end - begin) * sizeof *s->clips)
+             : status;
 }
 
 static conic_status make_room_for_records(const conic_frame *f) {

@@ -143,10 +143,7 @@ static conic_status write_chunks(const conic_frame *f) {
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < t->n_chunks; i++)
     chunks[i] = (conic_device_triangle_chunk){t->chunks[i].first_record, t->chunks[i].first_entry};
-  conic_status status = conic_frame_room(f, CONIC_BUFFER_TRIANGLE_CHUNKS, t->n_chunks, sizeof *chunks);
-  if (status == CONIC_OK)
-    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_TRIANGLE_CHUNKS], chunks,
-                               t->n_chunks * sizeof *chunks);
+  conic_status status = conic_frame_copy(f, CONIC_BUFFER_TRIANGLE_CHUNKS, chunks, t->n_chunks * sizeof *chunks);
   conic_memory_release(f->opencl->context, chunks);
   return status;
 }
