@@ -20,7 +20,7 @@ typedef struct packing {
   float cutoff;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
   conic_chy_header header;
-  conic_chy_layout layout;
+  conic_file_layout layout;
   unsigned char *bytes;
 } packing;
 
