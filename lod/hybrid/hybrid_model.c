@@ -49,6 +49,15 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
   return CONIC_OK;
 }
 
+double conic_hybrid_reach(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster) {
+  float reach = 0.0f;
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
+    float own = hybrid->levels[cluster->first_level + k].reach;
+    reach = own > reach ? own : reach;
+  }
+  return (double)reach;
+}
+
 /* --- structure --- */
 
 static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {

@@ -201,16 +201,6 @@ static conic_status place_pieces(octree_selecting *s) {
   return CONIC_OK;
 }
 
-/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
-static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
-  if (*memory && *room >= count)
-    return CONIC_OK;
-  conic_memory_release(context, *memory);
-  *memory = conic_memory_allocate(context, count, size);
-  *room = *memory ? count : 0;
-  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
 /* The clip lines of the leaves that were chosen, in their new order. */
 static conic_status take_clips(octree_selecting *s) {
   const conic_octree *octree = s->octree;
@@ -220,8 +210,8 @@ static conic_status take_clips(octree_selecting *s) {
   splats->clips = NULL;
   if (octree->n_clips == 0)
     return CONIC_OK;
-  conic_status status = keep_room(octree->context, (void **)&s->scratch->clips, &s->scratch->clips_room,
-                                  octree->n_clips, sizeof *s->scratch->clips);
+  conic_status status = conic_memory_renew(octree->context, &s->scratch->clips, octree->n_clips,
+                                           &s->scratch->clips_room, sizeof *s->scratch->clips);
   if (status != CONIC_OK)
     return status;
   splats->clips = s->scratch->clips;
@@ -254,8 +244,8 @@ static conic_status keep_scratch(const conic_octree *octree, conic_selection *se
   octree_scratch *kept = selection->scratch;
   if (!kept)
     return CONIC_ERROR_MEMORY;
-  return keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
-                   sizeof *kept->sources);
+  return conic_memory_renew(octree->context, &kept->sources, octree->n_leaves, &kept->sources_room,
+                            sizeof *kept->sources);
 }
 
 static const char *what_of_view_is_wrong(const conic_octree *octree, const conic_render_options *render,

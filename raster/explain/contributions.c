@@ -277,20 +277,15 @@ conic_status conic_contributions_at(conic_contributions *c, int x, int y, const 
     return conic_fail(c->context, CONIC_ERROR_ARGUMENT, "the pixel %d,%d is not in a picture of %d x %d", x, y,
                       c->view.width, c->view.height);
   size_t band = (size_t)y / CONIC_CONTRIBUTION_BAND, first = c->band_begin[band], end = c->band_begin[band + 1];
-  if (end - first > c->list_room) {
-    conic_memory_release(c->context, c->list);
-    c->list_room = 0;
-    c->list = conic_memory_allocate(c->context, end - first, sizeof *c->list);
-    if (!c->list)
-      return CONIC_ERROR_MEMORY;
-    c->list_room = end - first;
-  }
+  conic_status status = conic_memory_renew(c->context, &c->list, end - first, &c->list_room, sizeof *c->list);
+  if (status != CONIC_OK)
+    return status;
   *n = 0;
   for (size_t i = first; i < end; i++)
     *n += (size_t)begin_contribution(c, c->references[i], x, y, &c->list[*n]);
   const conic_triangle_contribution *triangle;
   size_t n_triangles;
-  conic_status status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
+  status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
   judge_footprint(c->list, *n, c->options.passes, triangle);
   *list = c->list;
   return status;

@@ -5,18 +5,6 @@
 #include "raster/explain/pixel_contributions.h"
 #include "raster/triangles/triangle_tile.h"
 
-static conic_status make_room_for_triangles(conic_contributions *c, size_t n) {
-  if (n <= c->triangle_list_room)
-    return CONIC_OK;
-  conic_memory_release(c->context, c->triangle_list);
-  c->triangle_list_room = 0;
-  c->triangle_list = conic_memory_allocate(c->context, n, sizeof *c->triangle_list);
-  if (!c->triangle_list)
-    return CONIC_ERROR_MEMORY;
-  c->triangle_list_room = n;
-  return CONIC_OK;
-}
-
 /* The viewer looks at the pixel along (x, y, 1). */
 static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
   ray[0] = (float)(((double)x + 0.5 - view->cx) / view->fx);
@@ -71,7 +59,8 @@ conic_status conic_contribution_triangles(conic_contributions *c, int x, int y,
     const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
     most += begin[1] - begin[0];
   }
-  conic_status status = make_room_for_triangles(c, most);
+  conic_status status =
+      conic_memory_renew(c->context, &c->triangle_list, most, &c->triangle_list_room, sizeof *c->triangle_list);
   for (size_t i = 0; i < frame->n_chunks && status == CONIC_OK; i++)
     *n = list_chunk(c, i, i_tile, x, y, *n);
   conic_triangle_contribution *found = NULL;
