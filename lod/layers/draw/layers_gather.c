@@ -143,7 +143,7 @@ static inline int is_chosen(const sieve *s, size_t i) {
   if (s->place->state != CONIC_PLACE_GRAZING)
     return 1;
   for (int axis = 0; axis < 3; axis++)
-    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->eye[axis]);
+    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->from.eye[axis]);
   return !(fabs(along) >= s->place->offset);
 }
 
