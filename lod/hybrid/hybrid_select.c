@@ -129,10 +129,8 @@ static void let_nodes_stand(hybrid_selecting *s, const uint32_t *nodes) {
 /* The stages of what was chosen; all else is hidden. Nodes have all of their clusters' borders. */
 static void note_stages(hybrid_selecting *s) {
   hybrid_scratch *kept = s->scratch;
-  for (size_t i = 0; i < s->hybrid->n_clusters; i++) {
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++)
     kept->stages[i] = CONIC_HYBRID_HIDDEN;
-    kept->standing[i] = CONIC_HYBRID_NO_NODE;
-  }
   for (size_t i = 0; i < kept->n_choices; i++)
     kept->stages[kept->choices[i].cluster] = s->hybrid->levels[kept->choices[i].level].stage;
 }

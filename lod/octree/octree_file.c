@@ -282,16 +282,13 @@ static conic_status check_clips(const conic_octree *octree, const char *path) {
 }
 
 static conic_status read_structure(conic_octree *octree, const char *path, const conic_file_layout *l) {
-  conic_context *context = octree->context;
-  octree->end = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->end);
-  octree->first_leaf = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *octree->first_leaf);
-  if (!octree->end || !octree->first_leaf)
-    return CONIC_ERROR_MEMORY;
-  const char *wrong = conic_octree_lay_out(octree);
+  const char *wrong;
+  conic_status status = conic_octree_lay_out(octree, &wrong);
   if (wrong)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
+    return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
                       l->arrays[ARRAY_CODES].offset);
-  conic_status status = check_index(octree, path, l);
+  if (status == CONIC_OK)
+    status = check_index(octree, path, l);
   if (status == CONIC_OK)
     status = check_clips(octree, path);
   return status == CONIC_OK ? conic_octree_index_clips(octree) : status;
