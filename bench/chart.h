@@ -3,9 +3,11 @@
 #define CONIC_CHART_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "bench/chart_scene.h"
 #include "cli/session.h"
+#include "core/files/file.h"
 
 /* How far a picture is from what it should be; of R, G, B. */
 typedef struct cli_chart_error {
@@ -26,6 +28,16 @@ typedef struct cli_chart_point {
   size_t holes, largest_hole;    /* pixels */
   int is_front[2];               /* no other of its scene is faster and nearer to the oracle, the surface */
 } cli_chart_point;
+
+/* The error of b against a where they differ at no more than `n` pixels, over so many. Errors: MEMORY. */
+conic_status cli_chart_measure(conic_context *context, const conic_image *a, const conic_image *b, size_t n,
+                               cli_chart_error *error);
+
+/* Its columns: max, rmse, psnr, flip; a comma before each. */
+void cli_chart_write_error(FILE *to, const cli_chart_error *error);
+
+/* Opens FOLDER/NAME. Errors: those of conic_output_open. */
+conic_status cli_chart_open(const cli_session *session, const char *folder, const char *name, conic_output **output);
 
 /* Runs gnuplot on FOLDER/SCRIPT, which draws the tables there: SVG and PNG. Returns 0 where there is no gnuplot or it
  * failed. */

@@ -13,6 +13,7 @@
 #include "cli/json_write.h"
 #include "cli/outputs.h"
 #include "core/files/file.h"
+#include "core/image/image_common.h"
 
 /* A kernel of the chart. */
 typedef struct chart_kernel {
@@ -111,35 +112,16 @@ static conic_status time_frames(const chart_job *job, const chart_view *view, co
   return status;
 }
 
-/* Error of b against a where `is_inside` (null: everywhere), outside of which both are cleared. */
-static conic_status measure_error(conic_context *context, conic_image *a, conic_image *b,
-                                  const unsigned char *is_inside, cli_chart_error *error) {
-  conic_difference difference;
+/* Clears the pixels of both that are outside; returns how many are left. */
+static size_t clear_outside(conic_image *a, conic_image *b, const unsigned char *is_inside) {
   float *a_pixel = a->planes[CONIC_PLANE_RGBA], *b_pixel = b->planes[CONIC_PLANE_RGBA];
-  size_t n = (size_t)a->width * (size_t)a->height, n_inside = 0;
-  double squares = 0.0;
-  for (size_t i = 0; i < n; i++, a_pixel += 4, b_pixel += 4) {
-    if (is_inside && !is_inside[i]) {
-      memset(a_pixel, 0, 4 * sizeof *a_pixel);
-      memset(b_pixel, 0, 4 * sizeof *b_pixel);
-      continue;
-    }
-    n_inside++;
-    for (int c = 0; c < 3; c++) {
-      double step = fabs((double)a_pixel[c] - (double)b_pixel[c]);
-      squares += step * step;
-      error->max = step > error->max ? step : error->max;
-    }
+  size_t n = conic_image_pixels(a), n_inside = 0;
+  for (size_t i = 0; i < n; i++) {
+    n_inside += is_inside[i];
+    for (size_t c = 4 * i; c < 4 * i + 4 && !is_inside[i]; c++)
+      a_pixel[c] = b_pixel[c] = 0.0f;
   }
-  conic_status status = conic_image_compare(context, a, b, &difference);
-  if (status != CONIC_OK || n_inside == 0)
-    return status;
-  double share = (double)n_inside / (double)n;
-  error->is_measured = 1;
-  error->rmse = sqrt(squares / (3.0 * (double)n_inside));
-  error->psnr = difference.psnr + 10.0 * log10(share);
-  error->flip = difference.flip / share;
-  return CONIC_OK;
+  return n_inside;
 }
 
 static conic_status copy_color(conic_context *context, const conic_image *from, conic_image *to) {
@@ -164,7 +146,8 @@ static conic_status compare_truth(conic_context *context, const chart_view *view
   point->largest_hole = difference.largest_hole;
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
     point->holes += seen[4 * i + 3] > 0.0f && drawn[4 * i + 3] == 0.0f;
-  status = measure_error(context, &truth, image, view->is_inside, &point->truth);
+  size_t n_inside = clear_outside(&truth, image, view->is_inside);
+  status = cli_chart_measure(context, &truth, image, n_inside, &point->truth);
   conic_image_release(context, &truth);
   return status;
 }
@@ -187,7 +170,7 @@ static conic_status compare_reference(conic_context *context, const conic_refere
     return status;
   for (size_t i = 0; i < (size_t)image->width * (size_t)image->height * 4; i++)
     ((float *)exact.planes[CONIC_PLANE_RGBA])[i] = (float)reference->planes[CONIC_PLANE_RGBA][i];
-  status = measure_error(context, &exact, image, NULL, &point->oracle);
+  status = cli_chart_measure(context, &exact, image, conic_image_pixels(image), &point->oracle);
   point->weight_max = reference->weight_error.max_abs;
   conic_image_release(context, &exact);
   return status;
@@ -281,18 +264,9 @@ static void find_fronts(chart_job *job) {
     }
 }
 
-static void write_error(FILE *to, const cli_chart_error *error) {
-  if (error->is_measured)
-    fprintf(to, ",%.6g,%.6g,%.3f,%.6g", error->max, error->rmse, error->psnr, error->flip);
-  else
-    fputs(",,,,", to);
-}
-
 static conic_status write_table(const chart_job *job) {
-  char path[4096];
   conic_output *output;
-  snprintf(path, sizeof path, "%s/chart.csv", job->folder);
-  conic_status status = conic_output_open(job->session->context, path, &output);
+  conic_status status = cli_chart_open(job->session, job->folder, "chart.csv", &output);
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);
@@ -305,13 +279,13 @@ static conic_status write_table(const chart_job *job) {
     fprintf(to, "\"%s\",%zu,%d,%d,%s,%s,%g,%.4f,%.4f,%zu", p->scene->name, p->scene->n_splats, job->size, job->size,
             conic_method_name(p->method), conic_kernel_type_name(p->kernel.type), (double)p->kernel.cutoff, p->ms,
             p->ms > 0.0 ? (double)p->scene->n_splats / p->ms * 1e-3 : 0.0, p->fragments);
-    write_error(to, &p->oracle);
+    cli_chart_write_error(to, &p->oracle);
     if (p->oracle.is_measured)
       fprintf(to, ",%.6g", p->weight_max);
     else
       fputs(",", to);
     fprintf(to, ",%d", p->is_front[0]);
-    write_error(to, &p->truth);
+    cli_chart_write_error(to, &p->truth);
     fprintf(to, ",%zu,%zu,%d\n", p->holes, p->largest_hole, p->is_front[1]);
   }
   return conic_output_commit(output);

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "core/image/image_common.h"
+
 /* Samples along an edge of a pixel of the true picture; the error that may be chosen from; and the timing in rounds,
  * so that what else goes on hits all representations alike. */
 enum { SAMPLES = 4, ROUNDS = 3 };
@@ -111,31 +113,13 @@ static conic_status draw_picture(mesh_job *job, cli_chart_model model, const con
 /* The error is over the pixels that the mesh touches, the same number for all; what is drawn beside them counts. */
 static conic_status measure_picture(conic_context *context, const conic_image *truth, const conic_image *image,
                                     cli_mesh_size *size, cli_mesh_point *point) {
-  conic_difference difference;
   const float *seen = truth->planes[CONIC_PLANE_RGBA], *drawn = image->planes[CONIC_PLANE_RGBA];
-  size_t n = (size_t)truth->width * (size_t)truth->height;
-  double squares = 0.0;
-  conic_status status = conic_image_compare(context, truth, image, &difference);
-  if (status != CONIC_OK)
-    return status;
   size->covered = 0;
-  for (size_t i = 0; i < n; i++, seen += 4, drawn += 4) {
-    size->covered += seen[3] > 0.0f;
-    point->holes += seen[3] > 0.999f && drawn[3] == 0.0f;
-    for (int c = 0; c < 3; c++) {
-      double step = fabs((double)seen[c] - (double)drawn[c]);
-      squares += step * step;
-      point->error.max = step > point->error.max ? step : point->error.max;
-    }
+  for (size_t i = 0; i < conic_image_pixels(truth); i++) {
+    size->covered += seen[4 * i + 3] > 0.0f;
+    point->holes += seen[4 * i + 3] > 0.999f && drawn[4 * i + 3] == 0.0f;
   }
-  if (size->covered == 0)
-    return CONIC_OK;
-  double share = (double)size->covered / (double)n;
-  point->error.is_measured = 1;
-  point->error.rmse = sqrt(squares / (3.0 * (double)size->covered));
-  point->error.psnr = difference.psnr + 10.0 * log10(share);
-  point->error.flip = difference.flip / share;
-  return CONIC_OK;
+  return cli_chart_measure(context, truth, image, size->covered, &point->error);
 }
 
 static conic_status draw_truth(mesh_job *job, const conic_camera *camera, conic_image *truth) {

@@ -39,11 +39,6 @@ conic_status cli_mesh_chart_measure(cli_session *session, cli_mesh_chart *chart)
 /* Writes FOLDER/representations.csv. */
 conic_status cli_mesh_chart_write(cli_session *session, const char *folder, const cli_mesh_chart *chart);
 
-/* Where two representations take equally long: the pixels a triangle, from large to small, into `at`; returns how
- * many. */
-int cli_mesh_chart_cross(const cli_mesh_chart *chart, cli_chart_model a, cli_chart_model b,
-                         double at[CLI_MAX_MESH_SIZES]);
-
 /* What is best for its time at each size, and where the others become cheaper than triangles. */
 void cli_mesh_chart_print(const cli_mesh_chart *chart);
 

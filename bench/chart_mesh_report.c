@@ -3,7 +3,6 @@
 #include <stdio.h>
 
 #include "bench/chart_mesh.h"
-#include "core/files/file.h"
 
 static void write_quoted(FILE *to, const char *text) {
   fputc('"', to);
@@ -18,18 +17,13 @@ static void write_line(FILE *to, const cli_mesh_chart *chart, int model, int i_s
   write_quoted(to, chart->path ? chart->path : "terrain");
   fprintf(to, ",%zu,%s,%.4g,%d,%d,%.4g,%zu,%.4f,%.4f", chart->n_triangles, cli_chart_model_name((cli_chart_model)model),
           size->pixels_per_triangle, size->edge, size->edge, size->zoom, p->primitives, p->ms, p->lod_ms);
-  if (p->error.is_measured)
-    fprintf(to, ",%.6g,%.6g,%.3f,%.6g", p->error.max, p->error.rmse, p->error.psnr, p->error.flip);
-  else
-    fputs(",,,,", to);
+  cli_chart_write_error(to, &p->error);
   fprintf(to, ",%zu,%d\n", p->holes, p->is_front);
 }
 
 conic_status cli_mesh_chart_write(cli_session *session, const char *folder, const cli_mesh_chart *chart) {
-  char path[4096];
   conic_output *output;
-  snprintf(path, sizeof path, "%s/representations.csv", folder);
-  conic_status status = conic_output_open(session->context, path, &output);
+  conic_status status = cli_chart_open(session, folder, "representations.csv", &output);
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);
@@ -42,13 +36,13 @@ conic_status cli_mesh_chart_write(cli_session *session, const char *folder, cons
   return conic_output_commit(output);
 }
 
-/* Between two sizes both times are taken for powers of the size. */
-int cli_mesh_chart_cross(const cli_mesh_chart *chart, cli_chart_model a, cli_chart_model b,
-                         double at[CLI_MAX_MESH_SIZES]) {
+/* Where a representation takes as long as triangles: the pixels a triangle, from large to small; returns how many.
+ * Between two sizes both times are taken for powers of the size. */
+static int find_crossings(const cli_mesh_chart *chart, int model, double at[CLI_MAX_MESH_SIZES]) {
   int n = 0;
   double before = 0.0, size_before = 0.0;
   for (int i = 0; i < chart->n_sizes; i++) {
-    double lead = log(chart->points[a][i].ms / chart->points[b][i].ms);
+    double lead = log(chart->points[CLI_CHART_TRIANGLES][i].ms / chart->points[model][i].ms);
     double size = log(chart->sizes[i].pixels_per_triangle);
     if (i && (lead > 0.0) != (before > 0.0))
       at[n++] = exp(size_before + (size - size_before) * before / (before - lead));
@@ -70,7 +64,7 @@ void cli_mesh_chart_print(const cli_mesh_chart *chart) {
     }
   puts("as fast as triangles:");
   for (int model = CLI_CHART_TRIANGLES + 1; model < CLI_N_CHART_MODELS; model++) {
-    int n = cli_mesh_chart_cross(chart, CLI_CHART_TRIANGLES, (cli_chart_model)model, at);
+    int n = find_crossings(chart, model, at);
     printf("  %-10s", cli_chart_model_name((cli_chart_model)model));
     for (int k = 0; k < n; k++)
       printf("%s %.2g", k ? "," : " at", at[k]);
@@ -150,7 +144,7 @@ static void write_style(FILE *to, const cli_mesh_chart *chart) {
 static void write_crossings(FILE *to, const cli_mesh_chart *chart) {
   double at[CLI_MAX_MESH_SIZES];
   for (int model = CLI_CHART_TRIANGLES + 1; model < CLI_N_CHART_MODELS; model++) {
-    int n = cli_mesh_chart_cross(chart, CLI_CHART_TRIANGLES, (cli_chart_model)model, at);
+    int n = find_crossings(chart, model, at);
     for (int k = 0; k < n; k++)
       fprintf(to,
               "set arrow from %.4g, graph 0 to %.4g, graph 1 nohead ls %d lw 1 dt 2\n"
@@ -189,12 +183,10 @@ static void write_map(FILE *to, const int n_boxes[CLI_N_CHART_MODELS], const dou
 }
 
 conic_status cli_mesh_chart_write_script(cli_session *session, const char *folder, const cli_mesh_chart *chart) {
-  char path[4096];
   conic_output *output;
   int n_boxes[CLI_N_CHART_MODELS];
   double range[2];
-  snprintf(path, sizeof path, "%s/representations.gp", folder);
-  conic_status status = conic_output_open(session->context, path, &output);
+  conic_status status = cli_chart_open(session, folder, "representations.gp", &output);
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "bench/chart.h"
-#include "core/files/file.h"
 
 /* A figure: a file's name, the table's column of the error, and what the error is called. */
 typedef struct figure {
@@ -97,10 +96,8 @@ static void write_panel(FILE *to, int i_figure, int i_scene) {
 
 conic_status cli_chart_write_script(cli_session *session, const char *folder, const cli_chart_point *points,
                                     int n_points) {
-  char path[4096];
   conic_output *output;
-  snprintf(path, sizeof path, "%s/chart.gp", folder);
-  conic_status status = conic_output_open(session->context, path, &output);
+  conic_status status = cli_chart_open(session, folder, "chart.gp", &output);
   if (status != CONIC_OK)
     return status;
   FILE *to = conic_output_stream(output);

@@ -15,6 +15,21 @@ conic_status conic_frame_room(const conic_frame *f, int buffer, size_t count, si
   return conic_queue_room(&f->opencl->queue, &f->opencl->buffers[buffer], count * size);
 }
 
+conic_status conic_frame_copy(const conic_frame *f, int buffer, const void *from, size_t bytes) {
+  conic_status status = conic_frame_room(f, buffer, 1, bytes);
+  return status == CONIC_OK ? conic_queue_write(&f->opencl->queue, &f->opencl->buffers[buffer], from, bytes) : status;
+}
+
+conic_status conic_frame_give(const conic_frame *f, int buffer, const void *from, size_t bytes) {
+  conic_opencl *opencl = f->opencl;
+  if (bytes && opencl->device.is_cpu)
+    return conic_queue_wrap(&opencl->queue, &opencl->buffers[buffer], CL_MEM_READ_ONLY, from, bytes);
+  if (bytes)
+    return conic_frame_copy(f, buffer, from, bytes);
+  conic_queue_release(&opencl->buffers[buffer]);
+  return CONIC_OK;
+}
+
 conic_status conic_frame_run(const conic_frame *f, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items) {
   int is_alone = f->opencl->device.is_cpu || f->opencl->work == CONIC_OPENCL_WORK_TILES;
@@ -65,9 +80,7 @@ static conic_status write_directions(const conic_frame *f, int buffer, int n_til
     return CONIC_ERROR_MEMORY;
   for (int i = 0; i < size; i++)
     directions[i] = (float)(((double)i + 0.5 - principal) / focal);
-  conic_status status = conic_frame_room(f, buffer, n, sizeof *directions);
-  if (status == CONIC_OK)
-    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[buffer], directions, n * sizeof *directions);
+  conic_status status = conic_frame_copy(f, buffer, directions, n * sizeof *directions);
   conic_memory_release(f->opencl->context, directions);
   return status;
 }
@@ -87,11 +100,7 @@ static conic_status open_planes(const conic_frame *f) {
     if (!f->image->planes[plane]) {
       conic_queue_release(buffer);
     } else if (opencl->device.is_cpu) {
-      cl_int answer;
-      conic_queue_release(buffer);
-      buffer->memory = clCreateBuffer(opencl->queue.cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes,
-                                      f->image->planes[plane], &answer);
-      status = conic_opencl_check(opencl->context, answer, "clCreateBuffer");
+      status = conic_queue_wrap(&opencl->queue, buffer, CL_MEM_READ_WRITE, f->image->planes[plane], bytes);
     } else
       status = conic_queue_room(&opencl->queue, buffer, bytes);
   }
@@ -112,8 +121,7 @@ conic_status conic_frame_begin(conic_frame *f) {
   const struct {
     int buffer;
     size_t bytes;
-  } needed[] = {{CONIC_BUFFER_VIEW, sizeof *f->view},
-                {CONIC_BUFFER_FRAME, sizeof *c},
+  } needed[] = {{CONIC_BUFFER_FRAME, sizeof *c},
                 {CONIC_BUFFER_COUNTS, CONIC_DEVICE_N_COUNTS * sizeof(uint32_t)},
                 {CONIC_BUFFER_TILE_TOTALS, f->n_tiles * sizeof(uint32_t)},
                 {CONIC_BUFFER_TILE_BEGIN, (f->n_tiles + (size_t)1) * sizeof(uint64_t)},
@@ -127,7 +135,7 @@ conic_status conic_frame_begin(conic_frame *f) {
   if (status == CONIC_OK)
     status = open_planes(f);
   if (status == CONIC_OK)
-    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_VIEW], f->view, sizeof *f->view);
+    status = conic_frame_copy(f, CONIC_BUFFER_VIEW, f->view, sizeof *f->view);
   const conic_view *v = f->view;
   if (status == CONIC_OK)
     status = write_directions(f, CONIC_BUFFER_DIRECTIONS_X, c->n_tiles_x, v->width, v->cx, v->fx);

@@ -57,6 +57,10 @@ static inline conic_argument conic_frame_argument(const conic_frame *frame, int 
 
 /* Room in a buffer for count × size bytes. */
 conic_status conic_frame_room(const conic_frame *frame, int buffer, size_t count, size_t size);
+/* Copies bytes to a buffer, which gets room for them. */
+conic_status conic_frame_copy(const conic_frame *frame, int buffer, const void *from, size_t bytes);
+/* The same of what a kernel only reads: a CPU's device reads it where it is. No bytes: the buffer is absent. */
+conic_status conic_frame_give(const conic_frame *frame, int buffer, const void *from, size_t bytes);
 /* Runs a kernel over a row of work-items; one is a group on a CPU and by tiles, where each has much to do. */
 conic_status conic_frame_run(const conic_frame *frame, conic_stage stage, conic_kernel_name kernel,
                              const conic_argument *arguments, int n_arguments, size_t n_items);

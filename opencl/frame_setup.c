@@ -4,22 +4,6 @@
 #include "raster/project/projected.h"
 #include "raster/view/method.h"
 
-/* One column of the part's splats: a CPU's device reads it where it is. */
-static conic_status write_column(const conic_frame *f, int column, const float *values) {
-  conic_queue *queue = &f->opencl->queue;
-  conic_buffer *buffer = &f->opencl->buffers[CONIC_BUFFER_COLUMNS + column];
-  size_t bytes = f->n * sizeof *values;
-  cl_int answer;
-  if (!values || !f->opencl->device.is_cpu) {
-    conic_status status = values ? conic_queue_room(queue, buffer, bytes) : CONIC_OK;
-    return values && status == CONIC_OK ? conic_queue_write(queue, buffer, values + f->first, bytes) : status;
-  }
-  conic_queue_release(buffer);
-  buffer->memory =
-      clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, (void *)(values + f->first), &answer);
-  return conic_opencl_check(queue->context, answer, "clCreateBuffer");
-}
-
 static conic_status write_columns(const conic_frame *f) {
   const conic_splats *s = f->splats;
   const float *columns[13];
@@ -32,7 +16,8 @@ static conic_status write_columns(const conic_frame *f) {
   }
   columns[12] = s->opacity;
   for (int column = 0; column < 13 && status == CONIC_OK; column++)
-    status = write_column(f, column, columns[column]);
+    status = conic_frame_give(f, CONIC_BUFFER_COLUMNS + column, columns[column] ? columns[column] + f->first : NULL,
+                              columns[column] ? f->n * sizeof(float) : 0);
   return status;
 }
 
@@ -47,13 +32,10 @@ static conic_status write_clips(const conic_frame *f, uint32_t *n_clips) {
   *n_clips = (uint32_t)(end - begin);
   if (end == begin)
     return CONIC_OK;
-  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIPS, end - begin, sizeof *s->clips);
-  if (status == CONIC_OK)
-    status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
-  if (status != CONIC_OK)
-    return status;
-  return conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_CLIPS], s->clips + begin,
-                           (end - begin) * sizeof *s->clips);
+  conic_status status = conic_frame_room(f, CONIC_BUFFER_CLIP_RECORDS, f->n, sizeof(conic_clip_record));
+  return status == CONIC_OK
+             ? conic_frame_copy(f, CONIC_BUFFER_CLIPS, s->clips + begin, (end - begin) * sizeof *s->clips)
+             : status;
 }
 
 static conic_status make_room_for_records(const conic_frame *f) {

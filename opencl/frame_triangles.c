@@ -50,24 +50,6 @@ static void list_arrays(const conic_triangle_frame *t, host_array arrays[N_ARRAY
     arrays[i].bytes = arrays[i].from ? arrays[i].bytes : 0;
 }
 
-/* A CPU's device reads an array where it is. */
-static conic_status give_array(const conic_frame *f, const host_array *array) {
-  conic_queue *queue = &f->opencl->queue;
-  conic_buffer *buffer = &f->opencl->buffers[array->buffer];
-  cl_int answer;
-  if (array->bytes == 0 || f->opencl->device.is_cpu)
-    conic_queue_release(buffer);
-  if (array->bytes == 0)
-    return CONIC_OK;
-  if (!f->opencl->device.is_cpu) {
-    conic_status status = conic_queue_room(queue, buffer, array->bytes);
-    return status == CONIC_OK ? conic_queue_write(queue, buffer, array->from, array->bytes) : status;
-  }
-  buffer->memory =
-      clCreateBuffer(queue->cl, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, array->bytes, (void *)array->from, &answer);
-  return conic_opencl_check(queue->context, answer, "clCreateBuffer");
-}
-
 /* --- materials and textures: in one buffer, materials first --- */
 
 /* Whether an earlier material has the material's texture, too: which. */
@@ -161,10 +143,7 @@ static conic_status write_chunks(const conic_frame *f) {
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < t->n_chunks; i++)
     chunks[i] = (conic_device_triangle_chunk){t->chunks[i].first_record, t->chunks[i].first_entry};
-  conic_status status = conic_frame_room(f, CONIC_BUFFER_TRIANGLE_CHUNKS, t->n_chunks, sizeof *chunks);
-  if (status == CONIC_OK)
-    status = conic_queue_write(&f->opencl->queue, &f->opencl->buffers[CONIC_BUFFER_TRIANGLE_CHUNKS], chunks,
-                               t->n_chunks * sizeof *chunks);
+  conic_status status = conic_frame_copy(f, CONIC_BUFFER_TRIANGLE_CHUNKS, chunks, t->n_chunks * sizeof *chunks);
   conic_memory_release(f->opencl->context, chunks);
   return status;
 }
@@ -219,7 +198,7 @@ static conic_status give_all(const conic_frame *f) {
   conic_status status = write_chunks(f);
   list_arrays(f->triangles, arrays);
   for (int i = 0; i < N_ARRAYS && status == CONIC_OK; i++)
-    status = give_array(f, &arrays[i]);
+    status = conic_frame_give(f, arrays[i].buffer, arrays[i].from, arrays[i].bytes);
   return status == CONIC_OK ? write_materials(f) : status;
 }
 

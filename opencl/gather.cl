@@ -7,13 +7,17 @@ static int gather_meets(uint blocks, const gather_pixel *p) {
          p->row <= blocks >> 12;
 }
 
-/* conic_fragment_at, with the records in global memory. */
-static int gather_fragment(const conic_view *view, const conic_footprint *footprint, uint i_footprint,
-                           __global const conic_ray *rays, __global const conic_clip_record *clips,
-                           const gather_pixel *p, conic_fragment *fragment) {
+/* conic_fragment_at of one of a tile's references, with the records in global memory; its footprint, too. */
+static int gather_fragment(const conic_view *view, conic_device_reference reference,
+                           __global const conic_footprint *footprints, __global const conic_ray *rays,
+                           __global const conic_clip_record *clips, const gather_pixel *p, conic_footprint *footprint,
+                           conic_fragment *fragment) {
+  if (!gather_meets(reference.blocks, p))
+    return 0;
+  *footprint = footprints[reference.footprint];
   float dx = conic_row_dx(footprint, p->x), dy = conic_row_dy(footprint, p->y);
   if (conic_is_clipped(footprint)) {
-    conic_clip_record clip = clips[i_footprint];
+    conic_clip_record clip = clips[reference.footprint];
     if (!conic_clip_keeps(&clip, dx, dy))
       return 0;
   }
@@ -23,20 +27,7 @@ static int gather_fragment(const conic_view *view, const conic_footprint *footpr
       return conic_laplace_fragment(view, footprint, &ray, dx, dy, fragment);
     return conic_ray_fragment(view, footprint, &ray, dx, dy, fragment);
   }
-  conic_row row = conic_row_begin(footprint, dy);
-  fragment->q = conic_row_q(footprint, &row, dx);
-  fragment->iz = conic_row_iz(footprint, &row, dx);
-  fragment->plane_iz = row.plane_offset + footprint->plane_dx * dx;
-  fragment->scale = 1.0f;
-  return fragment->q < view->support;
-}
-
-static float seen_iz_of(const conic_fragment *fragment) {
-  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
-}
-
-static float offset_iz_of(const conic_footprint *footprint, const conic_fragment *fragment) {
-  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+  return conic_variance_fragment(view, footprint, dx, dy, fragment);
 }
 
 /* The names that every kernel here has for what it reads. */
@@ -56,13 +47,11 @@ __kernel void gather_visibility(GATHER_RECORDS, __global float *thresholds, __gl
     return;
   for (ulong i = tile_begin[p.tile]; i < tile_begin[p.tile + 1]; i++) {
     conic_device_reference reference = references[i];
-    if (!gather_meets(reference.blocks, &p))
-      continue;
-    conic_footprint footprint = footprints[reference.footprint];
+    conic_footprint footprint;
     conic_fragment fragment;
-    if (!gather_fragment(&view, &footprint, reference.footprint, rays, clips, &p, &fragment))
+    if (!gather_fragment(&view, reference, footprints, rays, clips, &p, &footprint, &fragment))
       continue;
-    float offset_iz = offset_iz_of(&footprint, &fragment);
+    float offset_iz = conic_hiding_iz(&footprint, &fragment);
     threshold = offset_iz > threshold ? offset_iz : threshold;
     n_covered++;
   }
@@ -86,18 +75,11 @@ static void gather_blend(const conic_view *view, const conic_footprint *footprin
     s->heaviest_weight = weight;
 }
 
-/* conic_plane_z */
-static float gather_plane_z(const conic_footprint *footprint, const gather_pixel *p) {
-  float dx = conic_row_dx(footprint, p->x), dy = conic_row_dy(footprint, p->y);
-  float iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx;
-  return 1.0f / conic_clamp_iz(footprint, iz);
-}
-
 /* What of the heaviest splat the picture shows beside the sums. */
 static void gather_keep_heaviest(uint i_heaviest, __global const conic_footprint *footprints,
                                  __global const conic_projected_surface *surfaces, const gather_pixel *p, gather_sums *s) {
   conic_footprint footprint = footprints[i_heaviest];
-  s->z = gather_plane_z(&footprint, p);
+  s->z = conic_plane_z(&footprint, p->x, p->y);
   for (int axis = 0; axis < 3; axis++)
     s->heaviest_normal[axis] = surfaces[i_heaviest].normal[axis];
 }
@@ -125,13 +107,11 @@ __kernel void gather_accumulate(GATHER_RECORDS, __global const float *thresholds
   uint i_heaviest = CONIC_NO_ID;
   for (ulong i = tile_begin[p.tile]; i < tile_begin[p.tile + 1]; i++) {
     conic_device_reference reference = references[i];
-    if (!gather_meets(reference.blocks, &p))
-      continue;
-    conic_footprint footprint = footprints[reference.footprint];
+    conic_footprint footprint;
     conic_fragment fragment;
     int is_heaviest;
-    if (!gather_fragment(&view, &footprint, reference.footprint, rays, clips, &p, &fragment) ||
-        !(seen_iz_of(&fragment) >= threshold))
+    if (!gather_fragment(&view, reference, footprints, rays, clips, &p, &footprint, &fragment) ||
+        !(conic_seen_iz(&fragment) >= threshold))
       continue;
     gather_blend(&view, &footprint, &surfaces[reference.footprint], &fragment, &s, &is_heaviest);
     i_heaviest = is_heaviest ? reference.footprint : i_heaviest;
@@ -160,11 +140,9 @@ __kernel void gather_nearest(GATHER_RECORDS, __global uint *n_fragments, __globa
   conic_fragment nearest = {0, 0, 0, 0};
   for (ulong i = tile_begin[p.tile]; i < tile_begin[p.tile + 1]; i++) {
     conic_device_reference reference = references[i];
-    if (!gather_meets(reference.blocks, &p))
-      continue;
-    conic_footprint footprint = footprints[reference.footprint];
+    conic_footprint footprint;
     conic_fragment fragment;
-    if (!gather_fragment(&view, &footprint, reference.footprint, rays, clips, &p, &fragment))
+    if (!gather_fragment(&view, reference, footprints, rays, clips, &p, &footprint, &fragment))
       continue;
     found++;
     if (!(s.nearest_iz < fragment.iz))

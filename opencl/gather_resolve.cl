@@ -1,4 +1,4 @@
-/* Where a pixel is a work-item: what it has added up, and pass 3, raster/tiles/resolve.c in its order of arithmetic. */
+/* Where a pixel is a work-item: what it has added up, and pass 3 (raster/kernels/resolve.c). */
 
 /* All that a work-item knows of its pixel. */
 typedef struct gather_pixel {
@@ -66,61 +66,41 @@ static void gather_store(const gather_sums *s, __global float *sums, const gathe
       __global float *normal_plane, __global float *albedo_plane, __global float *weight_plane,                        \
       __global uint *count_plane, __global uint *id_plane, __global uint *n_covered
 
-static void viewer_at(const conic_device_frame *frame, float dx, float dy, float viewer[3]) {
-  float scale = -1.0f / sqrtf((dx * dx + dy * dy) + 1.0f);
-  for (int i = 0; i < 3; i++) {
-    const float *m = frame->world_from_cam[i];
-    viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * scale;
-  }
-}
-
-static void normal_of_sum(const gather_sums *s, float mean[3], float normal[3]) {
-  float part = 1.0f / s->weight;
-  for (int axis = 0; axis < 3; axis++)
-    mean[axis] = s->normal[axis] * part;
-  float norm = sqrtf((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
-  float scale = 1.0f / norm;
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = norm > 0.0f ? mean[axis] * scale : s->heaviest_normal[axis];
-}
-
 /* The finish that the shared shading reads. */
 static void finish_of(const conic_device_frame *frame, conic_render_options *options, conic_finish *finish) {
   options->shading = (conic_shading)frame->shading;
   options->has_light = frame->has_light;
   finish->options = options;
-  for (int i = 0; i < 3; i++)
+  finish->exposure = frame->exposure;
+  for (int i = 0; i < 3; i++) {
     finish->light[i] = frame->light[i];
+    for (int j = 0; j < 3; j++)
+      finish->world_from_cam[i][j] = frame->world_from_cam[i][j];
+  }
+  for (int channel = 0; channel < 4; channel++)
+    finish->background[channel] = frame->background[channel];
 }
 
 static void gather_resolve_pixel(const conic_device_frame *frame, const gather_pixel *p, const gather_sums *s,
                                  PIXEL_PLANES) {
   ulong at = (ulong)p->y * (ulong)frame->width + (ulong)p->x;
   int is_covered = s->weight > 0.0f, planes = frame->planes;
-  float color[4], normal[3] = {0, 0, 0}, albedo[3] = {0, 0, 0};
-  for (int channel = 0; channel < 4; channel++)
-    color[channel] = frame->background[channel];
+  conic_render_options options;
+  conic_finish finish;
+  conic_finished_pixel pixel;
+  finish_of(frame, &options, &finish);
   if (is_covered) {
-    conic_render_options options;
-    conic_finish finish;
-    float viewer[3], mean_normal[3], shaded[3];
-    for (int axis = 0; axis < 3; axis++)
-      albedo[axis] = s->color[axis] * (1.0f / s->weight);
-    normal_of_sum(s, mean_normal, normal);
-    viewer_at(frame, columns[p->x], rows[p->y], viewer);
-    finish_of(frame, &options, &finish);
-    conic_shade(&finish, albedo, normal, mean_normal, viewer, shaded);
-    for (int axis = 0; axis < 3; axis++)
-      color[axis] = shaded[axis] * frame->exposure;
-    color[3] = 1.0f;
+    conic_finish_covered(&finish, s->weight, s->color, s->normal, s->heaviest_normal, columns[p->x], rows[p->y],
+                         &pixel);
     atomic_add(&n_covered[p->tile], 1u);
-  }
+  } else
+    conic_finish_uncovered(&finish, &pixel);
   for (int channel = 0; channel < 4 && planes & 1 << CONIC_PLANE_RGBA; channel++)
-    rgba[at * 4 + channel] = color[channel];
+    rgba[at * 4 + channel] = pixel.rgba[channel];
   for (int axis = 0; axis < 3 && planes & 1 << CONIC_PLANE_NORMAL; axis++)
-    normal_plane[at * 3 + axis] = normal[axis];
+    normal_plane[at * 3 + axis] = pixel.normal[axis];
   for (int axis = 0; axis < 3 && planes & 1 << CONIC_PLANE_ALBEDO; axis++)
-    albedo_plane[at * 3 + axis] = albedo[axis];
+    albedo_plane[at * 3 + axis] = pixel.albedo[axis];
   if (planes & 1 << CONIC_PLANE_WEIGHT)
     weight_plane[at] = s->weight;
   if (planes & 1 << CONIC_PLANE_Z)

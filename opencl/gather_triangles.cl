@@ -57,14 +57,11 @@ static int gather_triangle_is_visible(const conic_device_frame *frame, float iz,
 static void gather_add_triangle(const conic_device_frame *frame, const conic_triangle_frame *triangles, uint i_record,
                                 float iz, const gather_pixel *p, float dx, float dy, gather_sums *s) {
   conic_triangle_record record = triangles->records[i_record];
-  conic_triangle_look look;
-  conic_triangle_weights weights;
-  float color[3], normal[3], size = 0.0f;
-  int column = p->x % CONIC_BLOCK_EDGE, row = p->y % CONIC_BLOCK_EDGE;
-  conic_triangle_look_at(triangles, &record, p->x - column, p->y - row, &look);
-  conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
-  conic_triangle_look_color(&look, &weights, color);
-  conic_triangle_look_normal(&look, &weights, frame->world_from_cam, dx, dy, normal);
+  conic_triangle_sight sight;
+  const float ray[2] = {dx, dy};
+  float size = 0.0f;
+  conic_triangle_see(triangles, &record, frame->world_from_cam, p->x, p->y, ray, &sight);
+  conic_triangle_lay_texture(&sight);
   if (1.0f > s->heaviest_weight)
     s->z = 1.0f / iz;
   if (iz > s->nearest_iz)
@@ -72,12 +69,12 @@ static void gather_add_triangle(const conic_device_frame *frame, const conic_tri
   s->weight += 1.0f;
   s->count++;
   for (int axis = 0; axis < 3; axis++) {
-    s->color[axis] += color[axis];
-    s->normal[axis] += normal[axis];
+    s->color[axis] += sight.color[axis];
+    s->normal[axis] += sight.normal[axis];
     size += fabsf(s->normal[axis]);
   }
   for (int axis = 0; axis < 3 && !(size > 0.0f); axis++)
-    s->normal[axis] = normal[axis] * CONIC_LEAST_WEIGHT;
+    s->normal[axis] = sight.normal[axis] * CONIC_LEAST_WEIGHT;
 }
 
 /* The triangles that are seen to the sums of the splats, and pass 3. */

@@ -59,7 +59,6 @@ static void release_setup(host_setup *h) {
 
 static conic_status upload(const host_setup *h) {
   const conic_frame *f = h->frame;
-  conic_opencl *opencl = f->opencl;
   const conic_projected *p = &h->projected;
   uint32_t counts[CONIC_DEVICE_N_COUNTS] = {0};
   for (size_t i = 0; i < f->n_items; i++) {
@@ -69,8 +68,6 @@ static conic_status upload(const host_setup *h) {
     counts[CONIC_DEVICE_RAYS] += (uint32_t)p->chunks[i].n_rays;
   }
   conic_status status = CONIC_OK;
-  if (p->clips)
-    status = conic_queue_room(&opencl->queue, &opencl->buffers[CONIC_BUFFER_CLIP_RECORDS], f->n * sizeof *p->clips);
   const struct {
     int buffer;
     const void *from;
@@ -83,7 +80,7 @@ static conic_status upload(const host_setup *h) {
              {CONIC_BUFFER_N_DRAWN, h->n_drawn, f->n_items * sizeof *h->n_drawn},
              {CONIC_BUFFER_COUNTS, counts, sizeof counts}};
   for (size_t i = 0; i < sizeof all / sizeof all[0] && status == CONIC_OK; i++)
-    status = conic_queue_write(&opencl->queue, &opencl->buffers[all[i].buffer], all[i].from, all[i].bytes);
+    status = conic_frame_copy(f, all[i].buffer, all[i].from, all[i].bytes);
   return status;
 }
 

@@ -1,4 +1,4 @@
-/* Pass 3 in lanes, a block at a time: raster/tiles/resolve.c and raster/tiles/shade.c in their order of arithmetic. */
+/* Pass 3 in lanes, a block at a time: raster/kernels/resolve.c and raster/tiles/shade.c in their order of arithmetic. */
 
 #include "raster/kernels/shade_lanes.h"
 

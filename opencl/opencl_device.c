@@ -8,6 +8,13 @@
 
 enum { MOST_PLATFORMS = 16, MOST_DEVICES = 64 };
 
+typedef struct found_device {
+  cl_platform_id platform;
+  cl_device_id id;
+  int i_platform, i_device;
+  cl_device_type type;
+} found_device;
+
 static const char *name_of(cl_int answer) {
   static const char *const names[] = {"CL_SUCCESS",
                                       "CL_DEVICE_NOT_FOUND",
@@ -47,7 +54,8 @@ static int has_extension(cl_device_id id, const char *name) {
   return strstr(extensions, name) != NULL;
 }
 
-static void describe_device(cl_platform_id platform, cl_device_id id, conic_opencl_device *device) {
+static void describe_device(const found_device *found, conic_opencl_device *device) {
+  cl_device_id id = found->id;
   cl_device_type type = 0;
   cl_device_fp_config single = 0;
   cl_uint units = 0;
@@ -55,7 +63,8 @@ static void describe_device(cl_platform_id platform, cl_device_id id, conic_open
   get_text(id, CL_DEVICE_NAME, device->name, sizeof device->name);
   get_text(id, CL_DEVICE_VERSION, device->version, sizeof device->version);
   get_text(id, CL_DRIVER_VERSION, device->driver, sizeof device->driver);
-  if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof device->platform, device->platform, NULL) != CL_SUCCESS)
+  if (clGetPlatformInfo(found->platform, CL_PLATFORM_NAME, sizeof device->platform, device->platform, NULL) !=
+      CL_SUCCESS)
     device->platform[0] = 0;
   clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof single, &single, NULL);
@@ -65,17 +74,12 @@ static void describe_device(cl_platform_id platform, cl_device_id id, conic_open
   device->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   device->has_double = has_extension(id, "cl_khr_fp64");
   device->rounds_correctly = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0 && (single & CL_FP_ROUND_TO_NEAREST);
+  device->i_platform = found->i_platform;
+  device->i_device = found->i_device;
   device->n_compute_units = (int)units;
   device->memory_bytes = memory;
   device->greatest_buffer_bytes = buffer;
 }
-
-typedef struct found_device {
-  cl_platform_id platform;
-  cl_device_id id;
-  int i_platform, i_device;
-  cl_device_type type;
-} found_device;
 
 /* All devices, in OpenCL's order. */
 static size_t find_all(found_device found[MOST_DEVICES]) {
@@ -105,11 +109,8 @@ conic_status conic_opencl_devices(conic_context *context, conic_opencl_device **
   *devices = conic_memory_allocate_zeroed(context, n, sizeof **devices);
   if (!*devices)
     return CONIC_ERROR_MEMORY;
-  for (size_t i = 0; i < n; i++) {
-    describe_device(found[i].platform, found[i].id, &(*devices)[i]);
-    (*devices)[i].i_platform = found[i].i_platform;
-    (*devices)[i].i_device = found[i].i_device;
-  }
+  for (size_t i = 0; i < n; i++)
+    describe_device(&found[i], &(*devices)[i]);
   *n_devices = n;
   return CONIC_OK;
 }
@@ -155,7 +156,7 @@ static const found_device *choose_device(const found_device *found, size_t n) {
   for (size_t i = 0; i < n; i++) {
     conic_opencl_device device;
     memset(&device, 0, sizeof device);
-    describe_device(found[i].platform, found[i].id, &device);
+    describe_device(&found[i], &device);
     int rank = 2 * device.rounds_correctly + ((found[i].type & CL_DEVICE_TYPE_GPU) != 0);
     if (rank > best_rank) {
       best = &found[i];
@@ -203,9 +204,7 @@ conic_status conic_opencl_find(conic_context *context, const conic_opencl_option
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: no such device; conic devices lists what there is",
                       options->device);
   memset(device, 0, sizeof *device);
-  describe_device(chosen->platform, chosen->id, device);
-  device->i_platform = chosen->i_platform;
-  device->i_device = chosen->i_device;
+  describe_device(chosen, device);
   *platform = chosen->platform;
   *id = chosen->id;
   return refuse_device(context, options, device);

@@ -36,6 +36,14 @@ conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t b
   return conic_opencl_check(queue->context, answer, "clCreateBuffer");
 }
 
+conic_status conic_queue_wrap(conic_queue *queue, conic_buffer *buffer, cl_mem_flags access, const void *memory,
+                              size_t bytes) {
+  cl_int answer;
+  conic_queue_release(buffer);
+  buffer->memory = clCreateBuffer(queue->cl, access | CL_MEM_USE_HOST_PTR, bytes, (void *)memory, &answer);
+  return conic_opencl_check(queue->context, answer, "clCreateBuffer");
+}
+
 void conic_queue_release(conic_buffer *buffer) {
   if (buffer->memory)
     clReleaseMemObject(buffer->memory);

@@ -47,6 +47,9 @@ void conic_queue_close(conic_queue *queue);
 
 /* Room for so many bytes; what was in it is gone if it had to grow. Errors: MEMORY. */
 conic_status conic_queue_room(conic_queue *queue, conic_buffer *buffer, size_t bytes);
+/* Makes it the host's own memory, which a CPU's device reads or writes (`access`) where it is. */
+conic_status conic_queue_wrap(conic_queue *queue, conic_buffer *buffer, cl_mem_flags access, const void *memory,
+                              size_t bytes);
 void conic_queue_release(conic_buffer *buffer);
 
 /* Both return when it is done. */

@@ -5,22 +5,10 @@
 #include "opencl/layout.h"
 #include "raster/project/clip_disc.c"
 
-#define cross conic_cross_of_rays
 #include "raster/project/project_ray.c"
-#undef cross
 #include "raster/project/project_splats.c"
-#define consider conic_consider_of_parts
 #include "raster/project/clip_box.c"
-#undef consider
-#define cross conic_cross_of_lines
-#define row_times conic_row_times_of_lines
-#define set_box conic_set_box_of_lines
-#define set_range conic_set_range_of_lines
 #include "raster/project/clip_lines.c"
-#undef cross
-#undef row_times
-#undef set_box
-#undef set_range
 
 /* Where the splats are that a device has; `first` is the index of its splat 0 in the whole set. */
 typedef struct splat_columns {
@@ -67,13 +55,10 @@ static void point_to(one_splat *one, uint fields, conic_splats *splats) {
 }
 
 static void count_outcome(const conic_view *view, conic_outcome outcome, uint counts[CONIC_DEVICE_N_COUNTS]) {
-  int is_ray = outcome == CONIC_DRAWN_RAY;
-  int is_own = is_ray ? conic_method_has_rays(view->method)
-                      : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
   counts[CONIC_DEVICE_CULLED] += outcome == CONIC_CULLED;
   counts[CONIC_DEVICE_SKIPPED] += outcome == CONIC_SKIPPED;
-  counts[CONIC_DEVICE_FALLBACK] += outcome < CONIC_CULLED && !is_own;
-  counts[CONIC_DEVICE_RAYS] += is_ray;
+  counts[CONIC_DEVICE_FALLBACK] += outcome < CONIC_CULLED && is_fallback(view->method, outcome);
+  counts[CONIC_DEVICE_RAYS] += outcome == CONIC_DRAWN_RAY;
 }
 
 /* Makes i_clip the first record that is not before the splat. */

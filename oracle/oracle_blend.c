@@ -8,20 +8,11 @@ static double difference(const double a[3], const double b[3]) {
   return oracle_length(d);
 }
 
-/* The splat that names the id: the nearest, the first of equals. */
-static size_t find_nearest(const oracle_fragment *f, size_t n) {
+/* The splat that names the id, the nearest, or the one that gives Z, the heaviest; the first of equals. */
+static size_t find_first(const oracle_fragment *f, size_t n, int of_weight) {
   size_t best = n;
   for (size_t i = 0; i < n; i++)
-    if (f[i].is_visible && (best == n || f[i].iz > f[best].iz))
-      best = i;
-  return best;
-}
-
-/* The splat that gives Z: the heaviest, the first of equals. */
-static size_t find_heaviest(const oracle_fragment *f, size_t n) {
-  size_t best = n;
-  for (size_t i = 0; i < n; i++)
-    if (f[i].is_visible && (best == n || f[i].weight > f[best].weight))
+    if (f[i].is_visible && (best == n || (of_weight ? f[i].weight > f[best].weight : f[i].iz > f[best].iz)))
       best = i;
   return best;
 }
@@ -107,7 +98,7 @@ static void add_fragment(const oracle_fragment *f, oracle_pixel *pixel) {
 
 void conic_oracle_blend(const oracle_fragment *f, size_t n, int passes, int is_exact, oracle_pixel *pixel) {
   /* Of one pass, the nearest is all there is. */
-  size_t nearest = find_nearest(f, n), heaviest = passes == 1 ? nearest : find_heaviest(f, n);
+  size_t nearest = find_first(f, n, 0), heaviest = passes == 1 ? nearest : find_first(f, n, 1);
   memset(pixel, 0, sizeof *pixel);
   if (passes == 1)
     add_fragment(&f[nearest], pixel);

@@ -89,20 +89,23 @@ static void set_conic(const oracle_view *view, const oracle_placed *s, double fa
   set_ellipse(view, s, root, r_g, offset, shape);
 }
 
-static void set_affine(const oracle_view *view, const oracle_placed *s, double facing, oracle_shape *shape) {
-  const double *axes[2] = {s->tu, s->tv};
-  double r_g[2] = {0.0, 0.0}, offset[2] = {0.0, 0.0}, z = s->p[2];
-  shape->variance = (oracle_symmetric){0.0, 0.0, 0.0};
+/* The axes on the screen, and their products with themselves added to the variance. */
+static void add_axes(const oracle_view *view, const oracle_placed *s, double t[2][2], oracle_shape *shape) {
   for (int i = 0; i < 2; i++) {
-    double t[2];
-    project_axis(&view->camera, s->p, axes[i], t);
-    shape->variance.xx += t[0] * t[0];
-    shape->variance.xy += t[0] * t[1];
-    shape->variance.yy += t[1] * t[1];
-    /* Along an axis the inverse depth falls by t_z/p_z², which is t·g. */
-    r_g[0] -= t[0] * axes[i][2] / (z * z);
-    r_g[1] -= t[1] * axes[i][2] / (z * z);
+    project_axis(&view->camera, s->p, i ? s->tv : s->tu, t[i]);
+    shape->variance.xx += t[i][0] * t[i][0];
+    shape->variance.xy += t[i][0] * t[i][1];
+    shape->variance.yy += t[i][1] * t[i][1];
   }
+}
+
+static void set_affine(const oracle_view *view, const oracle_placed *s, double facing, oracle_shape *shape) {
+  double t[2][2], r_g[2], offset[2] = {0.0, 0.0}, z = s->p[2];
+  shape->variance = (oracle_symmetric){0.0, 0.0, 0.0};
+  add_axes(view, s, t, shape);
+  /* Along an axis the inverse depth falls by t_z/p_z², which is t·g. */
+  for (int k = 0; k < 2; k++)
+    r_g[k] = 0.0 - t[0][k] * s->tu[2] / (z * z) - t[1][k] * s->tv[2] / (z * z);
   shape->center_iz = 1.0 / z;
   double root = view->camera.fx * view->camera.fy * fabs(facing) / (z * z * z);
   set_ellipse(view, s, root, r_g, offset, shape);
@@ -174,17 +177,11 @@ static int set_ray(const oracle_view *view, const oracle_placed *s, oracle_shape
 
 /* A ray that counts its pixels from p's place, with the variance that the Jacobian there gives. */
 static int set_laplace(const oracle_view *view, const oracle_placed *s, oracle_shape *shape) {
-  const double *axes[2] = {s->tu, s->tv};
+  double t[2][2];
   if (!set_ray(view, s, shape))
     return 0;
   shape->variance = (oracle_symmetric){view->prefilter, 0.0, view->prefilter};
-  for (int i = 0; i < 2; i++) {
-    double t[2];
-    project_axis(&view->camera, s->p, axes[i], t);
-    shape->variance.xx += t[0] * t[0];
-    shape->variance.xy += t[0] * t[1];
-    shape->variance.yy += t[1] * t[1];
-  }
+  add_axes(view, s, t, shape);
   shape->inverse = oracle_inverse(shape->variance);
   return 1;
 }

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/splats/splats_gather.h"
 #include "surface/own_points.h"
 
 enum { CHUNK = 16, CHUNKS_A_REPORT = 256 };
@@ -26,12 +27,12 @@ static void keep_projection(points_cleaning *work, size_t slot, const double r[3
   for (int axis = 0; axis < 3; axis++)
     turn += side[axis] * projection->normal[axis];
   for (int axis = 0; axis < 3; axis++) {
-    own->position[axis][slot] = (float)(r[axis] + projection->offset[axis]);
+    own->points.position[axis][slot] = (float)(r[axis] + projection->offset[axis]);
     moved2 += projection->offset[axis] * projection->offset[axis];
-    if (own->normal[0])
-      own->normal[axis][slot] = (float)(turn < 0.0 ? -projection->normal[axis] : projection->normal[axis]);
-    if (own->color[0])
-      own->color[axis][slot] = (float)color[axis];
+    if (own->points.normal[0])
+      own->points.normal[axis][slot] = (float)(turn < 0.0 ? -projection->normal[axis] : projection->normal[axis]);
+    if (own->points.color[0])
+      own->points.color[axis][slot] = (float)color[axis];
   }
   own->moved2[slot] = moved2;
 }
@@ -54,26 +55,19 @@ static void clean_leaf(points_cleaning *work, size_t i_leaf, conic_workspace *wo
 
 static void clean_chunk(void *data, size_t i_item, int i_thread) {
   points_cleaning *work = data;
-  size_t begin = i_item * CHUNK;
-  for (size_t i = begin; i < begin + CHUNK && i < work->surface->tree.n_leaves; i++)
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->surface->tree.n_leaves; i++)
     clean_leaf(work, i, &work->workspaces[i_thread]);
 }
 
-static int allocate_own(const conic_surface *surface, conic_own_points *own) {
+static conic_status allocate_own(const conic_surface *surface, conic_own_points *own) {
   conic_context *context = surface->context;
   size_t n = surface->tree.n_slots;
-  int is_whole = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    is_whole &= (own->position[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
-    if (surface->normal[0])
-      is_whole &= (own->normal[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
-    if (surface->color[0])
-      is_whole &= (own->color[axis] = conic_memory_allocate(context, n, sizeof(float))) != NULL;
-  }
+  conic_status status = conic_splats_allocate(context, n, conic_splats_fields(&surface->points), &own->points);
+  memcpy(own->points.origin, surface->points.origin, sizeof own->points.origin);
   own->moved2 = conic_memory_allocate(context, n, sizeof *own->moved2);
   own->n_neighbours = conic_memory_allocate(context, n, sizeof *own->n_neighbours);
   own->outcomes = conic_memory_allocate(context, n, sizeof *own->outcomes);
-  return is_whole && own->moved2 && own->n_neighbours && own->outcomes;
+  return own->moved2 && own->n_neighbours && own->outcomes ? status : CONIC_ERROR_MEMORY;
 }
 
 conic_status conic_own_points_project(const conic_surface *surface, size_t n_wanted, double begin, double end,
@@ -82,8 +76,8 @@ conic_status conic_own_points_project(const conic_surface *surface, size_t n_wan
   points_cleaning work = {surface, own, n_wanted, NULL};
   memset(own, 0, sizeof *own);
   conic_status status = conic_workspaces_create(context, &work.workspaces);
-  if (status == CONIC_OK && !allocate_own(surface, own))
-    status = CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK)
+    status = allocate_own(surface, own);
   if (status == CONIC_OK)
     status = conic_parallel_runs(context, "project", begin, end, (surface->tree.n_leaves + CHUNK - 1) / CHUNK,
                                  CHUNKS_A_REPORT, clean_chunk, &work);
@@ -98,11 +92,7 @@ conic_status conic_own_points_project(const conic_surface *surface, size_t n_wan
 }
 
 void conic_own_points_release(conic_context *context, conic_own_points *own) {
-  for (int axis = 0; axis < 3; axis++) {
-    conic_memory_release(context, own->position[axis]);
-    conic_memory_release(context, own->normal[axis]);
-    conic_memory_release(context, own->color[axis]);
-  }
+  conic_splats_release(context, &own->points);
   conic_memory_release(context, own->moved2);
   conic_memory_release(context, own->n_neighbours);
   conic_memory_release(context, own->outcomes);
@@ -138,26 +128,18 @@ static void report_points(const conic_surface *surface, const conic_own_points *
 static conic_status write_points(const conic_surface *surface, const conic_own_points *own, size_t n_out,
                                  conic_splats *projected) {
   const conic_neighbours *tree = &surface->tree;
-  conic_status status =
-      conic_splats_allocate(surface->context, n_out, conic_splats_fields(&surface->points), projected);
-  if (status != CONIC_OK)
-    return status;
-  memcpy(projected->origin, surface->points.origin, sizeof projected->origin);
+  uint32_t *slots = conic_memory_allocate(surface->context, n_out, sizeof *slots);
+  if (!slots)
+    return CONIC_ERROR_MEMORY;
   size_t n = 0;
   for (size_t i = 0; i < tree->n_points; i++) {
     uint32_t slot = tree->slot_of_point[i];
-    if (slot == CONIC_NO_SLOT || own->outcomes[slot] != CONIC_SURFACE_DONE)
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      projected->position[axis][n] = own->position[axis][slot];
-      if (projected->normal[0])
-        projected->normal[axis][n] = own->normal[axis][slot];
-      if (projected->color[0])
-        projected->color[axis][n] = own->color[axis][slot];
-    }
-    n++;
+    if (slot != CONIC_NO_SLOT && own->outcomes[slot] == CONIC_SURFACE_DONE)
+      slots[n++] = slot;
   }
-  return CONIC_OK;
+  conic_status status = conic_splats_gather(surface->context, &own->points, slots, n_out, projected);
+  conic_memory_release(surface->context, slots);
+  return status;
 }
 
 conic_status conic_surface_clean(conic_surface *surface, conic_splats *projected, conic_surface_report *report) {

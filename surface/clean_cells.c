@@ -8,6 +8,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
+#include "core/splats/splats_gather.h"
 #include "surface/cells.h"
 #include "surface/own_points.h"
 #include "surface/store.h"
@@ -24,14 +25,18 @@ enum { BYTES_A_POINT = 192, OTHER_BYTES = 12 << 20 };
 /* Records that are handled at a time. */
 enum { BATCH = 1 << 16, PAGE = 4096 };
 
-typedef struct record {
+typedef struct cell_sample {
   float position[3], normal[3], color[3];
+} cell_sample;
+
+typedef struct record {
+  cell_sample point;
   uint32_t unused;
   uint64_t index; /* in the set */
 } record;
 
 typedef struct result {
-  float position[3], normal[3], color[3];
+  cell_sample point;
   uint32_t outcome;
 } result;
 
@@ -53,6 +58,16 @@ typedef struct cleaning {
 
 static const char *name_of(const cleaning *work) {
   return work->options->name ? work->options->name : "surface";
+}
+
+static void put_sample(const cell_sample *from, conic_splats *to, size_t i) {
+  for (int axis = 0; axis < 3; axis++) {
+    to->position[axis][i] = from->position[axis];
+    if (to->normal[0])
+      to->normal[axis][i] = from->normal[axis];
+    if (to->color[0])
+      to->color[axis][i] = from->color[axis];
+  }
 }
 
 /* --- the points, put in the order of the cells --- */
@@ -106,11 +121,11 @@ static void fill_record(const conic_splats *batch, size_t i, uint64_t index, uns
   if (fields & CONIC_SPLATS_NORMALS)
     conic_surface_unit_normal(batch, i, normal);
   for (int axis = 0; axis < 3; axis++) {
-    r->position[axis] = batch->position[axis][i];
+    r->point.position[axis] = batch->position[axis][i];
     if (fields & CONIC_SPLATS_NORMALS)
-      r->normal[axis] = (float)normal[axis];
+      r->point.normal[axis] = (float)normal[axis];
     if (fields & CONIC_SPLATS_COLORS)
-      r->color[axis] = batch->color[axis][i];
+      r->point.color[axis] = batch->color[axis][i];
   }
 }
 
@@ -195,45 +210,21 @@ static conic_status check_room(const cleaning *work, uint64_t n) {
 
 /* Room for n more points in the subset. */
 static conic_status reserve_subset(cleaning *work, size_t n) {
-  conic_splats *old = &work->subset, grown;
-  size_t room = old->count + n;
-  if (room <= work->subset_room)
+  size_t wanted = work->subset.count + n, room = wanted + wanted / 4;
+  if (wanted <= work->subset_room)
     return CONIC_OK;
-  conic_status status = check_room(work, room);
+  conic_status status = check_room(work, wanted);
   if (status == CONIC_OK)
-    status = conic_splats_allocate(work->context, room + room / 4, work->fields, &grown);
-  if (status != CONIC_OK)
-    return status;
-  for (int axis = 0; axis < 3 && old->count; axis++) {
-    memcpy(grown.position[axis], old->position[axis], old->count * sizeof(float));
-    if (grown.normal[0])
-      memcpy(grown.normal[axis], old->normal[axis], old->count * sizeof(float));
-    if (grown.color[0])
-      memcpy(grown.color[axis], old->color[axis], old->count * sizeof(float));
-  }
-  grown.count = old->count;
-  conic_splats_release(work->context, old);
-  *old = grown;
-  work->subset_room = room + room / 4;
-  return CONIC_OK;
-}
-
-static void append_record(cleaning *work, const record *r) {
-  conic_splats *to = &work->subset;
-  size_t i = to->count++;
-  for (int axis = 0; axis < 3; axis++) {
-    to->position[axis][i] = r->position[axis];
-    if (to->normal[0])
-      to->normal[axis][i] = r->normal[axis];
-    if (to->color[0])
-      to->color[axis][i] = r->color[axis];
-  }
+    status = conic_splats_resize(work->context, &work->subset, room, work->fields);
+  if (status == CONIC_OK)
+    work->subset_room = room;
+  return status;
 }
 
 static int is_record_within(const record *r, const double low[3], const double high[3]) {
   int is_inside = 1;
   for (int axis = 0; axis < 3; axis++)
-    is_inside &= (double)r->position[axis] >= low[axis] && (double)r->position[axis] <= high[axis];
+    is_inside &= (double)r->point.position[axis] >= low[axis] && (double)r->point.position[axis] <= high[axis];
   return is_inside;
 }
 
@@ -256,7 +247,7 @@ static conic_status gather_cell(cleaning *work, const conic_cell *cell) {
         status = reserve_subset(work, n);
       for (size_t k = 0; k < n && status == CONIC_OK; k++)
         if (i == 0 || is_record_within(&work->page[k], low, high))
-          append_record(work, &work->page[k]);
+          put_sample(&work->page[k].point, &work->subset, work->subset.count++);
     }
   }
   return status;
@@ -269,9 +260,9 @@ static void fill_result(cleaning *work, const conic_own_points *own, uint32_t sl
   if (to->outcome != CONIC_SURFACE_DONE)
     return;
   for (int axis = 0; axis < 3; axis++) {
-    to->position[axis] = own->position[axis][slot];
-    to->normal[axis] = own->normal[0] ? own->normal[axis][slot] : 0.0f;
-    to->color[axis] = own->color[0] ? own->color[axis][slot] : 0.0f;
+    to->point.position[axis] = own->points.position[axis][slot];
+    to->point.normal[axis] = own->points.normal[0] ? own->points.normal[axis][slot] : 0.0f;
+    to->point.color[axis] = own->points.color[0] ? own->points.color[axis][slot] : 0.0f;
   }
   work->moved2_sum += own->moved2[slot];
   work->moved2_most = own->moved2[slot] > work->moved2_most ? own->moved2[slot] : work->moved2_most;
@@ -393,18 +384,9 @@ static conic_status deliver(cleaning *work, const conic_points_sink *sink) {
   for (uint64_t at = 0; at < work->n_points && status == CONIC_OK; at += PAGE) {
     size_t n = work->n_points - at < PAGE ? (size_t)(work->n_points - at) : PAGE, k = 0;
     status = conic_store_read(&work->results, at, n, page);
-    for (size_t i = 0; i < n && status == CONIC_OK; i++) {
-      if (page[i].outcome != CONIC_SURFACE_DONE)
-        continue;
-      for (int axis = 0; axis < 3; axis++) {
-        batch.position[axis][k] = page[i].position[axis];
-        if (batch.normal[0])
-          batch.normal[axis][k] = page[i].normal[axis];
-        if (batch.color[0])
-          batch.color[axis][k] = page[i].color[axis];
-      }
-      k++;
-    }
+    for (size_t i = 0; i < n && status == CONIC_OK; i++)
+      if (page[i].outcome == CONIC_SURFACE_DONE)
+        put_sample(&page[i].point, &batch, k++);
     batch.count = k;
     if (status == CONIC_OK && k > 0)
       status = sink->receive(sink->cookie, &batch);
@@ -425,8 +407,7 @@ conic_status conic_surface_clean_cells(conic_context *context, const conic_clean
                                        conic_points_source *source, void *source_cookie, const conic_points_sink *sink,
                                        conic_surface_report *report) {
   conic_clean_options options;
-  cleaning work = {
-      .context = context, .options = &options, .records = {.descriptor = -1}, .results = {.descriptor = -1}};
+  cleaning work = {.context = context, .options = &options};
   conic_clean_options_init(&options);
   if (!conic_options_take(&options, given) || !(options.surface.h > 0.0 && options.surface.h < 1e30) ||
       options.surface.cluster != 0.0)

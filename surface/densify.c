@@ -12,6 +12,7 @@
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/splats/builder.h"
+#include "core/splats/splats_gather.h"
 #include "surface/gap.h"
 #include "surface/mls_surface.h"
 
@@ -101,22 +102,17 @@ static void find_gaps(void *data, size_t i_item, int i_thread) {
 
 /* --- filling --- */
 
-static int reserve_points(densifying *work) {
+static conic_status reserve_points(densifying *work) {
   conic_context *context = work->surface->context;
-  conic_splats *points = work->points;
-  size_t n = points->count, capacity = n + n / 2 + 1024;
+  size_t n = work->points->count, capacity = n + n / 2 + 1024;
   if (n < work->capacity)
-    return 1;
-  for (int axis = 0; axis < 3; axis++)
-    if (conic_memory_grow(context, &points->position[axis], n, capacity, sizeof(float)) != CONIC_OK ||
-        (points->normal[0] &&
-         conic_memory_grow(context, &points->normal[axis], n, capacity, sizeof(float)) != CONIC_OK) ||
-        (points->color[0] && conic_memory_grow(context, &points->color[axis], n, capacity, sizeof(float)) != CONIC_OK))
-      return 0;
-  if (conic_memory_grow(context, &work->sites, n, capacity, sizeof *work->sites) != CONIC_OK)
-    return 0;
-  work->capacity = capacity;
-  return 1;
+    return CONIC_OK;
+  conic_status status = conic_splats_resize(context, work->points, capacity, conic_splats_fields(work->points));
+  if (status == CONIC_OK)
+    status = conic_memory_grow(context, &work->sites, n, capacity, sizeof *work->sites);
+  if (status == CONIC_OK)
+    work->capacity = capacity;
+  return status;
 }
 
 /* The slots whose gaps a new point may lie in are looked at anew in the next round. */
@@ -166,8 +162,9 @@ static conic_status fill_round(densifying *work, size_t i) {
   conic_neighbours_nearest(&work->tree, place, CONIC_NO_SLOT, 1, HUGE_VAL, &slot, &distance2);
   if (!(distance2 >= LEAST_CLEARANCE * LEAST_CLEARANCE * gap.radius * gap.radius))
     return CONIC_OK;
-  if (!reserve_points(work))
-    return CONIC_ERROR_MEMORY;
+  conic_status status = reserve_points(work);
+  if (status != CONIC_OK)
+    return status;
   append_point(work, place, &projection);
   touch(work, place, 2.0 * gap.radius);
   return CONIC_OK;
@@ -240,17 +237,10 @@ static conic_status run_round(densifying *work, size_t *n_tried) {
 static conic_status begin_densifying(densifying *work) {
   conic_context *context = work->surface->context;
   const conic_splats *from = &work->surface->points;
-  conic_status status = conic_splats_allocate(context, from->count, conic_splats_fields(from), work->points);
+  memcpy(work->points->origin, from->origin, sizeof from->origin);
+  conic_status status = conic_splats_append(context, work->points, from);
   if (status != CONIC_OK)
     return status;
-  memcpy(work->points->origin, from->origin, sizeof from->origin);
-  for (int axis = 0; axis < 3; axis++) {
-    memcpy(work->points->position[axis], from->position[axis], from->count * sizeof(float));
-    if (from->normal[0])
-      memcpy(work->points->normal[axis], from->normal[axis], from->count * sizeof(float));
-    if (from->color[0])
-      memcpy(work->points->color[axis], from->color[axis], from->count * sizeof(float));
-  }
   work->n_old = work->capacity = from->count;
   work->sites = conic_memory_allocate(context, from->count, sizeof *work->sites);
   if (!work->sites)

@@ -24,8 +24,8 @@ static double distance2_to(const measuring *work, size_t slot, conic_workspace *
   if (work->own->outcomes[slot] != CONIC_SURFACE_DONE)
     return NOWHERE;
   for (int axis = 0; axis < 3; axis++)
-    r[axis] =
-        (double)work->own->position[axis][slot] + (work->from->points.origin[axis] - work->to->points.origin[axis]);
+    r[axis] = (double)work->own->points.position[axis][slot] +
+              (work->from->points.origin[axis] - work->to->points.origin[axis]);
   conic_surface_project_one(work->to, r, conic_surface_scale(work->to, r), CONIC_NO_SLOT, 0, workspace, &projection);
   for (int axis = 0; axis < 3; axis++)
     sum += projection.offset[axis] * projection.offset[axis];
@@ -34,8 +34,7 @@ static double distance2_to(const measuring *work, size_t slot, conic_workspace *
 
 static void measure_chunk(void *data, size_t i_item, int i_thread) {
   measuring *work = data;
-  size_t begin = i_item * CHUNK;
-  for (size_t slot = begin; slot < begin + CHUNK && slot < work->from->tree.n_slots; slot++)
+  for (size_t slot = i_item * CHUNK; slot < (i_item + 1) * CHUNK && slot < work->from->tree.n_slots; slot++)
     work->distances2[slot] = distance2_to(work, slot, &work->workspaces[i_thread]);
 }
 

@@ -15,25 +15,12 @@ conic_status conic_workspaces_create(conic_context *context, conic_workspace **w
   return *workspaces ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void release_near(conic_context *context, conic_near *near) {
-  for (int axis = 0; axis < 3; axis++) {
-    conic_memory_release(context, near->offset[axis]);
-    conic_memory_release(context, near->normal[axis]);
-  }
-  conic_memory_release(context, near->mass);
-  conic_memory_release(context, near->inverse_h2);
-  conic_memory_release(context, near->weights);
-  conic_memory_release(context, near->columns);
-  conic_memory_release(context, near->sources);
-  memset(near, 0, sizeof *near);
-}
-
 void conic_workspaces_release(conic_context *context, conic_workspace *workspaces) {
   for (int i = 0; workspaces && i < conic_context_threads(context); i++) {
     conic_memory_release(context, workspaces[i].shared.sources);
     conic_memory_release(context, workspaces[i].single.sources);
-    release_near(context, &workspaces[i].near);
-    release_near(context, &workspaces[i].other_near);
+    conic_memory_release(context, workspaces[i].near.offset[0]);
+    conic_memory_release(context, workspaces[i].other_near.offset[0]);
   }
   conic_memory_release(context, workspaces);
 }
@@ -45,35 +32,37 @@ conic_status conic_workspaces_check(const conic_context *context, const conic_wo
   return CONIC_OK;
 }
 
-/* Room for `n` neighbours and what pads them. */
+/* Room for `n` neighbours and what pads them: one block, the arrays side by side. */
 static int reserve_near(conic_workspace *workspace, size_t n) {
+  enum { N_ARRAYS = 9 };
   conic_near *near = &workspace->near;
-  conic_context *context = workspace->context;
   if (n + CONIC_NEAR_LANES <= near->capacity)
     return 1;
   size_t capacity = (n + n / 2 + 128) / CONIC_NEAR_LANES * CONIC_NEAR_LANES;
-  int is_whole = 1;
-  release_near(context, near);
-  for (int axis = 0; axis < 3; axis++) {
-    is_whole &= (near->offset[axis] = conic_memory_allocate(context, capacity, sizeof(double))) != NULL;
-    is_whole &= (near->normal[axis] = conic_memory_allocate(context, capacity, sizeof(double))) != NULL;
-  }
-  near->mass = conic_memory_allocate(context, capacity, sizeof(double));
-  near->inverse_h2 = conic_memory_allocate(context, capacity, sizeof(double));
-  near->weights = conic_memory_allocate(context, capacity, sizeof(double));
-  near->columns = conic_memory_allocate(context, capacity, CONIC_MAX_COLUMNS * sizeof(double));
-  near->sources = conic_memory_allocate(context, capacity, sizeof(uint32_t));
-  if (!is_whole || !near->mass || !near->inverse_h2 || !near->weights || !near->columns || !near->sources) {
-    release_near(context, near);
+  size_t entry_bytes = (N_ARRAYS + CONIC_MAX_COLUMNS) * sizeof(double) + sizeof(uint32_t);
+  conic_memory_release(workspace->context, near->offset[0]);
+  *near = (conic_near){0};
+  double *block = workspace->is_out_of_memory ? NULL : conic_memory_allocate(workspace->context, capacity, entry_bytes);
+  if (!block) {
     workspace->is_out_of_memory = 1;
     return 0;
   }
+  for (size_t axis = 0; axis < 3; axis++) {
+    near->offset[axis] = block + axis * capacity;
+    near->normal[axis] = block + (3 + axis) * capacity;
+  }
+  near->mass = block + 6 * capacity;
+  near->inverse_h2 = block + 7 * capacity;
+  near->weights = block + 8 * capacity;
+  near->columns = block + N_ARRAYS * capacity;
+  near->sources = (uint32_t *)(near->columns + CONIC_MAX_COLUMNS * capacity);
   near->capacity = capacity;
   return 1;
 }
 
 static int reserve_candidates(conic_workspace *workspace, conic_candidates *candidates, size_t n) {
-  if (conic_memory_reserve(workspace->context, &candidates->sources, candidates->n, n, &candidates->capacity,
+  if (!workspace->is_out_of_memory &&
+      conic_memory_reserve(workspace->context, &candidates->sources, candidates->n, n, &candidates->capacity,
                            sizeof *candidates->sources) == CONIC_OK)
     return 1;
   workspace->is_out_of_memory = 1;

@@ -4,12 +4,10 @@
 
 #include "surface/mls_surface.h"
 
-/* By slot; positions relative to the set's origin. What is not DONE has its old position. */
+/* By slot. What is not DONE has its old position. */
 typedef struct conic_own_points {
-  float *position[3];
-  float *normal[3]; /* null where the samples have none */
-  float *color[3];  /* likewise */
-  double *moved2;   /* the squared distance that each was moved */
+  conic_splats points; /* with the normals and colours that the samples have */
+  double *moved2;      /* the squared distance that each was moved */
   uint32_t *n_neighbours;
   uint8_t *outcomes;
   size_t n_evaluations;

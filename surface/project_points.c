@@ -164,7 +164,7 @@ typedef struct projecting {
   conic_surface *surface;
   const double (*positions)[3];
   conic_surface_point *points;
-  size_t end;
+  size_t count;
   conic_workspace *workspaces;
 } projecting;
 
@@ -203,8 +203,7 @@ static void project_position(const conic_surface *surface, const double position
 
 static void project_chunk(void *data, size_t i_item, int i_thread) {
   projecting *work = data;
-  size_t begin = i_item * CHUNK, end = begin + CHUNK < work->end ? begin + CHUNK : work->end;
-  for (size_t i = begin; i < end; i++)
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < work->count; i++)
     project_position(work->surface, work->positions[i], &work->workspaces[i_thread], &work->points[i]);
 }
 

@@ -5,18 +5,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "conic/context.h"
+#include "core/files/scratch.h"
 
 typedef struct conic_store {
   conic_context *context;
-  const char *path; /* beside which the file lies */
   size_t record_bytes;
   unsigned char *memory; /* null: in the file */
-  int descriptor;        /* -1: none */
+  conic_scratch file;
 } conic_store;
 
-/* Room for `count` records, contents undefined; `path` null: in memory. On failure the store is empty. Errors: MEMORY,
- * IO. */
+/* Room for `count` records, contents undefined, in a file beside `path`, or where that is null in memory. On failure
+ * the store is empty. Errors: MEMORY, IO. */
 conic_status conic_store_begin(conic_context *context, const char *path, uint64_t count, size_t record_bytes,
                                conic_store *store);
 void conic_store_end(conic_store *store);

@@ -11,6 +11,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
+#include "core/splats/splats_gather.h"
 #include "surface/mls_surface.h"
 
 /* Points that are measured at a time: a fixed number, so that the order never depends on the threads. */
@@ -143,26 +144,18 @@ static conic_status remove_slots(thinning *work, size_t n_wanted, double max_err
 /* The points of the slots that are left, one a slot, in their old order. */
 static conic_status copy_left(const conic_surface *surface, size_t n_left, conic_splats *left) {
   const conic_neighbours *tree = &surface->tree;
-  const conic_splats *points = &surface->points;
-  conic_status status = conic_splats_allocate(surface->context, n_left, conic_splats_fields(points), left);
-  if (status != CONIC_OK)
-    return status;
-  memcpy(left->origin, points->origin, sizeof left->origin);
+  uint32_t *points = conic_memory_allocate(surface->context, n_left, sizeof *points);
+  if (!points)
+    return CONIC_ERROR_MEMORY;
   size_t n = 0;
-  for (size_t i = 0; i < points->count && n < n_left; i++) {
+  for (size_t i = 0; i < tree->n_points && n < n_left; i++) {
     uint32_t slot = tree->slot_of_point[i];
-    if (slot == CONIC_NO_SLOT || tree->point_of_slot[slot] != i || !(surface->h[slot] >= 0.0f))
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      left->position[axis][n] = points->position[axis][i];
-      if (left->normal[0])
-        left->normal[axis][n] = points->normal[axis][i];
-      if (left->color[0])
-        left->color[axis][n] = points->color[axis][i];
-    }
-    n++;
+    if (slot != CONIC_NO_SLOT && tree->point_of_slot[slot] == i && surface->h[slot] >= 0.0f)
+      points[n++] = (uint32_t)i;
   }
-  return CONIC_OK;
+  conic_status status = conic_splats_gather(surface->context, &surface->points, points, n_left, left);
+  conic_memory_release(surface->context, points);
+  return status;
 }
 
 /* One stage: from `points` to what is left of them. */

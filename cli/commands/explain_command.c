@@ -297,10 +297,7 @@ static conic_status dump_projection(cli_session *session, const explain_job *job
   }
   if (status == CONIC_OK)
     status = conic_progress(session->context, "dump", 1.0);
-  if (status == CONIC_OK)
-    return conic_output_commit(output);
-  conic_output_abandon(output);
-  return status;
+  return conic_output_end(output, status);
 }
 
 static conic_status draw(cli_session *session, explain_job *job) {

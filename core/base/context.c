@@ -125,18 +125,6 @@ conic_status conic_memory_reserve(conic_context *context, void *array, size_t us
   return status;
 }
 
-conic_status conic_memory_renew(conic_context *context, void *array, size_t count, size_t *room, size_t size) {
-  void *pointer;
-  memcpy(&pointer, array, sizeof pointer);
-  if (pointer && count <= *room)
-    return CONIC_OK;
-  conic_memory_release(context, pointer);
-  pointer = conic_memory_allocate(context, count, size);
-  memcpy(array, &pointer, sizeof pointer);
-  *room = pointer ? count : 0;
-  return pointer ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
 void conic_memory_release(conic_context *context, void *pointer) {
   if (!pointer)
     return;

@@ -22,10 +22,6 @@ conic_status conic_memory_grow(conic_context *context, void *array, size_t used,
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
-/* Room for `count` elements in an array that has it for *room, contents undefined: the old array is released first
- * where it is too small. On failure the array is null and *room 0. */
-conic_status conic_memory_renew(conic_context *context, void *array, size_t count, size_t *room, size_t size);
-
 /* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be
  * used from end to end. Where the system has none, nothing happens. Thread-safe. */
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);

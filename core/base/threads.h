@@ -15,7 +15,7 @@ typedef void conic_task(void *data, size_t i_item, int i_thread);
 void conic_parallel_for(conic_context *context, size_t n_items, conic_task *task, void *data);
 
 /* The same for what takes longer than a user who wants to stop it should wait: in runs of `n_a_run` items, before each
- * of which the progress of `name`, between the two fractions, is reported. Errors: CANCELLED. */
+ * of which the progress of `name` is reported, between the two fractions. Errors: CANCELLED. */
 conic_status conic_parallel_runs(conic_context *context, const char *name, double from, double to, size_t n_items,
                                  size_t n_a_run, conic_task *task, void *data);
 

@@ -103,10 +103,6 @@ FILE *conic_output_stream(conic_output *output) {
   return output->stream;
 }
 
-const char *conic_output_temporary_path(const conic_output *output) {
-  return output->temporary_path;
-}
-
 conic_status conic_output_commit(conic_output *output) {
   conic_status status = CONIC_OK;
   int is_wrong = ferror(output->stream) || fflush(output->stream) != 0;
@@ -132,6 +128,13 @@ void conic_output_abandon(conic_output *output) {
   if (output->temporary_path)
     unlink(output->temporary_path);
   release_output(output);
+}
+
+conic_status conic_output_end(conic_output *output, conic_status status) {
+  if (status == CONIC_OK)
+    return conic_output_commit(output);
+  conic_output_abandon(output);
+  return status;
 }
 
 /* Whether "NAME" is ".STEM.PID-N.EXT" of a process that is no more. */
@@ -173,6 +176,16 @@ void conic_output_sweep(conic_context *context, const char *path) {
 int conic_file_is_there(const char *path) {
   struct stat about;
   return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
+}
+
+int conic_file_has_ending(const char *path, const char *ending) {
+  size_t n = strlen(path), n_ending = strlen(ending);
+  if (n <= n_ending || path[n - n_ending - 1] != '.')
+    return 0;
+  for (const char *c = path + n - n_ending; *c; c++, ending++)
+    if ((*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c) != *ending)
+      return 0;
+  return 1;
 }
 
 int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes) {

@@ -14,12 +14,11 @@ conic_status conic_output_open(conic_context *context, const char *path, conic_o
 /* Where to write; never null. */
 FILE *conic_output_stream(conic_output *output);
 
-/* The name of the file that is being written, for libraries that want a name and not a stream; null for standard
- * output. It has the ending of PATH. */
-const char *conic_output_temporary_path(const conic_output *output);
-
 /* Flushes, checks and renames; releases `output`, on failure too (then nothing new stands under PATH). Errors: IO. */
 conic_status conic_output_commit(conic_output *output);
+
+/* Commits what was written where `status` is OK; else abandons it and returns `status`. */
+conic_status conic_output_end(conic_output *output, conic_status status);
 
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
@@ -35,5 +34,8 @@ int conic_file_is_there(const char *path);
 
 /* Whether such a file begins with these bytes, 16 at most. */
 int conic_file_begins_with(const char *path, const void *bytes, size_t n_bytes);
+
+/* Whether PATH ends in "." and these lower-case letters, in either case whatever the locale is. */
+int conic_file_has_ending(const char *path, const char *ending);
 
 #endif

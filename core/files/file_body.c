@@ -68,9 +68,7 @@ conic_status conic_file_write_arrays(conic_context *context, const char *path, c
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays) {
   unsigned char header[CONIC_FILE_HEADER_BYTES];
   conic_output *output;
-  conic_status status = conic_file_refuse_order(context, path, kind);
-  if (status == CONIC_OK)
-    status = conic_output_open(context, path, &output);
+  conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   conic_file_make_header(kind, numbers, header);
@@ -79,10 +77,7 @@ conic_status conic_file_write_arrays(conic_context *context, const char *path, c
     status = write_array(context, layout, i, arrays[i], conic_output_stream(output));
   if (status == CONIC_OK)
     status = conic_progress(context, "write", 1.0);
-  if (status == CONIC_OK)
-    return conic_output_commit(output);
-  conic_output_abandon(output);
-  return status;
+  return conic_output_end(output, status);
 }
 
 conic_status conic_file_check_arrays(conic_context *context, const char *path, const conic_mapping *file,

@@ -28,7 +28,7 @@ void conic_file_list_arrays(const conic_file_layout *layout, const unsigned char
 /* The sum over the arrays' sums; without a context, on this thread. */
 uint64_t conic_file_sum_arrays(conic_context *context, const conic_file_layout *layout, const void *const *arrays);
 
-/* Writes a file of header and arrays. Errors: UNSUPPORTED, MEMORY, IO, CANCELLED. */
+/* Writes a file of header and arrays. Errors: MEMORY, IO, CANCELLED. */
 conic_status conic_file_write_arrays(conic_context *context, const char *path, const conic_file_kind *kind,
                                      const void *numbers, const conic_file_layout *layout, const void *const *arrays);
 

@@ -1,18 +1,18 @@
 /* Structures in files: members in the order of a table, little-endian, one after the other. What is written and what is
- * read so cannot differ, on any machine. */
+ * read so cannot differ. */
 #ifndef CONIC_FILE_FIELDS_H
 #define CONIC_FILE_FIELDS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* A member by its place in memory: n values of 2, 4 or 8 bytes. */
+/* A member by its place in memory. */
 typedef struct conic_file_field {
-  size_t offset, n_bytes, n;
+  size_t offset, n_bytes;
 } conic_file_field;
 
-#define CONIC_FILE_FIELD(type, member, n_values)                                                                       \
-  { offsetof(type, member), sizeof(((type *)0)->member) / (n_values), n_values }
+#define CONIC_FILE_FIELD(type, member)                                                                                 \
+  { offsetof(type, member), sizeof(((type *)0)->member) }
 
 /* The bytes that so many fields take in a file. */
 size_t conic_file_fields_bytes(const conic_file_field *fields, size_t n);

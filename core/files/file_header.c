@@ -11,17 +11,6 @@ int conic_file_is_of_kind(const conic_file_kind *kind, const char *path) {
   return conic_file_begins_with(path, kind->magic, sizeof kind->magic);
 }
 
-conic_status conic_file_refuse_order(conic_context *context, const char *path, const conic_file_kind *kind) {
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: %s files need a little-endian machine", path, kind->ending);
-#else
-  (void)context;
-  (void)path;
-  (void)kind;
-  return CONIC_OK;
-#endif
-}
-
 void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
                             unsigned char bytes[CONIC_FILE_HEADER_BYTES]) {
   memset(bytes, 0, CONIC_FILE_HEADER_BYTES);
@@ -54,8 +43,6 @@ static conic_status read_file_header(conic_context *context, const char *path, c
 
 conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
                                   conic_mapping *file, void *numbers) {
-  conic_status status = conic_file_refuse_order(context, path, kind);
-  if (status == CONIC_OK)
-    status = conic_mapping_open(context, path, file);
+  conic_status status = conic_mapping_open(context, path, file);
   return status == CONIC_OK ? read_file_header(context, path, kind, file->bytes, file->n_bytes, numbers) : status;
 }

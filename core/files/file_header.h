@@ -21,9 +21,6 @@ typedef struct conic_file_kind {
 /* Whether a regular file that can be read begins like that. */
 int conic_file_is_of_kind(const conic_file_kind *kind, const char *path);
 
-/* Refuses machines of the other byte order, on which nothing would lie as it must. Errors: UNSUPPORTED. */
-conic_status conic_file_refuse_order(conic_context *context, const char *path, const conic_file_kind *kind);
-
 void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
                             unsigned char bytes[CONIC_FILE_HEADER_BYTES]);
 

@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -146,10 +148,26 @@ conic_status conic_input_word(conic_input *input, const char **word, size_t *len
     c++;
   *length = (size_t)(c - *word);
   if (*length > CONIC_INPUT_LONGEST_WORD)
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a word of more than %d bytes (line %llu)", input->name,
-                      CONIC_INPUT_LONGEST_WORD, (unsigned long long)input->line);
+    return conic_input_wrong(input, "a word of more than %d bytes", CONIC_INPUT_LONGEST_WORD);
   input->next += *length;
   return CONIC_OK;
+}
+
+conic_status conic_input_wrong(const conic_input *input, const char *format, ...) {
+  char what[1024];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(what, sizeof what, format, arguments);
+  va_end(arguments);
+  return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", input->name, what,
+                    (unsigned long long)input->line);
+}
+
+size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room) {
+  const char *slash = strrchr(input->name, '/');
+  int folder = slash && file[0] != '/' ? (int)(slash + 1 - input->name) : 0;
+  int n = snprintf(path, room, "%.*s%.*s", folder, input->name, (int)length, file);
+  return n > 0 && (size_t)n < room ? (size_t)n : 0;
 }
 
 conic_status conic_input_next_line(conic_input *input, int *is_done) {
@@ -171,4 +189,25 @@ conic_status conic_input_next_line(conic_input *input, int *is_done) {
       return CONIC_OK;
     }
   }
+}
+
+int conic_input_is(const char *word, size_t length, const char *keyword) {
+  return length == strlen(keyword) && memcmp(word, keyword, length) == 0;
+}
+
+conic_status conic_input_read_statements(conic_input *input, const conic_input_statement *statements, size_t n,
+                                         void *reader) {
+  conic_status status = CONIC_OK;
+  for (int is_done = 0; status == CONIC_OK && !is_done;) {
+    const char *word;
+    size_t length, i = 0;
+    status = conic_input_word(input, &word, &length);
+    while (status == CONIC_OK && i < n && !conic_input_is(word, length, statements[i].keyword))
+      i++;
+    if (status == CONIC_OK && i < n)
+      status = statements[i].read(reader);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(input, &is_done);
+  }
+  return status;
 }

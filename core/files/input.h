@@ -59,6 +59,27 @@ conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skip
  * CONIC_INPUT_LONGEST_WORD). */
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 
+/* Logs "FILE: what is wrong (line N)" of the line that is being read, and returns INPUT. */
+conic_status conic_input_wrong(const conic_input *input, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* "FOLDER/file" beside the file that is read, or `file` itself where that begins at the root; 0 where the room is too
+ * small, else the length. */
+size_t conic_input_beside(const conic_input *input, const char *file, size_t length, char *path, size_t room);
+
+/* What is done from after a line's first word on. */
+typedef struct conic_input_statement {
+  const char *keyword;
+  conic_status (*read)(void *reader);
+} conic_input_statement;
+
+/* Whether the word is that one. */
+int conic_input_is(const char *word, size_t length, const char *keyword);
+
+/* Reads to the end: of each line the statement whose keyword is its first word; other lines are passed over. Errors: as
+ * fill, and the statements'. */
+conic_status conic_input_read_statements(conic_input *input, const conic_input_statement *statements, size_t n,
+                                         void *reader);
+
 /* To the start of the next line; *is_done where the file ends before one. Errors: as fill. */
 conic_status conic_input_next_line(conic_input *input, int *is_done);
 

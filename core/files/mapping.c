@@ -71,13 +71,6 @@ void conic_mapping_close(conic_context *context, conic_mapping *mapping) {
   memset(mapping, 0, sizeof *mapping);
 }
 
-static uint64_t word_at(const unsigned char *bytes) { /* little endian */
-  uint64_t word = 0;
-  for (int i = 0; i < 8; i++)
-    word |= (uint64_t)bytes[i] << 8 * i;
-  return word;
-}
-
 static uint64_t mix_word(uint64_t sum, uint64_t word) {
   sum = (sum ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* both steps can be undone, so no word's change is lost */
   return sum << 29 | sum >> 35;
@@ -87,8 +80,11 @@ unsigned long long conic_checksum(const unsigned char *bytes, size_t n_bytes) {
   uint64_t lanes[4] = {1, 2, 3, 4}, sum = n_bytes;
   size_t i = 0;
   for (; i + 32 <= n_bytes; i += 32)
-    for (int lane = 0; lane < 4; lane++)
-      lanes[lane] = mix_word(lanes[lane], word_at(bytes + i + (size_t)lane * 8));
+    for (int lane = 0; lane < 4; lane++) {
+      uint64_t word;
+      memcpy(&word, bytes + i + (size_t)lane * 8, sizeof word);
+      lanes[lane] = mix_word(lanes[lane], word);
+    }
   for (int lane = 0; lane < 4; lane++)
     sum = mix_word(sum, lanes[lane]);
   for (; i < n_bytes; i++)

@@ -1,19 +1,14 @@
 #include "core/files/spool.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 
 void conic_spool_begin(conic_context *context, const char *path, size_t memory_bytes, conic_spool *spool) {
   memset(spool, 0, sizeof *spool);
   spool->context = context;
   spool->path = path;
-  spool->descriptor = -1;
+  spool->file.descriptor = -1;
   spool->most_held = memory_bytes;
 }
 
@@ -28,58 +23,23 @@ static void release_slabs(conic_spool *spool) {
 void conic_spool_end(conic_spool *spool) {
   if (!spool->context)
     return;
-  if (spool->descriptor >= 0)
-    close(spool->descriptor);
+  conic_scratch_close(&spool->file);
   release_slabs(spool);
   memset(spool, 0, sizeof *spool);
 }
 
-static conic_status cannot_write(const conic_spool *spool) {
-  return conic_fail(spool->context, CONIC_ERROR_IO, "%s: cannot write a temporary file beside it: %s", spool->path,
-                    strerror(errno));
-}
-
-/* Made beside PATH, so that it is on the disk that has to hold the result, and unlinked at once. */
-static conic_status open_file(conic_spool *spool) {
-  const char *slash = strrchr(spool->path, '/');
-  int folder_length = slash ? (int)(slash - spool->path) + 1 : 0;
-  size_t n = (size_t)folder_length + 64;
-  char *name = conic_memory_allocate(spool->context, n, 1);
-  if (!name)
-    return CONIC_ERROR_MEMORY;
-  for (int attempt = 0; attempt < 100 && spool->descriptor < 0; attempt++) {
-    snprintf(name, n, "%.*s.conic-spool.%ld-%d", folder_length, spool->path, (long)getpid(), attempt);
-    spool->descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (spool->descriptor < 0 && errno != EEXIST)
-      break;
-  }
-  conic_status status = spool->descriptor >= 0 ? CONIC_OK : cannot_write(spool);
+static conic_status write_all(conic_spool *spool, const void *bytes, size_t n_bytes) {
+  conic_status status = CONIC_OK;
+  if (spool->file.descriptor < 0)
+    status = conic_scratch_open(spool->context, spool->path, &spool->file);
   if (status == CONIC_OK)
-    unlink(name);
-  conic_memory_release(spool->context, name);
+    status = conic_scratch_write(&spool->file, spool->file_bytes, bytes, n_bytes);
+  spool->file_bytes += status == CONIC_OK ? n_bytes : 0;
   return status;
 }
 
-static conic_status write_all(conic_spool *spool, const unsigned char *bytes, size_t n_bytes) {
-  if (spool->descriptor < 0) {
-    conic_status status = open_file(spool);
-    if (status != CONIC_OK)
-      return status;
-  }
-  while (n_bytes > 0) {
-    ssize_t n = write(spool->descriptor, bytes, n_bytes);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n < 0)
-      return cannot_write(spool);
-    bytes += n;
-    n_bytes -= (size_t)n;
-    spool->file_bytes += (uint64_t)n;
-  }
-  return CONIC_OK;
-}
-
-conic_status conic_spool_flush(conic_spool *spool) {
+/* Writes to the file what is held and gives its memory back. */
+static conic_status flush(conic_spool *spool) {
   conic_status status = CONIC_OK;
   for (size_t i = 0, left = spool->n_held; left > 0 && status == CONIC_OK; i++) {
     size_t n = left < CONIC_SPOOL_SLAB ? left : CONIC_SPOOL_SLAB;
@@ -121,23 +81,21 @@ conic_status conic_spool_append(conic_spool *spool, const void *bytes, size_t n_
     return CONIC_OK;
   if (spool->file_bytes == 0 && n_bytes <= spool->most_held && spool->n_held <= spool->most_held - n_bytes)
     return hold(spool, bytes, n_bytes);
-  conic_status status = spool->n_held ? conic_spool_flush(spool) : CONIC_OK;
+  conic_status status = spool->n_held ? flush(spool) : CONIC_OK;
   return status == CONIC_OK ? write_all(spool, bytes, n_bytes) : status;
 }
 
 conic_status conic_spool_read(const conic_spool *spool, uint64_t offset, void *bytes, size_t n_bytes) {
   unsigned char *to = bytes;
-  while (n_bytes > 0 && offset < spool->file_bytes) {
+  if (offset < spool->file_bytes) {
     uint64_t left = spool->file_bytes - offset;
-    ssize_t n = pread(spool->descriptor, to, n_bytes < left ? n_bytes : (size_t)left, (off_t)offset);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      return conic_fail(spool->context, CONIC_ERROR_IO, "%s: cannot read a temporary file beside it: %s", spool->path,
-                        n < 0 ? strerror(errno) : "it is too short");
+    size_t n = n_bytes < left ? n_bytes : (size_t)left;
+    conic_status status = conic_scratch_read(&spool->file, offset, to, n);
+    if (status != CONIC_OK)
+      return status;
     to += n;
-    offset += (uint64_t)n;
-    n_bytes -= (size_t)n;
+    offset += n;
+    n_bytes -= n;
   }
   while (n_bytes > 0) {
     size_t at = (size_t)(offset - spool->file_bytes), within = at % CONIC_SPOOL_SLAB;

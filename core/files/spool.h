@@ -1,5 +1,4 @@
-/* Bytes that are put aside and read again: in memory up to a bound, beyond it in a file without a name, which the
- * system takes away however the program ends. */
+/* Bytes that are put aside and read again: in memory up to a bound, beyond it in a file. */
 #ifndef CONIC_SPOOL_H
 #define CONIC_SPOOL_H
 
@@ -7,13 +6,14 @@
 #include <stdint.h>
 
 #include "conic/context.h"
+#include "core/files/scratch.h"
 
 enum { CONIC_SPOOL_SLAB = 1 << 20 };
 
 typedef struct conic_spool {
   conic_context *context;
   const char *path;     /* beside which the file lies; for messages too */
-  int descriptor;       /* -1: all is in memory */
+  conic_scratch file;   /* not open: all is in memory */
   uint64_t file_bytes;  /* the first so many are in the file, the others in `held` */
   unsigned char **held; /* slabs of CONIC_SPOOL_SLAB bytes */
   size_t n_slabs, slab_room, n_held, most_held;
@@ -28,9 +28,6 @@ conic_status conic_spool_append(conic_spool *spool, const void *bytes, size_t n_
 
 /* Copies bytes that are there. Several threads may read while none appends. Errors: IO. */
 conic_status conic_spool_read(const conic_spool *spool, uint64_t offset, void *bytes, size_t n_bytes);
-
-/* Writes to the file what is held and gives its memory back. Errors: MEMORY, IO. */
-conic_status conic_spool_flush(conic_spool *spool);
 
 static inline uint64_t conic_spool_bytes(const conic_spool *spool) {
   return spool->file_bytes + spool->n_held;

@@ -38,15 +38,17 @@ static conic_status read_focal_length(conic_json *json, double *value) {
   return status;
 }
 
+static const char wrong_shape[] = "world_to_camera has 4 rows of 4 numbers";
+
 static conic_status read_matrix_row(conic_json *json, double row[4]) {
   int n = 0;
   conic_json_begin_array(json);
   while (conic_json_next_item(json)) {
     if (n == 4)
-      return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+      return conic_json_wrong(json, wrong_shape);
     read_bounded(json, largest_matrix_value, &row[n++]);
   }
-  return n == 4 ? json->status : conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+  return n == 4 ? json->status : conic_json_wrong(json, wrong_shape);
 }
 
 static conic_status check_matrix(conic_json *json, double rows[4][4]) {
@@ -64,13 +66,13 @@ static conic_status read_matrix(conic_json *json, double cam_from_world[3][4]) {
   conic_json_begin_array(json);
   while (conic_json_next_item(json)) {
     if (n == 4)
-      return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+      return conic_json_wrong(json, wrong_shape);
     read_matrix_row(json, rows[n++]);
   }
   if (json->status != CONIC_OK)
     return json->status;
   if (n != 4)
-    return conic_json_wrong(json, "world_to_camera has 4 rows of 4 numbers");
+    return conic_json_wrong(json, wrong_shape);
   memcpy(cam_from_world, rows, 3 * sizeof *rows);
   return check_matrix(json, rows);
 }

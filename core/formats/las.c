@@ -5,6 +5,7 @@
 
 #include "core/base/message.h"
 #include "core/base/real.h"
+#include "core/files/file_fields.h"
 #include "core/formats/ply_source.h"
 #include "core/formats/raw_colors.h"
 #include "core/splats/builder.h"
@@ -57,15 +58,8 @@ static conic_status wrong_las(const las_reader *reader, const char *what, uint64
                     (unsigned long long)at);
 }
 
-static uint64_t unsigned_at(const las_reader *reader, int at, int n_bytes) {
-  uint64_t value = 0;
-  for (int i = n_bytes - 1; i >= 0; i--)
-    value = value << 8 | reader->header[at + i];
-  return value;
-}
-
-static double double_at(const las_reader *reader, int at) {
-  return conic_double_of_bits(unsigned_at(reader, at, 8));
+static uint64_t unsigned_at(const las_reader *reader, int at, size_t n_bytes) {
+  return conic_file_get(reader->header + at, n_bytes);
 }
 
 /* Copies what there is of the public header, of the size that its version has. */
@@ -110,8 +104,8 @@ static conic_status check_format(las_reader *reader) {
 static conic_status read_scale(las_reader *reader) {
   for (int axis = 0; axis < 3; axis++) {
     int at_scale = AT_SCALE + 8 * axis, at_offset = AT_OFFSET + 8 * axis;
-    reader->scale[axis] = double_at(reader, at_scale);
-    reader->offset[axis] = double_at(reader, at_offset);
+    memcpy(&reader->scale[axis], reader->header + at_scale, sizeof(double));
+    memcpy(&reader->offset[axis], reader->header + at_offset, sizeof(double));
     if (!(reader->scale[axis] - reader->scale[axis] == 0.0) || reader->scale[axis] == 0.0)
       return wrong_las(reader, "a scale is zero or not finite", (uint64_t)at_scale);
     if (!(reader->offset[axis] - reader->offset[axis] == 0.0))

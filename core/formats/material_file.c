@@ -14,11 +14,8 @@ typedef struct material_reader {
   conic_material *materials, *current; /* null: one that nobody uses */
 } material_reader;
 
-static int is_word(const char *word, size_t length, const char *keyword) {
-  return length == strlen(keyword) && memcmp(word, keyword, length) == 0;
-}
-
-static conic_status read_name(material_reader *reader) {
+static conic_status read_name(void *data) {
+  material_reader *reader = data;
   const char *word;
   size_t length;
   conic_status status = conic_input_word(&reader->input, &word, &length);
@@ -30,7 +27,8 @@ static conic_status read_name(material_reader *reader) {
 }
 
 /* Kd r g b, or one value for all; linear. */
-static conic_status read_color(material_reader *reader) {
+static conic_status read_color(void *data) {
+  material_reader *reader = data;
   for (int channel = 0; channel < 3; channel++) {
     const char *word;
     size_t length;
@@ -44,9 +42,7 @@ static conic_status read_color(material_reader *reader) {
       return CONIC_OK;
     }
     if (conic_number_parse(word, length, &value) != length || length == 0 || !(value >= 0.0 && value <= 1e6))
-      return conic_fail(reader->input.context, CONIC_ERROR_INPUT,
-                        "%s: a colour's value is no number in range (line %llu)", reader->input.name,
-                        (unsigned long long)reader->input.line);
+      return conic_input_wrong(&reader->input, "a colour's value is no number in range");
     if (reader->current)
       reader->current->color[channel] = (float)value;
   }
@@ -54,7 +50,8 @@ static conic_status read_color(material_reader *reader) {
 }
 
 /* map_Kd [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. */
-static conic_status read_map(material_reader *reader) {
+static conic_status read_map(void *data) {
+  material_reader *reader = data;
   char file[CONIC_INPUT_LONGEST_WORD + 1] = "", path[2 * CONIC_INPUT_LONGEST_WORD];
   int is_clamp_next = 0;
   conic_texture_wrap wrap = CONIC_WRAP_REPEAT;
@@ -66,19 +63,15 @@ static conic_status read_map(material_reader *reader) {
       return status;
     if (length == 0)
       break;
-    if (is_clamp_next && is_word(word, length, "on"))
+    if (is_clamp_next && conic_input_is(word, length, "on"))
       wrap = CONIC_WRAP_CLAMP;
-    is_clamp_next = is_word(word, length, "-clamp");
+    is_clamp_next = conic_input_is(word, length, "-clamp");
     snprintf(file, sizeof file, "%.*s", (int)length, word);
   }
   if (!file[0] || !reader->current || reader->current->texture)
     return CONIC_OK;
-  const char *slash = strrchr(reader->input.name, '/');
-  int folder = slash && file[0] != '/' ? (int)(slash + 1 - reader->input.name) : 0;
-  int n = snprintf(path, sizeof path, "%.*s%s", folder, reader->input.name, file);
-  if (n < 0 || (size_t)n >= sizeof path)
-    return conic_fail(reader->input.context, CONIC_ERROR_INPUT, "%s: a picture's name is too long (line %llu)",
-                      reader->input.name, (unsigned long long)reader->input.line);
+  if (!conic_input_beside(&reader->input, file, strlen(file), path, sizeof path))
+    return conic_input_wrong(&reader->input, "a picture's name is too long");
   if (!conic_file_is_there(path)) {
     conic_log(reader->input.context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out (line %llu)",
               reader->input.name, path, (unsigned long long)reader->input.line);
@@ -87,31 +80,14 @@ static conic_status read_map(material_reader *reader) {
   return conic_texture_read(reader->input.context, path, wrap, &reader->current->texture);
 }
 
-static conic_status read_statement(material_reader *reader) {
-  const char *word;
-  size_t length;
-  conic_status status = conic_input_word(&reader->input, &word, &length);
-  if (status != CONIC_OK)
-    return status;
-  if (is_word(word, length, "newmtl"))
-    return read_name(reader);
-  if (is_word(word, length, "Kd"))
-    return read_color(reader);
-  return is_word(word, length, "map_Kd") ? read_map(reader) : CONIC_OK;
-}
-
 conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
                                       conic_material *materials) {
+  static const conic_input_statement statements[] = {{"newmtl", read_name}, {"Kd", read_color}, {"map_Kd", read_map}};
   material_reader reader = {.names = names, .materials = materials};
-  int is_done = 0;
   conic_status status = conic_input_open(context, path, &reader.input);
   if (status != CONIC_OK)
     return status;
-  while (status == CONIC_OK && !is_done) {
-    status = read_statement(&reader);
-    if (status == CONIC_OK)
-      status = conic_input_next_line(&reader.input, &is_done);
-  }
+  status = conic_input_read_statements(&reader.input, statements, sizeof statements / sizeof *statements, &reader);
   conic_input_close(&reader.input);
   return status;
 }

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/files/file.h"
 #include "core/files/input.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
@@ -45,16 +46,6 @@ static const signature other_kinds[] = {
     {"an STL file", "solid ", 6},
 };
 
-static int has_ending(const char *path, const char *ending) {
-  size_t n = strlen(path), n_ending = strlen(ending);
-  if (n < n_ending)
-    return 0;
-  for (size_t i = 0; i < n_ending; i++)
-    if ((path[n - n_ending + i] | 0x20) != (ending[i] | 0x20))
-      return 0;
-  return 1;
-}
-
 static int is_ply(const char *bytes, size_t n) {
   return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
@@ -89,7 +80,7 @@ static conic_status refuse_model(const conic_input *input, const char *bytes, si
 static conic_status find_kind(const conic_input *input, const char *path, conic_model_kind *kind) {
   const char *bytes = (const char *)conic_input_bytes(input);
   size_t n = conic_input_available(input);
-  int is_xyz_name = has_ending(path, ".xyz") || has_ending(path, ".pts");
+  int is_xyz_name = conic_file_has_ending(path, "xyz") || conic_file_has_ending(path, "pts");
   conic_status status = refuse_model(input, bytes, n);
   if (status != CONIC_OK)
     return status;
@@ -97,13 +88,13 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
-  else if (has_ending(path, ".ply"))
+  else if (conic_file_has_ending(path, "ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
-  else if (has_ending(path, ".las") || has_ending(path, ".laz"))
+  else if (conic_file_has_ending(path, "las") || conic_file_has_ending(path, "laz"))
     return conic_fail(input->context, CONIC_ERROR_INPUT,
                       "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
-  else if (has_ending(path, ".obj") || (!is_xyz_name && is_obj(bytes, n)))
+  else if (conic_file_has_ending(path, "obj") || (!is_xyz_name && is_obj(bytes, n)))
     *kind = CONIC_MODEL_OBJ;
   else if (is_xyz_name || conic_xyz_is_likely(bytes, n))
     *kind = CONIC_MODEL_XYZ;

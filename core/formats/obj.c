@@ -1,7 +1,6 @@
 #include "core/formats/obj.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -45,11 +44,6 @@ typedef struct obj_reader {
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
 typedef uint32_t face_corner[3];
 
-static conic_status wrong_obj(const obj_reader *reader, const char *what) {
-  return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
-                    (unsigned long long)reader->input->line);
-}
-
 /* The numbers up to the end of the line; more than `room` of them are wrong. */
 static conic_status read_numbers(const obj_reader *reader, double *numbers, int room, int *n) {
   for (*n = 0;;) {
@@ -62,9 +56,9 @@ static conic_status read_numbers(const obj_reader *reader, double *numbers, int 
     if (length == 0 || word[0] == '#')
       return CONIC_OK;
     if (conic_number_parse(word, length, &value) != length)
-      return wrong_obj(reader, "a value is not a number");
+      return conic_input_wrong(reader->input, "a value is not a number");
     if (*n == room)
-      return wrong_obj(reader, "too many values");
+      return conic_input_wrong(reader->input, "too many values");
     numbers[(*n)++] = value;
   }
 }
@@ -82,7 +76,8 @@ static void store_position(obj_reader *reader, const double position[3]) {
 }
 
 /* v x y z, then nothing, a weight (of no use here), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
-static conic_status read_vertex(obj_reader *reader) {
+static conic_status read_vertex(void *data) {
+  obj_reader *reader = data;
   double values[7];
   int n;
   conic_splats *points = &reader->builder.model->points;
@@ -90,9 +85,10 @@ static conic_status read_vertex(obj_reader *reader) {
   if (status != CONIC_OK)
     return status;
   if (n < 3 || n == 5)
-    return wrong_obj(reader, "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
+    return conic_input_wrong(reader->input,
+                             "a vertex has 3 values, 4 with a weight, 6 with a colour or 7 with colour and alpha");
   if (points->count >= CONIC_MAX_POINTS)
-    return wrong_obj(reader, "too many vertices");
+    return conic_input_wrong(reader->input, "too many vertices");
   status = conic_builder_reserve_points(&reader->builder, points->count + 1);
   if (status == CONIC_OK && n >= 6)
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
@@ -106,14 +102,15 @@ static conic_status read_vertex(obj_reader *reader) {
   return CONIC_OK;
 }
 
-static conic_status read_normal(obj_reader *reader) {
+static conic_status read_normal(void *data) {
+  obj_reader *reader = data;
   double values[3];
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n != 3)
-    status = wrong_obj(reader, "a normal has 3 values");
+    status = conic_input_wrong(reader->input, "a normal has 3 values");
   if (status == CONIC_OK && reader->counts[NORMAL] >= CONIC_MAX_POINTS)
-    status = wrong_obj(reader, "too many normals");
+    status = conic_input_wrong(reader->input, "too many normals");
   if (status == CONIC_OK)
     status = conic_memory_reserve(reader->input->context, &reader->normals, reader->counts[NORMAL],
                                   reader->counts[NORMAL] + 1, &reader->normal_capacity, sizeof *reader->normals);
@@ -125,14 +122,15 @@ static conic_status read_normal(obj_reader *reader) {
 }
 
 /* Texture coordinates are counted, so that indices can be checked, and kept only where that is asked for. */
-static conic_status read_texture(obj_reader *reader) {
+static conic_status read_texture(void *data) {
+  obj_reader *reader = data;
   double values[3] = {0.0, 0.0, 0.0};
   int n;
   conic_status status = read_numbers(reader, values, 3, &n);
   if (status == CONIC_OK && n < 1)
-    return wrong_obj(reader, "a texture coordinate has 1 to 3 values");
+    return conic_input_wrong(reader->input, "a texture coordinate has 1 to 3 values");
   if (status == CONIC_OK && reader->faces && reader->counts[TEXTURE] >= CONIC_MAX_POINTS)
-    return wrong_obj(reader, "too many texture coordinates");
+    return conic_input_wrong(reader->input, "too many texture coordinates");
   if (status == CONIC_OK && reader->faces)
     status = conic_faces_add_coordinate(reader->input->context, reader->faces, values);
   reader->counts[TEXTURE]++;
@@ -159,15 +157,12 @@ static const char *parse_index(const char *text, const char *end, int64_t *index
 /* From the file's numbering, from 1 or back from the last, to indices from 0. */
 static conic_status resolve_index(obj_reader *reader, int kind, int64_t index, uint32_t *resolved) {
   uint64_t count = reader->counts[kind];
-  char what[96];
-  if (index < 0 && (uint64_t)-index > count) {
-    snprintf(what, sizeof what, "index %lld, but there are only %llu %s so far", (long long)index,
-             (unsigned long long)count, kind_names[kind]);
-    return wrong_obj(reader, what);
-  }
+  if (index < 0 && (uint64_t)-index > count)
+    return conic_input_wrong(reader->input, "index %lld, but there are only %llu %s so far", (long long)index,
+                             (unsigned long long)count, kind_names[kind]);
   uint64_t found = index < 0 ? count - (uint64_t)-index : (uint64_t)index - 1;
   if (found >= CONIC_MAX_POINTS)
-    return wrong_obj(reader, "an index is out of range");
+    return conic_input_wrong(reader->input, "an index is out of range");
   if (found >= count && found + 1 > reader->used[kind].index) {
     reader->used[kind].index = found + 1;
     reader->used[kind].line = reader->input->line;
@@ -186,7 +181,7 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
       if (c == end)
         break;
       if (*c++ != '/')
-        return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
+        return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
       if (kind == TEXTURE && c < end && *c == '/')
         continue;
       if (kind == NORMAL && c == end) /* v/t/ is written, too */
@@ -194,13 +189,13 @@ static conic_status read_corner(obj_reader *reader, const char *word, size_t len
     }
     c = parse_index(c, end, &index);
     if (!c)
-      return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
+      return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
     conic_status status = resolve_index(reader, kind, index, &resolved[kind]);
     if (status != CONIC_OK)
       return status;
   }
   if (c != end)
-    return wrong_obj(reader, "a face's corner is v, v/t, v//n or v/t/n");
+    return conic_input_wrong(reader->input, "a face's corner is v, v/t, v//n or v/t/n");
   if (resolved[NORMAL] == CONIC_NO_CORNER)
     return CONIC_OK;
   conic_status status = conic_memory_reserve(reader->input->context, &reader->corners, reader->n_corners,
@@ -220,7 +215,8 @@ static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, co
   return status;
 }
 
-static conic_status read_face(obj_reader *reader) {
+static conic_status read_face(void *data) {
+  obj_reader *reader = data;
   face_corner first = {0, 0, 0}, previous = {0, 0, 0}, current;
   for (uint64_t n = 0;; n++) {
     const char *word;
@@ -229,7 +225,7 @@ static conic_status read_face(obj_reader *reader) {
     if (status != CONIC_OK)
       return status;
     if (length == 0 || word[0] == '#')
-      return n < 3 ? wrong_obj(reader, "a face has at least 3 corners") : CONIC_OK;
+      return n < 3 ? conic_input_wrong(reader->input, "a face has at least 3 corners") : CONIC_OK;
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
       status = add_obj_triangle(reader, first, previous, current);
@@ -242,54 +238,40 @@ static conic_status read_face(obj_reader *reader) {
 }
 
 /* usemtl NAME */
-static conic_status read_material(obj_reader *reader) {
+static conic_status read_material(void *data) {
+  obj_reader *reader = data;
   const char *word;
   size_t length;
   conic_status status = conic_input_word(reader->input, &word, &length);
   if (status != CONIC_OK || !reader->faces)
     return status;
   if (conic_texts_find(&reader->faces->material_names, word, length) >= CONIC_MAX_MATERIALS)
-    return wrong_obj(reader, "too many materials");
+    return conic_input_wrong(reader->input, "too many materials");
   return conic_faces_use_material(reader->input->context, reader->faces, word, length);
 }
 
 /* mtllib FILE …: paths are relative to the model's folder. */
-static conic_status read_libraries(obj_reader *reader) {
-  const char *word, *name = reader->input->name, *slash = strrchr(name, '/');
+static conic_status read_libraries(void *data) {
+  obj_reader *reader = data;
+  const char *word;
   char path[2 * CONIC_INPUT_LONGEST_WORD];
   size_t length;
   for (;;) {
     conic_status status = conic_input_word(reader->input, &word, &length);
     if (status != CONIC_OK || length == 0 || !reader->faces)
       return status;
-    size_t folder = slash && word[0] != '/' ? (size_t)(slash + 1 - name) : 0;
-    if (folder + length > sizeof path || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
-      return wrong_obj(reader, "a material file's name is too long, or there are too many");
-    memcpy(path, name, folder);
-    memcpy(path + folder, word, length);
-    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, folder + length);
+    size_t n = conic_input_beside(reader->input, word, length, path, sizeof path);
+    if (n == 0 || reader->faces->libraries.count == CONIC_MAX_MATERIALS)
+      return conic_input_wrong(reader->input, "a material file's name is too long, or there are too many");
+    status = conic_texts_add(reader->input->context, &reader->faces->libraries, path, n);
     if (status != CONIC_OK)
       return status;
   }
 }
 
-/* One statement; those that mean nothing here are passed over by the caller's step to the next line. */
-static conic_status read_statement(obj_reader *reader) {
-  static const struct {
-    const char *keyword;
-    conic_status (*read)(obj_reader *reader);
-  } statements[] = {{"v", read_vertex}, {"vn", read_normal},       {"vt", read_texture},
-                    {"f", read_face},   {"usemtl", read_material}, {"mtllib", read_libraries}};
-  const char *word;
-  size_t length;
-  conic_status status = conic_input_word(reader->input, &word, &length);
-  if (status != CONIC_OK)
-    return status;
-  for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
-    if (length == strlen(statements[i].keyword) && memcmp(word, statements[i].keyword, length) == 0)
-      return statements[i].read(reader);
-  return CONIC_OK;
-}
+static const conic_input_statement statements[] = {{"v", read_vertex},        {"vn", read_normal},
+                                                   {"vt", read_texture},      {"f", read_face},
+                                                   {"usemtl", read_material}, {"mtllib", read_libraries}};
 
 static conic_status check_indices(const obj_reader *reader) {
   for (int kind = VERTEX; kind < N_KINDS; kind++)
@@ -299,7 +281,7 @@ static conic_status check_indices(const obj_reader *reader) {
                         (unsigned long long)reader->used[kind].index, (unsigned long long)reader->counts[kind],
                         kind_names[kind], (unsigned long long)reader->used[kind].line);
   if (reader->counts[VERTEX] == 0)
-    return wrong_obj(reader, "the file ends without a vertex");
+    return conic_input_wrong(reader->input, "the file ends without a vertex");
   return CONIC_OK;
 }
 
@@ -328,18 +310,14 @@ static conic_status gather_normals(obj_reader *reader) {
 
 conic_status conic_obj_read(conic_input *input, const conic_read_options *options, conic_model *model) {
   obj_reader reader = {.input = input};
-  int is_done = 0;
   input->continues_lines = 1;
   conic_status status = conic_builder_begin(input->context, model, 0, NULL, &reader.builder);
   if (status == CONIC_OK && options->keeps_faces) {
     status = conic_faces_create(input->context, &model->faces);
     reader.faces = model->faces;
   }
-  while (status == CONIC_OK && !is_done) {
-    status = read_statement(&reader);
-    if (status == CONIC_OK)
-      status = conic_input_next_line(input, &is_done);
-  }
+  if (status == CONIC_OK)
+    status = conic_input_read_statements(input, statements, sizeof statements / sizeof *statements, &reader);
   if (status == CONIC_OK)
     status = check_indices(&reader);
   if (status == CONIC_OK)

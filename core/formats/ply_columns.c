@@ -8,49 +8,23 @@
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 
-typedef struct column_name {
-  conic_ply_column column;
-  const char *name;
-} column_name;
-
-/* Where a file has several names of one column, the first listed here is taken. */
-static const column_name names[] = {
-    {CONIC_PLY_X, "x"},
-    {CONIC_PLY_X + 1, "y"},
-    {CONIC_PLY_X + 2, "z"},
-    {CONIC_PLY_TANGENT_U, "tu_x"},
-    {CONIC_PLY_TANGENT_U + 1, "tu_y"},
-    {CONIC_PLY_TANGENT_U + 2, "tu_z"},
-    {CONIC_PLY_TANGENT_V, "tv_x"},
-    {CONIC_PLY_TANGENT_V + 1, "tv_y"},
-    {CONIC_PLY_TANGENT_V + 2, "tv_z"},
-    {CONIC_PLY_NORMAL, "nx"},
-    {CONIC_PLY_NORMAL + 1, "ny"},
-    {CONIC_PLY_NORMAL + 2, "nz"},
-    {CONIC_PLY_RADIUS, "radius"},
-    {CONIC_PLY_RED, "red"},
-    {CONIC_PLY_RED + 1, "green"},
-    {CONIC_PLY_RED + 2, "blue"},
-    {CONIC_PLY_RED, "diffuse_red"},
-    {CONIC_PLY_RED + 1, "diffuse_green"},
-    {CONIC_PLY_RED + 2, "diffuse_blue"},
-    {CONIC_PLY_RED, "r"},
-    {CONIC_PLY_RED + 1, "g"},
-    {CONIC_PLY_RED + 2, "b"},
-    {CONIC_PLY_OPACITY, "opacity"},
-    {CONIC_PLY_SCALE, "scale_0"},
-    {CONIC_PLY_SCALE + 1, "scale_1"},
-    {CONIC_PLY_SCALE + 2, "scale_2"},
-    {CONIC_PLY_ROTATION, "rot_0"},
-    {CONIC_PLY_ROTATION + 1, "rot_1"},
-    {CONIC_PLY_ROTATION + 2, "rot_2"},
-    {CONIC_PLY_ROTATION + 3, "rot_3"},
-    {CONIC_PLY_HARMONIC, "f_dc_0"},
-    {CONIC_PLY_HARMONIC + 1, "f_dc_1"},
-    {CONIC_PLY_HARMONIC + 2, "f_dc_2"},
-};
-
-enum { N_NAMES = sizeof names / sizeof *names };
+/* What properties are called, those of consecutive columns in their order. Where a file has several names of one
+ * column, the first listed here is taken. */
+static const struct {
+  conic_ply_column first;
+  const char *names[4];
+} columns[] = {{CONIC_PLY_X, {"x", "y", "z"}},
+               {CONIC_PLY_TANGENT_U, {"tu_x", "tu_y", "tu_z"}},
+               {CONIC_PLY_TANGENT_V, {"tv_x", "tv_y", "tv_z"}},
+               {CONIC_PLY_NORMAL, {"nx", "ny", "nz"}},
+               {CONIC_PLY_RADIUS, {"radius"}},
+               {CONIC_PLY_RED, {"red", "green", "blue"}},
+               {CONIC_PLY_RED, {"diffuse_red", "diffuse_green", "diffuse_blue"}},
+               {CONIC_PLY_RED, {"r", "g", "b"}},
+               {CONIC_PLY_OPACITY, {"opacity"}},
+               {CONIC_PLY_SCALE, {"scale_0", "scale_1", "scale_2"}},
+               {CONIC_PLY_ROTATION, {"rot_0", "rot_1", "rot_2", "rot_3"}},
+               {CONIC_PLY_HARMONIC, {"f_dc_0", "f_dc_1", "f_dc_2"}}};
 
 static int has_columns(const conic_ply_layout *layout, conic_ply_column first, int n) {
   for (int i = 0; i < n; i++)
@@ -64,26 +38,28 @@ static void drop_columns(conic_ply_layout *layout, conic_ply_column first, int n
     layout->property[(int)first + i] = -1;
 }
 
-static void find_columns(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
-  for (int i = 0; i < CONIC_PLY_N_COLUMNS; i++)
-    layout->property[i] = -1;
-  for (int i = 0; i < N_NAMES; i++) {
-    int i_property = conic_ply_find_property(header, vertices, names[i].name);
-    if (i_property < 0 || layout->property[names[i].column] >= 0)
-      continue;
-    const conic_ply_property *property = &header->properties[vertices->first_property + (size_t)i_property];
-    if (property->is_list)
-      continue;
-    layout->property[names[i].column] = i_property;
-    layout->type[names[i].column] = property->type;
-  }
-}
-
 /* Whether the vertices have a value of that name; which property it is. */
 static int find_value(const conic_ply_header *header, const conic_ply_element *vertices, const char *name,
                       int *i_property) {
   *i_property = conic_ply_find_property(header, vertices, name);
   return *i_property >= 0 && !header->properties[vertices->first_property + (size_t)*i_property].is_list;
+}
+
+static void set_column(const conic_ply_header *header, const conic_ply_element *vertices, int column, int i_property,
+                       conic_ply_layout *layout) {
+  layout->property[column] = i_property;
+  layout->type[column] = header->properties[vertices->first_property + (size_t)i_property].type;
+}
+
+static void find_columns(const conic_ply_header *header, const conic_ply_element *vertices, conic_ply_layout *layout) {
+  for (int i = 0; i < CONIC_PLY_N_COLUMNS; i++)
+    layout->property[i] = -1;
+  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
+    for (int k = 0; k < 4 && columns[i].names[k]; k++) {
+      int column = (int)columns[i].first + k, i_property;
+      if (layout->property[column] < 0 && find_value(header, vertices, columns[i].names[k], &i_property))
+        set_column(header, vertices, column, i_property, layout);
+    }
 }
 
 /* The first pair of names of which both are there. */
@@ -96,10 +72,8 @@ static void find_coordinates(const conic_ply_header *header, const conic_ply_ele
         !find_value(header, vertices, pairs[i][1], &of_pair[1]))
       continue;
     layout->has_coordinates = 1;
-    for (int k = 0; k < 2; k++) {
-      layout->property[CONIC_PLY_COORDINATE + k] = of_pair[k];
-      layout->type[CONIC_PLY_COORDINATE + k] = header->properties[vertices->first_property + (size_t)of_pair[k]].type;
-    }
+    for (int k = 0; k < 2; k++)
+      set_column(header, vertices, CONIC_PLY_COORDINATE + k, of_pair[k], layout);
   }
 }
 

@@ -1,9 +1,7 @@
 #include "core/formats/ply_texture.h"
 
-#include <stdio.h>
 #include <string.h>
 
-#include "core/base/message.h"
 #include "core/splats/builder.h"
 
 /* The property of that name which is a list, or which is none; -1 where there is none such. */
@@ -30,14 +28,11 @@ int conic_ply_has_texture_corners(const conic_ply_header *header) {
 
 /* Names are relative to the model's folder. */
 static conic_status add_picture(const conic_input *input, const char *file, conic_faces *faces) {
-  const char *name = input->name, *slash = strrchr(name, '/');
   char path[2 * CONIC_INPUT_LONGEST_WORD];
-  int folder = slash && file[0] != '/' ? (int)(slash + 1 - name) : 0;
-  int n = snprintf(path, sizeof path, "%.*s%s", folder, name, file);
-  if (n < 0 || (size_t)n >= sizeof path)
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the path of a texture is too long (line %llu)",
-                      input->name, (unsigned long long)input->line);
-  return conic_texts_add(input->context, &faces->pictures, path, (size_t)n);
+  size_t n = conic_input_beside(input, file, strlen(file), path, sizeof path);
+  if (n == 0)
+    return conic_input_wrong(input, "the path of a texture is too long");
+  return conic_texts_add(input->context, &faces->pictures, path, n);
 }
 
 conic_status conic_ply_begin_textures(const conic_input *input, const conic_ply_header *header, conic_model *model) {

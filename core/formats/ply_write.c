@@ -151,9 +151,9 @@ static void begin_rows(conic_splats_writer *writer, const conic_splats *first) {
   writer->has_header = 1;
 }
 
-static void put_bytes(row_cursor *row, uint64_t bits, int n_bytes) {
-  for (int i = 0; i < n_bytes; i++)
-    *row->next++ = (char)(unsigned char)(bits >> 8 * i);
+static void put_bytes(row_cursor *row, const void *value, size_t n_bytes) {
+  memcpy(row->next, value, n_bytes);
+  row->next += n_bytes;
 }
 
 static void put_text_end(row_cursor *row, size_t length) {
@@ -162,30 +162,24 @@ static void put_text_end(row_cursor *row, size_t length) {
 }
 
 static void put_float(row_cursor *row, float value) {
-  uint32_t bits;
-  if (row->encoding == CONIC_PLY_ASCII) {
+  if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print_float(row->next, value));
-    return;
-  }
-  memcpy(&bits, &value, sizeof bits);
-  put_bytes(row, bits, 4);
+  else
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_double(row_cursor *row, double value) {
-  uint64_t bits;
-  if (row->encoding == CONIC_PLY_ASCII) {
+  if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print(row->next, value));
-    return;
-  }
-  memcpy(&bits, &value, sizeof bits);
-  put_bytes(row, bits, 8);
+  else
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_byte(row_cursor *row, uint8_t value) {
   if (row->encoding == CONIC_PLY_ASCII)
     put_text_end(row, conic_number_print_float(row->next, (float)value));
   else
-    put_bytes(row, value, 1);
+    put_bytes(row, &value, sizeof value);
 }
 
 static void put_vector(row_cursor *row, float *const vector[3], size_t i) {
@@ -291,16 +285,13 @@ conic_status conic_splats_writer_append(conic_splats_writer *writer, const conic
 }
 
 conic_status conic_splats_writer_finish(conic_splats_writer *writer) {
-  conic_status status;
-  if (writer->written < writer->count) {
+  conic_status status = CONIC_OK;
+  if (writer->written < writer->count)
     status = conic_fail(writer->context, CONIC_ERROR_ARGUMENT, "%s: %zu splats were announced, but %zu written",
                         writer->path, writer->count, writer->written);
-    conic_splats_writer_abandon(writer);
-    return status;
-  }
-  if (!writer->has_header)
+  else if (!writer->has_header)
     begin_rows(writer, NULL);
-  status = conic_output_commit(writer->output);
+  status = conic_output_end(writer->output, status);
   writer->output = NULL;
   conic_splats_writer_abandon(writer);
   return status;

@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "core/base/message.h"
 #include "core/files/number.h"
 #include "core/formats/raw_colors.h"
 #include "core/splats/builder.h"
@@ -20,11 +19,6 @@ typedef struct xyz_reader {
   double block[BLOCK][MAX_VALUES];
 } xyz_reader;
 
-static conic_status wrong_row(const xyz_reader *reader, const char *what) {
-  return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", reader->input->name, what,
-                    (unsigned long long)reader->input->line);
-}
-
 static int is_comment(const char *word, size_t length) {
   return length == 0 || word[0] == '#' || (length >= 2 && word[0] == '/' && word[1] == '/');
 }
@@ -41,9 +35,9 @@ static conic_status read_values(xyz_reader *reader, double *values, int *n) {
     if (length == 0 || (*n == 0 && is_comment(word, length)))
       return CONIC_OK;
     if (conic_number_parse(word, length, &value) != length)
-      return wrong_row(reader, "a value is not a number");
+      return conic_input_wrong(reader->input, "a value is not a number");
     if (*n == MAX_VALUES)
-      return wrong_row(reader, "a line has more than 9 values");
+      return conic_input_wrong(reader->input, "a line has more than 9 values");
     values[*n] = value;
   }
 }
@@ -52,26 +46,21 @@ static conic_status read_values(xyz_reader *reader, double *values, int *n) {
 static conic_status take_count(xyz_reader *reader, double value) {
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
   if (!(value >= 0.0 && value <= (double)CONIC_MAX_POINTS) || value != (double)(uint64_t)value)
-    return wrong_row(reader, "the number of points is no whole number in range");
+    return conic_input_wrong(reader->input, "the number of points is no whole number in range");
   reader->has_count = 1;
   reader->n_declared = (uint64_t)value;
   reader->count_line = reader->input->line;
   if (remaining < UINT64_MAX && reader->n_declared > (remaining + 1) / 6)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: the file is too short for the %llu points that it declares (line %llu)", reader->input->name,
-                      (unsigned long long)reader->n_declared, (unsigned long long)reader->count_line);
+    return conic_input_wrong(reader->input, "the file is too short for the %llu points that it declares",
+                             (unsigned long long)reader->n_declared);
   return CONIC_OK;
 }
 
 static conic_status check_row(xyz_reader *reader, int n) {
   if (reader->n_values && n != reader->n_values)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: a line has %d values, those before it have %d (line %llu)", reader->input->name, n,
-                      reader->n_values, (unsigned long long)reader->input->line);
+    return conic_input_wrong(reader->input, "a line has %d values, those before it have %d", n, reader->n_values);
   if (n < 3 || n == 5 || n == 8)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: a line has %d values; 3, 4, 6, 7 or 9 are understood (line %llu)", reader->input->name, n,
-                      (unsigned long long)reader->input->line);
+    return conic_input_wrong(reader->input, "a line has %d values; 3, 4, 6, 7 or 9 are understood", n);
   reader->n_values = n;
   return CONIC_OK;
 }
@@ -151,7 +140,7 @@ static conic_status append_block(xyz_reader *reader, size_t n_rows) {
   conic_splats *points = &reader->builder.model->points;
   conic_status status = CONIC_OK;
   if (conic_builder_points(&reader->builder) + n_rows > CONIC_MAX_POINTS)
-    return wrong_row(reader, "too many points");
+    return conic_input_wrong(reader->input, "too many points");
   if (conic_builder_points(&reader->builder) == 0)
     status = choose_columns(reader, n_rows);
   if (status == CONIC_OK)
@@ -168,12 +157,10 @@ static conic_status append_block(xyz_reader *reader, size_t n_rows) {
 static conic_status check_count(const xyz_reader *reader) {
   uint64_t count = conic_builder_points(&reader->builder);
   if (reader->has_count && count != reader->n_declared)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: %llu points, where line %llu declares %llu (line %llu)", reader->input->name,
-                      (unsigned long long)count, (unsigned long long)reader->count_line,
-                      (unsigned long long)reader->n_declared, (unsigned long long)reader->input->line);
+    return conic_input_wrong(reader->input, "%llu points, where line %llu declares %llu", (unsigned long long)count,
+                             (unsigned long long)reader->count_line, (unsigned long long)reader->n_declared);
   if (count == 0 && !reader->has_count)
-    return wrong_row(reader, "the file ends without a point");
+    return conic_input_wrong(reader->input, "the file ends without a point");
   return CONIC_OK;
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "conic/image.h"
+#include "core/base/color.h"
 
 /* Sample i of a row, as bits. */
 static inline uint32_t conic_bits_at(const unsigned char *row, size_t i) {
@@ -25,6 +26,18 @@ static inline double conic_sample_difference(uint32_t a_bits, uint32_t b_bits, i
   memcpy(&b, &b_bits, sizeof b);
   double difference = fabs((double)a - (double)b);
   return difference >= 0.0 ? difference : (double)INFINITY;
+}
+
+/* A colour as a screen shows it, 0 to 1; NaN is -1, which no colour is. */
+static inline double conic_screen_value(float linear) {
+  if (!(linear > 0.0f))
+    return linear <= 0.0f ? 0.0 : -1.0;
+  return linear >= 1.0f ? 1.0 : conic_srgb_encode((double)linear);
+}
+
+static inline void conic_add_weighted(double *restrict sum, const double *restrict values, double weight, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    sum[i] += weight * values[i];
 }
 
 /* Sum of the squared differences and mean structural similarity of R, G, B. Both images have rgba and one size. Errors:

@@ -201,17 +201,12 @@ static void load_row(const conic_image *image, ptrdiff_t x_begin, ptrdiff_t y, s
   }
 }
 
-static void add_weighted(double *restrict sum, const double *restrict values, double weight, size_t n) {
-  for (size_t i = 0; i < n; i++)
-    sum[i] += weight * values[i];
-}
-
 static void filter_across(const flip_work *work, flip_tile *tile, size_t i_row, size_t n) {
   for (int k = 0; k < N_FILTERS; k++) {
     double *sums = tile->across[i_row % N_TAPS][k];
     memset(sums, 0, n * sizeof *sums);
     for (size_t t = 0; t < N_TAPS; t++)
-      add_weighted(sums, tile->opponent[filter_source[k]] + t, work->weights[k][t], n);
+      conic_add_weighted(sums, tile->opponent[filter_source[k]] + t, work->weights[k][t], n);
   }
 }
 
@@ -231,7 +226,8 @@ static void filter_down(const flip_work *work, const flip_tile *tile, size_t i_r
   for (int k = 0; k < N_SUMS; k++) {
     memset(sums[k], 0, n * sizeof **sums);
     for (size_t t = 0; t < N_TAPS; t++)
-      add_weighted(sums[k], tile->across[(i_row + t) % N_TAPS][parts[k].across], work->weights[parts[k].down][t], n);
+      conic_add_weighted(sums[k], tile->across[(i_row + t) % N_TAPS][parts[k].across], work->weights[parts[k].down][t],
+                         n);
   }
 }
 

@@ -8,7 +8,6 @@
 
 #include "core/base/memory.h"
 #include "core/files/file.h"
-#include "core/image/image_exr_attributes.h"
 #include "core/image/image_exr_stream.h"
 
 struct conic_deep_writer {
@@ -132,12 +131,9 @@ static void release_writer(conic_deep_writer *writer) {
 
 conic_status conic_deep_finish(conic_deep_writer *writer) {
   exr_result_t result = exr_finish(&writer->file);
-  conic_status status = CONIC_OK;
-  if (result != EXR_ERR_SUCCESS) {
-    status = conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
-    conic_output_abandon(writer->output);
-  } else
-    status = conic_output_commit(writer->output);
+  conic_status status =
+      result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&writer->stream, result, "write", CONIC_ERROR_ARGUMENT);
+  status = conic_output_end(writer->output, status);
   release_writer(writer);
   return status;
 }

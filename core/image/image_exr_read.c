@@ -14,11 +14,6 @@
 #include "core/image/image_common.h"
 #include "core/image/image_exr_stream.h"
 
-/* Where a channel of the file goes; plane < 0: nowhere. */
-typedef struct exr_target {
-  int plane, channel;
-} exr_target;
-
 typedef struct exr_reader {
   conic_exr_stream stream;
   exr_context_t file;
@@ -34,16 +29,8 @@ typedef struct exr_reader {
   atomic_ullong failed_bytes; /* what the chunk that could not be decoded is unpacked to */
 } exr_reader;
 
-static exr_target find_target(const exr_reader *reader, const char *name) {
-  if (reader->is_luminance && strcmp(name, "Y") == 0)
-    return (exr_target){CONIC_PLANE_RGBA, 0};
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
-    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
-    for (int c = 0; c < plane->n_channels; c++)
-      if (strcmp(plane->channels[c], name) == 0)
-        return (exr_target){i, c};
-  }
-  return (exr_target){-1, -1};
+static conic_exr_target find_target(const exr_reader *reader, const char *name) {
+  return conic_exr_find_channel(reader->is_luminance && strcmp(name, "Y") == 0 ? "R" : name);
 }
 
 static int has_channel(const exr_attr_chlist_t *channels, const char *name) {
@@ -66,7 +53,7 @@ static conic_status choose_planes(conic_context *context, exr_reader *reader, un
   *planes = 0;
   for (int i = 0; i < channels->num_channels; i++) {
     const exr_attr_chlist_entry_t *channel = &channels->entries[i];
-    exr_target target = find_target(reader, channel->name.str);
+    conic_exr_target target = find_target(reader, channel->name.str);
     if (target.plane < 0) {
       conic_log(context, CONIC_LOG_INFO, "%s: channel %s is ignored", path, channel->name.str);
       continue;
@@ -120,7 +107,7 @@ static void point_channels(const exr_reader *reader, exr_decode_pipeline_t *pipe
   const conic_image *image = reader->image;
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[i];
-    exr_target target = find_target(reader, channel->channel_name);
+    conic_exr_target target = find_target(reader, channel->channel_name);
     channel->decode_to_ptr = NULL;
     if (target.plane < 0)
       continue;

@@ -1,5 +1,5 @@
-/* What the EXR writer and reader share: file access by our own functions, and the library's message kept for the end.
- */
+/* What the EXR writers and the reader share: file access by our own functions, the library's message kept for the end,
+ * and an image's attributes. */
 #ifndef CONIC_IMAGE_EXR_STREAM_H
 #define CONIC_IMAGE_EXR_STREAM_H
 
@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "conic/context.h"
+#include "conic/image.h"
 
 typedef struct conic_exr_stream {
   conic_context *context;
@@ -22,6 +22,13 @@ typedef struct conic_exr_stream {
   char message[200]; /* the library's first, as its later ones only repeat that something failed */
 } conic_exr_stream;
 
+/* Which of an image's channels a file's is; plane < 0: none. */
+typedef struct conic_exr_target {
+  int plane, channel;
+} conic_exr_target;
+
+conic_exr_target conic_exr_find_channel(const char *name);
+
 /* Fills `stream`, and `settings` with the functions that work on it. */
 void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, const char *path, FILE *file,
                            exr_context_initializer_t *settings);
@@ -29,6 +36,11 @@ void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, con
 /* Logs what `result` means and returns the status: MEMORY, UNSUPPORTED, or IO where access to the file failed while
  * `doing` ("write"), else `otherwise`. */
 conic_status conic_exr_fail(conic_exr_stream *stream, exr_result_t result, const char *doing, conic_status otherwise);
+
+/* For the header of a file that is being written: before the part is added, what the names of the image's attributes
+ * need; and after the required attributes are set, the attributes. */
+exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image *image);
+exr_result_t conic_exr_add_attributes(exr_context_t file, const conic_image *image);
 
 #endif
 #endif

@@ -9,7 +9,6 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
-#include "core/image/image_exr_attributes.h"
 #include "core/image/image_exr_stream.h"
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
@@ -60,26 +59,13 @@ static exr_result_t write_header(exr_context_t file, const conic_image *image) {
   return result;
 }
 
-/* Where channel `name` of the image's first pixel lies, and how many bytes a pixel of its plane has. */
-static const uint8_t *find_channel(const conic_image *image, const char *name, int *pixel_bytes) {
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
-    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
-    for (int c = 0; image->planes[i] && c < plane->n_channels; c++)
-      if (strcmp(plane->channels[c], name) == 0) {
-        *pixel_bytes = plane->n_channels * 4;
-        return (const uint8_t *)image->planes[i] + (size_t)c * 4;
-      }
-  }
-  return NULL;
-}
-
 static void point_channels(exr_encode_pipeline_t *pipeline, const conic_image *image) {
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[i];
-    int pixel_bytes = 0;
-    const uint8_t *first = find_channel(image, channel->channel_name, &pixel_bytes);
-    channel->user_pixel_stride = pixel_bytes;
-    channel->user_line_stride = pixel_bytes * image->width;
+    conic_exr_target from = conic_exr_find_channel(channel->channel_name);
+    const uint8_t *first = (const uint8_t *)image->planes[from.plane] + (size_t)from.channel * 4;
+    channel->user_pixel_stride = conic_plane_describe((conic_plane)from.plane)->n_channels * 4;
+    channel->user_line_stride = channel->user_pixel_stride * image->width;
     channel->user_bytes_per_element = 4;
     channel->user_data_type = channel->data_type;
     channel->encode_from_ptr = first + (size_t)pipeline->chunk.start_y * (size_t)channel->user_line_stride;
@@ -157,12 +143,7 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
-  status = write_stream(context, path, conic_output_stream(output), image);
-  if (status != CONIC_OK) {
-    conic_output_abandon(output);
-    return status;
-  }
-  return conic_output_commit(output);
+  return conic_output_end(output, write_stream(context, path, conic_output_stream(output), image));
 }
 
 conic_status conic_exr_check(conic_context *context, const char *path) {

@@ -5,6 +5,7 @@
 
 #include "conic/image.h"
 #include "core/base/message.h"
+#include "core/files/file.h"
 #include "core/image/image_common.h"
 #include "core/image/image_exr.h"
 #include "core/image/image_foreign.h"
@@ -15,16 +16,6 @@ static const char *ending_of(const char *path) {
   const char *slash = strrchr(path, '/');
   const char *dot = strrchr(slash ? slash : path, '.');
   return dot ? dot + 1 : "";
-}
-
-/* Compares ASCII letters without case; the C library's way depends on the locale. */
-static int is_ending(const char *ending, const char *lower_case) {
-  for (; *ending && *lower_case; ending++, lower_case++) {
-    int c = *ending >= 'A' && *ending <= 'Z' ? *ending - 'A' + 'a' : *ending;
-    if (c != *lower_case)
-      return 0;
-  }
-  return !*ending && !*lower_case;
 }
 
 static conic_status check_image(conic_context *context, const char *path, const conic_image *image) {
@@ -50,10 +41,9 @@ conic_status conic_image_check_output(conic_context *context, const char *path, 
   conic_status status = check_name(context, path);
   if (status != CONIC_OK)
     return status;
-  const char *ending = ending_of(path);
-  if (is_ending(ending, "exr"))
+  if (conic_file_has_ending(path, "exr"))
     return conic_exr_check(context, path);
-  if (is_ending(ending, "pfm"))
+  if (conic_file_has_ending(path, "pfm"))
     return conic_pfm_check(context, path, planes);
   return conic_foreign_check(context, path, planes);
 }
@@ -64,10 +54,9 @@ conic_status conic_image_write(conic_context *context, const char *path, const c
     status = check_image(context, path, image);
   if (status != CONIC_OK)
     return status;
-  const char *ending = ending_of(path);
-  if (is_ending(ending, "exr"))
+  if (conic_file_has_ending(path, "exr"))
     return conic_exr_write(context, path, image);
-  if (is_ending(ending, "pfm"))
+  if (conic_file_has_ending(path, "pfm"))
     return conic_pfm_write(context, path, image);
   return conic_foreign_write(context, path, image);
 }

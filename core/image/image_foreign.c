@@ -125,14 +125,8 @@ static int is_known_image(const char *path) {
     size_t n_bytes;
   } starts[] = {{"\x89PNG", 4},     {"\xff\xd8\xff", 3},     {"II*\0", 4}, {"MM\0*", 4},
                 {"#?RADIANCE", 10}, {"\x76\x2f\x31\x01", 4}, {"GIF8", 4},  {"BM", 2}};
-  char start[16] = {0};
-  FILE *file = fopen(path, "rb");
-  if (!file)
-    return 0;
-  size_t n = fread(start, 1, sizeof start, file);
-  fclose(file);
   for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++)
-    if (n >= starts[i].n_bytes && memcmp(start, starts[i].bytes, starts[i].n_bytes) == 0)
+    if (conic_file_begins_with(path, starts[i].bytes, starts[i].n_bytes))
       return 1;
   return 0;
 }

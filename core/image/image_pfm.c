@@ -54,11 +54,7 @@ conic_status conic_pfm_write(conic_context *context, const char *path, const con
   fprintf(stream, "%s\n%d %d\n-1.0\n", plane == CONIC_PLANE_RGBA ? "PF" : "Pf", image->width, image->height);
   int n_channels = conic_plane_describe(plane)->n_channels;
   status = write_rows(context, stream, image, image->planes[plane], n_channels, n_channels == 4 ? 3 : 1);
-  if (status != CONIC_OK) {
-    conic_output_abandon(output);
-    return status;
-  }
-  return conic_output_commit(output);
+  return conic_output_end(output, status);
 }
 
 static int is_space(int c) {

@@ -2,7 +2,6 @@
  * channel at a time, row by row in memory of a few rows. */
 #include <string.h>
 
-#include "core/base/color.h"
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/image/compare.h"
@@ -31,21 +30,14 @@ typedef struct color_work {
   channel_work channels[3];
 } color_work;
 
-/* As a screen shows it, 0 to 1; NaN is -1, which no colour is. */
-static double encode(float linear) {
-  if (!(linear > 0.0f))
-    return linear <= 0.0f ? 0.0 : -1.0;
-  return linear >= 1.0f ? 1.0 : conic_srgb_encode((double)linear);
-}
-
 static void encode_row(const color_work *work, int channel, size_t y) {
   const channel_work *buffers = &work->channels[channel];
   size_t first = y * work->width * 4 + (size_t)channel;
   const float *a = (const float *)work->a->planes[CONIC_PLANE_RGBA] + first;
   const float *b = (const float *)work->b->planes[CONIC_PLANE_RGBA] + first;
   for (size_t x = 0; x < work->width; x++) {
-    buffers->a[x] = encode(a[4 * x]);
-    buffers->b[x] = conic_same_bits(a[4 * x], b[4 * x]) ? buffers->a[x] : encode(b[4 * x]);
+    buffers->a[x] = conic_screen_value(a[4 * x]);
+    buffers->b[x] = conic_same_bits(a[4 * x], b[4 * x]) ? buffers->a[x] : conic_screen_value(b[4 * x]);
   }
 }
 
@@ -69,17 +61,13 @@ static void find_moments(const color_work *work, const channel_work *buffers) {
   }
 }
 
-static void add_weighted(double *restrict sum, const double *restrict values, double weight, size_t n) {
-  for (size_t i = 0; i < n; i++)
-    sum[i] += weight * values[i];
-}
-
 static void filter_across(const color_work *work, const channel_work *buffers, size_t y) {
   double *row = buffers->filtered + y % WINDOW * N_MOMENTS * work->n_across;
   memset(row, 0, N_MOMENTS * work->n_across * sizeof *row);
   for (size_t m = 0; m < N_MOMENTS; m++)
     for (size_t k = 0; k < WINDOW; k++)
-      add_weighted(row + m * work->n_across, buffers->moments + m * work->width + k, window_weight[k], work->n_across);
+      conic_add_weighted(row + m * work->n_across, buffers->moments + m * work->width + k, window_weight[k],
+                         work->n_across);
 }
 
 /* The windows whose last row is y. */
@@ -87,7 +75,7 @@ static void filter_down(const color_work *work, const channel_work *buffers, siz
   size_t n = N_MOMENTS * work->n_across;
   memset(buffers->windows, 0, n * sizeof *buffers->windows);
   for (size_t k = 0; k < WINDOW; k++)
-    add_weighted(buffers->windows, buffers->filtered + (y + 1 - WINDOW + k) % WINDOW * n, window_weight[k], n);
+    conic_add_weighted(buffers->windows, buffers->filtered + (y + 1 - WINDOW + k) % WINDOW * n, window_weight[k], n);
 }
 
 /* The index of one window from its means of a, b, a², b², ab. */

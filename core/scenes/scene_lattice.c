@@ -42,9 +42,8 @@ static void count_point(void *cookie, const double point[3]) {
   ++*(uint64_t *)cookie;
 }
 
-static void count_slab(void *data, size_t i_item, int i_thread) {
+static void count_slab(void *data, size_t i_slab, int i_thread) {
   const counting *work = data;
-  size_t i_slab = i_item;
   uint64_t n = 0;
   (void)i_thread;
   work->walk(work->surface, work->lattice, i_slab, count_point, &n);
@@ -55,9 +54,10 @@ static void count_slab(void *data, size_t i_item, int i_thread) {
 static conic_status count_cells(conic_context *context, conic_lattice_walk *walk, const void *surface,
                                 conic_lattice *lattice) {
   counting work = {lattice, walk, surface};
+  size_t slabs_a_run = 8 * (size_t)conic_context_threads(context);
   lattice->found_before[0] = 0;
-  conic_status status = conic_parallel_runs(context, "survey", 0.0, 1.0, lattice->n_cells,
-                                            8 * (size_t)conic_context_threads(context), count_slab, &work);
+  conic_status status =
+      conic_parallel_runs(context, "survey", 0.0, 1.0, lattice->n_cells, slabs_a_run, count_slab, &work);
   if (status != CONIC_OK)
     return status;
   for (size_t i = 0; i < lattice->n_cells; i++)

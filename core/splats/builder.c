@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/splats/splats_gather.h"
 
 conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
                                  const conic_delivery *delivery, conic_builder *builder) {
@@ -24,35 +25,11 @@ conic_status conic_builder_deliver(conic_builder *builder, int is_last) {
   return status;
 }
 
-/* Moves the points into arrays for `capacity` of them with the optional arrays of `fields`. conic_splats_append says
- * what stands in the new ones. */
 static conic_status move_points(conic_builder *builder, size_t capacity, unsigned fields) {
-  conic_splats larger, *points = &builder->model->points;
-  size_t count = points->count;
-  conic_status status =
-      conic_splats_allocate(builder->context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
-  if (status != CONIC_OK)
-    return status;
-  float **to[] = {larger.position, larger.tangent_u, larger.tangent_v, larger.normal, larger.color};
-  float **from[] = {points->position, points->tangent_u, points->tangent_v, points->normal, points->color};
-  for (int i = 0; i < 15; i++) {
-    float *target = to[i / 3][i % 3], *source = from[i / 3][i % 3];
-    for (size_t k = 0; target && !source && k < count; k++)
-      target[k] = i / 3 == 4 ? 1.0f : 0.0f;
-    if (target && source && count)
-      memcpy(target, source, count * sizeof *target);
-  }
-  for (size_t k = 0; larger.opacity && k < count; k++)
-    larger.opacity[k] = points->opacity ? points->opacity[k] : 1.0f;
-  memcpy(larger.origin, points->origin, sizeof larger.origin);
-  larger.n_clips = points->n_clips;
-  larger.clips = points->clips; /* not an array a point */
-  points->clips = NULL;
-  conic_splats_release(builder->context, points);
-  *points = larger;
-  points->count = count;
-  builder->point_capacity = capacity;
-  return CONIC_OK;
+  conic_status status = conic_splats_resize(builder->context, &builder->model->points, capacity, fields);
+  if (status == CONIC_OK)
+    builder->point_capacity = capacity;
+  return status;
 }
 
 conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count) {
@@ -85,27 +62,14 @@ conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *cl
   return CONIC_OK;
 }
 
-conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count) {
-  conic_model *model = builder->model;
-  if (count <= builder->triangle_capacity)
-    return CONIC_OK;
-  conic_status status =
-      conic_memory_grow(builder->context, &model->triangles, model->n_triangles, count, sizeof *model->triangles);
-  if (status == CONIC_OK)
-    builder->triangle_capacity = count;
-  return status;
-}
-
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c) {
   conic_model *model = builder->model;
-  if (model->n_triangles == builder->triangle_capacity) {
-    conic_status status = conic_builder_reserve_triangles(builder, model->n_triangles + model->n_triangles / 2 + 1024);
-    if (status != CONIC_OK)
-      return status;
-  }
-  uint32_t *triangle = model->triangles[model->n_triangles++];
-  triangle[0] = a;
-  triangle[1] = b;
-  triangle[2] = c;
+  conic_status status =
+      conic_memory_reserve(builder->context, &model->triangles, model->n_triangles, model->n_triangles + 1,
+                           &builder->triangle_capacity, sizeof *model->triangles);
+  if (status != CONIC_OK)
+    return status;
+  const uint32_t triangle[3] = {a, b, c};
+  memcpy(model->triangles[model->n_triangles++], triangle, sizeof triangle);
   return CONIC_OK;
 }

@@ -50,9 +50,6 @@ conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field 
 /* Appends a record of clip lines; they come in the order of their splats. Errors: MEMORY. */
 conic_status conic_builder_add_clip(conic_builder *builder, const conic_clip *clip);
 
-/* Room for `count` triangles in all. Errors: MEMORY. */
-conic_status conic_builder_reserve_triangles(conic_builder *builder, size_t count);
-
 /* Errors: MEMORY. */
 conic_status conic_builder_add_triangle(conic_builder *builder, uint32_t a, uint32_t b, uint32_t c);
 

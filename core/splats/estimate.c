@@ -21,17 +21,16 @@ void conic_estimate_options_init_sized(conic_estimate_options *options, size_t s
   conic_options_give(options, size, &own);
 }
 
-int conic_unit_vector(float x, float y, float z, double unit[3]) {
-  const double v[3] = {(double)x, (double)y, (double)z};
-  memcpy(unit, v, sizeof v);
+int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    unit[axis] = (double)arrays[axis][i];
   return conic_normalize(unit);
 }
 
 /* The unit normal of tangent axes; 0 where they span no ellipse. */
 static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], size_t point, double normal[3]) {
   double u[3], v[3];
-  if (!conic_unit_vector(tangent_u[0][point], tangent_u[1][point], tangent_u[2][point], u) ||
-      !conic_unit_vector(tangent_v[0][point], tangent_v[1][point], tangent_v[2][point], v))
+  if (!conic_unit_vector(tangent_u, point, u) || !conic_unit_vector(tangent_v, point, v))
     return 0;
   conic_cross(u, v, normal);
   return conic_normalize(normal);
@@ -41,10 +40,8 @@ static int axes_normal(float *const tangent_u[3], float *const tangent_v[3], siz
  * draws what it can of them. */
 static int has_good_axes(const conic_splats *points, size_t point) {
   double unit[3];
-  return points->tangent_u[0] &&
-         conic_unit_vector(points->tangent_u[0][point], points->tangent_u[1][point], points->tangent_u[2][point],
-                           unit) &&
-         conic_unit_vector(points->tangent_v[0][point], points->tangent_v[1][point], points->tangent_v[2][point], unit);
+  return points->tangent_u[0] && conic_unit_vector(points->tangent_u, point, unit) &&
+         conic_unit_vector(points->tangent_v, point, unit);
 }
 
 static int has_bad_color(const conic_splats *points, size_t point) {
@@ -72,8 +69,7 @@ static int known_normal(const conic_estimate *estimate, size_t point, double nor
     return axes_normal(points->tangent_u, points->tangent_v, point, normal);
   if (state == CONIC_POINT_FACED)
     return axes_normal(estimate->tangent_u, estimate->tangent_v, point, normal);
-  return points->normal[0] &&
-         conic_unit_vector(points->normal[0][point], points->normal[1][point], points->normal[2][point], normal);
+  return points->normal[0] && conic_unit_vector(points->normal, point, normal);
 }
 
 /* Marks the slots that the raw points need, and takes their normals from the first of their points that has one.
@@ -160,8 +156,7 @@ static size_t count_zero(const conic_estimate *estimate) {
     double unit[3];
     if (estimate->states[i] == CONIC_POINT_NOWHERE || estimate->states[i] == CONIC_POINT_KEPT)
       continue;
-    n += points->tangent_u[0] || (points->normal[0] && !conic_unit_vector(points->normal[0][i], points->normal[1][i],
-                                                                          points->normal[2][i], unit));
+    n += points->tangent_u[0] || (points->normal[0] && !conic_unit_vector(points->normal, i, unit));
   }
   return n;
 }

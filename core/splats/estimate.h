@@ -32,8 +32,8 @@ typedef struct conic_estimate {
 #define CONIC_OUTLINE_BLEND 1.4
 #define CONIC_OUTLINE_RATIO 0.2 /* the least ratio of minor to major axis */
 
-/* The unit vector along (x, y, z); 0 where there is none. */
-int conic_unit_vector(float x, float y, float z, double unit[3]);
+/* The unit vector along vector i of three arrays; 0 where there is none. */
+int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]);
 
 /* Gives the RAW vertices that have a face with an area their axes: FACED. Errors: ARGUMENT (more triangles than can be
  * numbered, an index out of range), MEMORY, CANCELLED. */

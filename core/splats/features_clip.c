@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
 #include "core/splats/features.h"
+#include "core/splats/incidence.h"
 
 /* A crease matters to a splat that would touch it if it were twice as large: the prefilter widens splats. */
 #define REACH 2.0
@@ -47,28 +48,6 @@ static void add_line(const conic_splats *points, const vertex_axes *at, const co
   conic_clip_choice_add(choice, line, REACH * cutoff);
 }
 
-/* The triangles of each vertex of the split mesh. */
-typedef struct ring {
-  size_t *starts;
-  uint32_t *triangles;
-} ring;
-
-static int make_ring(conic_context *context, const conic_model *model, ring *r) {
-  r->starts = conic_memory_allocate_zeroed(context, model->points.count + 2, sizeof *r->starts);
-  r->triangles = conic_memory_allocate(context, model->n_triangles, 3 * sizeof *r->triangles);
-  if (!r->starts || !r->triangles)
-    return 0;
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      r->starts[model->triangles[i][j] + 2]++;
-  for (size_t vertex = 0; vertex < model->points.count; vertex++)
-    r->starts[vertex + 2] += r->starts[vertex + 1];
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      r->triangles[r->starts[model->triangles[i][j] + 1]++] = (uint32_t)i;
-  return 1;
-}
-
 static void add_creases_of(const conic_splats *points, const conic_creases *creases, size_t vertex,
                            const vertex_axes *at, double cutoff, conic_clip_choice *choice) {
   for (size_t i = creases->starts[vertex]; i < creases->starts[vertex + 1]; i++)
@@ -94,8 +73,8 @@ static size_t add_places(const conic_model *model, const uint32_t triangle[3], s
 }
 
 /* The lines of the creases that the vertex or one of the vertices around it is on. */
-static int clip_vertex(const conic_model *model, const conic_creases *creases, const ring *r, double cutoff,
-                       size_t vertex, conic_clip *clip) {
+static int clip_vertex(const conic_model *model, const conic_creases *creases, const conic_incidence *ring,
+                       double cutoff, size_t vertex, conic_clip *clip) {
   vertex_axes at;
   conic_clip_choice choice = {.n = 0};
   double places[MAX_PLACES][2];
@@ -103,8 +82,8 @@ static int clip_vertex(const conic_model *model, const conic_creases *creases, c
   if (!read_axes(&model->points, vertex, &at))
     return 0;
   add_creases_of(&model->points, creases, vertex, &at, cutoff, &choice);
-  for (size_t i = r->starts[vertex]; i < r->starts[vertex + 1]; i++) {
-    const uint32_t *triangle = model->triangles[r->triangles[i]];
+  for (size_t i = ring->starts[vertex]; i < ring->starts[vertex + 1]; i++) {
+    const uint32_t *triangle = model->triangles[ring->triangles[i]];
     if (n_places + PLACES_A_TRIANGLE <= MAX_PLACES)
       n_places += add_places(model, triangle, vertex, &at, places + n_places);
     for (int j = 0; j < 3; j++)
@@ -118,19 +97,18 @@ static int clip_vertex(const conic_model *model, const conic_creases *creases, c
 conic_status conic_creases_clip(conic_context *context, const conic_creases *creases, double cutoff,
                                 conic_model *split) {
   conic_splats *points = &split->points;
-  ring r = {NULL, NULL};
+  conic_incidence ring;
   size_t capacity = 0;
-  conic_status status = make_ring(context, split, &r) ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = conic_incidence_create(context, split, UINT32_MAX / 3, &ring);
   for (size_t vertex = 0; status == CONIC_OK && creases->n && vertex < points->count; vertex++) {
     conic_clip clip;
-    if (!clip_vertex(split, creases, &r, cutoff, vertex, &clip))
+    if (!clip_vertex(split, creases, &ring, cutoff, vertex, &clip))
       continue;
     status = conic_memory_reserve(context, &points->clips, points->n_clips, points->n_clips + 1, &capacity,
                                   sizeof *points->clips);
     if (status == CONIC_OK)
       points->clips[points->n_clips++] = clip;
   }
-  conic_memory_release(context, r.starts);
-  conic_memory_release(context, r.triangles);
+  conic_incidence_release(context, &ring);
   return status;
 }

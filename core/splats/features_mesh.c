@@ -1,12 +1,15 @@
 /* Creases of a mesh. The faces around a vertex fall into wedges, each smooth in itself; the vertex becomes one vertex a
  * wedge, so that each gets an ellipse from its own side alone. What of it reaches over the crease is clipped where its
  * plane meets its mate's: both are clipped at the same line in space, whatever the surface does around it. */
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/splats/features.h"
+#include "core/splats/incidence.h"
 #include "core/splats/splats_gather.h"
 
 /* An edge that starts at the vertex in hand, in one of its triangles. */
@@ -22,13 +25,12 @@ typedef struct splitting {
   const conic_model *model;
   double cosine;
   double (*normals)[3]; /* of each triangle, unit; zero without an area */
-  size_t *starts;       /* the triangles of vertex i are members[starts[i] … starts[i + 1]) */
-  uint32_t *members;
-  spoke *spokes;     /* of one vertex */
-  uint32_t *parents; /* of the members of one vertex: a forest, whose trees are the wedges */
-  uint32_t *wedges;  /* by position in `members`: the vertex that this corner gets */
-  uint32_t *sources; /* by new vertex: the old one */
-  size_t n_vertices; /* so far */
+  conic_incidence ring; /* a vertex's triangles are its members */
+  spoke *spokes;        /* of one vertex */
+  uint32_t *parents;    /* of the members of one vertex: a forest, whose trees are the wedges */
+  uint32_t *wedges;     /* by position in the ring's triangles: the vertex that this corner gets */
+  uint32_t *sources;    /* by new vertex: the old one */
+  size_t n_vertices;    /* so far */
   conic_crease *creases;
   size_t n_creases, crease_capacity;
 } splitting;
@@ -41,19 +43,6 @@ static void find_face_normal(const conic_model *model, const uint32_t triangle[3
           (double)model->points.position[axis][triangle[i + 1]] - (double)model->points.position[axis][triangle[0]];
   conic_cross(edges[0], edges[1], normal);
   conic_normalize(normal);
-}
-
-/* A counting sort of the corners by vertex; starts[i + 1] is first where the next one of vertex i goes. */
-static void list_members(splitting *s) {
-  const conic_model *model = s->model;
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      s->starts[model->triangles[i][j] + 2]++;
-  for (size_t vertex = 0; vertex < model->points.count; vertex++)
-    s->starts[vertex + 2] += s->starts[vertex + 1];
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      s->members[s->starts[model->triangles[i][j] + 1]++] = (uint32_t)i;
 }
 
 /* The way there is halved each time, so that long chains do not stay long. */
@@ -75,43 +64,23 @@ static void join_wedges(uint32_t *parents, uint32_t a, uint32_t b) {
     parents[a] = b;
 }
 
-static int comes_before(const spoke *a, const spoke *b) {
-  return a->other != b->other ? a->other < b->other : a->member < b->member;
-}
-
-/* Heapsort: bounded for any fan of triangles. */
-static void sort_spokes(spoke *spokes, size_t n) {
-  for (size_t begin = n / 2, end = n; end > 1;) {
-    spoke moved;
-    if (begin > 0)
-      moved = spokes[--begin];
-    else {
-      moved = spokes[--end];
-      spokes[end] = spokes[0];
-    }
-    size_t at = begin;
-    for (size_t child = 2 * at + 1; child < end; child = 2 * at + 1) {
-      child += child + 1 < end && comes_before(&spokes[child], &spokes[child + 1]);
-      if (!comes_before(&moved, &spokes[child]))
-        break;
-      spokes[at] = spokes[child];
-      at = child;
-    }
-    spokes[at] = moved;
-  }
+static int compare_spokes(const void *first, const void *second) {
+  const spoke *a = first, *b = second;
+  return a->other != b->other ? (a->other > b->other) - (a->other < b->other)
+                              : (a->member > b->member) - (a->member < b->member);
 }
 
 /* The edges at a vertex, those to the same other end side by side. */
 static size_t list_spokes(const splitting *s, size_t vertex) {
   size_t n = 0;
-  for (size_t i = s->starts[vertex]; i < s->starts[vertex + 1]; i++) {
-    const uint32_t *t = s->model->triangles[s->members[i]];
+  for (size_t i = s->ring.starts[vertex]; i < s->ring.starts[vertex + 1]; i++) {
+    const uint32_t *t = s->model->triangles[s->ring.triangles[i]];
     int at = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
-    uint32_t member = (uint32_t)(i - s->starts[vertex]), next = t[(at + 1) % 3], after = t[(at + 2) % 3];
-    s->spokes[n++] = (spoke){next, after, s->members[i], member, 1};
-    s->spokes[n++] = (spoke){after, next, s->members[i], member, 0};
+    uint32_t member = (uint32_t)(i - s->ring.starts[vertex]), next = t[(at + 1) % 3], after = t[(at + 2) % 3];
+    s->spokes[n++] = (spoke){next, after, s->ring.triangles[i], member, 1};
+    s->spokes[n++] = (spoke){after, next, s->ring.triangles[i], member, 0};
   }
-  sort_spokes(s->spokes, n);
+  qsort(s->spokes, n, sizeof *s->spokes, compare_spokes);
   return n;
 }
 
@@ -142,7 +111,7 @@ static conic_status add_crease(splitting *s, uint32_t wedge, uint32_t mate, uint
 
 /* Numbers the wedges of a vertex: the first one keeps the vertex's number. */
 static conic_status number_wedges(splitting *s, size_t vertex) {
-  size_t first = s->starts[vertex], n = s->starts[vertex + 1] - first;
+  size_t first = s->ring.starts[vertex], n = s->ring.starts[vertex + 1] - first;
   for (uint32_t member = 0; member < n; member++) {
     uint32_t root = root_of(s->parents, member);
     if (root != member)
@@ -160,7 +129,7 @@ static conic_status number_wedges(splitting *s, size_t vertex) {
 }
 
 static conic_status split_vertex(splitting *s, size_t vertex) {
-  size_t first = s->starts[vertex], n_members = s->starts[vertex + 1] - first, n = list_spokes(s, vertex);
+  size_t first = s->ring.starts[vertex], n_members = s->ring.starts[vertex + 1] - first, n = list_spokes(s, vertex);
   for (uint32_t member = 0; member < n_members; member++)
     s->parents[member] = member;
   for (size_t i = 0, run; i < n; i += run) {
@@ -190,15 +159,15 @@ static conic_status renumber(splitting *s, conic_model *split) {
   split->n_triangles = model->n_triangles;
   memcpy(split->triangles, model->triangles, model->n_triangles * sizeof *split->triangles);
   for (size_t vertex = 0; vertex < model->points.count; vertex++)
-    for (size_t i = s->starts[vertex]; i < s->starts[vertex + 1]; i++)
+    for (size_t i = s->ring.starts[vertex]; i < s->ring.starts[vertex + 1]; i++)
       for (int j = 0; j < 3; j++)
-        if (model->triangles[s->members[i]][j] == vertex)
-          split->triangles[s->members[i]][j] = s->wedges[i];
+        if (model->triangles[s->ring.triangles[i]][j] == vertex)
+          split->triangles[s->ring.triangles[i]][j] = s->wedges[i];
   return CONIC_OK;
 }
 
 static int is_split(const splitting *s, size_t vertex) {
-  for (size_t i = s->starts[vertex]; i < s->starts[vertex + 1]; i++)
+  for (size_t i = s->ring.starts[vertex]; i < s->ring.starts[vertex + 1]; i++)
     if (s->wedges[i] != vertex)
       return 1;
   return 0;
@@ -210,10 +179,10 @@ static void set_normals(const splitting *s, conic_splats *points) {
     if (!is_split(s, vertex))
       continue;
     for (int pass = 0; pass < 2; pass++)
-      for (size_t i = s->starts[vertex]; i < s->starts[vertex + 1]; i++)
+      for (size_t i = s->ring.starts[vertex]; i < s->ring.starts[vertex + 1]; i++)
         for (int axis = 0; axis < 3; axis++) {
           float *normal = &points->normal[axis][s->wedges[i]];
-          *normal = pass ? *normal + (float)s->normals[s->members[i]][axis] : 0.0f;
+          *normal = pass ? *normal + (float)s->normals[s->ring.triangles[i]][axis] : 0.0f;
         }
   }
 }
@@ -234,34 +203,21 @@ static conic_status sort_creases(splitting *s, conic_creases *creases) {
   return CONIC_OK;
 }
 
-static conic_status check_triangles(conic_context *context, const conic_model *model) {
-  if (model->n_triangles > UINT32_MAX / 3)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu triangles are too many", model->n_triangles);
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      if (model->triangles[i][j] >= model->points.count)
-        return conic_fail(context, CONIC_ERROR_ARGUMENT, "triangle %zu has the vertex %zu, but there are only %zu", i,
-                          (size_t)model->triangles[i][j], model->points.count);
-  return CONIC_OK;
-}
-
 /* All but what hangs on the greatest number of triangles at a vertex. */
 static int make_room_for_split(splitting *s) {
   const conic_model *model = s->model;
   conic_context *context = s->context;
   size_t n_corners = 3 * model->n_triangles;
   s->normals = conic_memory_allocate(context, model->n_triangles, sizeof *s->normals);
-  s->starts = conic_memory_allocate_zeroed(context, model->points.count + 2, sizeof *s->starts);
-  s->members = conic_memory_allocate(context, n_corners, sizeof *s->members);
   s->wedges = conic_memory_allocate(context, n_corners, sizeof *s->wedges);
   s->sources = conic_memory_allocate(context, model->points.count + n_corners, sizeof *s->sources);
-  return s->normals && s->starts && s->members && s->wedges && s->sources;
+  return s->normals && s->wedges && s->sources;
 }
 
 static conic_status split_vertices(splitting *s) {
   size_t n = s->model->points.count, greatest = 0;
   for (size_t vertex = 0; vertex < n; vertex++) {
-    size_t n_members = s->starts[vertex + 1] - s->starts[vertex];
+    size_t n_members = s->ring.starts[vertex + 1] - s->ring.starts[vertex];
     greatest = n_members > greatest ? n_members : greatest;
     s->sources[vertex] = (uint32_t)vertex;
   }
@@ -279,9 +235,10 @@ static conic_status split_vertices(splitting *s) {
 }
 
 static void release_splitting(splitting *s) {
-  void *all[] = {s->normals, s->starts, s->members, s->spokes, s->parents, s->wedges, s->sources, s->creases};
+  void *all[] = {s->normals, s->spokes, s->parents, s->wedges, s->sources, s->creases};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(s->context, all[i]);
+  conic_incidence_release(s->context, &s->ring);
 }
 
 static conic_status split_model(splitting *s, conic_model *split, conic_creases *creases) {
@@ -289,7 +246,6 @@ static conic_status split_model(splitting *s, conic_model *split, conic_creases 
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < s->model->n_triangles; i++)
     find_face_normal(s->model, s->model->triangles[i], s->normals[i]);
-  list_members(s);
   conic_status status = split_vertices(s);
   if (status == CONIC_OK)
     status = conic_splats_gather(s->context, &s->model->points, s->sources, s->n_vertices, &split->points);
@@ -307,7 +263,7 @@ conic_status conic_creases_split(conic_context *context, double cosine, const co
   splitting s = {.context = context, .model = model, .cosine = cosine};
   memset(split, 0, sizeof *split);
   memset(creases, 0, sizeof *creases);
-  conic_status status = check_triangles(context, model);
+  conic_status status = conic_incidence_create(context, model, UINT32_MAX / 3, &s.ring);
   if (status == CONIC_OK)
     status = split_model(&s, split, creases);
   release_splitting(&s);

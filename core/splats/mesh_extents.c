@@ -5,21 +5,19 @@
 #include <string.h>
 
 #include "core/base/memory.h"
-#include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/estimate.h"
+#include "core/splats/incidence.h"
 
 /* The cosine from which on a face is steep in a vertex's tangent plane: 60°. */
 #define STEEP 0.5
 
-/* The triangles of vertex i are triangles[starts[i] … starts[i + 1]), in the order of the file. */
-typedef struct incidence {
+typedef struct spreading {
   conic_estimate *estimate;
-  size_t *starts;
-  uint32_t *triangles;
+  conic_incidence ring;
   double (*normals)[3]; /* of each vertex: unit, or not finite where it has no face */
-} incidence;
+} spreading;
 
 /* A triangle as seen from one of its vertices. */
 typedef struct vertex_triangle {
@@ -45,12 +43,12 @@ static int view_corner(const conic_model *model, const uint32_t triangle[3], siz
 
 /* The faces' normals, each weighted by sine over the product of the edges' lengths: exact on a sphere (Max 1999), and
  * no angle is needed. */
-static int normal_of_vertex(const incidence *in, size_t vertex, double normal[3]) {
+static int normal_of_vertex(const spreading *in, size_t vertex, double normal[3]) {
   const conic_model *model = in->estimate->model;
   double sum[3] = {0.0, 0.0, 0.0};
   vertex_triangle c;
-  for (size_t i = in->starts[vertex]; i < in->starts[vertex + 1]; i++)
-    if (view_corner(model, model->triangles[in->triangles[i]], vertex, &c)) {
+  for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
+    if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
       double weight = 1.0 / (conic_dot(c.edges[0], c.edges[0]) * conic_dot(c.edges[1], c.edges[1]));
       for (int axis = 0; axis < 3; axis++)
         sum[axis] += c.cross[axis] * weight;
@@ -73,7 +71,7 @@ static void meet_plane(const vertex_triangle *c, const double d[3], const double
   met[1] = conic_dot(d, v) - way * conic_dot(c->cross, v);
 }
 
-static int is_steep(const incidence *in, const vertex_triangle *c, int i) {
+static int is_steep(const spreading *in, const vertex_triangle *c, int i) {
   return fabs(conic_dot(c->cross, in->normals[c->vertices[i]])) < STEEP * sqrt(c->cross2);
 }
 
@@ -81,7 +79,7 @@ enum { MAX_SUPPORT = 5 };
 
 /* What the vertex's ellipse must cover for this triangle, in its tangent plane. Where the triangle is steep for a
  * vertex (the tip of a horn), the share of that vertex goes to the others, and its own ellipse only closes the end. */
-static int view_support(const incidence *in, const vertex_triangle *c, const double u[3], const double v[3],
+static int view_support(const spreading *in, const vertex_triangle *c, const double u[3], const double v[3],
                         double support[MAX_SUPPORT][2]) {
   const double *normal = in->normals[c->vertices[0]];
   int steep[3] = {is_steep(in, c, 0), is_steep(in, c, 1), is_steep(in, c, 2)}, n = 3;
@@ -101,15 +99,15 @@ static int view_support(const incidence *in, const vertex_triangle *c, const dou
   return n;
 }
 
-static void spread_vertex(const incidence *in, size_t vertex) {
+static void spread_vertex(const spreading *in, size_t vertex) {
   const conic_model *model = in->estimate->model;
   double u[3], v[3], support[MAX_SUPPORT][2], covariance[3] = {0.0, 0.0, 0.0}, area = 0.0, greatest2 = 0.0;
   double flatness = 1.0; /* the least cosine to a face */
   float tangent_u[3], tangent_v[3];
   vertex_triangle c;
   conic_tangent_basis(in->normals[vertex], u, v);
-  for (size_t i = in->starts[vertex]; i < in->starts[vertex + 1]; i++)
-    if (view_corner(model, model->triangles[in->triangles[i]], vertex, &c)) {
+  for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
+    if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
       int n = view_support(in, &c, u, v, support);
       for (int j = 0; j < n; j++)
         conic_ellipse_add(covariance, support[j][0], support[j][1]);
@@ -118,8 +116,8 @@ static void spread_vertex(const incidence *in, size_t vertex) {
       flatness = cosine < flatness ? cosine : flatness;
     }
   conic_ellipse ellipse = conic_ellipse_shape(covariance, CONIC_OUTLINE_RATIO);
-  for (size_t i = in->starts[vertex]; i < in->starts[vertex + 1]; i++)
-    if (view_corner(model, model->triangles[in->triangles[i]], vertex, &c)) {
+  for (size_t i = in->ring.starts[vertex]; i < in->ring.starts[vertex + 1]; i++)
+    if (view_corner(model, model->triangles[in->ring.triangles[i]], vertex, &c)) {
       int n = view_support(in, &c, u, v, support);
       for (int j = 0; j < n; j++) {
         double distance2 = support[j][0] * support[j][0] + support[j][1] * support[j][1];
@@ -139,7 +137,7 @@ static void spread_vertex(const incidence *in, size_t vertex) {
 }
 
 static void spread_vertices(void *data, size_t begin, size_t end) {
-  const incidence *in = data;
+  const spreading *in = data;
   for (size_t vertex = begin; vertex < end; vertex++)
     if (in->estimate->states[vertex] == CONIC_POINT_RAW && in->normals[vertex][0] * 0.0 == 0.0)
       spread_vertex(in, vertex);
@@ -147,7 +145,7 @@ static void spread_vertices(void *data, size_t begin, size_t end) {
 
 /* The normals of all vertices with a face: of the file where it has one, else of the faces. */
 static void find_normals(void *data, size_t begin, size_t end) {
-  const incidence *in = data;
+  const spreading *in = data;
   float *const *given = in->estimate->model->points.normal;
   for (size_t vertex = begin; vertex < end; vertex++) {
     double of_file[3];
@@ -155,51 +153,22 @@ static void find_normals(void *data, size_t begin, size_t end) {
       in->normals[vertex][0] = NAN;
       continue;
     }
-    if (given[0] && conic_unit_vector(given[0][vertex], given[1][vertex], given[2][vertex], of_file))
+    if (given[0] && conic_unit_vector(given, vertex, of_file))
       memcpy(in->normals[vertex], of_file, sizeof of_file);
   }
 }
 
-static conic_status check_triangles(conic_context *context, const conic_model *model) {
-  if (model->n_triangles > UINT32_MAX)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu triangles are too many", model->n_triangles);
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      if (model->triangles[i][j] >= model->points.count)
-        return conic_fail(context, CONIC_ERROR_ARGUMENT, "triangle %zu has the vertex %zu, but there are only %zu", i,
-                          (size_t)model->triangles[i][j], model->points.count);
-  return CONIC_OK;
-}
-
-/* A counting sort of the triangles' corners by vertex. starts[i + 1] is first where the next one of vertex i goes. */
-static void fill_incidence(const conic_model *model, incidence *in) {
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      in->starts[model->triangles[i][j] + 2]++;
-  for (size_t vertex = 0; vertex < model->points.count; vertex++)
-    in->starts[vertex + 2] += in->starts[vertex + 1];
-  for (size_t i = 0; i < model->n_triangles; i++)
-    for (int j = 0; j < 3; j++)
-      in->triangles[in->starts[model->triangles[i][j] + 1]++] = (uint32_t)i;
-}
-
 conic_status conic_estimate_from_faces(conic_context *context, conic_estimate *estimate) {
-  const conic_model *model = estimate->model;
-  conic_status status = check_triangles(context, model);
+  size_t n_vertices = estimate->model->points.count;
+  spreading in = {.estimate = estimate};
+  conic_status status = conic_incidence_create(context, estimate->model, UINT32_MAX, &in.ring);
   if (status != CONIC_OK)
     return status;
-  incidence in = {estimate, conic_memory_allocate_zeroed(context, model->points.count + 2, sizeof *in.starts),
-                  conic_memory_allocate(context, model->n_triangles, 3 * sizeof *in.triangles),
-                  conic_memory_allocate(context, model->points.count, sizeof *in.normals)};
-  status = CONIC_ERROR_MEMORY;
-  if (in.starts && in.triangles && in.normals) {
-    fill_incidence(model, &in);
-    status = conic_slots_for(context, model->points.count, find_normals, &in, 0.0, 0.3);
-  }
+  in.normals = conic_memory_allocate(context, n_vertices, sizeof *in.normals);
+  status = in.normals ? conic_slots_for(context, n_vertices, find_normals, &in, 0.0, 0.3) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
-    status = conic_slots_for(context, model->points.count, spread_vertices, &in, 0.3, 1.0);
+    status = conic_slots_for(context, n_vertices, spread_vertices, &in, 0.3, 1.0);
   conic_memory_release(context, in.normals);
-  conic_memory_release(context, in.triangles);
-  conic_memory_release(context, in.starts);
+  conic_incidence_release(context, &in.ring);
   return status;
 }

@@ -11,14 +11,14 @@ enum { CHUNK = 1024, CHUNKS_A_REPORT = 64 };
 typedef struct slots_work {
   conic_slots_task *task;
   void *data;
-  size_t end;
+  size_t n_slots;
 } slots_work;
 
 static void do_chunk(void *data, size_t i_item, int i_thread) {
-  slots_work *work = data;
+  const slots_work *work = data;
   size_t begin = i_item * CHUNK;
   (void)i_thread;
-  work->task(work->data, begin, begin + CHUNK < work->end ? begin + CHUNK : work->end);
+  work->task(work->data, begin, begin + CHUNK < work->n_slots ? begin + CHUNK : work->n_slots);
 }
 
 conic_status conic_slots_for(conic_context *context, size_t n_slots, conic_slots_task *task, void *data, double from,

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/random.h"
 #include "core/base/threads.h"
 #include "core/splats/neighbours.h"
 
@@ -20,12 +21,6 @@ static int is_finite(const point_record *r) {
   return r->position[0] * 0.0f == 0.0f && r->position[1] * 0.0f == 0.0f && r->position[2] * 0.0f == 0.0f;
 }
 
-static uint64_t mix_bits(uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
-
 /* Positions that are equal as numbers have equal hashes: adding zero makes -0 to 0. */
 static uint64_t hash_position(const float position[3]) {
   uint32_t bits[3];
@@ -33,7 +28,7 @@ static uint64_t hash_position(const float position[3]) {
     float value = position[axis] + 0.0f;
     memcpy(&bits[axis], &value, sizeof value);
   }
-  return mix_bits(mix_bits((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
+  return conic_random_mix(conic_random_mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
 }
 
 static int same_position(const float a[3], const float b[3]) {
@@ -100,7 +95,7 @@ static point_record median_of_three(const point_record *a, const point_record *b
 static void partition(point_record *records, size_t n, size_t n_left, int axis) {
   ptrdiff_t begin = 0, last = (ptrdiff_t)n - 1, wanted = (ptrdiff_t)n_left;
   while (begin < last) {
-    uint64_t draw = mix_bits((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last),
+    uint64_t draw = conic_random_mix((uint64_t)begin * 0x9E3779B97F4A7C15u + (uint64_t)last),
              span = (uint64_t)(last - begin) + 1;
     const point_record *from = records + begin;
     point_record pivot =

@@ -93,9 +93,7 @@ static void space_slots(void *data, size_t begin, size_t end) {
 
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,
                                      double *spacings) {
-  spacing_work work;
-  work.neighbourhood = neighbourhood;
-  work.spacings = spacings;
+  spacing_work work = {neighbourhood, spacings};
   return conic_slots_for(context, neighbourhood->tree.n_slots, space_slots, &work, 0.6, 0.7);
 }
 
@@ -193,7 +191,7 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
   double own[3], u[3], v[3];
   float tangent_u[3], tangent_v[3];
   conic_ellipse ellipse;
-  if (given[0] && conic_unit_vector(given[0][point], given[1][point], given[2][point], own))
+  if (given[0] && conic_unit_vector(given, point, own))
     for (int axis = 0; axis < 3; axis++)
       p.normal[axis] = own[axis];
   conic_tangent_basis(p.normal, u, v);

@@ -118,6 +118,27 @@ conic_status conic_splats_append(conic_context *context, conic_splats *splats, c
   return CONIC_OK;
 }
 
+conic_status conic_splats_resize(conic_context *context, conic_splats *splats, size_t capacity, unsigned fields) {
+  conic_splats larger;
+  conic_column to[CONIC_SPLATS_COLUMNS], from[CONIC_SPLATS_COLUMNS];
+  conic_status status = conic_splats_allocate(context, capacity, fields & ~(unsigned)CONIC_SPLATS_CLIPS, &larger);
+  if (status != CONIC_OK)
+    return status;
+  conic_splats_list_columns(&larger, to);
+  conic_splats_list_columns(splats, from);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++)
+    if (*to[i].floats)
+      copy_or_fill(*to[i].floats, &from[i]);
+  memcpy(larger.origin, splats->origin, sizeof larger.origin);
+  larger.count = splats->count;
+  larger.n_clips = splats->n_clips;
+  larger.clips = splats->clips;
+  splats->clips = NULL;
+  conic_splats_release(context, splats);
+  *splats = larger;
+  return CONIC_OK;
+}
+
 conic_status conic_splats_gather(conic_context *context, const conic_splats *from, const uint32_t *sources,
                                  size_t count, conic_splats *gathered) {
   conic_splats listed = *from;
@@ -135,27 +156,30 @@ conic_status conic_splats_gather(conic_context *context, const conic_splats *fro
   return CONIC_OK;
 }
 
-size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
+size_t conic_points_bounds(float *const position[3], size_t stride, const double origin[3], const uint32_t *indices,
+                           size_t n, double minimum[3], double maximum[3]) {
   float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  size_t n_finite = 0, count = conic_splats_fault(splats) ? 0 : splats->count;
-  for (size_t i = 0; i < count; i++) {
+  size_t n_finite = 0;
+  for (size_t k = 0; k < n; k++) {
     float p[3];
     for (int axis = 0; axis < 3; axis++)
-      p[axis] = conic_column_at(splats->position[axis], splats->strides.position, i);
+      p[axis] = conic_column_at(position[axis], stride, indices ? indices[k] : k);
     if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
       continue;
     for (int axis = 0; axis < 3; axis++) {
-      float value = p[axis];
-      if (n_finite == 0 || value < low[axis])
-        low[axis] = value;
-      if (n_finite == 0 || value > high[axis])
-        high[axis] = value;
+      low[axis] = n_finite == 0 || p[axis] < low[axis] ? p[axis] : low[axis];
+      high[axis] = n_finite == 0 || p[axis] > high[axis] ? p[axis] : high[axis];
     }
     n_finite++;
   }
   for (int axis = 0; axis < 3; axis++) {
-    minimum[axis] = n_finite ? splats->origin[axis] + (double)low[axis] : 0.0;
-    maximum[axis] = n_finite ? splats->origin[axis] + (double)high[axis] : 0.0;
+    minimum[axis] = n_finite ? origin[axis] + (double)low[axis] : 0.0;
+    maximum[axis] = n_finite ? origin[axis] + (double)high[axis] : 0.0;
   }
   return n_finite;
+}
+
+size_t conic_splats_bounds(const conic_splats *splats, double minimum[3], double maximum[3]) {
+  size_t n = conic_splats_fault(splats) ? 0 : splats->count;
+  return conic_points_bounds(splats->position, splats->strides.position, splats->origin, NULL, n, minimum, maximum);
 }

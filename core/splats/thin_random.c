@@ -1,14 +1,12 @@
 /* A stable random choice of splats. */
 #include "conic/model.h"
 #include "core/base/memory.h"
+#include "core/base/random.h"
 #include "core/splats/columns.h"
 
-/* A bijection of 64 bits (splitmix64): no two indices have the same rank under one seed. */
+/* A bijection: no two indices have the same rank under one seed. */
 static uint64_t rank_of(uint64_t seed, uint64_t index) {
-  uint64_t x = seed * 0xD1342543DE82EF95u + (index + 1) * 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
+  return conic_random_mix(seed * 0xD1342543DE82EF95u + (index + 1) * 0x9E3779B97F4A7C15u);
 }
 
 /* The rank that exactly `count` of the n are below (Hoare's FIND); the ranks are random, so any pivot is. */

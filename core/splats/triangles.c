@@ -7,6 +7,7 @@
 #include "core/base/message.h"
 #include "core/base/vectors.h"
 #include "core/splats/columns.h"
+#include "core/splats/splats_gather.h"
 
 static conic_status allocate_floats(conic_context *context, size_t count, float **arrays, int n) {
   for (int i = 0; i < n; i++) {
@@ -97,26 +98,9 @@ conic_status conic_triangles_check(conic_context *context, const conic_triangles
 }
 
 size_t conic_triangles_bounds(const conic_triangles *triangles, double minimum[3], double maximum[3]) {
-  float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  size_t n_finite = 0, count = conic_triangles_fault(triangles) ? 0 : triangles->count;
-  for (size_t i = 0; i < 3 * count; i++) {
-    float p[3];
-    for (int axis = 0; axis < 3; axis++)
-      p[axis] =
-          conic_column_at(triangles->position[axis], triangles->strides.position, triangles->corners[i / 3][i % 3]);
-    if (!(p[0] * 0.0f == 0.0f && p[1] * 0.0f == 0.0f && p[2] * 0.0f == 0.0f))
-      continue;
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = n_finite == 0 || p[axis] < low[axis] ? p[axis] : low[axis];
-      high[axis] = n_finite == 0 || p[axis] > high[axis] ? p[axis] : high[axis];
-    }
-    n_finite++;
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    minimum[axis] = n_finite ? triangles->origin[axis] + (double)low[axis] : 0.0;
-    maximum[axis] = n_finite ? triangles->origin[axis] + (double)high[axis] : 0.0;
-  }
-  return n_finite;
+  size_t n = conic_triangles_fault(triangles) ? 0 : 3 * triangles->count;
+  return conic_points_bounds(triangles->position, triangles->strides.position, triangles->origin,
+                             (const uint32_t *)triangles->corners, n, minimum, maximum);
 }
 
 size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]) {

@@ -6,13 +6,13 @@
 #include "core/base/real.h"
 #include "lod/hybrid/hybrid_layout.h"
 
-#define FIELD(member, n_values) CONIC_FILE_FIELD(conic_chy_header, member, n_values)
+#define FIELD(member) CONIC_FILE_FIELD(conic_chy_header, member)
 
-static const conic_file_field fields[] = {
-    FIELD(version, 1),   FIELD(flags, 1),    FIELD(n_vertices, 1), FIELD(n_triangles, 1), FIELD(n_listed, 1),
-    FIELD(n_surfels, 1), FIELD(n_levels, 1), FIELD(n_clusters, 1), FIELD(n_nodes, 1),     FIELD(n_materials, 1),
-    FIELD(n_texels, 1),  FIELD(origin, 3),   FIELD(low, 3),        FIELD(high, 3),        FIELD(splat_length, 1),
-    FIELD(cutoff, 1),    FIELD(zero, 1),     FIELD(body_sum, 1),   FIELD(n_slots, 1),     FIELD(n_borders, 1)};
+static const conic_file_field fields[] = {FIELD(version),  FIELD(flags),       FIELD(n_vertices),   FIELD(n_triangles),
+                                          FIELD(n_listed), FIELD(n_surfels),   FIELD(n_levels),     FIELD(n_clusters),
+                                          FIELD(n_nodes),  FIELD(n_materials), FIELD(n_texels),     FIELD(origin),
+                                          FIELD(low),      FIELD(high),        FIELD(splat_length), FIELD(cutoff),
+                                          FIELD(zero),     FIELD(body_sum),    FIELD(n_slots),      FIELD(n_borders)};
 
 static const char *fault_of_header(const void *numbers) {
   const conic_chy_header *h = numbers;

@@ -1,7 +1,7 @@
 /* What of a hybrid model is drawn in one picture. */
 #include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
@@ -30,7 +30,7 @@ typedef struct hybrid_scratch {
   size_t n_choices, choices_room;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
   uint32_t *standing; /* the node that stands for it: behind the stages */
-  size_t stages_room;
+  conic_kept_memory stages_memory, splats_memory, vertices_memory, triangles_memory;
   float *splats; /* arrays of splats_room each; behind them the splats' clusters */
   size_t splats_room;
   float *vertices; /* arrays of vertices_room each */
@@ -56,10 +56,10 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   hybrid_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
-    conic_memory_release(context, kept->stages);
-    conic_memory_release(context, kept->splats);
-    conic_memory_release(context, kept->vertices);
-    conic_memory_release(context, kept->triangles);
+    conic_memory_release(context, kept->stages_memory.pointer);
+    conic_memory_release(context, kept->splats_memory.pointer);
+    conic_memory_release(context, kept->vertices_memory.pointer);
+    conic_memory_release(context, kept->triangles_memory.pointer);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
@@ -196,11 +196,11 @@ static void judge_choices(const hybrid_selecting *s) {
 static conic_status make_stages(hybrid_selecting *s) {
   hybrid_scratch *kept = s->scratch;
   size_t n = s->hybrid->n_clusters;
-  conic_status status =
-      conic_memory_renew(s->hybrid->context, &kept->stages, 2 * n, &kept->stages_room, sizeof *kept->stages);
-  if (status == CONIC_OK)
-    kept->standing = kept->stages + n;
-  return status;
+  kept->stages = conic_keep_room(s->hybrid->context, &kept->stages_memory, 2 * n, sizeof *kept->stages);
+  if (!kept->stages)
+    return CONIC_ERROR_MEMORY;
+  kept->standing = kept->stages + n;
+  return CONIC_OK;
 }
 
 /* Where each choice's parts go, and how many there are of all. */
@@ -234,15 +234,16 @@ static conic_status make_room_for_parts(hybrid_selecting *s) {
   place_parts(s);
   if (selection->triangles.n_vertices > UINT32_MAX)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
-  conic_status status = conic_memory_renew(context, &kept->splats, selection->splats.count, &kept->splats_room,
-                                           (SPLAT_ARRAYS + 1) * sizeof *kept->splats);
-  if (status == CONIC_OK)
-    status = conic_memory_renew(context, &kept->vertices, selection->triangles.n_vertices, &kept->vertices_room,
-                                VERTEX_ARRAYS * sizeof *kept->vertices);
-  if (status == CONIC_OK)
-    status = conic_memory_renew(context, &kept->triangles, selection->triangles.count, &kept->triangles_room,
-                                TRIANGLE_ARRAYS * sizeof *kept->triangles);
-  return status;
+  kept->splats_room = selection->splats.count;
+  kept->vertices_room = selection->triangles.n_vertices;
+  kept->triangles_room = selection->triangles.count;
+  kept->splats =
+      conic_keep_room(context, &kept->splats_memory, kept->splats_room, (SPLAT_ARRAYS + 1) * sizeof *kept->splats);
+  kept->vertices =
+      conic_keep_room(context, &kept->vertices_memory, kept->vertices_room, VERTEX_ARRAYS * sizeof *kept->vertices);
+  kept->triangles = conic_keep_room(context, &kept->triangles_memory, kept->triangles_room,
+                                    TRIANGLE_ARRAYS * sizeof *kept->triangles);
+  return kept->splats && kept->vertices && kept->triangles ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 /* Points the selection's arrays into what is kept. */

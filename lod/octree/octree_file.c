@@ -27,12 +27,12 @@ typedef struct header {
   uint64_t body_sum; /* over the arrays' sums */
 } header;
 
-#define FIELD(member, n_values) CONIC_FILE_FIELD(header, member, n_values)
+#define FIELD(member) CONIC_FILE_FIELD(header, member)
 
-static const conic_file_field fields[] = {
-    FIELD(version, 1), FIELD(flags, 1),        FIELD(n_points, 1),       FIELD(n_leaves, 1), FIELD(n_nodes, 1),
-    FIELD(origin, 3),  FIELD(low, 3),          FIELD(high, 3),           FIELD(cutoff, 1),   FIELD(color, 1),
-    FIELD(length, 1),  FIELD(splat_length, 1), FIELD(position_error, 1), FIELD(n_clips, 1),  FIELD(body_sum, 1)};
+static const conic_file_field fields[] = {FIELD(version),        FIELD(flags),   FIELD(n_points), FIELD(n_leaves),
+                                          FIELD(n_nodes),        FIELD(origin),  FIELD(low),      FIELD(high),
+                                          FIELD(cutoff),         FIELD(color),   FIELD(length),   FIELD(splat_length),
+                                          FIELD(position_error), FIELD(n_clips), FIELD(body_sum)};
 
 static const char *fault_of_header(const void *numbers) {
   const header *h = numbers;

@@ -6,7 +6,6 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "raster/kernels/raster_kernels.h"
 
 /* Splats that a thread projects at a time. */
 enum { CHUNK = 1 << 14 };
@@ -88,20 +87,6 @@ static conic_status list_bands(conic_contributions *c) {
   return CONIC_OK;
 }
 
-static conic_status prepare_triangles(conic_contributions *c, const conic_camera *camera) {
-  const conic_triangles *triangles = c->drawing.triangles;
-  conic_raster_kernels kernels;
-  conic_isa isa;
-  conic_status status = conic_isa_choose(c->context, c->options.isa, &isa);
-  if (status != CONIC_OK || !triangles)
-    return status;
-  conic_raster_kernels_init(&kernels, isa);
-  conic_triangle_frame_begin(&c->triangles, c->context, triangles, &c->view, camera);
-  c->triangles.first_id = (uint32_t)c->splats->count;
-  conic_triangle_frame_tiles(&c->triangles, CONIC_GREATEST_TILE);
-  return conic_triangle_frame_prepare(&c->triangles, &kernels.triangles);
-}
-
 conic_status conic_contributions_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
                                         const conic_render_options *options, conic_contributions **contributions) {
   const conic_drawing alone = {.splats = splats};
@@ -132,7 +117,7 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
     status =
         conic_view_init(context, c->splats, camera, &c->options, c->options.near_z, c->options.splat_length, &c->view);
   if (status == CONIC_OK)
-    status = prepare_triangles(c, camera);
+    status = conic_whole_drawing_prepare(context, &c->drawing, &c->view, camera, c->options.isa, &c->triangles);
   if (status == CONIC_OK)
     status = project_all(c);
   if (status == CONIC_OK)
@@ -147,10 +132,11 @@ conic_status conic_contributions_create_drawing(conic_context *context, const co
 void conic_contributions_destroy(conic_contributions *c) {
   if (!c)
     return;
-  void *all[] = {c->projected.chunks,   c->projected.footprints, c->projected.boxes,
-                 c->projected.surfaces, c->projected.rays,       c->projected.clips,
-                 c->band_begin,         c->references,           c->list,
-                 c->triangle_list};
+  void *all[] = {c->projected.chunks,    c->projected.footprints,
+                 c->projected.boxes,     c->projected.surfaces,
+                 c->projected.rays,      c->projected.clips,
+                 c->band_begin,          c->references,
+                 c->list_memory.pointer, c->triangle_list_memory.pointer};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(c->context, all[i]);
   conic_triangle_frame_release(c->context, &c->triangles);
@@ -209,12 +195,10 @@ conic_status conic_contributions_project(const conic_contributions *c, size_t i,
 conic_contribution conic_contribution_of(const conic_contributions *c, uint32_t i_footprint, int x, int y,
                                          const conic_fragment *fragment) {
   const conic_footprint *footprint = &c->projected.footprints[i_footprint];
-  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
-  float plane_iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx; /* as resolving has it */
   return (conic_contribution){.splat = c->projected.surfaces[i_footprint].index,
                               .q = fragment->q,
                               .weight = conic_final_weight(&c->view, footprint, fragment->q, fragment->scale),
-                              .depth = 1.0f / conic_clamp_iz(footprint, plane_iz),
+                              .depth = conic_plane_z(footprint, x, y),
                               .inverse_depth = fragment->iz,
                               .plane_inverse_depth = fragment->plane_iz,
                               .hides = conic_hiding_iz(footprint, fragment)};
@@ -277,15 +261,15 @@ conic_status conic_contributions_at(conic_contributions *c, int x, int y, const 
     return conic_fail(c->context, CONIC_ERROR_ARGUMENT, "the pixel %d,%d is not in a picture of %d x %d", x, y,
                       c->view.width, c->view.height);
   size_t band = (size_t)y / CONIC_CONTRIBUTION_BAND, first = c->band_begin[band], end = c->band_begin[band + 1];
-  conic_status status = conic_memory_renew(c->context, &c->list, end - first, &c->list_room, sizeof *c->list);
-  if (status != CONIC_OK)
-    return status;
+  c->list = conic_keep_room(c->context, &c->list_memory, end - first, sizeof *c->list);
+  if (!c->list)
+    return CONIC_ERROR_MEMORY;
   *n = 0;
   for (size_t i = first; i < end; i++)
     *n += (size_t)begin_contribution(c, c->references[i], x, y, &c->list[*n]);
   const conic_triangle_contribution *triangle;
   size_t n_triangles;
-  status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
+  conic_status status = conic_contribution_triangles(c, x, y, &triangle, &n_triangles);
   judge_footprint(c->list, *n, c->options.passes, triangle);
   *list = c->list;
   return status;

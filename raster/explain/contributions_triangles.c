@@ -1,7 +1,6 @@
 /* What triangles do to a pixel. */
 #include <string.h>
 
-#include "core/base/memory.h"
 #include "raster/explain/pixel_contributions.h"
 #include "raster/triangles/triangle_tile.h"
 
@@ -14,6 +13,7 @@ static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
 static void describe_triangle(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
                               conic_triangle_contribution *to) {
   const conic_view *view = &c->view;
+  conic_triangle_sight sight;
   float ray[2];
   set_ray(view, x, y, ray);
   float world_from_cam[3][3];
@@ -25,7 +25,10 @@ static void describe_triangle(const conic_contributions *c, const conic_triangle
   to->inverse_depth = iz;
   to->depth = 1.0f / iz;
   to->hides = conic_triangle_hides(c->triangles.epsilon, iz, ray[0], ray[1]);
-  conic_triangle_color_at(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, to->color, to->normal);
+  conic_triangle_see(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, &sight);
+  conic_triangle_lay_texture(&sight);
+  memcpy(to->color, sight.color, sizeof to->color);
+  memcpy(to->normal, sight.normal, sizeof to->normal);
 }
 
 /* The records of one chunk that cover the pixel; those of a triangle stand together, so that its number is that of the
@@ -59,9 +62,10 @@ conic_status conic_contribution_triangles(conic_contributions *c, int x, int y,
     const uint32_t *begin = frame->tile_begin + i * (frame->n_tiles + 1) + i_tile;
     most += begin[1] - begin[0];
   }
-  conic_status status =
-      conic_memory_renew(c->context, &c->triangle_list, most, &c->triangle_list_room, sizeof *c->triangle_list);
-  for (size_t i = 0; i < frame->n_chunks && status == CONIC_OK; i++)
+  c->triangle_list = conic_keep_room(c->context, &c->triangle_list_memory, most, sizeof *c->triangle_list);
+  if (!c->triangle_list)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < frame->n_chunks; i++)
     *n = list_chunk(c, i, i_tile, x, y, *n);
   conic_triangle_contribution *found = NULL;
   for (size_t i = 0; i < *n; i++)
@@ -70,7 +74,7 @@ conic_status conic_contribution_triangles(conic_contributions *c, int x, int y,
   if (found)
     found->verdict = CONIC_CONTRIBUTION_VISIBLE;
   *nearest = found;
-  return status;
+  return CONIC_OK;
 }
 
 /* The nearest of a tile's triangles along a line of it. */

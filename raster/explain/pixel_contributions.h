@@ -5,7 +5,6 @@
 #include "conic/contributions.h"
 #include "raster/frame/drawing.h"
 #include "raster/tiles/coverage.h"
-#include "raster/triangles/triangle_frame.h"
 
 /* Rows of the picture whose splats are listed together. */
 enum { CONIC_CONTRIBUTION_BAND = 8 };
@@ -19,11 +18,11 @@ struct conic_contributions {
   size_t *band_begin; /* band b's splats are references[band_begin[b] … band_begin[b + 1]), in the order of the set */
   uint32_t *references;     /* indices of footprints */
   conic_contribution *list; /* of the last pixel that was asked for */
-  size_t list_room;
+  conic_kept_memory list_memory;
   conic_whole_drawing drawing;
   conic_triangle_frame triangles; /* where the drawing has some */
   conic_triangle_contribution *triangle_list;
-  size_t triangle_list_room;
+  conic_kept_memory triangle_list_memory;
 };
 
 /* The triangles at a pixel before it is known what splats hide them: the nearest alone is visible. Errors: MEMORY. */
@@ -55,15 +54,6 @@ static inline conic_reach conic_reach_of(const conic_contributions *contribution
   reach.x_end = reach.x_end < view->width ? reach.x_end : view->width;
   reach.y_end = reach.y_end < view->height ? reach.y_end : view->height;
   return reach;
-}
-
-/* By what a fragment hides others, and by what it is seen: docs/reference/picture.md, "Visible". */
-static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
-  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
-}
-
-static inline float conic_seen_iz(const conic_fragment *fragment) {
-  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
 }
 
 #endif

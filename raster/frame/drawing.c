@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "raster/kernels/raster_kernels.h"
-#include "raster/triangles/triangle_frame.h"
+#include "raster/view/method.h"
 #include "raster/view/scene_scale.h"
 
 conic_status conic_whole_drawing_enter(conic_context *context, const char *who, const conic_drawing *drawing,
@@ -29,22 +29,49 @@ conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole
   return conic_scene_scale(context, drawing->splats, options);
 }
 
-conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,
-                                       const conic_view *view, const conic_camera *camera, conic_isa isa,
-                                       conic_render_statistics *statistics) {
-  conic_triangle_frame frame;
+conic_status conic_whole_drawing_prepare(conic_context *context, const conic_whole_drawing *drawing,
+                                         const conic_view *view, const conic_camera *camera, conic_isa isa,
+                                         conic_triangle_frame *frame) {
   conic_raster_kernels kernels;
   conic_status status = conic_isa_choose(context, isa, &isa);
   if (status != CONIC_OK || !drawing->triangles)
     return status;
   conic_raster_kernels_init(&kernels, isa);
+  conic_triangle_frame_begin(frame, context, drawing->triangles, view, camera);
+  frame->first_id = (uint32_t)drawing->splats->count;
+  conic_triangle_frame_tiles(frame, CONIC_GREATEST_TILE);
+  return conic_triangle_frame_prepare(frame, &kernels.triangles);
+}
+
+conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,
+                                       const conic_view *view, const conic_camera *camera, conic_isa isa,
+                                       conic_render_statistics *statistics) {
+  conic_triangle_frame frame;
   memset(&frame, 0, sizeof frame);
-  conic_triangle_frame_begin(&frame, context, drawing->triangles, view, camera);
-  conic_triangle_frame_tiles(&frame, CONIC_GREATEST_TILE);
-  status = conic_triangle_frame_prepare(&frame, &kernels.triangles);
+  conic_status status = conic_whole_drawing_prepare(context, drawing, view, camera, isa, &frame);
   statistics->triangles_culled = statistics->triangles_skipped = statistics->triangles_drawn = 0;
-  if (status == CONIC_OK)
+  if (status == CONIC_OK && drawing->triangles)
     conic_triangle_frame_count(&frame, statistics);
   conic_triangle_frame_release(context, &frame);
   return status;
+}
+
+void conic_chunk_add(const conic_chunk *chunk, conic_chunk *sum) {
+  sum->n_culled += chunk->n_culled;
+  sum->n_skipped += chunk->n_skipped;
+  sum->n_drawn += chunk->n_drawn;
+  sum->n_fallback += chunk->n_fallback;
+  sum->n_rays += chunk->n_rays;
+}
+
+void conic_chunks_count(const conic_chunk *chunks, size_t n_chunks, conic_method method,
+                        conic_render_statistics *statistics) {
+  conic_chunk sum = {.n_drawn = 0};
+  for (size_t i = 0; i < n_chunks; i++)
+    conic_chunk_add(&chunks[i], &sum);
+  statistics->splats_culled = sum.n_culled;
+  statistics->splats_skipped = sum.n_skipped;
+  statistics->splats_drawn = sum.n_drawn;
+  statistics->splats_fallback = sum.n_fallback;
+  conic_method_count(method, sum.n_rays, statistics);
 }

@@ -4,7 +4,7 @@
 
 #include "conic/triangles.h"
 #include "core/splats/columns.h"
-#include "raster/view/view.h"
+#include "raster/triangles/triangle_frame.h"
 
 /* A drawing whose parts are there: an absent or empty set of splats is an empty one with axes, absent triangles are
  * none. */
@@ -30,10 +30,23 @@ conic_status conic_render_whole(conic_renderer *renderer, const conic_whole_draw
 conic_status conic_whole_drawing_scale(conic_context *context, const conic_whole_drawing *drawing,
                                        conic_render_options *options);
 
+/* Projects and sorts the drawing's triangles, if there are any, as a frame of the greatest tiles; `frame` is of zero
+ * bytes, and the caller releases it, on failure too. Errors: MEMORY, ARGUMENT, UNSUPPORTED. */
+conic_status conic_whole_drawing_prepare(conic_context *context, const conic_whole_drawing *drawing,
+                                         const conic_view *view, const conic_camera *camera, conic_isa isa,
+                                         conic_triangle_frame *frame);
+
 /* What becomes of the triangles in a picture of the camera, without drawing it. Errors: MEMORY, ARGUMENT,
  * UNSUPPORTED. */
 conic_status conic_whole_drawing_count(conic_context *context, const conic_whole_drawing *drawing,
                                        const conic_view *view, const conic_camera *camera, conic_isa isa,
                                        conic_render_statistics *statistics);
+
+/* Adds what became of a chunk's splats. */
+void conic_chunk_add(const conic_chunk *chunk, conic_chunk *sum);
+
+/* Sets what became of the splats of all chunks. */
+void conic_chunks_count(const conic_chunk *chunks, size_t n_chunks, conic_method method,
+                        conic_render_statistics *statistics);
 
 #endif

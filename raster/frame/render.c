@@ -6,7 +6,7 @@
 
 #include "core/base/clock.h"
 #include "core/base/color.h"
-#include "core/base/memory.h"
+#include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
 #include "raster/frame/backend.h"
@@ -18,22 +18,11 @@
 #include "raster/view/part.h"
 #include "raster/view/ticks.h"
 
-/* Memory that is kept from frame to frame and only ever grows. */
-typedef struct kept {
-  void *pointer;
-  size_t bytes;
-} kept;
-
-/* A thread's ticks: what shares the wall-clock out. */
-typedef struct stage_times {
-  uint64_t setup, sort, lists, visibility, accumulate, resolve;
-} stage_times;
-
 struct conic_renderer {
   conic_context *context;
   conic_backend *backend; /* null: the loops here */
-  kept footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters, scratch,
-      times, lengths;
+  conic_kept_memory footprints, surfaces, rays, clips, chunks, chunk_begin, tile_begin, tile_counts, entries, sorters,
+      scratch, times, lengths;
   conic_triangle_frame triangles;
 };
 
@@ -53,7 +42,7 @@ typedef struct frame {
   char *sorters, *scratch; /* of chunks and of tiles, a thread */
   size_t sorter_bytes, scratch_bytes;
   conic_triangle_frame *triangles;   /* null: there are none */
-  stage_times *times;                /* a thread */
+  conic_stage_ticks *times;          /* a thread: what shares the wall-clock out */
   uint64_t *n_fragments, *n_covered; /* a tile */
   atomic_size_t n_triangle_fragments;
   atomic_size_t n_tiles_done;
@@ -71,10 +60,10 @@ conic_status conic_renderer_create(conic_context *context, conic_renderer **rend
 void conic_renderer_destroy(conic_renderer *renderer) {
   if (!renderer)
     return;
-  kept *all[] = {&renderer->footprints, &renderer->surfaces,    &renderer->rays,       &renderer->clips,
-                 &renderer->chunks,     &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts,
-                 &renderer->entries,    &renderer->sorters,     &renderer->scratch,    &renderer->times,
-                 &renderer->lengths};
+  conic_kept_memory *all[] = {
+      &renderer->footprints,  &renderer->surfaces,   &renderer->rays,        &renderer->clips,   &renderer->chunks,
+      &renderer->chunk_begin, &renderer->tile_begin, &renderer->tile_counts, &renderer->entries, &renderer->sorters,
+      &renderer->scratch,     &renderer->times,      &renderer->lengths};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(renderer->context, all[i]->pointer);
   if (renderer->backend)
@@ -87,22 +76,10 @@ void conic_renderer_take(conic_renderer *renderer, conic_backend *backend) {
   renderer->backend = backend;
 }
 
-/* Room for count × size bytes in `memory`; null where there is none. What was in it is gone if it had to grow. */
-static void *room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
-  if (memory->pointer && count <= memory->bytes / size)
-    return memory->pointer;
-  conic_memory_release(renderer->context, memory->pointer);
-  memory->bytes = 0;
-  memory->pointer = conic_memory_allocate(renderer->context, count, size);
-  if (memory->pointer)
-    memory->bytes = count * size;
-  return memory->pointer;
-}
-
-/* The same for what fills up from its beginning. */
-static void *dense_room(conic_renderer *renderer, kept *memory, size_t count, size_t size) {
+/* conic_keep_room for what fills up from its beginning. */
+static void *dense_room(conic_renderer *renderer, conic_kept_memory *memory, size_t count, size_t size) {
   size_t before = memory->bytes;
-  void *pointer = room(renderer, memory, count, size);
+  void *pointer = conic_keep_room(renderer->context, memory, count, size);
   if (memory->bytes != before)
     conic_memory_prefer_large_pages(renderer->context, pointer, memory->bytes);
   return pointer;
@@ -126,34 +103,36 @@ static void choose_chunks(frame *f) {
 static conic_status plan_records(frame *f) {
   choose_chunks(f);
   conic_renderer *renderer = f->renderer;
+  conic_context *context = renderer->context;
   conic_projected *projected = &f->projected;
   size_t n = f->splats->count;
-  projected->chunks = room(renderer, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
+  projected->chunks = conic_keep_room(context, &renderer->chunks, projected->n_chunks, sizeof *projected->chunks);
   size_t n_named = n ? n : 1; /* where nothing is, sums name the first */
   projected->footprints = dense_room(renderer, &renderer->footprints, n_named, sizeof *projected->footprints);
   projected->surfaces = dense_room(renderer, &renderer->surfaces, n_named, sizeof *projected->surfaces);
-  projected->rays = room(renderer, &renderer->rays, n, sizeof *projected->rays);
+  projected->rays = conic_keep_room(context, &renderer->rays, n, sizeof *projected->rays);
   if (!projected->chunks || !projected->footprints || !projected->surfaces || !projected->rays)
     return CONIC_ERROR_MEMORY;
   projected->clips = NULL;
   if (f->splats->n_clips && n) /* only the marked footprints' records are ever touched */
-    projected->clips = room(renderer, &renderer->clips, n, sizeof *projected->clips);
+    projected->clips = conic_keep_room(context, &renderer->clips, n, sizeof *projected->clips);
   return f->splats->n_clips && n && !projected->clips ? CONIC_ERROR_MEMORY : CONIC_OK;
 }
 
 static conic_status plan_bins(frame *f) {
   conic_renderer *renderer = f->renderer;
+  conic_context *context = renderer->context;
   conic_bins *bins = &f->bins;
-  size_t n = f->splats->count, n_threads = (size_t)conic_context_threads(renderer->context);
+  size_t n = f->splats->count, n_threads = (size_t)conic_context_threads(context);
   f->sorter_bytes = conic_sorter_bytes(bins, f->projected.chunk_size, f->splats->n_clips > 0);
-  f->sorters = room(renderer, &renderer->sorters, n_threads, f->sorter_bytes);
-  bins->chunk_begin = room(renderer, &renderer->chunk_begin, bins->n_chunks, sizeof *bins->chunk_begin);
+  f->sorters = conic_keep_room(context, &renderer->sorters, n_threads, f->sorter_bytes);
+  bins->chunk_begin = conic_keep_room(context, &renderer->chunk_begin, bins->n_chunks, sizeof *bins->chunk_begin);
   bins->tile_begin =
-      room(renderer, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
+      conic_keep_room(context, &renderer->tile_begin, bins->n_chunks * (bins->n_tiles + 1), sizeof *bins->tile_begin);
   bins->entries = dense_room(renderer, &renderer->entries, n + n / 4 + bins->n_tiles, sizeof *bins->entries);
   bins->n_room = renderer->entries.bytes / sizeof *bins->entries;
-  bins->length = room(renderer, &renderer->lengths, bins->n_tiles, sizeof *bins->length);
-  f->n_fragments = room(renderer, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
+  bins->length = conic_keep_room(context, &renderer->lengths, bins->n_tiles, sizeof *bins->length);
+  f->n_fragments = conic_keep_room(context, &renderer->tile_counts, bins->n_tiles * 2, sizeof *f->n_fragments);
   if (!f->sorters || !bins->chunk_begin || !bins->tile_begin || !bins->length || !bins->entries || !f->n_fragments)
     return CONIC_ERROR_MEMORY;
   f->n_covered = f->n_fragments + bins->n_tiles;
@@ -162,14 +141,15 @@ static conic_status plan_bins(frame *f) {
 
 static conic_status plan_tiles(frame *f, int tile) {
   conic_renderer *renderer = f->renderer;
-  size_t n_threads = (size_t)conic_context_threads(renderer->context);
+  conic_context *context = renderer->context;
+  size_t n_threads = (size_t)conic_context_threads(context);
   f->bins.tile = tile;
   f->bins.tile_bits = __builtin_ctz((unsigned)tile);
   f->bins.by_pixels = f->finish.options->passes == 1 && !f->hiding;
   f->bins.n_tiles_x = (f->view.width + tile - 1) / tile;
   f->bins.n_tiles_y = (f->view.height + tile - 1) / tile;
   f->bins.n_tiles = (size_t)f->bins.n_tiles_x * (size_t)f->bins.n_tiles_y;
-  f->times = room(renderer, &renderer->times, n_threads, sizeof *f->times);
+  f->times = conic_keep_room(context, &renderer->times, n_threads, sizeof *f->times);
   if (!f->times)
     return CONIC_ERROR_MEMORY;
   memset(f->times, 0, n_threads * sizeof *f->times);
@@ -224,6 +204,15 @@ static int is_in_window(const frame *f, size_t i_tile) {
   return x >= f->window.x_begin && x < f->window.x_end && y >= f->window.y_begin && y < f->window.y_end;
 }
 
+static void add_ticks(const conic_stage_ticks *ticks, conic_stage_ticks *sum) {
+  sum->setup += ticks->setup;
+  sum->sort += ticks->sort;
+  sum->lists += ticks->lists;
+  sum->visibility += ticks->visibility;
+  sum->accumulate += ticks->accumulate;
+  sum->resolve += ticks->resolve;
+}
+
 static void tile_task(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
   f->n_fragments[i_tile] = f->n_covered[i_tile] = 0;
@@ -235,12 +224,9 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
   conic_tile_report report;
   uint64_t start = conic_ticks();
   begin_tile(f, i_tile, i_thread, &tile);
-  f->times[i_thread].lists += conic_ticks() - start;
+  tile.ticks = (conic_stage_ticks){.lists = conic_ticks() - start};
   conic_tile_draw(&tile, &f->kernels, &f->finish, f->image, &report);
-  f->times[i_thread].lists += report.lists;
-  f->times[i_thread].visibility += report.visibility;
-  f->times[i_thread].accumulate += report.accumulate;
-  f->times[i_thread].resolve += report.resolve;
+  add_ticks(&tile.ticks, &f->times[i_thread]);
   f->n_fragments[i_tile] = report.n_fragments;
   f->n_covered[i_tile] = report.n_covered;
   atomic_fetch_add(&f->n_triangle_fragments, report.n_triangle_fragments);
@@ -250,11 +236,12 @@ static void tile_task(void *data, size_t i_tile, int i_thread) {
 /* Sets the splats up and sorts them. How many entries that makes is known afterwards: where they had no room, again. */
 static conic_status project_and_sort(frame *f) {
   conic_renderer *renderer = f->renderer;
+  conic_context *context = renderer->context;
   conic_bins *bins = &f->bins;
   for (;;) {
     atomic_store(&bins->n_used, 0);
     atomic_store(&bins->n_records, 0);
-    conic_parallel_for(renderer->context, f->projected.n_chunks, project_task, f);
+    conic_parallel_for(context, f->projected.n_chunks, project_task, f);
     size_t n_used = atomic_load(&bins->n_used);
     if (n_used <= bins->n_room)
       break;
@@ -264,21 +251,15 @@ static conic_status project_and_sort(frame *f) {
       return CONIC_ERROR_MEMORY;
   }
   f->scratch_bytes = conic_tile_bytes(conic_bins_measure(bins));
-  f->scratch = room(renderer, &renderer->scratch, (size_t)conic_context_threads(renderer->context), f->scratch_bytes);
+  f->scratch = conic_keep_room(context, &renderer->scratch, (size_t)conic_context_threads(context), f->scratch_bytes);
   return f->scratch ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 /* The wall-clock of set-up and sorting, and that of the tiles, shared out by what their stages took on all threads. */
 static void share_out(const frame *f, double chunks_ms, double tiles_ms, conic_render_milliseconds *ms) {
-  stage_times sum = {0, 0, 0, 0, 0, 0};
-  for (int i = 0; i < conic_context_threads(f->renderer->context); i++) {
-    sum.setup += f->times[i].setup;
-    sum.sort += f->times[i].sort;
-    sum.lists += f->times[i].lists;
-    sum.visibility += f->times[i].visibility;
-    sum.accumulate += f->times[i].accumulate;
-    sum.resolve += f->times[i].resolve;
-  }
+  conic_stage_ticks sum = {.setup = 0};
+  for (int i = 0; i < conic_context_threads(f->renderer->context); i++)
+    add_ticks(&f->times[i], &sum);
   double of_chunks = (double)(sum.setup + sum.sort);
   double of_tiles = (double)(sum.lists + sum.visibility + sum.accumulate + sum.resolve);
   double chunks_scale = of_chunks > 0.0 ? chunks_ms / of_chunks : 0.0;
@@ -291,17 +272,7 @@ static void share_out(const frame *f, double chunks_ms, double tiles_ms, conic_r
 }
 
 static void count_up(const frame *f, const conic_render_options *options, conic_render_statistics *statistics) {
-  const conic_projected *projected = &f->projected;
-  uint64_t n_rays = 0;
-  for (size_t i = 0; i < projected->n_chunks; i++) {
-    const conic_chunk *chunk = &projected->chunks[i];
-    statistics->splats_culled += chunk->n_culled;
-    statistics->splats_skipped += chunk->n_skipped;
-    statistics->splats_drawn += chunk->n_drawn;
-    statistics->splats_fallback += chunk->n_fallback;
-    n_rays += chunk->n_rays;
-  }
-  conic_method_count(options->method, n_rays, statistics);
+  conic_chunks_count(f->projected.chunks, f->projected.n_chunks, options->method, statistics);
   for (size_t i = 0; i < f->bins.n_tiles; i++) {
     statistics->fragments += f->n_fragments[i];
     statistics->pixels_covered += f->n_covered[i];

@@ -11,8 +11,6 @@
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
 #include "raster/frame/drawing.h"
-#include "raster/project/projected.h"
-#include "raster/view/method.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
@@ -164,11 +162,7 @@ static void count_splats(void *data, size_t i_item, int i_thread) {
   for (size_t i = 0; i < (n < COUNTED_TOGETHER ? n : COUNTED_TOGETHER); i++) {
     conic_chunk one = {.n_drawn = 0};
     conic_project_one(&c->view, c->splats, first + i, &place, &one);
-    chunk->n_drawn += one.n_drawn;
-    chunk->n_rays += one.n_rays;
-    chunk->n_culled += one.n_culled;
-    chunk->n_skipped += one.n_skipped;
-    chunk->n_fallback += one.n_fallback;
+    conic_chunk_add(&one, chunk);
   }
 }
 
@@ -185,16 +179,7 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   if (!c.chunks)
     return CONIC_ERROR_MEMORY;
   conic_parallel_for(context, n_tasks, count_splats, &c);
-  s->splats_culled = s->splats_skipped = s->splats_drawn = s->splats_fallback = 0;
-  uint64_t n_rays = 0;
-  for (size_t i = 0; i < n_tasks; i++) {
-    s->splats_culled += c.chunks[i].n_culled;
-    s->splats_skipped += c.chunks[i].n_skipped;
-    s->splats_drawn += c.chunks[i].n_drawn;
-    s->splats_fallback += c.chunks[i].n_fallback;
-    n_rays += c.chunks[i].n_rays;
-  }
-  conic_method_count(options->method, n_rays, s);
+  conic_chunks_count(c.chunks, n_tasks, options->method, s);
   conic_memory_release(context, c.chunks);
   return conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s);
 }

@@ -1,7 +1,5 @@
 #include "raster/frame/tile.h"
 
-#include <string.h>
-
 #include "core/lanes/stream.h"
 #include "raster/triangles/triangle_tile.h"
 #include "raster/view/ticks.h"
@@ -49,15 +47,14 @@ static void raise_hiding(const conic_tile *tile, const conic_band *band) {
     }
 }
 
-static void hide(const conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band,
-                 conic_tile_report *report) {
+static void hide(conic_tile *tile, const conic_raster_kernels *kernels, conic_band *band) {
   uint64_t start = conic_ticks();
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     select_band(tile, kernels, i_row, band);
     kernels->passes.visibility(band);
     raise_hiding(tile, band);
   }
-  report->visibility += conic_ticks() - start;
+  tile->ticks.visibility += conic_ticks() - start;
 }
 
 /* The triangles of a row, if there are any. */
@@ -67,16 +64,15 @@ static void begin_triangles(const conic_tile *tile, int i_row, conic_band *band)
     conic_triangle_tile_row(tile->triangles, tile->triangle_tile, i_row, band);
 }
 
-static void draw_triangles(const conic_tile *tile, const conic_raster_kernels *kernels, conic_tile_report *report) {
+static void draw_triangles(conic_tile *tile, const conic_raster_kernels *kernels) {
   uint64_t start = conic_ticks();
   kernels->triangles.draw(tile->triangles, tile->i_tile, tile->x_begin, tile->y_begin, tile->triangle_tile);
-  report->n_triangle_fragments = tile->triangle_tile->n_fragments;
-  report->visibility += conic_ticks() - start;
+  tile->ticks.visibility += conic_ticks() - start;
 }
 
 /* Visibility and accumulation of all rows, each resolved at once. */
-static void draw_blended(const conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
-                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+static void draw_blended(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image) {
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     uint64_t start = conic_ticks();
     select_band(tile, kernels, i_row, band);
@@ -91,10 +87,10 @@ static void draw_blended(const conic_tile *tile, const conic_raster_kernels *ker
       kernels->triangles.add(band, finish, rays);
     uint64_t summed = conic_ticks();
     kernels->resolve.resolve(band, finish, rays, image);
-    report->lists += listed - start;
-    report->visibility += seen - listed;
-    report->accumulate += summed - seen;
-    report->resolve += conic_ticks() - summed;
+    tile->ticks.lists += listed - start;
+    tile->ticks.visibility += seen - listed;
+    tile->ticks.accumulate += summed - seen;
+    tile->ticks.resolve += conic_ticks() - summed;
   }
 }
 
@@ -112,13 +108,13 @@ static int choose_strip(const conic_band *band, int n_lanes) {
 }
 
 /* The nearest splat alone: all rows in one go, since little is kept of it. */
-static void draw_nearest(const conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
-                         const conic_tile_rays *rays, conic_band *band, conic_image *image, conic_tile_report *report) {
+static void draw_nearest(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
+                         const conic_tile_rays *rays, conic_band *band, conic_image *image) {
   uint64_t start = conic_ticks();
   band->strip_rows = choose_strip(band, kernels->passes.n_lanes);
   kernels->passes.nearest(band);
   uint64_t seen = conic_ticks();
-  report->visibility += seen - start;
+  tile->ticks.visibility += seen - start;
   for (int i_row = 0; i_row < band->n_rows; i_row++) {
     band->y = tile->y_begin + i_row * CONIC_BLOCK_EDGE;
     band->nearest_row = i_row * CONIC_BLOCK_EDGE;
@@ -130,7 +126,7 @@ static void draw_nearest(const conic_tile *tile, const conic_raster_kernels *ker
     }
     kernels->resolve.resolve(band, finish, rays, image);
   }
-  report->resolve += conic_ticks() - seen;
+  tile->ticks.resolve += conic_ticks() - seen;
 }
 
 void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, const conic_finish *finish,
@@ -150,17 +146,17 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
                      .kept = tile->scratch.kept,
                      .nearest = tile->scratch.nearest,
                      .sums = tile->scratch.sums};
-  memset(report, 0, sizeof *report);
   conic_tile_rays_init(tile->view, tile->x_begin, tile->y_begin, &rays);
   if (tile->triangles)
-    draw_triangles(tile, kernels, report);
+    draw_triangles(tile, kernels);
   if (tile->hiding)
-    hide(tile, kernels, &band, report);
+    hide(tile, kernels, &band);
   else if (finish->options->passes == 1)
-    draw_nearest(tile, kernels, finish, &rays, &band, image, report);
+    draw_nearest(tile, kernels, finish, &rays, &band, image);
   else
-    draw_blended(tile, kernels, finish, &rays, &band, image, report);
+    draw_blended(tile, kernels, finish, &rays, &band, image);
   conic_stream_fence();
   report->n_fragments = band.n_fragments;
   report->n_covered = band.n_covered;
+  report->n_triangle_fragments = tile->triangles ? tile->triangle_tile->n_fragments : 0;
 }

@@ -13,6 +13,11 @@ typedef struct conic_tile_scratch {
   conic_block_sums *sums;
 } conic_tile_scratch;
 
+/* What the stages took, in ticks. */
+typedef struct conic_stage_ticks {
+  uint64_t setup, sort, lists, visibility, accumulate, resolve;
+} conic_stage_ticks;
+
 typedef struct conic_tile {
   const conic_view *view;
   const conic_projected *projected;
@@ -24,11 +29,11 @@ typedef struct conic_tile {
   const conic_triangle_frame *triangles; /* null: there are none in it */
   conic_triangle_tile *triangle_tile;    /* what they are drawn in */
   size_t i_tile;
+  conic_stage_ticks ticks; /* grow by what its passes take */
 } conic_tile;
 
-/* What a tile's passes took, in ticks, and found. */
+/* What a tile's passes found. */
 typedef struct conic_tile_report {
-  uint64_t lists, visibility, accumulate, resolve;
   uint64_t n_fragments, n_covered, n_triangle_fragments;
 } conic_tile_report;
 

@@ -48,14 +48,6 @@ static size_t select_references(const conic_tile_entry *references, size_t n, ui
   return n_selected;
 }
 
-static float seen_iz_of(const conic_fragment *fragment) {
-  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
-}
-
-static float offset_iz_of(const conic_footprint *footprint, const conic_fragment *fragment) {
-  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
-}
-
 /* Raises the thresholds of one block and writes the splat's fragments to the next place; returns how many there are. */
 static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int block) {
   conic_kept *kept = &band->kept[block];
@@ -66,11 +58,11 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
     conic_fragment fragment = {0, 0, 0, 0};
     int is_covered = fragment_of(band, i_footprint, block, l, &fragment);
     kept->fragments[place].q[l] = fragment.q;
-    kept->fragments[place].seen_iz[l] = is_covered ? seen_iz_of(&fragment) : -1.0f;
+    kept->fragments[place].seen_iz[l] = is_covered ? conic_seen_iz(&fragment) : -1.0f;
     kept->scale[place][l] = fragment.scale;
     if (!is_covered)
       continue;
-    float offset_iz = offset_iz_of(&band->projected->footprints[i_footprint], &fragment);
+    float offset_iz = conic_hiding_iz(&band->projected->footprints[i_footprint], &fragment);
     kept->threshold[l] = offset_iz > kept->threshold[l] ? offset_iz : kept->threshold[l];
     n_covered++;
   }
@@ -131,7 +123,7 @@ static void accumulate_pixel(const conic_band *band, int block, int l) {
   }
   for (size_t i = band->not_kept[block]; i < band->n; i++) {
     if (!(conic_word_has(band->words[i], (uint32_t)block)) ||
-        !fragment_of(band, band->indices[i], block, l, &fragment) || !(seen_iz_of(&fragment) >= kept->threshold[l]))
+        !fragment_of(band, band->indices[i], block, l, &fragment) || !(conic_seen_iz(&fragment) >= kept->threshold[l]))
       continue;
     blend(band, band->indices[i], block, l, &fragment, &heaviest_weight);
     if (!band->keeps_indices)

@@ -17,7 +17,4 @@ typedef struct conic_band_rows {
 /* The planes that name splats: count and id. */
 void conic_band_resolve_indices(const conic_band *band, conic_image *image);
 
-/* Camera-space z of the splat's plane at the pixel, within the splat's range. */
-float conic_plane_z(const conic_footprint *footprint, int x, int y);
-
 #endif

@@ -26,7 +26,7 @@ static int keeps(const part *p, double u, double v) {
   return u * u + v * v <= cutoff * cutoff * (1.0 + slack);
 }
 
-static void consider(part *p, double u, double v) {
+static void consider_place(part *p, double u, double v) {
   if (!keeps(p, u, v))
     return;
   const conic_view *view = p->view;
@@ -49,7 +49,7 @@ static void consider_outline(part *p, double a, double b, double c) {
   if (!conic_clip_solve(b, c, a, solutions))
     return;
   for (int i = 0; i < 2; i++)
-    consider(p, cutoff * solutions[i][0], cutoff * solutions[i][1]);
+    consider_place(p, cutoff * solutions[i][0], cutoff * solutions[i][1]);
 }
 
 static void find_extremes(part *p) {
@@ -65,7 +65,7 @@ static void find_extremes(part *p) {
     for (int k = 0; k < i; k++) {
       const double *m = p->lines[k];
       double determinant = l[0] * m[1] - l[1] * m[0];
-      consider(p, (l[1] * m[2] - l[2] * m[1]) / determinant, (l[2] * m[0] - l[0] * m[2]) / determinant);
+      consider_place(p, (l[1] * m[2] - l[2] * m[1]) / determinant, (l[2] * m[0] - l[0] * m[2]) / determinant);
     }
   }
 }

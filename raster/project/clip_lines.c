@@ -10,24 +10,6 @@
 /* Mates are clipped at the same line from both sides: by this much both keep it, so that no rounding leaves a gap. */
 #define OVERLAP_PX (1.0 / 256.0)
 
-static double row_times(const double m[3], const float *const v[3], size_t i) {
-  return (m[0] * (double)v[0][i] + m[1] * (double)v[1][i]) + m[2] * (double)v[2][i];
-}
-
-/* A splat in camera space, in double from the splat itself. */
-static conic_disc disc_of(const conic_view *view, const conic_splats *splats, size_t i) {
-  conic_disc disc;
-  for (int row = 0; row < 3; row++) {
-    const double *m = view->rotation[row];
-    disc.p[row] = row_times(m, (const float *const *)splats->position, i) + view->translation[row];
-    disc.tu[row] = row_times(m, (const float *const *)splats->tangent_u, i);
-    disc.tv[row] = row_times(m, (const float *const *)splats->tangent_v, i);
-  }
-  conic_cross(disc.tu, disc.tv, disc.n);
-  disc.determinant = (disc.p[0] * disc.n[0] + disc.p[1] * disc.n[1]) + disc.p[2] * disc.n[2];
-  return disc;
-}
-
 /* The columns of M's adjugate, t_v × p, p × t_u, t_u × t_v; returns the sign of |M|. */
 static double adjugate(const conic_disc *disc, double columns[3][3]) {
   conic_cross(disc->tv, disc->p, columns[0]);
@@ -62,7 +44,7 @@ static int set_line(const conic_view *view, const conic_footprint *footprint, co
 }
 
 /* The pixels of [0, size) whose centres lie in [low, high], as offsets from the reference. */
-static void set_range(double low, double high, int size, float reference, float fraction, float range[2]) {
+static void set_clip_range(double low, double high, int size, float reference, float fraction, float range[2]) {
   double first = ceil(low - 0.5), last = floor(high - 0.5);
   first = first > 0.0 ? first : 0.0;
   last = last < (double)(size - 1) ? last : (double)(size - 1);
@@ -76,8 +58,8 @@ static void set_range(double low, double high, int size, float reference, float 
 
 /* Seen nearly edge-on, lines fall onto the trace of the splat's plane and clip little along it: the box does. Dots know
  * no tilt, and so nothing of it. */
-static void set_box(const conic_view *view, const conic_disc *disc, const conic_clip *clip,
-                    const conic_footprint *footprint, conic_clip_record *record) {
+static void set_clip_box(const conic_view *view, const conic_disc *disc, const conic_clip *clip,
+                         const conic_footprint *footprint, conic_clip_record *record) {
   float lines[2][3], x[2], y[2];
   double low[2], high[2], growth = (double)view->growth_px + OVERLAP_PX;
   int n_lines = 0;
@@ -91,8 +73,8 @@ static void set_box(const conic_view *view, const conic_disc *disc, const conic_
     low[0] = low[1] = 1e9;
     high[0] = high[1] = -1e9;
   }
-  set_range(low[0] - growth, high[0] + growth, view->width, footprint->x, footprint->dx0, x);
-  set_range(low[1] - growth, high[1] + growth, view->height, footprint->y, footprint->dy0, y);
+  set_clip_range(low[0] - growth, high[0] + growth, view->width, footprint->x, footprint->dx0, x);
+  set_clip_range(low[1] - growth, high[1] + growth, view->height, footprint->y, footprint->dy0, y);
   record->dx_low = x[0];
   record->dx_high = x[1];
   record->dy_low = y[0];
@@ -101,7 +83,7 @@ static void set_box(const conic_view *view, const conic_disc *disc, const conic_
 
 static conic_clip_record project_clip(const conic_view *view, const conic_splats *splats, const conic_clip *clip,
                                       const conic_footprint *footprint) {
-  conic_disc disc = disc_of(view, splats, clip->splat);
+  conic_disc disc = conic_disc_of(view, splats, clip->splat);
   double columns[3][3], sign = adjugate(&disc, columns);
   conic_clip_record record = {
       .d0 = {1.0f, 1.0f}, .dx_low = -1e30f, .dx_high = 1e30f, .dy_low = -1e30f, .dy_high = 1e30f};
@@ -110,7 +92,7 @@ static conic_clip_record project_clip(const conic_view *view, const conic_splats
     if (conic_clip_is_line(clip->lines[i]))
       n_lines += set_line(view, footprint, (const double(*)[3])columns, sign, clip->lines[i], &record, n_lines);
   record.is_or = n_lines == 2 && clip->operation == CONIC_CLIP_OR;
-  set_box(view, &disc, clip, footprint, &record);
+  set_clip_box(view, &disc, clip, footprint, &record);
   return record;
 }
 

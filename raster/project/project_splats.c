@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/base/vectors.h"
 #include "raster/view/method.h"
 
 /* A splat in camera space, divided by p_z: x and y then are on the image plane at distance 1. */
@@ -44,18 +45,16 @@ static void move_center(const conic_view *view, const conic_splats *splats, size
     p[row] = row_times(view->rotation[row], (const float *const *)splats->position, i) + view->translation[row];
 }
 
-static void fill_disc(const splat_setup *s, conic_disc *disc) {
-  const conic_splats *splats = s->splats;
+conic_disc conic_disc_of(const conic_view *view, const conic_splats *splats, size_t i) {
+  conic_disc disc;
+  move_center(view, splats, i, disc.p);
   for (int row = 0; row < 3; row++) {
-    const double *m = s->view->rotation[row];
-    disc->p[row] = s->p[row];
-    disc->tu[row] = row_times(m, (const float *const *)splats->tangent_u, s->i);
-    disc->tv[row] = row_times(m, (const float *const *)splats->tangent_v, s->i);
+    disc.tu[row] = row_times(view->rotation[row], (const float *const *)splats->tangent_u, i);
+    disc.tv[row] = row_times(view->rotation[row], (const float *const *)splats->tangent_v, i);
   }
-  disc->n[0] = disc->tu[1] * disc->tv[2] - disc->tu[2] * disc->tv[1];
-  disc->n[1] = disc->tu[2] * disc->tv[0] - disc->tu[0] * disc->tv[2];
-  disc->n[2] = disc->tu[0] * disc->tv[1] - disc->tu[1] * disc->tv[0];
-  disc->determinant = (disc->p[0] * disc->n[0] + disc->p[1] * disc->n[1]) + disc->p[2] * disc->n[2];
+  conic_cross(disc.tu, disc.tv, disc.n);
+  disc.determinant = (disc.p[0] * disc.n[0] + disc.p[1] * disc.n[1]) + disc.p[2] * disc.n[2];
+  return disc;
 }
 
 /* Pixels [begin, end) of [0, size) whose centres lie within reach of the centre. */
@@ -150,8 +149,7 @@ static void set_slope(const splat_setup *s, const tangents *t) {
 
 /* In double, for what float cannot hold. */
 static conic_outcome project_by_ray(const splat_setup *s) {
-  conic_disc disc;
-  fill_disc(s, &disc);
+  conic_disc disc = conic_disc_of(s->view, s->splats, s->i);
   return conic_project_ray(s->view, &disc, s->footprint, s->box, s->ray);
 }
 
@@ -324,8 +322,7 @@ static conic_outcome project_before_near(splat_setup *s, const float tu[3], cons
 }
 
 static conic_outcome project_across_near(splat_setup *s) {
-  conic_disc disc;
-  fill_disc(s, &disc);
+  conic_disc disc = conic_disc_of(s->view, s->splats, s->i);
   s->along_ray = disc.determinant > 0.0 ? 1.0f : disc.determinant < 0.0 ? -1.0f : 0.0f;
   if (s->view->cull_back && disc.determinant > 0.0)
     return CONIC_CULLED;
@@ -436,6 +433,12 @@ static conic_outcome project_splat(splat_setup *s) {
   return is_finite_record(s->footprint, s->ray, s->surface) ? outcome : CONIC_SKIPPED;
 }
 
+/* Whether a splat that is drawn is not by its method's own formula. */
+static int is_fallback(conic_method method, conic_outcome outcome) {
+  return outcome == CONIC_DRAWN_RAY ? !conic_method_has_rays(method)
+                                    : outcome == CONIC_DRAWN_SEGMENT || !conic_method_has_ellipses(method);
+}
+
 void conic_project_one(const conic_view *view, const conic_splats *splats, size_t i, conic_projected *projected,
                        conic_chunk *chunk) {
   splat_setup s = {.view = view, .splats = splats, .i = i};
@@ -451,9 +454,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else {
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first_ray + chunk->n_rays++);
-    int is_own = outcome == CONIC_DRAWN_RAY ? conic_method_has_rays(view->method)
-                                            : outcome != CONIC_DRAWN_SEGMENT && conic_method_has_ellipses(view->method);
-    chunk->n_fallback += !is_own;
+    chunk->n_fallback += (size_t)is_fallback(view->method, outcome);
     chunk->n_drawn++;
   }
 }

@@ -126,6 +126,8 @@ typedef struct conic_disc {
   double determinant; /* p · n */
 } conic_disc;
 
+conic_disc conic_disc_of(const conic_view *view, const conic_splats *splats, size_t i);
+
 /* Sets up a splat by the ray–splat parameter; its projected disc, clipped at near where it reaches it, gives the
  * box. nearness and amplitude are left to the caller. Returns DRAWN_RAY, CULLED (off-screen) or SKIPPED. */
 conic_outcome conic_project_ray(const conic_view *view, const conic_disc *disc, conic_footprint *footprint,

@@ -53,6 +53,22 @@ static inline float conic_row_iz(const conic_footprint *footprint, const conic_r
   return conic_clamp_iz(footprint, row->iz_offset + footprint->iz_dx * dx);
 }
 
+/* Camera-space z of the splat's plane at the pixel, within the splat's range. */
+static inline float conic_plane_z(const conic_footprint *footprint, int x, int y) {
+  float dx = conic_row_dx(footprint, x), dy = conic_row_dy(footprint, y);
+  float iz = (footprint->iz0 + footprint->plane_dy * dy) + footprint->plane_dx * dx;
+  return 1.0f / conic_clamp_iz(footprint, iz);
+}
+
+/* By what a fragment hides others, and by what it is seen: docs/reference/picture.md, "Visible". */
+static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
+  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+}
+
+static inline float conic_seen_iz(const conic_fragment *fragment) {
+  return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
+}
+
 /* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/reference/picture.md): 1 where the
  * pixel is covered. */
 static inline int conic_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
@@ -104,6 +120,17 @@ static inline int conic_laplace_fragment(const conic_view *view, const conic_foo
   return 1;
 }
 
+/* By the variance on the screen: s3 is not 0. */
+static inline int conic_variance_fragment(const conic_view *view, const conic_footprint *footprint, float dx, float dy,
+                                          conic_fragment *fragment) {
+  conic_row row = conic_row_begin(footprint, dy);
+  fragment->q = conic_row_q(footprint, &row, dx);
+  fragment->iz = conic_row_iz(footprint, &row, dx);
+  fragment->plane_iz = row.plane_offset + footprint->plane_dx * dx;
+  fragment->scale = 1.0f;
+  return fragment->q < view->support;
+}
+
 /* The splat at a pixel: 1 where it covers it. */
 static inline int conic_fragment_at(const conic_view *view, const conic_projected *projected,
                                     const conic_footprint *footprint, int x, int y, conic_fragment *fragment) {
@@ -114,12 +141,7 @@ static inline int conic_fragment_at(const conic_view *view, const conic_projecte
     return conic_laplace_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
   if (footprint->s3 == 0.0f)
     return conic_ray_fragment(view, footprint, &projected->rays[footprint->i_ray], dx, dy, fragment);
-  conic_row row = conic_row_begin(footprint, dy);
-  fragment->q = conic_row_q(footprint, &row, dx);
-  fragment->iz = conic_row_iz(footprint, &row, dx);
-  fragment->plane_iz = row.plane_offset + footprint->plane_dx * dx;
-  fragment->scale = 1.0f;
-  return fragment->q < view->support;
+  return conic_variance_fragment(view, footprint, dx, dy, fragment);
 }
 
 #endif

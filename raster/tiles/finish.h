@@ -34,4 +34,14 @@ void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, coni
 void conic_shade(const conic_finish *finish, const float albedo[3], const float normal[3], const float mean_normal[3],
                  const float viewer[3], float shaded[3]);
 
+/* A finished pixel, before it is written to the planes that the image has. */
+typedef struct conic_finished_pixel {
+  float rgba[4], normal[3], albedo[3];
+} conic_finished_pixel;
+
+/* Of a covered pixel's sums, which looks along (dx, dy, 1). Where the normals cancel, that of the heaviest splat. */
+void conic_finish_covered(const conic_finish *finish, float weight, const float color_sum[3], const float normal_sum[3],
+                          const float heaviest_normal[3], float dx, float dy, conic_finished_pixel *pixel);
+void conic_finish_uncovered(const conic_finish *finish, conic_finished_pixel *pixel);
+
 #endif

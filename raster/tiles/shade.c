@@ -1,5 +1,7 @@
 #include "raster/tiles/finish.h"
 
+#include <math.h>
+
 static float dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
@@ -37,4 +39,37 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
   }
   for (int i = 0; i < 3; i++)
     shaded[i] = albedo[i] * lit + glossy;
+}
+
+/* The unit direction from what is seen at the pixel to the viewer, in world coordinates. */
+static void viewer_at(const conic_finish *finish, float dx, float dy, float viewer[3]) {
+  float scale = -1.0f / sqrtf((dx * dx + dy * dy) + 1.0f);
+  for (int i = 0; i < 3; i++) {
+    const float *m = finish->world_from_cam[i];
+    viewer[i] = ((m[0] * dx + m[1] * dy) + m[2]) * scale;
+  }
+}
+
+void conic_finish_covered(const conic_finish *finish, float weight, const float color_sum[3], const float normal_sum[3],
+                          const float heaviest_normal[3], float dx, float dy, conic_finished_pixel *pixel) {
+  float viewer[3], mean_normal[3], shaded[3], part = 1.0f / weight;
+  for (int axis = 0; axis < 3; axis++) {
+    pixel->albedo[axis] = color_sum[axis] * part;
+    mean_normal[axis] = normal_sum[axis] * part;
+  }
+  float norm = sqrtf(dot(mean_normal, mean_normal)), scale = 1.0f / norm;
+  for (int axis = 0; axis < 3; axis++)
+    pixel->normal[axis] = norm > 0.0f ? mean_normal[axis] * scale : heaviest_normal[axis];
+  viewer_at(finish, dx, dy, viewer);
+  conic_shade(finish, pixel->albedo, pixel->normal, mean_normal, viewer, shaded);
+  for (int axis = 0; axis < 3; axis++)
+    pixel->rgba[axis] = shaded[axis] * finish->exposure;
+  pixel->rgba[3] = 1.0f;
+}
+
+void conic_finish_uncovered(const conic_finish *finish, conic_finished_pixel *pixel) {
+  for (int channel = 0; channel < 4; channel++)
+    pixel->rgba[channel] = finish->background[channel];
+  for (int axis = 0; axis < 3; axis++)
+    pixel->normal[axis] = pixel->albedo[axis] = 0.0f;
 }

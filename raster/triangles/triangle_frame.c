@@ -16,19 +16,6 @@ typedef struct preparation {
   const conic_triangle_kernels *kernels;
 } preparation;
 
-/* Room for count × size bytes; null where there is none. What was in it is gone if it had to grow. */
-static void *room(conic_triangle_frame *frame, int which, size_t count, size_t size) {
-  conic_triangle_memory *memory = &frame->memory[which];
-  if (memory->pointer && count <= memory->bytes / size)
-    return memory->pointer;
-  conic_memory_release(frame->context, memory->pointer);
-  memory->bytes = 0;
-  memory->pointer = conic_memory_allocate(frame->context, count, size);
-  if (memory->pointer)
-    memory->bytes = count * size;
-  return memory->pointer;
-}
-
 void conic_triangle_frame_begin(conic_triangle_frame *frame, conic_context *context, const conic_triangles *triangles,
                                 const conic_view *view, const conic_camera *camera) {
   frame->context = context;
@@ -54,7 +41,9 @@ static size_t rounded(size_t bytes) {
 }
 
 static conic_status plan(conic_triangle_frame *frame) {
-  size_t n = frame->triangles->count, n_threads = (size_t)conic_context_threads(frame->context);
+  conic_context *context = frame->context;
+  conic_kept_memory *memory = frame->memory;
+  size_t n = frame->triangles->count, n_threads = (size_t)conic_context_threads(context);
   size_t size = TRIANGLES_TOGETHER;
   while ((n / size + 1) * frame->n_tiles > ((size_t)1 << 22) && size < n)
     size *= 2;
@@ -63,24 +52,27 @@ static conic_status plan(conic_triangle_frame *frame) {
   size_t most = CONIC_TRIANGLE_PIECES_MOST * (size < n ? size : n) + 1;
   frame->sorter_bytes = rounded(most * sizeof(conic_triangle_record)) + rounded(most * sizeof(conic_triangle_piece)) +
                         rounded(frame->n_tiles * sizeof(uint32_t));
-  frame->vertices = room(frame, CONIC_TRIANGLE_VERTICES, frame->triangles->n_vertices, sizeof *frame->vertices);
-  frame->chunks = room(frame, CONIC_TRIANGLE_CHUNKS, frame->n_chunks, sizeof *frame->chunks);
-  frame->tile_begin =
-      room(frame, CONIC_TRIANGLE_TABLES, frame->n_chunks * (frame->n_tiles + 1), sizeof *frame->tile_begin);
-  frame->sorters = room(frame, CONIC_TRIANGLE_SORTERS, n_threads, frame->sorter_bytes);
-  frame->tiles = room(frame, CONIC_TRIANGLE_TILES, n_threads, sizeof *frame->tiles);
+  frame->vertices =
+      conic_keep_room(context, &memory[CONIC_TRIANGLE_VERTICES], frame->triangles->n_vertices, sizeof *frame->vertices);
+  frame->chunks = conic_keep_room(context, &memory[CONIC_TRIANGLE_CHUNKS], frame->n_chunks, sizeof *frame->chunks);
+  frame->tile_begin = conic_keep_room(context, &memory[CONIC_TRIANGLE_TABLES], frame->n_chunks * (frame->n_tiles + 1),
+                                      sizeof *frame->tile_begin);
+  frame->sorters = conic_keep_room(context, &memory[CONIC_TRIANGLE_SORTERS], n_threads, frame->sorter_bytes);
+  frame->tiles = conic_keep_room(context, &memory[CONIC_TRIANGLE_TILES], n_threads, sizeof *frame->tiles);
   return frame->vertices && frame->chunks && frame->tile_begin && frame->sorters && frame->tiles ? CONIC_OK
                                                                                                  : CONIC_ERROR_MEMORY;
 }
 
 /* Room for so many records, pieces and entries. */
 static conic_status plan_results(conic_triangle_frame *frame, size_t n_records, size_t n_pieces, size_t n_entries) {
-  frame->records = room(frame, CONIC_TRIANGLE_RECORDS, n_records, sizeof *frame->records);
-  frame->pieces = room(frame, CONIC_TRIANGLE_PIECES, n_pieces, sizeof *frame->pieces);
-  frame->entries = room(frame, CONIC_TRIANGLE_ENTRIES, n_entries, sizeof *frame->entries);
-  frame->n_record_room = frame->memory[CONIC_TRIANGLE_RECORDS].bytes / sizeof *frame->records;
-  frame->n_piece_room = frame->memory[CONIC_TRIANGLE_PIECES].bytes / sizeof *frame->pieces;
-  frame->n_entry_room = frame->memory[CONIC_TRIANGLE_ENTRIES].bytes / sizeof *frame->entries;
+  conic_context *context = frame->context;
+  conic_kept_memory *memory = frame->memory;
+  frame->records = conic_keep_room(context, &memory[CONIC_TRIANGLE_RECORDS], n_records, sizeof *frame->records);
+  frame->pieces = conic_keep_room(context, &memory[CONIC_TRIANGLE_PIECES], n_pieces, sizeof *frame->pieces);
+  frame->entries = conic_keep_room(context, &memory[CONIC_TRIANGLE_ENTRIES], n_entries, sizeof *frame->entries);
+  frame->n_record_room = memory[CONIC_TRIANGLE_RECORDS].bytes / sizeof *frame->records;
+  frame->n_piece_room = memory[CONIC_TRIANGLE_PIECES].bytes / sizeof *frame->pieces;
+  frame->n_entry_room = memory[CONIC_TRIANGLE_ENTRIES].bytes / sizeof *frame->entries;
   return frame->records && frame->pieces && frame->entries ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 

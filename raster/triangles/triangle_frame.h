@@ -5,16 +5,11 @@
 #include <stdatomic.h>
 
 #include "conic/triangles.h"
+#include "core/base/kept_memory.h"
 #include "raster/tiles/band.h"
 #include "raster/triangles/triangle_samples.h"
 
 struct conic_triangle_kernels;
-
-/* Memory that only ever grows, kept from frame to frame. */
-typedef struct conic_triangle_memory {
-  void *pointer;
-  size_t bytes;
-} conic_triangle_memory;
 
 enum {
   CONIC_TRIANGLE_VERTICES,
@@ -76,7 +71,7 @@ struct conic_triangle_frame {
   char *sorters;
   size_t sorter_bytes;
   conic_triangle_tile *tiles; /* a thread */
-  conic_triangle_memory memory[CONIC_TRIANGLE_N_MEMORIES];
+  conic_kept_memory memory[CONIC_TRIANGLE_N_MEMORIES];
 };
 
 typedef struct conic_triangle_frame conic_triangle_frame;

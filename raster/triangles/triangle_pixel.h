@@ -52,18 +52,6 @@ static inline void conic_triangle_look_place(const conic_triangle_look *look, co
   }
 }
 
-static inline void conic_triangle_look_color(const conic_triangle_look *look, const conic_triangle_weights *w,
-                                             float color[3]) {
-  float uv[2], along[2], across[2], texel[3];
-  conic_triangle_look_plain_color(look, w, color);
-  if (!look->texture)
-    return;
-  conic_triangle_look_place(look, w, uv, along, across);
-  conic_texture_sample(look->texture, uv, along, across, texel);
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] *= texel[channel];
-}
-
 /* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
 static inline void conic_triangle_look_normal(const conic_triangle_look *look, const conic_triangle_weights *w,
                                               const float world_from_cam[3][3], float dx, float dy, float normal[3]) {
@@ -85,6 +73,40 @@ static inline void conic_triangle_look_normal(const conic_triangle_look *look, c
   }
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
+}
+
+/* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */
+typedef struct conic_triangle_sight {
+  float color[3], normal[3];
+  const conic_texture *texture; /* null: none */
+  float uv[2], along[2], across[2];
+} conic_triangle_sight;
+
+/* A covered pixel's, which looks along the ray (x, y, 1). */
+static inline void conic_triangle_see(const conic_triangle_frame *frame, const conic_triangle_record *record,
+                                      const float world_from_cam[3][3], int x, int y, const float ray[2],
+                                      conic_triangle_sight *sight) {
+  int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
+  conic_triangle_look look;
+  conic_triangle_weights weights;
+  conic_triangle_look_at(frame, record, x - column, y - row, &look);
+  conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
+  conic_triangle_look_plain_color(&look, &weights, sight->color);
+  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], sight->normal);
+  sight->texture = look.texture;
+  if (look.texture)
+    conic_triangle_look_place(&look, &weights, sight->uv, sight->along, sight->across);
+}
+
+/* Gives the colour its texture. */
+static inline void conic_triangle_lay_texture(conic_triangle_sight *sight) {
+  float texel[3];
+  if (!sight->texture)
+    return;
+  conic_texture_sample(sight->texture, sight->uv, sight->along, sight->across, texel);
+  for (int channel = 0; channel < 3; channel++)
+    sight->color[channel] *= texel[channel];
+  sight->texture = NULL;
 }
 
 #endif

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "raster/tiles/coverage.h"
-#include "raster/triangles/triangle_pixel.h"
 
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row,
                              conic_band *band) {
@@ -117,41 +116,6 @@ void conic_triangle_rank_block(const conic_band *band, int block) {
   }
 }
 
-static void see(const conic_triangle_frame *frame, const conic_triangle_record *record,
-                const float world_from_cam[3][3], int x, int y, const float ray[2], conic_triangle_sight *sight) {
-  int column = x % CONIC_BLOCK_EDGE, row = y % CONIC_BLOCK_EDGE;
-  conic_triangle_look look;
-  conic_triangle_weights weights;
-  conic_triangle_look_at(frame, record, x - column, y - row, &look);
-  conic_triangle_weights_at(&look, (float)column, (float)row, &weights);
-  conic_triangle_look_plain_color(&look, &weights, sight->color);
-  conic_triangle_look_normal(&look, &weights, world_from_cam, ray[0], ray[1], sight->normal);
-  sight->texture = look.texture;
-  if (look.texture)
-    conic_triangle_look_place(&look, &weights, sight->uv, sight->along, sight->across);
-}
-
-/* Gives the colour its texture. */
-static void lay_texture(conic_triangle_sight *sight) {
-  float texel[3];
-  if (!sight->texture)
-    return;
-  conic_texture_sample(sight->texture, sight->uv, sight->along, sight->across, texel);
-  for (int channel = 0; channel < 3; channel++)
-    sight->color[channel] *= texel[channel];
-  sight->texture = NULL;
-}
-
-void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
-                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
-                             float normal[3]) {
-  conic_triangle_sight sight;
-  see(frame, record, world_from_cam, x, y, ray, &sight);
-  lay_texture(&sight);
-  memcpy(color, sight.color, sizeof sight.color);
-  memcpy(normal, sight.normal, sizeof sight.normal);
-}
-
 /* Lists the records that a row sees, each once or little more often. */
 static int list_records(const conic_band *band, uint32_t records[CONIC_BAND_BLOCKS * CONIC_BLOCK_PIXELS]) {
   int n = 0;
@@ -193,8 +157,9 @@ void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish
   const conic_triangle_record *record = &band->triangle_frame->records[band->triangles->blocks[block].record[l]];
   int i_row = (band->y - rays->y_begin) / CONIC_BLOCK_EDGE;
   const float ray[2] = {rays->block_x[block][l], rays->block_y[i_row][l]};
-  see(band->triangle_frame, record, finish->world_from_cam, band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE,
-      band->y + l % CONIC_BLOCK_EDGE, ray, sight);
+  conic_triangle_see(band->triangle_frame, record, finish->world_from_cam,
+                     band->x + block * CONIC_BLOCK_EDGE + l / CONIC_BLOCK_EDGE, band->y + l % CONIC_BLOCK_EDGE, ray,
+                     sight);
 }
 
 void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_block_sums *sums) {
@@ -215,7 +180,7 @@ void conic_triangle_add_sight(const conic_triangle_sight *sight, int l, conic_bl
 static void add_pixel(conic_band *band, const conic_finish *finish, const conic_tile_rays *rays, int block, int l) {
   conic_triangle_sight sight;
   conic_triangle_see_pixel(band, finish, rays, block, l, &sight);
-  lay_texture(&sight);
+  conic_triangle_lay_texture(&sight);
   conic_triangle_add_sight(&sight, l, &band->sums[block]);
 }
 

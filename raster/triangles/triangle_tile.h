@@ -3,7 +3,7 @@
 #define CONIC_TRIANGLE_TILE_H
 
 #include "raster/tiles/finish.h"
-#include "raster/triangles/triangle_frame.h"
+#include "raster/triangles/triangle_pixel.h"
 
 /* Points the band to the tile's row; null where no triangle is in it. */
 void conic_triangle_tile_row(const conic_triangle_frame *frame, conic_triangle_tile *tile, int i_row, conic_band *band);
@@ -16,20 +16,8 @@ conic_triangle_canvas conic_triangle_canvas_of(const conic_triangle_frame *frame
  * added to its sums. */
 void conic_triangle_rank_block(const conic_band *band, int block);
 
-/* A covered pixel's colour, and its unit normal towards the viewer, who looks along the ray (x, y, 1). */
-void conic_triangle_color_at(const conic_triangle_frame *frame, const conic_triangle_record *record,
-                             const float world_from_cam[3][3], int x, int y, const float ray[2], float color[3],
-                             float normal[3]);
-
 /* Fetches what the look of a row's visible triangles is read from, where they are many. */
 void conic_triangle_fetch_row(const conic_band *band);
-
-/* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */
-typedef struct conic_triangle_sight {
-  float color[3], normal[3];
-  const conic_texture *texture; /* null: none */
-  float uv[2], along[2], across[2];
-} conic_triangle_sight;
 
 /* Of pixel l of the block. */
 void conic_triangle_see_pixel(const conic_band *band, const conic_finish *finish, const conic_tile_rays *rays,

@@ -40,7 +40,6 @@ static conic_status check_patch_options(conic_context *context, const conic_spla
 typedef struct laying {
   conic_patches *patches;
   conic_workspace *workspaces;
-
   uint8_t *outcomes; /* by slot */
 } laying;
 
@@ -175,8 +174,7 @@ static void lay_chunk(void *data, size_t i_item, int i_thread) {
   laying *work = data;
   const conic_surface *surface = work->patches->surface;
   conic_workspace *workspace = &work->workspaces[i_thread];
-  size_t begin = i_item * CHUNK;
-  for (size_t i = begin; i < begin + CHUNK && i < surface->tree.n_leaves; i++) {
+  for (size_t i = i_item * CHUNK; i < (i_item + 1) * CHUNK && i < surface->tree.n_leaves; i++) {
     conic_surface_share_leaf(surface, i, workspace);
     for (size_t slot = conic_neighbours_leaf_begin(&surface->tree, i);
          slot < conic_neighbours_leaf_begin(&surface->tree, i + 1); slot++)
@@ -186,11 +184,10 @@ static void lay_chunk(void *data, size_t i_item, int i_thread) {
 
 static conic_status lay_all(laying *work) {
   conic_context *context = work->patches->context;
+  size_t n_chunks = (work->patches->surface->tree.n_leaves + CHUNK - 1) / CHUNK;
   conic_status status = conic_workspaces_create(context, &work->workspaces);
   if (status == CONIC_OK)
-    status =
-        conic_parallel_runs(context, "patches", 0.0, 1.0, (work->patches->surface->tree.n_leaves + CHUNK - 1) / CHUNK,
-                            CHUNKS_A_REPORT, lay_chunk, work);
+    status = conic_parallel_runs(context, "patches", 0.0, 1.0, n_chunks, CHUNKS_A_REPORT, lay_chunk, work);
   if (status == CONIC_OK)
     status = conic_workspaces_check(context, work->workspaces);
   conic_workspaces_release(context, work->workspaces);

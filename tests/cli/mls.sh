@@ -43,7 +43,7 @@ run 2 mls project torus.ply -o x.ply --memory 100
 run 2 mls project torus.ply -o x.ply --h 2x --memory 100
 run 2 mls project - -o x.ply --h 0.06 --memory 100
 run 2 mls thin torus.ply -o x.ply --h 0.06 --memory 100 --count 10
-[[ ! -e x.ply && -z $(compgen -G '*.cells-*') ]] || fail "something was left of what failed"
+[[ ! -e x.ply && -z $(compgen -G '.conic-spool*') ]] || fail "something was left of what failed"
 
 # Raw points get sides, meshes are sets of vertices, and pipes work.
 printf '%s %s %s\n' $(for ((i = 0; i < 400; i++)); do echo $((i % 20)) $((i / 20)) $((i * 37 % 5)).0e-1; done) > raw.xyz

@@ -1,7 +1,7 @@
 /* Each stage of a frame on an OpenCL device, downloaded and compared with plain C's: records, tile lists, thresholds,
  * sums. */
 #include "opencl/frame.h"
-#include "raster/kernels/resolve.h"
+#include "raster/tiles/coverage.h"
 #include "raster/tiles/coverage.h"
 #include "tests/support/opencl_fixture.h"
 

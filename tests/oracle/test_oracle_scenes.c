@@ -61,8 +61,6 @@ static void fill_random(fixture *f, size_t count, double low_z, double high_z, d
 
 static void test_hard_scenes(fixture *f) {
   fixture_camera(f, 200, 150, 180.0);
-  f->options.near_z = 0.05;
-  f->options.shading = CONIC_SHADE_PHONG;
   fill_random(f, 3000, 1.0, 4.0, 0.002, 0.05, 1.0);
   check_agreement(f, "round", 0.005);
   fill_random(f, 3000, 1.0, 4.0, 0.01, 0.1, 1e-4);
@@ -158,6 +156,8 @@ static void test_frontal_wall(fixture *f) {
 }
 int main(void) {
   fixture f = fixture_open(2);
+  f.options.near_z = 0.05;
+  f.options.shading = CONIC_SHADE_PHONG;
   test_edge_on(&f);
   test_hostile(&f);
 #ifndef __SANITIZE_ADDRESS__ /* which takes ten times as long, and finds no more where all is sound */

@@ -135,10 +135,7 @@ static conic_status write_all(conic_context *context, const char *path, const co
   status = write_head(context, header, p->entries, conic_output_stream(output));
   if (status == CONIC_OK)
     status = write_clouds(context, forest, p, header, conic_output_stream(output));
-  if (status == CONIC_OK)
-    return conic_output_commit(output);
-  conic_output_abandon(output);
-  return status;
+  return conic_output_end(output, status);
 }
 
 conic_status conic_layers_write(conic_context *context, const char *path, const conic_layers_forest *forest,

@@ -15,22 +15,22 @@ enum { AT_HEADER_SUM = CONIC_LAYERS_HEADER_BYTES - 8 };
 /* No coordinate and no length is larger, so that nothing derived of them overflows. */
 static const double farthest = 1e15;
 
-#define IN_HEADER(member, n_values) CONIC_FILE_FIELD(conic_layers_header, member, n_values)
-#define IN_ENTRY(member, n_values) CONIC_FILE_FIELD(conic_layers_entry, member, n_values)
+#define IN_HEADER(member) CONIC_FILE_FIELD(conic_layers_header, member)
+#define IN_ENTRY(member) CONIC_FILE_FIELD(conic_layers_entry, member)
 
 static const conic_file_field header_fields[] = {
-    IN_HEADER(version, 1),      IN_HEADER(flags, 1),      IN_HEADER(n_samples, 1),      IN_HEADER(n_clouds, 1),
-    IN_HEADER(n_levels, 1),     IN_HEADER(bits, 1),       IN_HEADER(cloud_size, 1),     IN_HEADER(origin, 3),
-    IN_HEADER(quantum, 1),      IN_HEADER(low, 3),        IN_HEADER(high, 3),           IN_HEADER(spacing, 1),
-    IN_HEADER(splat_radius, 1), IN_HEADER(near_z, 1),     IN_HEADER(position_bytes, 1), IN_HEADER(normal_bytes, 1),
-    IN_HEADER(color_bytes, 1),  IN_HEADER(file_bytes, 1), IN_HEADER(index_sum, 1),      IN_HEADER(most_samples, 1),
-    IN_HEADER(most_bytes, 1)};
+    IN_HEADER(version),      IN_HEADER(flags),      IN_HEADER(n_samples),      IN_HEADER(n_clouds),
+    IN_HEADER(n_levels),     IN_HEADER(bits),       IN_HEADER(cloud_size),     IN_HEADER(origin),
+    IN_HEADER(quantum),      IN_HEADER(low),        IN_HEADER(high),           IN_HEADER(spacing),
+    IN_HEADER(splat_radius), IN_HEADER(near_z),     IN_HEADER(position_bytes), IN_HEADER(normal_bytes),
+    IN_HEADER(color_bytes),  IN_HEADER(file_bytes), IN_HEADER(index_sum),      IN_HEADER(most_samples),
+    IN_HEADER(most_bytes)};
 
 static const conic_file_field entry_fields[] = {
-    IN_ENTRY(key, 1),       IN_ENTRY(offset, 1),  IN_ENTRY(sum, 1),      IN_ENTRY(n_place, 1), IN_ENTRY(n_bytes, 1),
-    IN_ENTRY(n_samples, 1), IN_ENTRY(parent, 1),  IN_ENTRY(child, 1),    IN_ENTRY(n_drawn, 1), IN_ENTRY(level, 1),
-    IN_ENTRY(depth, 1),     IN_ENTRY(spacing, 1), IN_ENTRY(covering, 1), IN_ENTRY(radius, 1),  IN_ENTRY(error, 1),
-    IN_ENTRY(center, 3),    IN_ENTRY(sphere, 1),  IN_ENTRY(axis, 3),     IN_ENTRY(cone, 1)};
+    IN_ENTRY(key),       IN_ENTRY(offset),  IN_ENTRY(sum),      IN_ENTRY(n_place), IN_ENTRY(n_bytes),
+    IN_ENTRY(n_samples), IN_ENTRY(parent),  IN_ENTRY(child),    IN_ENTRY(n_drawn), IN_ENTRY(level),
+    IN_ENTRY(depth),     IN_ENTRY(spacing), IN_ENTRY(covering), IN_ENTRY(radius),  IN_ENTRY(error),
+    IN_ENTRY(center),    IN_ENTRY(sphere),  IN_ENTRY(axis),     IN_ENTRY(cone)};
 
 enum {
   N_HEADER_FIELDS = sizeof header_fields / sizeof *header_fields,

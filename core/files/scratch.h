@@ -1,0 +1,24 @@
+/* A file without a name, which the system takes away however the program ends. */
+#ifndef CONIC_SCRATCH_H
+#define CONIC_SCRATCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+
+typedef struct conic_scratch {
+  conic_context *context;
+  const char *path; /* beside which it lies, on the disk that has to hold the result; for messages too */
+  int descriptor;   /* -1: not open */
+} conic_scratch;
+
+/* `path` must outlive the file. Errors: MEMORY, IO. */
+conic_status conic_scratch_open(conic_context *context, const char *path, conic_scratch *scratch);
+void conic_scratch_close(conic_scratch *scratch);
+
+/* Several threads may read while none writes. Errors: IO. */
+conic_status conic_scratch_write(const conic_scratch *scratch, uint64_t at, const void *bytes, size_t n_bytes);
+conic_status conic_scratch_read(const conic_scratch *scratch, uint64_t at, void *bytes, size_t n_bytes);
+
+#endif
