@@ -14,30 +14,11 @@
 static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
 static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
 
-/* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_hybrid_side(double side[3], int axis, double a, double b) {
-  double length = sqrt(a * a + b * b);
-  side[0] = side[1] = 0.0;
-  side[axis] = a / length;
-  side[2] = b / length;
-}
-
 void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
                               const conic_render_options *render, conic_hybrid_camera *view) {
   double margin = (double)render->kernel.cutoff * sqrt((double)render->prefilter) + 1.0;
   memset(view, 0, sizeof *view);
-  for (int row = 0; row < 3; row++) {
-    const double *m = camera->cam_from_world[row];
-    view->translation[row] = conic_dot(m, hybrid->origin) + m[3];
-    memcpy(view->rotation[row], m, sizeof view->rotation[row]);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    for (int row = 0; row < 3; row++)
-      view->eye[axis] -= view->rotation[row][axis] * view->translation[row];
-  set_hybrid_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_hybrid_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_hybrid_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_hybrid_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  conic_viewpoint_init(&view->from, camera, hybrid->origin, margin);
   view->focal_px = camera->fx > camera->fy ? camera->fx : camera->fy;
   view->near_z = render->near_z;
   view->n_pixels = (double)camera->width * (double)camera->height;
@@ -45,18 +26,12 @@ void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *ca
   view->margin_px2 = (double)render->prefilter * (double)render->kernel.cutoff * (double)render->kernel.cutoff;
 }
 
-static void to_camera(const conic_hybrid_camera *view, const float center[3], double at[3]) {
-  const double from[3] = {(double)center[0], (double)center[1], (double)center[2]};
-  for (int row = 0; row < 3; row++)
-    at[row] = conic_dot(view->rotation[row], from) + view->translation[row];
-}
-
 /* Away is where the angle between the ray and the axis, half the angle under which the sphere is seen, and half the
  * cone's opening are less than a right angle together. */
 static int faces_away(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double radius) {
   double ray[3], axis[3];
   for (int k = 0; k < 3; k++) {
-    ray[k] = (double)bound->center[k] - view->eye[k];
+    ray[k] = (double)bound->center[k] - view->from.eye[k];
     axis[k] = (double)bound->axis[k];
   }
   double distance = conic_length(ray), cone = (double)bound->cone;
@@ -70,12 +45,9 @@ static int faces_away(const conic_hybrid_camera *view, const conic_hybrid_bound 
 
 int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
   double at[3], radius = ((double)bound->radius + reach) * (1.0 + 1e-6);
-  to_camera(view, bound->center, at);
-  if (at[2] + radius < view->near_z)
+  conic_viewpoint_move_floats(&view->from, bound->center, at);
+  if (at[2] + radius < view->near_z || conic_viewpoint_misses(&view->from, at, radius))
     return 1;
-  for (int k = 0; k < 4; k++)
-    if (conic_dot(view->side[k], at) < -radius)
-      return 1;
   return view->cull_back && faces_away(view, bound, radius);
 }
 
@@ -88,7 +60,7 @@ typedef struct sight {
 
 static sight look_at_bound(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
   double at[3];
-  to_camera(view, bound->center, at);
+  conic_viewpoint_move_floats(&view->from, bound->center, at);
   return (sight){.z = at[2], .distance = conic_length(at), .radius = (double)bound->radius};
 }
 
@@ -118,7 +90,7 @@ double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid
 static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
   double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
   for (int k = 0; k < 3; k++)
-    along += ((double)bound->center[k] - view->eye[k]) * (double)bound->axis[k];
+    along += ((double)bound->center[k] - view->from.eye[k]) * (double)bound->axis[k];
   return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
 }
 

@@ -2,12 +2,12 @@
 #ifndef CONIC_HYBRID_CHOOSE_H
 #define CONIC_HYBRID_CHOOSE_H
 
+#include "core/image/viewpoint.h"
 #include "lod/hybrid/hybrid_model.h"
 
 /* A camera as the clusters are looked at by. */
 typedef struct conic_hybrid_camera {
-  double rotation[3][3], translation[3], eye[3]; /* from the model's origin */
-  double side[4][3]; /* planes of the picture's sides: unit normals, inwards, through the eye */
+  conic_viewpoint from; /* places from the model's origin; the sides as far out as the prefilter reaches */
   double focal_px, near_z, n_pixels;
   int cull_back;
   double margin_px2; /* what the prefilter adds to a splat's squared radius */
@@ -60,7 +60,7 @@ conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const con
 void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
                          const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]);
 
-/* The finest level of that kind, from the cluster's first; or the first of all. */
+/* The finest level of that kind, or of any below 0, from the cluster's first; the first of all where there is none. */
 uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind);
 
 #endif
