@@ -1,4 +1,4 @@
-#include "lod/hybrid/hybrid_plan.h"
+#include "lod/hybrid/hybrid_choose.h"
 
 #include <math.h>
 #include <string.h>
@@ -279,8 +279,9 @@ static conic_status begin_plan(hybrid_planning *p) {
   return CONIC_OK;
 }
 
-conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels, uint32_t *nodes) {
+conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
+                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
+                                        uint32_t *nodes) {
   conic_context *context = hybrid->context;
   hybrid_planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
   p.nodes = nodes;

@@ -1,7 +1,8 @@
-/* The levels of all clusters in sight together, and of nodes that stand for many of them: what one is drawn as changes
+/* Chooses what each cluster in sight is drawn as, triangles or surfels and at which level, and which nodes stand for
+ * many of them, for an error on the screen. All are chosen together, since what one is drawn as changes
  * what its neighbours take. */
-#ifndef CONIC_HYBRID_PLAN_H
-#define CONIC_HYBRID_PLAN_H
+#ifndef CONIC_HYBRID_CHOOSE_H
+#define CONIC_HYBRID_CHOOSE_H
 
 #include "lod/hybrid/hybrid_cut.h"
 
@@ -9,7 +10,8 @@
  * surfels, or the kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in
  * sight is surfels the level by which they stand for it, or NO_NODE; so that all together they take least, as far as a
  * few rounds find it. Errors: MEMORY. */
-conic_status conic_hybrid_plan(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
-                               int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels, uint32_t *nodes);
+conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
+                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
+                                        uint32_t *nodes);
 
 #endif

@@ -1,4 +1,4 @@
-#include "lod/hybrid/hybrid_choose.h"
+#include "lod/hybrid/hybrid_offers.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
-/* Which level of each cluster a picture needs. */
-#ifndef CONIC_HYBRID_CHOOSE_H
-#define CONIC_HYBRID_CHOOSE_H
+/* What each level of each cluster offers to a picture: its error there, and what drawing it takes. */
+#ifndef CONIC_HYBRID_OFFERS_H
+#define CONIC_HYBRID_OFFERS_H
 
 #include "core/image/viewpoint.h"
 #include "lod/hybrid/hybrid_model.h"

@@ -7,7 +7,7 @@
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/hybrid/hybrid_budget.h"
-#include "lod/hybrid/hybrid_plan.h"
+#include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
@@ -148,8 +148,9 @@ static conic_status choose_together(hybrid_selecting *s) {
   for (size_t i = 0; i < n; i++)
     clusters[i] = kept->choices[i].cluster;
   conic_status status =
-      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
-                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
+      view->budget
+          ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
+          : conic_hybrid_choose_levels(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < n; i++)
       kept->choices[i].level = h->clusters[clusters[i]].first_level + levels[i];
