@@ -4,7 +4,6 @@
 
 #include "core/base/message.h"
 #include "core/files/file.h"
-#include "core/files/mapping.h"
 
 enum { AT_SUM = CONIC_FILE_HEADER_BYTES - 8 };
 
@@ -16,12 +15,17 @@ void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
                             unsigned char bytes[CONIC_FILE_HEADER_BYTES]) {
   memset(bytes, 0, CONIC_FILE_HEADER_BYTES);
   memcpy(bytes, kind->magic, sizeof kind->magic);
-  conic_file_fields_write(kind->fields, kind->n_fields, numbers, bytes + sizeof kind->magic);
+  conic_file_mend_header(kind, numbers, bytes);
+}
+
+void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, unsigned char *bytes) {
+  if (numbers)
+    conic_file_fields_write(kind->fields, kind->n_fields, numbers, bytes + sizeof kind->magic);
   conic_file_put(bytes + AT_SUM, 8, conic_checksum(bytes, AT_SUM));
 }
 
-conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
-                                    const unsigned char *bytes, size_t n_bytes, void *numbers) {
+static conic_status read_file_header(conic_context *context, const char *path, const conic_file_kind *kind,
+                                     const unsigned char *bytes, size_t n_bytes, void *numbers) {
   if (n_bytes < sizeof kind->magic || memcmp(bytes, kind->magic, sizeof kind->magic) != 0)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no %s file (at byte 0)", path, kind->ending);
   if (n_bytes < CONIC_FILE_HEADER_BYTES)
@@ -33,5 +37,12 @@ conic_status conic_file_read_header(conic_context *context, const char *path, co
   if (conic_file_get(bytes + AT_SUM, 8) != conic_checksum(bytes, AT_SUM))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged (at byte %d)", path, AT_SUM);
   conic_file_fields_read(kind->fields, kind->n_fields, bytes + sizeof kind->magic, numbers);
-  return CONIC_OK;
+  const char *wrong = kind->fault(numbers);
+  return wrong ? conic_fail(context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong) : CONIC_OK;
+}
+
+conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
+                                  conic_mapping *file, void *numbers) {
+  conic_status status = conic_mapping_open(context, path, file);
+  return status == CONIC_OK ? read_file_header(context, path, kind, file->bytes, file->n_bytes, numbers) : status;
 }

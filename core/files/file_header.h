@@ -5,6 +5,7 @@
 
 #include "conic/context.h"
 #include "core/files/file_fields.h"
+#include "core/files/mapping.h"
 
 enum { CONIC_FILE_HEADER_BYTES = 256 };
 
@@ -14,6 +15,7 @@ typedef struct conic_file_kind {
   uint32_t version;
   const conic_file_field *fields; /* the first is the version, a uint32_t */
   size_t n_fields;
+  const char *(*fault)(const void *numbers); /* what is wrong with a header whose sum is right, or null */
 } conic_file_kind;
 
 /* Whether a regular file that can be read begins like that. */
@@ -22,8 +24,13 @@ int conic_file_is_of_kind(const conic_file_kind *kind, const char *path);
 void conic_file_make_header(const conic_file_kind *kind, const void *numbers,
                             unsigned char bytes[CONIC_FILE_HEADER_BYTES]);
 
-/* Reads the numbers of a file's first n_bytes; whether they go together the caller must see. Errors: INPUT. */
-conic_status conic_file_read_header(conic_context *context, const char *path, const conic_file_kind *kind,
-                                    const unsigned char *bytes, size_t n_bytes, void *numbers);
+/* Opens a file of that kind, which the caller closes, on failure too, and reads its numbers. Errors: UNSUPPORTED,
+ * INPUT, MEMORY. */
+conic_status conic_file_open_kind(conic_context *context, const char *path, const conic_file_kind *kind,
+                                  conic_mapping *file, void *numbers);
+
+/* Writes the numbers and the sum into a file's header and leaves the rest as it is; without numbers, only the sum. For
+ * tests and fuzzing, which would else see no further than the sums. */
+void conic_file_mend_header(const conic_file_kind *kind, const void *numbers, unsigned char *bytes);
 
 #endif

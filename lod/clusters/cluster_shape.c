@@ -120,9 +120,8 @@ void conic_cluster_settle_planes(conic_sampler *s) {
 /* --- what must be covered --- */
 
 static conic_status grow_supports(conic_sampler *s) {
-  conic_status status = conic_memory_reserve(s->context, &s->supports, s->n_supports, s->n_supports + 1,
-                                             &s->supports_room, sizeof *s->supports);
-  return status;
+  return conic_memory_reserve(s->context, &s->supports, s->n_supports, s->n_supports + 1, &s->supports_room,
+                              sizeof *s->supports);
 }
 
 conic_status conic_cluster_note_support(conic_sampler *s, uint32_t i_site, const double at[3], uint32_t face,

@@ -31,19 +31,11 @@ static int is_allowed(const fitting *f, const conic_hybrid_level *level) {
   return f->only_kind < 0 || level->kind == (uint32_t)f->only_kind;
 }
 
-/* The finest of what is allowed, which is drawn where nothing is good enough. */
-static uint32_t finest(const fitting *f, const conic_hybrid_level *levels, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++)
-    if (is_allowed(f, &levels[k]))
-      return k;
-  return 0;
-}
-
 /* The level of fewest primitives among those that are good enough; of as many, the better one. */
 static uint32_t fewest(const fitting *f, const conic_hybrid_cluster *cluster, const double *errors_px,
                        double error_px) {
   const conic_hybrid_level *levels = f->hybrid->levels + cluster->first_level;
-  uint32_t best = finest(f, levels, cluster->n_levels);
+  uint32_t best = conic_hybrid_finest(f->hybrid, cluster, f->only_kind);
   for (uint32_t k = 0; k < cluster->n_levels; k++) {
     int is_fewer = levels[k].count < levels[best].count ||
                    (levels[k].count == levels[best].count && errors_px[k] < errors_px[best]);

@@ -83,11 +83,7 @@ static void check_hybrid_node(const conic_hybrid *h, const conic_hybrid_node *no
   int is_out = 0, is_turned = 0;
   for (uint32_t i = node->begin; i < node->end; i++) {
     const conic_hybrid_cluster *cluster = &h->clusters[i];
-    double center[3], reach = 0.0, along = 0.0, cone = (double)cluster->bound.cone;
-    for (uint32_t k = 0; k < cluster->n_levels; k++) {
-      double own = (double)h->levels[cluster->first_level + k].reach;
-      reach = own > reach ? own : reach;
-    }
+    double center[3], reach = conic_hybrid_reach(h, cluster), along = 0.0, cone = (double)cluster->bound.cone;
     for (int axis = 0; axis < 3; axis++) {
       center[axis] = (double)cluster->bound.center[axis];
       along += (double)cluster->bound.axis[axis] * (double)node->bound.axis[axis];

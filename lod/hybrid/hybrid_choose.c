@@ -1,198 +1,307 @@
 #include "lod/hybrid/hybrid_choose.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "core/base/trigonometry.h"
-#include "core/base/vectors.h"
-#include "lod/hybrid/hybrid_point.h"
+#include "core/base/memory.h"
 
-/* What drawing takes, in nanoseconds of one core with what it takes to choose and to copy: a triangle, one more that
- * holds a pixel's centre, and a pixel of the cluster; a surfel, and a pixel of its outline
- * (docs/notes/hybrid-measured.md). */
-static const double triangle_ns = 18.0, seen_triangle_ns = 130.0, triangle_pixel_ns = 5.3;
-static const double surfel_ns = 37.0, surfel_pixel_ns = 1.4;
+/* Rounds in which each cluster is thought over; and how much less a picture of both kinds must promise to be preferred
+ * to one of a single kind. */
+enum { ROUNDS = 4 };
+static const double margin = 0.97;
 
-/* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_hybrid_side(double side[3], int axis, double a, double b) {
-  double length = sqrt(a * a + b * b);
-  side[0] = side[1] = 0.0;
-  side[axis] = a / length;
-  side[2] = b / length;
+/* A cluster in sight. Infinite costs are of a kind that is not good enough. */
+typedef struct plan_candidate {
+  conic_hybrid_offer offers[2]; /* by kind; of surfels its share of a node's that may stand for them */
+  double alone_ns;              /* of its own surfels */
+  uint32_t first_link, n_links;
+  uint8_t kind;
+} plan_candidate;
+
+/* Two clusters side by side: what triangles of the one take more if the other is drawn as surfels, for then their
+ * border has all of its vertices. Kept with both: with the one in `own_ns`, with the other in `other_ns`. */
+typedef struct cluster_link {
+  uint32_t candidate;
+  double own_ns, other_ns;
+} cluster_link;
+
+typedef struct hybrid_planning {
+  const conic_hybrid *hybrid;
+  size_t n;
+  const uint32_t *clusters;
+  plan_candidate *candidates;
+  uint32_t *of_cluster; /* of each of the model's clusters, where it is in sight: its candidate, else n */
+  size_t n_links;
+  cluster_link *links;
+  uint8_t *kinds; /* what was found before */
+  const conic_hybrid_camera *view;
+  double error_px;
+  double *amounts, *below; /* of each cluster of the model, and of each node, for cutting */
+  uint32_t *nodes;
+} hybrid_planning;
+
+static const conic_hybrid_level *triangles_of(const hybrid_planning *p, size_t i) {
+  const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
+  return &p->hybrid->levels[cluster->first_level + p->candidates[i].offers[CONIC_HYBRID_TRIANGLES].level];
 }
 
-void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
-                              const conic_render_options *render, conic_hybrid_camera *view) {
-  double margin = (double)render->kernel.cutoff * sqrt((double)render->prefilter) + 1.0;
-  memset(view, 0, sizeof *view);
-  for (int row = 0; row < 3; row++) {
-    const double *m = camera->cam_from_world[row];
-    view->translation[row] = conic_dot(m, hybrid->origin) + m[3];
-    memcpy(view->rotation[row], m, sizeof view->rotation[row]);
+static void ask(hybrid_planning *p) {
+  for (size_t i = 0; i < p->n; i++) {
+    plan_candidate *c = &p->candidates[i];
+    conic_hybrid_offers(p->hybrid, p->view, &p->hybrid->clusters[p->clusters[i]], p->error_px, c->offers);
+    c->alone_ns = c->offers[CONIC_HYBRID_SURFELS].amount;
   }
-  for (int axis = 0; axis < 3; axis++)
-    for (int row = 0; row < 3; row++)
-      view->eye[axis] -= view->rotation[row][axis] * view->translation[row];
-  set_hybrid_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_hybrid_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_hybrid_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_hybrid_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
-  view->focal_px = camera->fx > camera->fy ? camera->fx : camera->fy;
-  view->near_z = render->near_z;
-  view->n_pixels = (double)camera->width * (double)camera->height;
-  view->cull_back = render->cull_back;
-  view->margin_px2 = (double)render->prefilter * (double)render->kernel.cutoff * (double)render->kernel.cutoff;
 }
 
-static void to_camera(const conic_hybrid_camera *view, const float center[3], double at[3]) {
-  const double from[3] = {(double)center[0], (double)center[1], (double)center[2]};
-  for (int row = 0; row < 3; row++)
-    at[row] = conic_dot(view->rotation[row], from) + view->translation[row];
+static conic_hybrid_offer ask_node(const void *data, const conic_hybrid_node *node) {
+  const hybrid_planning *p = data;
+  return conic_hybrid_node_offer(p->hybrid, p->view, node, p->error_px);
 }
 
-/* Away is where the angle between the ray and the axis, half the angle under which the sphere is seen, and half the
- * cone's opening are less than a right angle together. */
-static int faces_away(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double radius) {
-  double ray[3], axis[3];
-  for (int k = 0; k < 3; k++) {
-    ray[k] = (double)bound->center[k] - view->eye[k];
-    axis[k] = (double)bound->axis[k];
+/* Lets nodes stand for clusters that are surfels now. Returns how much less these take by that. */
+static double cut_nodes(const hybrid_planning *p) {
+  const conic_hybrid_cutting cutting = {p->hybrid, p->amounts, ask_node, p, p->below};
+  for (size_t i = 0; i < p->n; i++) {
+    const plan_candidate *c = &p->candidates[i];
+    int is_free = c->kind == CONIC_HYBRID_SURFELS && c->alone_ns < HUGE_VAL;
+    p->amounts[p->clusters[i]] = is_free ? c->alone_ns : NAN;
   }
-  double distance = conic_length(ray), cone = (double)bound->cone;
-  if (!(cone > 0.0) || !(radius < distance))
-    return 0;
-  double sin_a = radius / distance, cos_a = sqrt(1.0 - sin_a * sin_a),
-         sin_c = sqrt(cone < 1.0 ? 1.0 - cone * cone : 0.0);
-  double cos_both = cos_a * cone - sin_a * sin_c, sin_both = sin_a * cone + cos_a * sin_c;
-  return cos_both > 0.0 && conic_dot(ray, axis) > distance * (sin_both + 1e-5);
+  return conic_hybrid_cut(&cutting, p->nodes);
 }
 
-int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
-  double at[3], radius = ((double)bound->radius + reach) * (1.0 + 1e-6);
-  to_camera(view, bound->center, at);
-  if (at[2] + radius < view->near_z)
-    return 1;
-  for (int k = 0; k < 4; k++)
-    if (conic_dot(view->side[k], at) < -radius)
+/* The links of one candidate, one for each neighbour: `last` has for each candidate the link that names it. */
+static void add_links(hybrid_planning *p, uint32_t i, uint32_t *last) {
+  const conic_hybrid_level *level = triangles_of(p, i);
+  plan_candidate *c = &p->candidates[i];
+  c->first_link = (uint32_t)p->n_links;
+  for (size_t k = 0; k < level->n_borders; k++) {
+    const conic_cluster_border *border = &p->hybrid->borders[level->first_border + k];
+    uint32_t other = p->of_cluster[border->across];
+    uint32_t n = border->from < border->to ? border->to - border->from : border->from - border->to;
+    if (other == p->n)
+      continue;
+    if (last[other] < c->first_link || last[other] >= p->n_links) {
+      last[other] = (uint32_t)p->n_links;
+      p->links[p->n_links++] = (cluster_link){.candidate = other};
+    }
+    p->links[last[other]].own_ns += CONIC_HYBRID_STITCH_NS * ((double)n - 1.0);
+  }
+  c->n_links = (uint32_t)p->n_links - c->first_link;
+}
+
+/* What the other one's triangles take more, as far as it has a link too. */
+static void match_links(hybrid_planning *p) {
+  for (uint32_t i = 0; i < p->n; i++)
+    for (size_t k = p->candidates[i].first_link; k < p->candidates[i].first_link + p->candidates[i].n_links; k++) {
+      const plan_candidate *other = &p->candidates[p->links[k].candidate];
+      for (size_t m = other->first_link; m < other->first_link + other->n_links; m++)
+        if (p->links[m].candidate == i)
+          p->links[k].other_ns = p->links[m].own_ns;
+    }
+}
+
+static conic_status find_links(hybrid_planning *p) {
+  size_t n_borders = 0;
+  for (size_t i = 0; i < p->n; i++)
+    n_borders += triangles_of(p, i)->n_borders;
+  uint32_t *last = conic_memory_allocate_zeroed(p->hybrid->context, p->n, sizeof *last);
+  p->links = conic_memory_allocate(p->hybrid->context, n_borders, sizeof *p->links);
+  if (last && p->links) {
+    for (uint32_t i = 0; i < p->n; i++)
+      add_links(p, i, last);
+    match_links(p);
+  }
+  conic_memory_release(p->hybrid->context, last);
+  return last && p->links ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+/* What a candidate takes as one kind and as the other, its neighbours being what they are. */
+static void weigh(const hybrid_planning *p, const plan_candidate *c, double costs[2]) {
+  costs[0] = c->offers[0].amount;
+  costs[1] = c->offers[1].amount;
+  for (size_t k = 0; k < c->n_links; k++) {
+    const cluster_link *l = &p->links[c->first_link + k];
+    if (p->candidates[l->candidate].kind == CONIC_HYBRID_SURFELS)
+      costs[CONIC_HYBRID_TRIANGLES] += l->own_ns;
+    else
+      costs[CONIC_HYBRID_SURFELS] += l->other_ns;
+  }
+}
+
+/* Each cluster in turn becomes what is cheaper, until none does. */
+static void improve(hybrid_planning *p) {
+  int is_changed = 1;
+  for (int round = 0; round < ROUNDS && is_changed; round++) {
+    is_changed = 0;
+    for (size_t i = 0; i < p->n; i++) {
+      plan_candidate *c = &p->candidates[i];
+      double costs[2];
+      weigh(p, c, costs);
+      if (costs[!c->kind] < costs[c->kind]) {
+        c->kind = !c->kind;
+        is_changed = 1;
+      }
+    }
+  }
+}
+
+static int is_mixed(const hybrid_planning *p) {
+  for (size_t i = 1; i < p->n; i++)
+    if (p->candidates[i].kind != p->candidates[0].kind)
       return 1;
-  return view->cull_back && faces_away(view, bound, radius);
-}
-
-/* A cluster as the camera sees it. */
-typedef struct sight {
-  double z, distance; /* of its sphere's centre */
-  double radius;
-  double scale2, facing; /* pixels that a unit of area covers if it faces the camera, and how far it does */
-} sight;
-
-static sight look_at_bound(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
-  double at[3];
-  to_camera(view, bound->center, at);
-  return (sight){.z = at[2], .distance = conic_length(at), .radius = (double)bound->radius};
-}
-
-/* The most pixels that a displacement of one can be, anywhere in the sphere: the greatest factor of the projection's
- * derivative at X is f·|X|/z². Infinite where the sphere reaches the near plane. */
-static double pixels_a_unit(const conic_hybrid_camera *view, const sight *seen, double reach) {
-  double radius = (seen->radius + reach) * (1.0 + 1e-6), front = seen->z - radius;
-  return front > view->near_z ? view->focal_px * (seen->distance + radius) / (front * front) : HUGE_VAL;
-}
-
-double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach) {
-  sight seen = look_at_bound(view, bound);
-  return pixels_a_unit(view, &seen, reach);
-}
-
-static double error_px_of(const conic_hybrid_camera *view, const sight *seen, const conic_hybrid_level *level) {
-  return level->error > 0.0f ? (double)level->error * pixels_a_unit(view, seen, (double)level->reach) : 0.0;
-}
-
-double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
-                             const conic_hybrid_level *level) {
-  sight seen = look_at_bound(view, bound);
-  return error_px_of(view, &seen, level);
-}
-
-/* The mean cosine of the faces to the camera: by the axis of their cone as far as that says anything, else half. */
-static double facing_of(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, const sight *seen) {
-  double along = 0.0, cone = bound->cone > 0.0f ? (double)bound->cone : 0.0;
-  for (int k = 0; k < 3; k++)
-    along += ((double)bound->center[k] - view->eye[k]) * (double)bound->axis[k];
-  return cone * (seen->distance > 0.0 ? fabs(along) / seen->distance : 1.0) + (1.0 - cone) * 0.5;
-}
-
-static double cost_of_triangles(const conic_hybrid_cluster *cluster, const conic_hybrid_level *level,
-                                const sight *seen) {
-  double n = (double)level->count, n_pixels = (double)cluster->area * seen->scale2 * seen->facing;
-  double n_seen = n * n_pixels / (n_pixels + 2.0 * n); /* few of those that are smaller than a pixel */
-  return n * triangle_ns + n_seen * seen_triangle_ns + n_pixels * triangle_pixel_ns;
-}
-
-/* Each takes the area of its ellipse, both axes being widened by the prefilter. */
-static double cost_of_surfels(const conic_hybrid_camera *view, const conic_hybrid_level *level, const sight *seen) {
-  double n = (double)level->count, facing = seen->facing, widening = view->margin_px2;
-  double product = (double)level->cover / n * seen->scale2 * facing;
-  double squares = (double)level->spread / n * seen->scale2 * 0.5 * (1.0 + facing * facing);
-  double n_pixels = n * CONIC_PI * sqrt(product * product + widening * squares + widening * widening);
-  return n * surfel_ns + n_pixels * surfel_pixel_ns;
-}
-
-double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2) {
-  return surfel_ns + surfel_pixel_ns * CONIC_PI * (radius_px2 + view->margin_px2);
-}
-
-/* With what it takes to know costs. */
-static sight look_well_at(const conic_hybrid_camera *view, const conic_hybrid_bound *bound) {
-  sight seen = look_at_bound(view, bound);
-  double z = seen.z > view->near_z ? seen.z : view->near_z;
-  seen.scale2 = view->focal_px * view->focal_px / (z * z);
-  seen.facing = facing_of(view, bound, &seen);
-  return seen;
-}
-
-/* Tiles are mostly this wide. */
-static const double tile_px = 64.0;
-
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster) {
-  sight seen = look_well_at(view, &cluster->bound);
-  double side = sqrt((double)cluster->area * seen.scale2 * seen.facing) + tile_px;
-  return side * side;
-}
-
-conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                                           const conic_hybrid_node *node, double error_px) {
-  const conic_hybrid_level *levels = hybrid->levels + node->first_level;
-  sight seen = look_well_at(view, &node->bound);
-  conic_hybrid_offer best = {0, HUGE_VAL};
-  error_px = error_px < HUGE_VAL ? error_px : DBL_MAX; /* what reaches near, or has no point, is never joined */
-  if (conic_hybrid_point_error_px(view, node) <= error_px)
-    best = (conic_hybrid_offer){node->n_levels, conic_hybrid_point_cost(view, node)};
-  for (uint32_t k = 0; k < node->n_levels && error_px_of(view, &seen, &levels[k]) <= error_px; k++) {
-    double cost = cost_of_surfels(view, &levels[k], &seen);
-    if (cost < best.amount)
-      best = (conic_hybrid_offer){k, cost};
-  }
-  return best;
-}
-
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]) {
-  const conic_hybrid_level *levels = hybrid->levels + cluster->first_level;
-  sight seen = look_well_at(view, &cluster->bound);
-  offers[0] = offers[1] = (conic_hybrid_offer){0, HUGE_VAL};
-  for (uint32_t k = 0; k < cluster->n_levels; k++) {
-    conic_hybrid_offer *offer = &offers[levels[k].kind];
-    double cost = levels[k].kind == CONIC_HYBRID_TRIANGLES ? cost_of_triangles(cluster, &levels[k], &seen)
-                                                           : cost_of_surfels(view, &levels[k], &seen);
-    if (cost < offer->amount && error_px_of(view, &seen, &levels[k]) <= error_px)
-      *offer = (conic_hybrid_offer){k, cost};
-  }
-}
-
-uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind) {
-  for (uint32_t k = 0; k < cluster->n_levels; k++)
-    if (hybrid->levels[cluster->first_level + k].kind == (uint32_t)only_kind)
-      return k;
   return 0;
+}
+
+/* What a picture of both kinds takes more than its parts; clusters share tiles, of which there are no more than all. */
+static double mixing(const hybrid_planning *p) {
+  double n_pixels = 0.0;
+  for (size_t i = 0; i < p->n; i++)
+    if (p->candidates[i].kind == CONIC_HYBRID_TRIANGLES)
+      n_pixels += conic_hybrid_tile_pixels(p->view, &p->hybrid->clusters[p->clusters[i]]);
+  n_pixels = n_pixels < p->view->n_pixels ? n_pixels : p->view->n_pixels;
+  return CONIC_HYBRID_BOTH_NS + CONIC_HYBRID_BOTH_PIXEL_NS * p->view->n_pixels + CONIC_HYBRID_BOTH_TILE_NS * n_pixels;
+}
+
+/* What all takes; with what a picture of both kinds must promise to be preferred. */
+static double total(const hybrid_planning *p) {
+  int is_both = is_mixed(p);
+  double sum = is_both ? mixing(p) : 0.0;
+  for (size_t i = 0; i < p->n; i++) {
+    const plan_candidate *c = &p->candidates[i];
+    sum += c->kind == CONIC_HYBRID_SURFELS ? c->alone_ns : c->offers[CONIC_HYBRID_TRIANGLES].amount;
+    for (size_t k = 0; k < c->n_links && c->kind == CONIC_HYBRID_TRIANGLES; k++)
+      if (p->candidates[p->links[c->first_link + k].candidate].kind == CONIC_HYBRID_SURFELS)
+        sum += p->links[c->first_link + k].own_ns;
+  }
+  sum -= cut_nodes(p);
+  return is_both ? sum / margin : sum;
+}
+
+/* All of one kind, where that is good enough. */
+static void take_kind(hybrid_planning *p, uint8_t kind) {
+  for (size_t i = 0; i < p->n; i++)
+    p->candidates[i].kind = p->candidates[i].offers[kind].amount < HUGE_VAL ? kind : !kind;
+}
+
+/* What each cluster's surfels take if all are surfels and nodes stand for them; and what is cheaper then. */
+static void share(hybrid_planning *p) {
+  take_kind(p, CONIC_HYBRID_SURFELS);
+  if (cut_nodes(p) > 0.0)
+    for (size_t i = 0; i < p->hybrid->n_nodes; i++) {
+      const conic_hybrid_node *node = &p->hybrid->nodes[i];
+      double sum = 0.0;
+      if (p->nodes[i] == CONIC_HYBRID_NO_NODE)
+        continue;
+      for (uint32_t k = node->begin; k < node->end; k++)
+        sum += p->amounts[k];
+      for (uint32_t k = node->begin; k < node->end; k++)
+        if (p->amounts[k] > 0.0)
+          p->candidates[p->of_cluster[k]].offers[CONIC_HYBRID_SURFELS].amount *= p->below[i] / sum;
+    }
+  for (size_t i = 0; i < p->n; i++) {
+    plan_candidate *c = &p->candidates[i];
+    c->kind = c->offers[CONIC_HYBRID_SURFELS].amount < c->offers[CONIC_HYBRID_TRIANGLES].amount;
+  }
+}
+
+static void keep_if_less(hybrid_planning *p, double sum, double *least) {
+  if (!(sum < *least))
+    return;
+  *least = sum;
+  for (size_t i = 0; i < p->n; i++)
+    p->kinds[i] = p->candidates[i].kind;
+}
+
+/* From what each would be by itself; or triangles alone, or surfels wherever they are good enough. */
+static void settle(hybrid_planning *p) {
+  double least = HUGE_VAL;
+  improve(p);
+  keep_if_less(p, total(p), &least);
+  for (uint8_t kind = 0; kind < 2; kind++) {
+    take_kind(p, kind);
+    keep_if_less(p, total(p), &least);
+  }
+  for (size_t i = 0; i < p->n; i++)
+    p->candidates[i].kind = p->kinds[i];
+}
+
+/* Whether all of one kind takes hardly more than the cheaper of both for each cluster: then no better one has to be
+ * looked for. */
+static int is_settled(hybrid_planning *p) {
+  double sums[2] = {0.0, 0.0}, least = 0.0;
+  for (size_t i = 0; i < p->n; i++) {
+    const plan_candidate *c = &p->candidates[i];
+    least += c->offers[c->kind].amount;
+    for (int kind = 0; kind < 2; kind++)
+      sums[kind] += c->offers[kind].amount;
+  }
+  uint8_t kind = sums[CONIC_HYBRID_SURFELS] < sums[CONIC_HYBRID_TRIANGLES];
+  if (is_mixed(p) && !(sums[kind] <= least / margin))
+    return 0;
+  take_kind(p, kind);
+  return 1;
+}
+
+/* The kind that is asked for; where it is good enough nowhere, its finest. */
+static void obey(hybrid_planning *p, int only_kind) {
+  for (size_t i = 0; i < p->n; i++) {
+    const conic_hybrid_cluster *cluster = &p->hybrid->clusters[p->clusters[i]];
+    conic_hybrid_offer *offer = &p->candidates[i].offers[only_kind];
+    p->candidates[i].kind = (uint8_t)only_kind;
+    if (!(offer->amount < HUGE_VAL))
+      offer->level = conic_hybrid_finest(p->hybrid, cluster, only_kind);
+  }
+}
+
+static conic_status plan_kinds(hybrid_planning *p) {
+  share(p);
+  if (is_settled(p))
+    return CONIC_OK;
+  conic_status status = find_links(p);
+  if (status == CONIC_OK)
+    settle(p);
+  return status;
+}
+
+static conic_status begin_plan(hybrid_planning *p) {
+  conic_context *context = p->hybrid->context;
+  p->candidates = conic_memory_allocate_zeroed(context, p->n, sizeof *p->candidates);
+  p->of_cluster = conic_memory_allocate(context, p->hybrid->n_clusters, sizeof *p->of_cluster);
+  p->kinds = conic_memory_allocate(context, p->n, sizeof *p->kinds);
+  p->amounts = conic_memory_allocate_zeroed(context, p->hybrid->n_clusters, sizeof *p->amounts);
+  p->below = conic_memory_allocate(context, p->hybrid->n_nodes, sizeof *p->below);
+  if (!p->candidates || !p->of_cluster || !p->kinds || !p->amounts || !p->below)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < p->hybrid->n_clusters; i++)
+    p->of_cluster[i] = (uint32_t)p->n;
+  for (size_t i = 0; i < p->n; i++)
+    p->of_cluster[p->clusters[i]] = (uint32_t)i;
+  return CONIC_OK;
+}
+
+conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
+                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
+                                        uint32_t *nodes) {
+  conic_context *context = hybrid->context;
+  hybrid_planning p = {.hybrid = hybrid, .n = n, .clusters = clusters, .view = view, .error_px = error_px};
+  p.nodes = nodes;
+  conic_status status = begin_plan(&p);
+  if (status == CONIC_OK) {
+    ask(&p);
+    if (only_kind < 0)
+      status = plan_kinds(&p);
+    else
+      obey(&p, only_kind);
+  }
+  if (status == CONIC_OK)
+    cut_nodes(&p);
+  for (size_t i = 0; i < n && status == CONIC_OK; i++)
+    levels[i] = p.candidates[i].offers[p.candidates[i].kind].level;
+  conic_memory_release(context, p.links);
+  conic_memory_release(context, p.below);
+  conic_memory_release(context, p.amounts);
+  conic_memory_release(context, p.kinds);
+  conic_memory_release(context, p.of_cluster);
+  conic_memory_release(context, p.candidates);
+  return status;
 }

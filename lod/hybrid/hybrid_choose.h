@@ -1,66 +1,17 @@
-/* Which level of each cluster a picture needs. */
+/* Chooses what each cluster in sight is drawn as, triangles or surfels and at which level, and which nodes stand for
+ * many of them, for an error on the screen. All are chosen together, since what one is drawn as changes
+ * what its neighbours take. */
 #ifndef CONIC_HYBRID_CHOOSE_H
 #define CONIC_HYBRID_CHOOSE_H
 
-#include "lod/hybrid/hybrid_model.h"
+#include "lod/hybrid/hybrid_cut.h"
 
-/* A camera as the clusters are looked at by. */
-typedef struct conic_hybrid_camera {
-  double rotation[3][3], translation[3], eye[3]; /* from the model's origin */
-  double side[4][3]; /* planes of the picture's sides: unit normals, inwards, through the eye */
-  double focal_px, near_z, n_pixels;
-  int cull_back;
-  double margin_px2; /* what the prefilter adds to a splat's squared radius */
-} conic_hybrid_camera;
-
-void conic_hybrid_camera_init(const conic_hybrid *hybrid, const conic_camera *camera,
-                              const conic_render_options *render, conic_hybrid_camera *view);
-
-/* Whether nothing within the sphere is in the picture, or with cull_back all that the cone holds faces away. */
-int conic_hybrid_is_hidden(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach);
-
-/* The most pixels that a displacement of one can be within `reach` of the sphere: infinite where that is near. */
-double conic_hybrid_pixels_a_unit(const conic_hybrid_camera *view, const conic_hybrid_bound *bound, double reach);
-
-/* How many pixels places of a cluster or node with that bound may be off where the level draws it: infinite where its
- * sphere reaches near. */
-double conic_hybrid_error_px(const conic_hybrid_camera *view, const conic_hybrid_bound *bound,
-                             const conic_hybrid_level *level);
-
-/* What one of the narrow triangles takes that fit clusters to each other, in nanoseconds of one core. */
-#define CONIC_HYBRID_STITCH_NS 70.0
-
-/* What a picture of both kinds takes more than its parts: at all, for each of its pixels, and for each of those in
- * tiles that have triangles. */
-#define CONIC_HYBRID_BOTH_NS 30000.0
-#define CONIC_HYBRID_BOTH_PIXEL_NS 0.2
-#define CONIC_HYBRID_BOTH_TILE_NS 0.5
-
-/* How many pixels the tiles have, about, that a cluster's faces meet: of a square of its size, wherever it lies. */
-double conic_hybrid_tile_pixels(const conic_hybrid_camera *view, const conic_hybrid_cluster *cluster);
-
-/* What a round splat may take that faces the camera, in nanoseconds of one core; `radius_px2` is its squared radius,
- * without the prefilter. */
-double conic_hybrid_disc_cost(const conic_hybrid_camera *view, double radius_px2);
-
-/* A level of a cluster or node, from its first, and what drawing it may take: nanoseconds of one core where nothing
- * else is said. */
-typedef struct conic_hybrid_offer {
-  uint32_t level;
-  double amount;
-} conic_hybrid_offer;
-
-/* Of a node the level that costs least among those whose error is at most so many pixels, its point, n_levels, being
- * one; of infinite cost where there is none, or all of infinite error. */
-conic_hybrid_offer conic_hybrid_node_offer(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                                           const conic_hybrid_node *node, double error_px);
-
-/* Of each kind the level that costs least among those whose error is at most so many pixels; of infinite cost where
- * there is none, which is never so for triangles. */
-void conic_hybrid_offers(const conic_hybrid *hybrid, const conic_hybrid_camera *view,
-                         const conic_hybrid_cluster *cluster, double error_px, conic_hybrid_offer offers[2]);
-
-/* The finest level of that kind, from the cluster's first; or the first of all. */
-uint32_t conic_hybrid_finest(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster, int only_kind);
+/* Gives each of n clusters, those in sight, a level, from its first, whose error is at most error_px: triangles or
+ * surfels, or the kind that is asked for, at its finest where none is good enough; and to nodes of which all that is in
+ * sight is surfels the level by which they stand for it, or NO_NODE; so that all together they take least, as far as a
+ * few rounds find it. Errors: MEMORY. */
+conic_status conic_hybrid_choose_levels(const conic_hybrid *hybrid, const conic_hybrid_camera *view, double error_px,
+                                        int only_kind, const uint32_t *clusters, size_t n, uint32_t *levels,
+                                        uint32_t *nodes);
 
 #endif

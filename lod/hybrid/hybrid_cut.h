@@ -2,7 +2,7 @@
 #ifndef CONIC_HYBRID_CUT_H
 #define CONIC_HYBRID_CUT_H
 
-#include "lod/hybrid/hybrid_choose.h"
+#include "lod/hybrid/hybrid_offers.h"
 
 /* A node whose clusters are drawn each by itself, or that is below one that stands for it. */
 #define CONIC_HYBRID_NO_NODE UINT32_MAX

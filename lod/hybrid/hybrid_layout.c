@@ -5,8 +5,6 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 
-enum { ALIGNMENT = 64 };
-
 /* The records are in the file as they are in memory. */
 _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
 _Static_assert(sizeof(conic_cluster_slot) == 8, "slots of 8 bytes");
@@ -14,9 +12,10 @@ _Static_assert(sizeof(conic_cluster_border) == 16, "borders of 16 bytes");
 _Static_assert(sizeof(conic_hybrid_cluster) == 48, "clusters of 48 bytes");
 _Static_assert(sizeof(conic_hybrid_node) == 72, "nodes of 72 bytes");
 _Static_assert(sizeof(conic_chy_material) == 32, "materials of 32 bytes");
+_Static_assert((int)CONIC_CHY_N_ARRAYS <= (int)CONIC_FILE_MOST_ARRAYS, "a layout holds all arrays");
 
-conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
-  conic_chy_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
+conic_file_layout conic_chy_lay_out(const conic_chy_header *h) {
+  conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   size_t sizes[CONIC_CHY_N_ARRAYS] = {0};
   size_t vertices = (size_t)h->n_vertices * sizeof(float);
   sizes[CONIC_CHY_NODES] = (size_t)h->n_nodes * sizeof(conic_hybrid_node);
@@ -38,20 +37,18 @@ conic_chy_layout conic_chy_lay_out(const conic_chy_header *h) {
     sizes[CONIC_CHY_SURFELS + k] = (size_t)h->n_surfels * sizeof(float);
   sizes[CONIC_CHY_SLOTS] = (size_t)h->n_slots * sizeof(conic_cluster_slot);
   sizes[CONIC_CHY_BORDERS] = (size_t)h->n_borders * sizeof(conic_cluster_border);
-  for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++) {
-    l.arrays[i] = (conic_chy_array){l.n_bytes, sizes[i]};
-    l.n_bytes = (l.n_bytes + sizes[i] + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-  }
+  for (int i = 0; i < CONIC_CHY_N_ARRAYS; i++)
+    conic_file_add_array(&l, sizes[i]);
   return l;
 }
 
 /* Null for an array that is not there. */
-static const void *array_in_layout(const conic_chy_layout *l, const unsigned char *bytes, int i) {
+static const void *array_in_layout(const conic_file_layout *l, const unsigned char *bytes, int i) {
   return l->arrays[i].n_bytes ? bytes + l->arrays[i].offset : NULL;
 }
 
 void conic_chy_attach(const conic_chy_header *h, unsigned char *bytes, conic_hybrid *hybrid) {
-  conic_chy_layout l = conic_chy_lay_out(h);
+  conic_file_layout l = conic_chy_lay_out(h);
   hybrid->cutoff = h->cutoff;
   memcpy(hybrid->origin, h->origin, sizeof hybrid->origin);
   memcpy(hybrid->low, h->low, sizeof hybrid->low);

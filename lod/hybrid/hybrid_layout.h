@@ -2,7 +2,7 @@
 #ifndef CONIC_HYBRID_LAYOUT_H
 #define CONIC_HYBRID_LAYOUT_H
 
-#include "core/files/file_header.h"
+#include "core/files/file_body.h"
 #include "lod/hybrid/hybrid_model.h"
 
 enum { CONIC_CHY_VERSION = 3 };
@@ -36,10 +36,6 @@ typedef struct conic_chy_material {
   uint64_t first_texel;
 } conic_chy_material;
 
-typedef struct conic_chy_array {
-  size_t offset, n_bytes;
-} conic_chy_array;
-
 /* The arrays by number. */
 enum {
   CONIC_CHY_NODES,
@@ -60,13 +56,8 @@ enum {
   CONIC_CHY_N_ARRAYS
 };
 
-typedef struct conic_chy_layout {
-  conic_chy_array arrays[CONIC_CHY_N_ARRAYS];
-  size_t n_bytes; /* of the whole */
-} conic_chy_layout;
-
 /* Counts are below 2³² each. */
-conic_chy_layout conic_chy_lay_out(const conic_chy_header *header);
+conic_file_layout conic_chy_lay_out(const conic_chy_header *header);
 
 /* Points the model's arrays into `bytes`, and takes the header's numbers. */
 void conic_chy_attach(const conic_chy_header *header, unsigned char *bytes, conic_hybrid *hybrid);

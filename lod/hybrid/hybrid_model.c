@@ -49,7 +49,20 @@ conic_status conic_hybrid_describe(const conic_hybrid *hybrid, conic_hybrid_info
   return CONIC_OK;
 }
 
+double conic_hybrid_reach(const conic_hybrid *hybrid, const conic_hybrid_cluster *cluster) {
+  float reach = 0.0f;
+  for (uint32_t k = 0; k < cluster->n_levels; k++) {
+    float own = hybrid->levels[cluster->first_level + k].reach;
+    reach = own > reach ? own : reach;
+  }
+  return (double)reach;
+}
+
 /* --- structure --- */
+
+static int is_length(float value) {
+  return value >= 0.0f && value < HUGE_VALF;
+}
 
 static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *level, int is_first) {
   if (level->kind > CONIC_HYBRID_SURFELS || (is_first && level->kind != CONIC_HYBRID_TRIANGLES))
@@ -62,8 +75,7 @@ static const char *wrong_level(const conic_hybrid *h, const conic_hybrid_level *
   if (level->n_borders > h->n_borders || level->first_border > h->n_borders - level->n_borders ||
       (level->n_borders > 0 && level->kind != CONIC_HYBRID_TRIANGLES))
     return "a level without its borders";
-  if (!(level->error >= 0.0f && level->error < HUGE_VALF) || !(level->reach >= 0.0f && level->reach < HUGE_VALF) ||
-      !(level->cover >= 0.0f && level->cover < HUGE_VALF) || !(level->spread >= 0.0f && level->spread < HUGE_VALF))
+  if (!is_length(level->error) || !is_length(level->reach) || !is_length(level->cover) || !is_length(level->spread))
     return "a level's error, reach or extent out of range";
   if (level->kind == CONIC_HYBRID_TRIANGLES)
     for (size_t i = level->first; i < (size_t)level->first + level->count; i++)
@@ -125,7 +137,7 @@ static int is_bound(const conic_hybrid_bound *b) {
   for (int axis = 0; axis < 3; axis++)
     if (!(b->center[axis] - b->center[axis] == 0.0f) || !(b->axis[axis] >= -1.001f && b->axis[axis] <= 1.001f))
       return 0;
-  return b->radius >= 0.0f && b->radius < HUGE_VALF && b->cone >= -1.0f && b->cone <= 1.0f;
+  return is_length(b->radius) && b->cone >= -1.0f && b->cone <= 1.0f;
 }
 
 /* Every level belongs to just one cluster, in their order. */
@@ -136,7 +148,7 @@ static const char *wrong_clusters(const conic_hybrid *h) {
     if (cluster->first_level != next || cluster->n_levels < 1 || cluster->n_levels > h->n_levels - next ||
         cluster->built >= cluster->n_levels)
       return "a patch without its levels";
-    if (!is_bound(&cluster->bound) || !(cluster->area >= 0.0f && cluster->area < HUGE_VALF))
+    if (!is_bound(&cluster->bound) || !is_length(cluster->area))
       return "a patch's bounds out of range";
     for (size_t k = 0; k < cluster->n_levels; k++) {
       const char *wrong = wrong_level(h, &h->levels[next + k], k == 0);
@@ -164,7 +176,7 @@ static const char *wrong_node_levels(const conic_hybrid *h) {
       if (wrong)
         return wrong;
     }
-    if (!(point->radius >= 0.0f && point->radius < HUGE_VALF) || !(point->error >= 0.0f && point->error < HUGE_VALF))
+    if (!is_length(point->radius) || !is_length(point->error))
       return "a node's point out of range";
     next += node->n_levels;
   }

@@ -10,17 +10,13 @@
 #include "lod/hybrid/hybrid_layout.h"
 
 typedef struct packing {
-  conic_context *context;
-  const conic_clustered_mesh *mesh;
-  const conic_triangles *flat; /* the same mesh */
-  const conic_cluster_ways *ways;
-  const conic_cluster_chains *chains;
   const conic_ways_job *job;
+  const conic_clustered_mesh *mesh; /* the job's */
+  const conic_triangles *flat;      /* the same mesh */
   size_t n_clusters;
-  float cutoff;
   uint32_t *local; /* of each vertex: its number in the level that is being listed, else none */
   conic_chy_header header;
-  conic_chy_layout layout;
+  conic_file_layout layout;
   unsigned char *bytes;
 } packing;
 
@@ -44,8 +40,16 @@ static size_t list_vertices(packing *p, const uint32_t (*corners)[3], size_t n, 
   return n_listed;
 }
 
+/* The faces of the largest cluster. */
+static size_t most_faces(const packing *p) {
+  size_t most = 0;
+  for (size_t i = 0; i < p->n_clusters; i++)
+    most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
+  return most;
+}
+
 static void count_cluster(packing *p, uint32_t cluster) {
-  const conic_cluster_ways *ways = &p->ways[cluster];
+  const conic_cluster_ways *ways = &p->job->ways[cluster];
   conic_chy_header *h = &p->header;
   h->n_triangles += p->mesh->starts[cluster + 1] - p->mesh->starts[cluster];
   for (int i = 0; i < ways->triangles.n; i++) {
@@ -83,11 +87,11 @@ static conic_status allocate_body(packing *p) {
   conic_chy_header *h = &p->header;
   memcpy(h->origin, p->flat->origin, sizeof h->origin);
   h->version = CONIC_CHY_VERSION;
-  h->cutoff = p->cutoff;
+  h->cutoff = p->job->options->cutoff;
   h->n_vertices = p->flat->n_vertices;
   h->n_clusters = p->n_clusters;
   h->n_nodes = p->job->n_nodes;
-  h->n_slots = p->chains->n_slots;
+  h->n_slots = p->job->chains.n_slots;
   h->n_materials = p->flat->n_materials;
   h->flags = (p->flat->normal[0] ? CONIC_CHY_NORMALS : 0u) | (p->flat->color[0] ? CONIC_CHY_COLORS : 0u) |
              (p->flat->texture_coordinate[0] ? CONIC_CHY_TEXTURE_COORDINATES : 0u) |
@@ -102,7 +106,7 @@ static conic_status allocate_body(packing *p) {
   for (size_t i = 0; i < p->job->n_nodes && p->job->node_ways; i++)
     count_node(p, i);
   if (h->n_triangles > UINT32_MAX / 4 || h->n_surfels > UINT32_MAX / 4 || h->n_texels > UINT32_MAX / 4)
-    return conic_fail(p->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
+    return conic_fail(p->job->context, CONIC_ERROR_ARGUMENT, "the model's triangles, surfels or textures are too many");
   measure_box(p, h);
   return CONIC_OK;
 }
@@ -168,7 +172,7 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
   level->count = (uint32_t)surfels->n;
   level->error = (float)(surfels->error * (1.0 + 1e-6));
   level->reach = (float)(surfels->reach * (1.0 + 1e-6));
-  sum_extents(surfels, (double)p->cutoff, level);
+  sum_extents(surfels, (double)p->job->options->cutoff, level);
   for (int k = 0; k < 12; k++) {
     float *values = array_at(p, CONIC_CHY_SURFELS + k);
     for (size_t i = 0; i < surfels->n; i++) {
@@ -183,7 +187,7 @@ static void put_surfels(packing *p, cursor *at, const conic_surfels *surfels) {
 /* The first level of triangles is the cluster's faces themselves. */
 static void put_cluster(packing *p, cursor *at, uint32_t i, conic_cluster_level *mesh) {
   conic_hybrid_cluster *clusters = array_at(p, CONIC_CHY_CLUSTERS);
-  const conic_cluster_ways *ways = &p->ways[i];
+  const conic_cluster_ways *ways = &p->job->ways[i];
   double error = 0.0;
   clusters[i] = (conic_hybrid_cluster){.bound = ways->bound,
                                        .area = (float)ways->area,
@@ -259,7 +263,7 @@ static conic_status measure_surfels(packing *p) {
   size_t n = 0, at = 0;
   for (size_t i = 0; i < p->header.n_clusters; i++)
     n += clusters[i].built ? levels[clusters[i].first_level + clusters[i].built].count : 0;
-  conic_status status = conic_splats_allocate(p->context, n, CONIC_SPLATS_TANGENTS, &built);
+  conic_status status = conic_splats_allocate(p->job->context, n, CONIC_SPLATS_TANGENTS, &built);
   for (size_t i = 0; i < p->header.n_clusters && status == CONIC_OK; i++) {
     const conic_hybrid_level *level = &levels[clusters[i].first_level + clusters[i].built];
     if (!clusters[i].built)
@@ -274,29 +278,27 @@ static conic_status measure_surfels(packing *p) {
     at += level->count;
   }
   if (status == CONIC_OK)
-    status = conic_splats_length(p->context, &built, &p->header.splat_length);
-  conic_splats_release(p->context, &built);
+    status = conic_splats_length(p->job->context, &built, &p->header.splat_length);
+  conic_splats_release(p->job->context, &built);
   return status;
 }
 
 static conic_status fill_body(packing *p) {
   cursor at = {0};
-  size_t most = 0;
-  for (size_t i = 0; i < p->n_clusters; i++)
-    most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
-  conic_cluster_level mesh = {.corners = conic_memory_allocate(p->context, most, sizeof *mesh.corners),
-                              .face = conic_memory_allocate(p->context, most, sizeof *mesh.face)};
+  size_t most = most_faces(p);
+  conic_cluster_level mesh = {.corners = conic_memory_allocate(p->job->context, most, sizeof *mesh.corners),
+                              .face = conic_memory_allocate(p->job->context, most, sizeof *mesh.face)};
   int is_there = mesh.corners && mesh.face;
   for (uint32_t i = 0; i < p->n_clusters && is_there; i++)
     put_cluster(p, &at, i, &mesh);
   for (size_t i = 0; i < p->job->n_nodes && is_there; i++)
     put_node(p, &at, i);
-  conic_memory_release(p->context, mesh.corners);
-  conic_memory_release(p->context, mesh.face);
+  conic_memory_release(p->job->context, mesh.corners);
+  conic_memory_release(p->job->context, mesh.face);
   if (!is_there)
     return CONIC_ERROR_MEMORY;
-  if (p->chains->n_slots > 0)
-    memcpy(array_at(p, CONIC_CHY_SLOTS), p->chains->slots, p->chains->n_slots * sizeof *p->chains->slots);
+  if (p->job->chains.n_slots > 0)
+    memcpy(array_at(p, CONIC_CHY_SLOTS), p->job->chains.slots, p->job->chains.n_slots * sizeof *p->job->chains.slots);
   put_vertices(p);
   put_materials(p);
   return measure_surfels(p);
@@ -304,15 +306,13 @@ static conic_status fill_body(packing *p) {
 
 /* How long the list of vertices is shows only when it is made; so it is counted first. */
 static conic_status count_listed(packing *p) {
-  size_t most = 0;
-  for (size_t i = 0; i < p->n_clusters; i++)
-    most = p->mesh->starts[i + 1] - p->mesh->starts[i] > most ? p->mesh->starts[i + 1] - p->mesh->starts[i] : most;
-  uint32_t(*corners)[3] = conic_memory_allocate(p->context, most, sizeof *corners);
-  uint32_t(*local)[3] = conic_memory_allocate(p->context, most, sizeof *local);
-  uint32_t *listed = conic_memory_allocate(p->context, most, 3 * sizeof *listed);
+  size_t most = most_faces(p);
+  uint32_t(*corners)[3] = conic_memory_allocate(p->job->context, most, sizeof *corners);
+  uint32_t(*local)[3] = conic_memory_allocate(p->job->context, most, sizeof *local);
+  uint32_t *listed = conic_memory_allocate(p->job->context, most, 3 * sizeof *listed);
   conic_status status = corners && local && listed ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < p->n_clusters && status == CONIC_OK; i++) {
-    const conic_cluster_levels *simpler = &p->ways[i].triangles;
+    const conic_cluster_levels *simpler = &p->job->ways[i].triangles;
     size_t n = p->mesh->starts[i + 1] - p->mesh->starts[i];
     for (size_t k = 0; k < n; k++)
       memcpy(corners[k], p->flat->corners[p->mesh->faces[p->mesh->starts[i] + k]], sizeof *corners);
@@ -321,9 +321,9 @@ static conic_status count_listed(packing *p) {
       p->header.n_listed +=
           list_vertices(p, (const uint32_t(*)[3])simpler->levels[k].corners, simpler->levels[k].n, listed, local);
   }
-  conic_memory_release(p->context, listed);
-  conic_memory_release(p->context, local);
-  conic_memory_release(p->context, corners);
+  conic_memory_release(p->job->context, listed);
+  conic_memory_release(p->job->context, local);
+  conic_memory_release(p->job->context, corners);
   return status;
 }
 
@@ -334,14 +334,14 @@ static conic_status pack(packing *p, conic_hybrid **hybrid) {
   if (status != CONIC_OK)
     return status;
   p->layout = conic_chy_lay_out(&p->header);
-  p->bytes = conic_memory_allocate_zeroed(p->context, p->layout.n_bytes, 1);
-  conic_hybrid *made = conic_memory_allocate_zeroed(p->context, 1, sizeof *made);
+  p->bytes = conic_memory_allocate_zeroed(p->job->context, p->layout.n_bytes, 1);
+  conic_hybrid *made = conic_memory_allocate_zeroed(p->job->context, 1, sizeof *made);
   *hybrid = made;
   if (!p->bytes || !made) {
-    conic_memory_release(p->context, p->bytes);
+    conic_memory_release(p->job->context, p->bytes);
     return CONIC_ERROR_MEMORY;
   }
-  made->context = p->context;
+  made->context = p->job->context;
   made->owned = p->bytes;
   status = fill_body(p);
   conic_chy_attach(&p->header, p->bytes, made);
@@ -350,14 +350,10 @@ static conic_status pack(packing *p, conic_hybrid **hybrid) {
 
 conic_status conic_hybrid_pack(const conic_ways_job *ways, conic_hybrid **hybrid) {
   const conic_triangles *flat = ways->mesh->triangles;
-  packing p = {.context = ways->context,
+  packing p = {.job = ways,
                .mesh = ways->mesh,
                .flat = flat,
-               .ways = ways->ways,
-               .chains = &ways->chains,
-               .job = ways,
                .n_clusters = ways->mesh->clusters->n_clusters,
-               .cutoff = ways->options->cutoff,
                .local = conic_memory_allocate(ways->context, flat->n_vertices, sizeof *p.local)};
   *hybrid = NULL;
   if (!p.local)

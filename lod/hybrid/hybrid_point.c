@@ -11,7 +11,7 @@ static double radius_of_disc(const conic_hybrid_camera *view, const conic_hybrid
                              double *distance) {
   double radius = (double)node->point.radius;
   for (int axis = 0; axis < 3; axis++)
-    way[axis] = (double)node->bound.center[axis] - view->eye[axis];
+    way[axis] = (double)node->bound.center[axis] - view->from.eye[axis];
   *distance = conic_length(way);
   return *distance > radius ? radius * *distance / sqrt(*distance * *distance - radius * radius) : HUGE_VAL;
 }

@@ -2,7 +2,7 @@
 #ifndef CONIC_HYBRID_POINT_H
 #define CONIC_HYBRID_POINT_H
 
-#include "lod/hybrid/hybrid_choose.h"
+#include "lod/hybrid/hybrid_offers.h"
 
 /* How many pixels places of the node may be off where its point stands for them: infinite where its sphere reaches
  * near, or there is no point. */

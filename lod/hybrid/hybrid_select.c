@@ -1,13 +1,13 @@
 /* What of a hybrid model is drawn in one picture. */
 #include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
 #include "lod/hybrid/hybrid_budget.h"
-#include "lod/hybrid/hybrid_plan.h"
+#include "lod/hybrid/hybrid_choose.h"
 #include "lod/hybrid/hybrid_point.h"
 #include "lod/hybrid/hybrid_stitch.h"
 
@@ -29,10 +29,9 @@ typedef struct hybrid_scratch {
   choice *choices;
   size_t n_choices, choices_room;
   uint32_t *stages;   /* of each cluster of the hybrid: that of its level */
-  uint32_t *standing; /* the node that stands for it */
-  size_t stages_room;
-  float *splats; /* arrays of splats_room each */
-  uint32_t *splat_cluster;
+  uint32_t *standing; /* the node that stands for it: behind the stages */
+  conic_kept_memory stages_memory, splats_memory, vertices_memory, triangles_memory;
+  float *splats; /* arrays of splats_room each; behind them the splats' clusters */
   size_t splats_room;
   float *vertices; /* arrays of vertices_room each */
   size_t vertices_room;
@@ -43,7 +42,7 @@ typedef struct hybrid_scratch {
 /* The level of a choice that is a node's point. */
 #define CONIC_HYBRID_POINT UINT32_MAX
 
-enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, CHOICES_A_TASK = 16 };
+enum { SPLAT_ARRAYS = 12, VERTEX_ARRAYS = 11, TRIANGLE_ARRAYS = 5, CHOICES_A_TASK = 16 };
 
 typedef struct hybrid_selecting {
   const conic_hybrid *hybrid;
@@ -57,24 +56,13 @@ void conic_hybrid_selection_release(conic_context *context, conic_hybrid_selecti
   hybrid_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->choices);
-    conic_memory_release(context, kept->stages);
-    conic_memory_release(context, kept->standing);
-    conic_memory_release(context, kept->splats);
-    conic_memory_release(context, kept->splat_cluster);
-    conic_memory_release(context, kept->vertices);
-    conic_memory_release(context, kept->triangles);
+    conic_memory_release(context, kept->stages_memory.pointer);
+    conic_memory_release(context, kept->splats_memory.pointer);
+    conic_memory_release(context, kept->vertices_memory.pointer);
+    conic_memory_release(context, kept->triangles_memory.pointer);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
-}
-
-static double reach_of_cluster(const conic_hybrid *h, const conic_hybrid_cluster *cluster) {
-  float reach = 0.0f;
-  for (uint32_t k = 0; k < cluster->n_levels; k++) {
-    float own = h->levels[cluster->first_level + k].reach;
-    reach = own > reach ? own : reach;
-  }
-  return (double)reach;
 }
 
 /* Whether the level of a cluster depends on those of others. */
@@ -107,7 +95,7 @@ static conic_status choose_all(hybrid_selecting *s) {
       continue;
     }
     for (uint32_t k = node->begin; k < node->end && node->next == i + 1 && status == CONIC_OK; k++) {
-      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, reach_of_cluster(h, &h->clusters[k])))
+      if (conic_hybrid_is_hidden(&s->camera, &h->clusters[k].bound, conic_hybrid_reach(h, &h->clusters[k])))
         s->selection->n_culled++;
       else
         status = add_choice(s, k);
@@ -141,10 +129,8 @@ static void let_nodes_stand(hybrid_selecting *s, const uint32_t *nodes) {
 /* The stages of what was chosen; all else is hidden. Nodes have all of their clusters' borders. */
 static void note_stages(hybrid_selecting *s) {
   hybrid_scratch *kept = s->scratch;
-  for (size_t i = 0; i < s->hybrid->n_clusters; i++) {
+  for (size_t i = 0; i < s->hybrid->n_clusters; i++)
     kept->stages[i] = CONIC_HYBRID_HIDDEN;
-    kept->standing[i] = CONIC_HYBRID_NO_NODE;
-  }
   for (size_t i = 0; i < kept->n_choices; i++)
     kept->stages[kept->choices[i].cluster] = s->hybrid->levels[kept->choices[i].level].stage;
 }
@@ -162,8 +148,9 @@ static conic_status choose_together(hybrid_selecting *s) {
   for (size_t i = 0; i < n; i++)
     clusters[i] = kept->choices[i].cluster;
   conic_status status =
-      view->budget ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
-                   : conic_hybrid_plan(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
+      view->budget
+          ? conic_hybrid_fit_budget(h, &s->camera, view->only_kind, view->budget, clusters, n, levels, nodes)
+          : conic_hybrid_choose_levels(h, &s->camera, view->error_px, view->only_kind, clusters, n, levels, nodes);
   if (status == CONIC_OK) {
     for (size_t i = 0; i < n; i++)
       kept->choices[i].level = h->clusters[clusters[i]].first_level + levels[i];
@@ -209,18 +196,11 @@ static void judge_choices(const hybrid_selecting *s) {
 
 static conic_status make_stages(hybrid_selecting *s) {
   hybrid_scratch *kept = s->scratch;
-  conic_context *context = s->hybrid->context;
   size_t n = s->hybrid->n_clusters;
-  if (kept->stages && kept->standing && n <= kept->stages_room)
-    return CONIC_OK;
-  conic_memory_release(context, kept->stages);
-  conic_memory_release(context, kept->standing);
-  kept->stages_room = 0;
-  kept->stages = conic_memory_allocate(context, n, sizeof *kept->stages);
-  kept->standing = conic_memory_allocate(context, n, sizeof *kept->standing);
-  if (!kept->stages || !kept->standing)
+  kept->stages = conic_keep_room(s->hybrid->context, &kept->stages_memory, 2 * n, sizeof *kept->stages);
+  if (!kept->stages)
     return CONIC_ERROR_MEMORY;
-  kept->stages_room = n;
+  kept->standing = kept->stages + n;
   return CONIC_OK;
 }
 
@@ -247,51 +227,24 @@ static void place_parts(hybrid_selecting *s) {
   s->selection->triangles.n_vertices = n_vertices;
 }
 
-static conic_status make_splats(conic_context *context, hybrid_scratch *kept, size_t n) {
-  if (kept->splats && kept->splat_cluster && n <= kept->splats_room)
-    return CONIC_OK;
-  conic_memory_release(context, kept->splats);
-  conic_memory_release(context, kept->splat_cluster);
-  kept->splats_room = 0;
-  kept->splats = conic_memory_allocate(context, n, SPLAT_ARRAYS * sizeof *kept->splats);
-  kept->splat_cluster = conic_memory_allocate(context, n, sizeof *kept->splat_cluster);
-  if (!kept->splats || !kept->splat_cluster)
-    return CONIC_ERROR_MEMORY;
-  kept->splats_room = n;
-  return CONIC_OK;
-}
-
-static conic_status make_vertices(conic_context *context, hybrid_scratch *kept, size_t n) {
-  if (kept->vertices && n <= kept->vertices_room)
-    return CONIC_OK;
-  conic_memory_release(context, kept->vertices);
-  kept->vertices_room = 0;
-  kept->vertices = conic_memory_allocate(context, n, VERTEX_ARRAYS * sizeof *kept->vertices);
-  kept->vertices_room = kept->vertices ? n : 0;
-  return kept->vertices ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
-static conic_status make_triangles(conic_context *context, hybrid_scratch *kept, size_t n) {
-  if (kept->triangles && n <= kept->triangles_room)
-    return CONIC_OK;
-  conic_memory_release(context, kept->triangles);
-  kept->triangles_room = 0;
-  kept->triangles = conic_memory_allocate(context, n, 5 * sizeof *kept->triangles);
-  kept->triangles_room = kept->triangles ? n : 0;
-  return kept->triangles ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
 /* Room for all parts of the choices. */
 static conic_status make_room_for_parts(hybrid_selecting *s) {
   conic_context *context = s->hybrid->context;
+  hybrid_scratch *kept = s->scratch;
   const conic_hybrid_selection *selection = s->selection;
   place_parts(s);
   if (selection->triangles.n_vertices > UINT32_MAX)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the picture's triangles have too many vertices");
-  conic_status status = make_splats(context, s->scratch, selection->splats.count);
-  if (status == CONIC_OK)
-    status = make_vertices(context, s->scratch, selection->triangles.n_vertices);
-  return status == CONIC_OK ? make_triangles(context, s->scratch, selection->triangles.count) : status;
+  kept->splats_room = selection->splats.count;
+  kept->vertices_room = selection->triangles.n_vertices;
+  kept->triangles_room = selection->triangles.count;
+  kept->splats =
+      conic_keep_room(context, &kept->splats_memory, kept->splats_room, (SPLAT_ARRAYS + 1) * sizeof *kept->splats);
+  kept->vertices =
+      conic_keep_room(context, &kept->vertices_memory, kept->vertices_room, VERTEX_ARRAYS * sizeof *kept->vertices);
+  kept->triangles = conic_keep_room(context, &kept->triangles_memory, kept->triangles_room,
+                                    TRIANGLE_ARRAYS * sizeof *kept->triangles);
+  return kept->splats && kept->vertices && kept->triangles ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 /* Points the selection's arrays into what is kept. */
@@ -313,7 +266,7 @@ static void attach(hybrid_selecting *s) {
   }
   for (size_t k = 0; k < 2; k++)
     triangles->texture_coordinate[k] = h->texture_coordinate[0] ? kept->vertices + (9 + k) * kept->vertices_room : NULL;
-  s->selection->splat_cluster = kept->splat_cluster;
+  s->selection->splat_cluster = (uint32_t *)(kept->splats + SPLAT_ARRAYS * kept->splats_room);
   triangles->corners = (uint32_t(*)[3])kept->triangles;
   triangles->cluster = kept->triangles + 3 * kept->triangles_room;
   triangles->material = h->material ? kept->triangles + 4 * kept->triangles_room : NULL;
@@ -327,7 +280,7 @@ static void copy_surfels(const hybrid_selecting *s, const choice *c, const conic
     memcpy(kept->splats + k * kept->splats_room + c->splat, s->hybrid->surfels[k] + level->first,
            level->count * sizeof(float));
   for (size_t i = 0; i < level->count; i++)
-    kept->splat_cluster[c->splat + i] = c->cluster;
+    s->selection->splat_cluster[c->splat + i] = c->cluster;
 }
 
 static void put_point(const hybrid_selecting *s, const choice *c) {
@@ -336,7 +289,7 @@ static void put_point(const hybrid_selecting *s, const choice *c) {
   conic_hybrid_point_splat(&s->camera, node_of(s, c), (double)s->hybrid->cutoff, values);
   for (size_t k = 0; k < SPLAT_ARRAYS; k++)
     kept->splats[k * kept->splats_room + c->splat] = values[k];
-  kept->splat_cluster[c->splat] = c->cluster;
+  s->selection->splat_cluster[c->splat] = c->cluster;
 }
 
 static void gather_listed(float *to, const float *from, const uint32_t *listed, size_t n) {

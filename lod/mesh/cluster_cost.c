@@ -154,11 +154,3 @@ void conic_joining_cost_add_plane(const conic_face_sums *both, conic_joining_cos
   cost->fit = fit > 0.0 ? fit : 0.0;
   cost->direction = direction > 0.0 ? direction : 0.0;
 }
-
-conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_face_sums *b, double shared,
-                                         double largest_area) {
-  conic_face_sums both;
-  conic_joining_cost cost = conic_joining_cost_without_plane(a, b, shared, largest_area, &both);
-  conic_joining_cost_add_plane(&both, &cost);
-  return cost;
-}

@@ -43,11 +43,8 @@ typedef struct conic_joining_cost {
   double size;      /* its area over the largest that a cluster of the first phase may have */
 } conic_joining_cost;
 
-conic_joining_cost conic_joining_cost_of(const conic_face_sums *a, const conic_face_sums *b, double shared,
-                                         double largest_area);
-
-/* The same in two parts, as the plane takes most of the time: the shape and the size, and the sums of both; then the
- * fit and the direction, which are 0 before and not below after. */
+/* In two parts, as the plane takes most of the time: the shape and the size, and the sums of both; then the fit and the
+ * direction, which are 0 before and not below after. */
 conic_joining_cost conic_joining_cost_without_plane(const conic_face_sums *a, const conic_face_sums *b, double shared,
                                                     double largest_area, conic_face_sums *both);
 void conic_joining_cost_add_plane(const conic_face_sums *both, conic_joining_cost *cost);

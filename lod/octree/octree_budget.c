@@ -80,7 +80,7 @@ conic_status conic_octree_fit_budget(const conic_octree *octree, const conic_oct
     }
     if (count <= (int64_t)budget)
       best = 0;
-    memcpy(error_px, &best, sizeof best);
+    *error_px = conic_float_of_bits(best);
   }
   conic_memory_release(context, openings);
   conic_memory_release(context, other);

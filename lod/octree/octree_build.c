@@ -218,12 +218,9 @@ static conic_status quantize(conic_octree *octree) {
 }
 
 static conic_status lay_out_leaves(conic_octree *octree) {
-  octree->end = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *octree->end);
-  octree->first_leaf = conic_memory_allocate(octree->context, octree->n_nodes + 1, sizeof *octree->first_leaf);
-  if (!octree->end || !octree->first_leaf)
-    return CONIC_ERROR_MEMORY;
-  const char *wrong = conic_octree_lay_out(octree);
-  return wrong ? conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : CONIC_OK;
+  const char *wrong;
+  conic_status status = conic_octree_lay_out(octree, &wrong);
+  return wrong ? conic_fail(octree->context, CONIC_ERROR_ARGUMENT, "octree: %s", wrong) : status;
 }
 
 /* The measures of the whole set, as the renderer would take them. */

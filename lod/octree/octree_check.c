@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 #include "lod/octree/octree_nodes.h"
 
 static const size_t chunk_nodes = 256;
@@ -16,24 +17,14 @@ typedef struct checking {
   conic_octree_defects *chunks;
 } checking;
 
-typedef struct vector {
-  double x, y, z;
-} vector;
-
-static vector vector_at(float *const arrays[3], size_t i) {
-  return (vector){(double)arrays[0][i], (double)arrays[1][i], (double)arrays[2][i]};
+static void vector_of(const float values[3], double v[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] = (double)values[axis];
 }
 
-static vector vector_of(const float values[3]) {
-  return (vector){(double)values[0], (double)values[1], (double)values[2]};
-}
-
-static double dot(vector a, vector b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static vector cross(vector a, vector b) {
-  return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+static void vector_at(float *const arrays[3], size_t i, double v[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    v[axis] = (double)arrays[axis][i];
 }
 
 /* How far the ellipse c + x·a + y·b, x² + y² = 1, reaches from the origin: the least bound that Lagrange's function
@@ -63,37 +54,41 @@ enum { OUT_OF_ELLIPSE = 1, OUT_OF_SPHERE = 2, OUT_OF_CONE = 4, OUT_OF_ERROR = 8 
 static int check_leaf(const conic_octree *octree, size_t i, size_t k) {
   const conic_splats *leaves = &octree->leaves;
   const conic_drawn_node *node = &octree->drawn[i];
-  double cutoff = octree->scale.cutoff, uu, vv, uv;
-  vector center = vector_of(node->position), p = vector_at(leaves->position, k), n = vector_at(octree->normal, i);
-  vector node_u = vector_of(node->tangent_u), node_v = vector_of(node->tangent_v);
-  vector u = vector_at(leaves->tangent_u, k), v = vector_at(leaves->tangent_v, k), facing = cross(u, v);
-  p = (vector){p.x - center.x, p.y - center.y, p.z - center.z};
+  double cutoff = octree->scale.cutoff, center[3], at[3], p[3], n[3], node_u[3], node_v[3], u[3], v[3], facing[3];
   int broken = 0;
+  vector_of(node->position, center);
+  vector_of(node->tangent_u, node_u);
+  vector_of(node->tangent_v, node_v);
+  vector_at(octree->normal, i, n);
+  vector_at(leaves->position, k, at);
+  vector_at(leaves->tangent_u, k, u);
+  vector_at(leaves->tangent_v, k, v);
+  conic_subtract(at, center, p);
+  conic_cross(u, v, facing);
   /* In units of the node's axes, in which its outline is a circle of the cutoff. */
-  double scale_u = 1.0 / dot(node_u, node_u), scale_v = 1.0 / dot(node_v, node_v);
-  const double c[2] = {dot(p, node_u) * scale_u, dot(p, node_v) * scale_v};
-  const double a[2] = {cutoff * dot(u, node_u) * scale_u, cutoff * dot(u, node_v) * scale_v};
-  const double b[2] = {cutoff * dot(v, node_u) * scale_u, cutoff * dot(v, node_v) * scale_v};
+  double scale_u = 1.0 / conic_dot(node_u, node_u), scale_v = 1.0 / conic_dot(node_v, node_v);
+  const double c[2] = {conic_dot(p, node_u) * scale_u, conic_dot(p, node_v) * scale_v};
+  const double a[2] = {cutoff * conic_dot(u, node_u) * scale_u, cutoff * conic_dot(u, node_v) * scale_v};
+  const double b[2] = {cutoff * conic_dot(v, node_u) * scale_u, cutoff * conic_dot(v, node_v) * scale_v};
   double out = farthest(c, a, b);
   if (!(out <= cutoff * (1.0 + hair)))
     broken |= OUT_OF_ELLIPSE;
-  uu = dot(u, u);
-  vv = dot(v, v);
-  uv = dot(u, v);
+  double uu = conic_dot(u, u), vv = conic_dot(v, v), uv = conic_dot(u, v);
   double longest = sqrt(0.5 * (uu + vv + sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv)));
-  if (!(sqrt(dot(p, p)) + cutoff * longest <= (double)octree->radius[i] * (1.0 + hair)))
+  if (!(conic_length(p) + cutoff * longest <= (double)octree->radius[i] * (1.0 + hair)))
     broken |= OUT_OF_SPHERE;
-  if (!(dot(facing, n) >= ((double)octree->cone[i] - hair) * sqrt(dot(facing, facing))))
+  if (!(conic_dot(facing, n) >= ((double)octree->cone[i] - hair) * conic_length(facing)))
     broken |= OUT_OF_CONE;
-  double uz = dot(u, n), vz = dot(v, n), height = fabs(dot(p, n)) + cutoff * sqrt(uz * uz + vz * vz);
+  double uz = conic_dot(u, n), vz = conic_dot(v, n), height = fabs(conic_dot(p, n)) + cutoff * sqrt(uz * uz + vz * vz);
   if (!(height <= (double)octree->error[i] * (1.0 + hair)))
     broken |= OUT_OF_ERROR;
   return broken;
 }
 
 static void check_node(const conic_octree *octree, size_t i, conic_octree_defects *found) {
-  vector u = vector_of(octree->drawn[i].tangent_u);
-  double reach = octree->scale.cutoff * sqrt(dot(u, u)), radius = (double)octree->radius[i];
+  double u[3];
+  vector_of(octree->drawn[i].tangent_u, u);
+  double reach = octree->scale.cutoff * conic_length(u), radius = (double)octree->radius[i];
   int broken = reach <= radius * (1.0 + hair) ? 0 : OUT_OF_SPHERE;
   if (!((double)octree->error[i] <= 2.0 * radius * (1.0 + hair)))
     broken |= OUT_OF_ERROR;
@@ -118,9 +113,12 @@ static void check_task(void *data, size_t i_chunk, int i_thread) {
 static size_t count_lost(const conic_octree *octree) {
   size_t n = 0;
   for (size_t i = 0; i < octree->n_leaves; i++) {
-    vector p = vector_at(octree->leaves.position, i);
-    vector n_leaf = cross(vector_at(octree->leaves.tangent_u, i), vector_at(octree->leaves.tangent_v, i));
-    n += !(dot(p, p) * 0.0 == 0.0 && dot(n_leaf, n_leaf) > 0.0);
+    double p[3], u[3], v[3], facing[3];
+    vector_at(octree->leaves.position, i, p);
+    vector_at(octree->leaves.tangent_u, i, u);
+    vector_at(octree->leaves.tangent_v, i, v);
+    conic_cross(u, v, facing);
+    n += !(conic_dot(p, p) * 0.0 == 0.0 && conic_dot(facing, facing) > 0.0);
   }
   return n;
 }

@@ -1,17 +1,14 @@
 /* .cot files: docs/reference/format-cot.md. */
-#include <stdio.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/real.h"
-#include "core/base/threads.h"
-#include "core/files/file.h"
-#include "core/files/file_header.h"
+#include "core/files/file_body.h"
 #include "lod/octree/leaf_code.h"
 #include "lod/octree/octree_nodes.h"
 
-enum { HEADER_BYTES = CONIC_FILE_HEADER_BYTES, VERSION = 1, ALIGNMENT = 64, MOST_ARRAYS = 16 };
+enum { VERSION = 1 };
 
 enum { FLAG_QUANTIZED = 1, FLAG_COLOR_CODES = 2, FLAG_COLORS = 4, FLAG_OPACITIES = 8, ALL_FLAGS = 15 };
 
@@ -37,50 +34,58 @@ static const conic_file_field fields[] = {FIELD(version),        FIELD(flags),  
                                           FIELD(cutoff),         FIELD(color),   FIELD(length),   FIELD(splat_length),
                                           FIELD(position_error), FIELD(n_clips), FIELD(body_sum)};
 
-static const conic_file_kind kind = {
-    {'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'}, ".cot", VERSION, fields, sizeof fields / sizeof *fields};
+static const char *fault_of_header(const void *numbers) {
+  const header *h = numbers;
+  if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
+    return "unknown flags";
+  if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
+    return "counts that do not go together";
+  if (h->n_clips > h->n_points)
+    return "more clip lines than points";
+  if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
+    return "counts that do not go together";
+  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
+    return "a cutoff or colour scale out of range";
+  if (!(h->length > 1e-60 && h->length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
+      !(h->position_error >= 0.0 && h->position_error < 1e30))
+    return "a length out of range";
+  for (int axis = 0; axis < 3; axis++)
+    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
+        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
+      return "a box that is none";
+  return NULL;
+}
 
-/* One array of the file's body. */
-typedef struct array {
-  size_t offset, n_bytes;
-} array;
-
-typedef struct layout {
-  int n;
-  array arrays[MOST_ARRAYS];
-  size_t n_bytes; /* of the whole file */
-} layout;
+static const conic_file_kind kind = {{'C', 'O', 'N', 'I', 'C', 'O', 'T', '\n'},
+                                     ".cot",
+                                     VERSION,
+                                     fields,
+                                     sizeof fields / sizeof *fields,
+                                     fault_of_header};
 
 /* Which array is which. */
 enum { ARRAY_CODES = 0, ARRAY_INDEX = 1, ARRAY_LEAVES = 2 };
 
-static void add_array(layout *l, uint64_t count, size_t size) {
-  l->arrays[l->n++] = (array){l->n_bytes, (size_t)count * size};
-  l->n_bytes += (size_t)count * size;
-  l->n_bytes = (l->n_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-}
-
 /* Where everything is follows from the header alone; its counts are below 2³¹. */
-static layout lay_out_file(const header *h) {
-  layout l = {.n_bytes = HEADER_BYTES};
+static conic_file_layout lay_out_file(const header *h) {
+  conic_file_layout l = {.n_bytes = CONIC_FILE_HEADER_BYTES};
   int is_quantized = (h->flags & FLAG_QUANTIZED) != 0;
-  add_array(&l, h->n_nodes, CONIC_NODE_BYTES);
-  add_array(&l, is_quantized ? h->n_leaves : h->n_points, sizeof(uint32_t));
+  conic_file_add_array(&l, (size_t)h->n_nodes * CONIC_NODE_BYTES);
+  conic_file_add_array(&l, (size_t)(is_quantized ? h->n_leaves : h->n_points) * sizeof(uint32_t));
   if (is_quantized) {
-    add_array(
-        &l,
-        conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0, (h->flags & FLAG_OPACITIES) != 0),
-        1);
+    conic_file_add_array(&l, conic_leaf_codes_bytes((size_t)h->n_leaves, (h->flags & FLAG_COLORS) != 0,
+                                                    (h->flags & FLAG_OPACITIES) != 0));
   } else {
+    size_t n_points = (size_t)h->n_points;
     for (int i = 0; i < 9; i++)
-      add_array(&l, h->n_points, sizeof(float));
+      conic_file_add_array(&l, n_points * sizeof(float));
     for (int i = 0; i < 3 && (h->flags & FLAG_COLORS); i++)
-      add_array(&l, h->n_points, h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float));
+      conic_file_add_array(&l, n_points * (h->flags & FLAG_COLOR_CODES ? 1 : sizeof(float)));
     if (h->flags & FLAG_OPACITIES)
-      add_array(&l, h->n_points, sizeof(float));
+      conic_file_add_array(&l, n_points * sizeof(float));
   }
   if (h->n_clips)
-    add_array(&l, h->n_clips, sizeof(conic_clip));
+    conic_file_add_array(&l, (size_t)h->n_clips * sizeof(conic_clip));
   return l;
 }
 
@@ -121,7 +126,7 @@ int conic_octree_colors_are_codes(const conic_code_scale *scale, const conic_spl
 
 /* What the arrays are filled from; colours as codes have been made into bytes. */
 static void list_sources(const conic_octree *octree, unsigned char *const color_codes[3],
-                         const void *sources[MOST_ARRAYS]) {
+                         const void *sources[CONIC_FILE_MOST_ARRAYS]) {
   const conic_splats *leaves = &octree->leaves;
   int n = 0;
   sources[n++] = octree->codes;
@@ -155,137 +160,43 @@ static conic_status encode_colors(const conic_octree *octree, unsigned char *cod
   return CONIC_OK;
 }
 
-typedef struct sum_job {
-  const layout *layout;
-  const void *const *sources;
-  uint64_t sums[MOST_ARRAYS];
-} sum_job;
-
-static void sum_task(void *data, size_t i_array, int i_thread) {
-  sum_job *job = data;
-  (void)i_thread;
-  job->sums[i_array] = conic_checksum(job->sources[i_array], job->layout->arrays[i_array].n_bytes);
-}
-
-static uint64_t sum_arrays(conic_context *context, const layout *l, const void *const *sources) {
-  sum_job job = {.layout = l, .sources = sources};
-  unsigned char bytes[8 * MOST_ARRAYS];
-  conic_parallel_for(context, (size_t)l->n, sum_task, &job);
-  for (int i = 0; i < l->n; i++)
-    conic_file_put(bytes + (size_t)i * 8, 8, job.sums[i]);
-  return conic_checksum(bytes, 8 * (size_t)l->n);
-}
-
-static conic_status write_body(conic_octree *octree, const char *path, header *h, const void *const *sources) {
-  static const unsigned char zeros[ALIGNMENT];
-  unsigned char bytes[HEADER_BYTES];
-  conic_output *output;
-  layout l = lay_out_file(h);
-  h->body_sum = sum_arrays(octree->context, &l, sources);
-  conic_file_make_header(&kind, h, bytes);
-  conic_status status = conic_output_open(octree->context, path, &output);
-  if (status != CONIC_OK)
-    return status;
-  FILE *stream = conic_output_stream(output);
-  size_t written = fwrite(bytes, 1, HEADER_BYTES, stream);
-  for (int i = 0; i < l.n && status == CONIC_OK; i++) { /* a failure is seen when the file is committed */
-    written += fwrite(sources[i], 1, l.arrays[i].n_bytes, stream);
-    size_t next = i + 1 < l.n ? l.arrays[i + 1].offset : l.n_bytes;
-    written += fwrite(zeros, 1, next - l.arrays[i].offset - l.arrays[i].n_bytes, stream);
-    if (written != next)
-      break;
-    status = conic_progress(octree->context, "write", (double)next / (double)l.n_bytes);
-  }
-  return conic_output_end(output, status);
-}
-
 conic_status conic_octree_write(conic_octree *octree, const char *path) {
-  const void *sources[MOST_ARRAYS];
+  const void *sources[CONIC_FILE_MOST_ARRAYS];
   unsigned char *color_codes[3] = {NULL, NULL, NULL};
   header h = describe_header(octree);
   conic_status status = encode_colors(octree, color_codes);
   if (status == CONIC_OK) {
+    conic_file_layout l = lay_out_file(&h);
     list_sources(octree, color_codes, sources);
-    status = write_body(octree, path, &h, sources);
+    h.body_sum = conic_file_sum_arrays(octree->context, &l, sources);
+    status = conic_file_write_arrays(octree->context, path, &kind, &h, &l, sources);
   }
   for (int channel = 0; channel < 3; channel++)
     conic_memory_release(octree->context, color_codes[channel]);
   return status;
 }
 
-/* What is wrong with a header whose sum is right, or null. */
-static const char *check_header(const header *h) {
-  if (h->flags & ~(uint32_t)ALL_FLAGS || ((h->flags & FLAG_COLOR_CODES) && !(h->flags & FLAG_COLORS)))
-    return "unknown flags";
-  if (h->n_points > UINT32_MAX / 2 || h->n_leaves < 1 || h->n_leaves > h->n_points || h->n_nodes >= h->n_leaves)
-    return "counts that do not go together";
-  if (h->n_clips > h->n_points)
-    return "more clip lines than points";
-  if ((h->flags & FLAG_QUANTIZED) && h->n_points / (CONIC_OCTREE_MOST_LEFT_OUT + 1) > h->n_leaves)
-    return "counts that do not go together";
-  if (!(h->cutoff >= 0.25f && h->cutoff <= 5.0f) || !(h->color >= 1.0f && h->color <= 1e18f))
-    return "a cutoff or colour scale out of range";
-  if (!(h->length > 1e-60 && h->length < 1e60) || !(h->splat_length >= 0.0 && h->splat_length < 1e30) ||
-      !(h->position_error >= 0.0 && h->position_error < 1e30))
-    return "a length out of range";
-  for (int axis = 0; axis < 3; axis++)
-    if (!conic_is_finite(h->origin[axis]) || !(h->low[axis] <= h->high[axis]) ||
-        !conic_is_finite((double)h->low[axis]) || !conic_is_finite((double)h->high[axis]))
-      return "a box that is none";
-  return NULL;
-}
-
-static conic_status read_octree_header(conic_octree *octree, const char *path, header *h) {
-  const conic_mapping *file = &octree->mapping;
-  conic_status status = conic_file_read_header(octree->context, path, &kind, file->bytes, file->n_bytes, h);
-  const char *wrong = status == CONIC_OK ? check_header(h) : NULL;
-  return wrong ? conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: the header has %s (at byte 8)", path, wrong)
-               : status;
-}
-
-/* The size, the sums, and nothing between the arrays. */
-static conic_status check_body(const conic_octree *octree, const char *path, const header *h, const layout *l) {
-  const conic_mapping *file = &octree->mapping;
-  const void *sources[MOST_ARRAYS];
-  if (file->n_bytes != l->n_bytes)
-    return conic_fail(octree->context, CONIC_ERROR_INPUT,
-                      "%s: has %zu bytes where its header tells of %zu (at byte %zu)", path, file->n_bytes, l->n_bytes,
-                      file->n_bytes < l->n_bytes ? file->n_bytes : l->n_bytes);
-  for (int i = 0; i < l->n; i++) {
-    size_t next = i + 1 < l->n ? l->arrays[i + 1].offset : l->n_bytes;
-    for (size_t at = l->arrays[i].offset + l->arrays[i].n_bytes; at < next; at++)
-      if (file->bytes[at])
-        return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: is damaged (at byte %zu)", path, at);
-    sources[i] = file->bytes + l->arrays[i].offset;
-  }
-  if (sum_arrays(octree->context, l, sources) != h->body_sum)
-    return conic_fail(octree->context, CONIC_ERROR_INPUT,
-                      "%s: is damaged: its sum is not that of its header (at byte %d)", path, HEADER_BYTES);
-  return CONIC_OK;
-}
-
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes) {
   header h;
+  conic_file_layout l = {0};
+  const void *arrays[CONIC_FILE_MOST_ARRAYS];
   conic_file_fields_read(fields, kind.n_fields, bytes + sizeof kind.magic, &h);
-  layout l = {0};
   if (h.n_points <= UINT32_MAX / 2 && h.n_leaves <= h.n_points && h.n_nodes <= h.n_leaves && h.n_clips <= h.n_points)
     l = lay_out_file(&h);
-  if (l.n > 0 && l.n_bytes == n_bytes) {
-    unsigned char sums[8 * MOST_ARRAYS];
-    for (int i = 0; i < l.n; i++)
-      conic_file_put(sums + (size_t)i * 8, 8, conic_checksum(bytes + l.arrays[i].offset, l.arrays[i].n_bytes));
-    h.body_sum = conic_checksum(sums, 8 * (size_t)l.n);
-    conic_file_fields_write(fields, kind.n_fields, &h, bytes + sizeof kind.magic);
+  int is_whole = l.n > 0 && l.n_bytes == n_bytes;
+  if (is_whole) {
+    conic_file_list_arrays(&l, bytes, arrays);
+    h.body_sum = conic_file_sum_arrays(NULL, &l, arrays);
   }
-  conic_file_put(bytes + HEADER_BYTES - 8, 8, conic_checksum(bytes, HEADER_BYTES - 8));
+  conic_file_mend_header(&kind, is_whole ? &h : NULL, bytes);
 }
 
-static void *array_in_file(const conic_octree *octree, const layout *l, int i) {
+static void *array_in_file(const conic_octree *octree, const conic_file_layout *l, int i) {
   return octree->mapping.bytes + l->arrays[i].offset;
 }
 
 /* Colours that are kept as codes become floats. */
-static conic_status decode_colors(conic_octree *octree, const layout *l) {
+static conic_status decode_colors(conic_octree *octree, const conic_file_layout *l) {
   for (int channel = 0; channel < 3; channel++) {
     const unsigned char *codes = array_in_file(octree, l, ARRAY_LEAVES + 9 + channel);
     float *color = conic_memory_allocate(octree->context, octree->n_points, sizeof *color);
@@ -298,7 +209,7 @@ static conic_status decode_colors(conic_octree *octree, const layout *l) {
   return CONIC_OK;
 }
 
-static conic_status read_quantized(conic_octree *octree, const header *h, const layout *l) {
+static conic_status read_quantized(conic_octree *octree, const header *h, const conic_file_layout *l) {
   unsigned optional = (h->flags & FLAG_COLORS ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
                       (h->flags & FLAG_OPACITIES ? (unsigned)CONIC_SPLATS_OPACITIES : 0u);
   conic_status status =
@@ -312,7 +223,7 @@ static conic_status read_quantized(conic_octree *octree, const header *h, const 
   return CONIC_OK;
 }
 
-static conic_status read_leaves(conic_octree *octree, const header *h, const layout *l) {
+static conic_status read_leaves(conic_octree *octree, const header *h, const conic_file_layout *l) {
   conic_splats *leaves = &octree->leaves;
   int next = ARRAY_LEAVES + 9;
   octree->n_clips = (size_t)h->n_clips;
@@ -341,7 +252,7 @@ static conic_status read_leaves(conic_octree *octree, const header *h, const lay
 }
 
 /* Every leaf is a splat of its own in the input. */
-static conic_status check_index(const conic_octree *octree, const char *path, const layout *l) {
+static conic_status check_index(const conic_octree *octree, const char *path, const conic_file_layout *l) {
   conic_status status = CONIC_OK;
   unsigned char *is_taken = conic_memory_allocate_zeroed(octree->context, octree->n_points, 1);
   if (!is_taken)
@@ -370,17 +281,14 @@ static conic_status check_clips(const conic_octree *octree, const char *path) {
   return CONIC_OK;
 }
 
-static conic_status read_structure(conic_octree *octree, const char *path, const layout *l) {
-  conic_context *context = octree->context;
-  octree->end = conic_memory_allocate(context, octree->n_nodes, sizeof *octree->end);
-  octree->first_leaf = conic_memory_allocate(context, octree->n_nodes + 1, sizeof *octree->first_leaf);
-  if (!octree->end || !octree->first_leaf)
-    return CONIC_ERROR_MEMORY;
-  const char *wrong = conic_octree_lay_out(octree);
+static conic_status read_structure(conic_octree *octree, const char *path, const conic_file_layout *l) {
+  const char *wrong;
+  conic_status status = conic_octree_lay_out(octree, &wrong);
   if (wrong)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
+    return conic_fail(octree->context, CONIC_ERROR_INPUT, "%s: the tree has %s (at byte %zu)", path, wrong,
                       l->arrays[ARRAY_CODES].offset);
-  conic_status status = check_index(octree, path, l);
+  if (status == CONIC_OK)
+    status = check_index(octree, path, l);
   if (status == CONIC_OK)
     status = check_clips(octree, path);
   return status == CONIC_OK ? conic_octree_index_clips(octree) : status;
@@ -388,13 +296,11 @@ static conic_status read_structure(conic_octree *octree, const char *path, const
 
 static conic_status read_octree_file(conic_octree *octree, const char *path) {
   header h = {.n_points = 0};
-  conic_status status = conic_mapping_open(octree->context, path, &octree->mapping);
-  if (status == CONIC_OK)
-    status = read_octree_header(octree, path, &h);
+  conic_status status = conic_file_open_kind(octree->context, path, &kind, &octree->mapping, &h);
   if (status != CONIC_OK)
     return status;
-  layout l = lay_out_file(&h);
-  status = check_body(octree, path, &h, &l);
+  conic_file_layout l = lay_out_file(&h);
+  status = conic_file_check_arrays(octree->context, path, &octree->mapping, &l, h.body_sum);
   if (status != CONIC_OK)
     return status;
   octree->n_points = (size_t)h.n_points;
@@ -419,7 +325,7 @@ conic_status conic_octree_read(conic_context *context, const char *path, conic_o
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
-  conic_status status = read_octree_file(made, strcmp(path, "-") == 0 ? "-" : path);
+  conic_status status = read_octree_file(made, path);
   if (status == CONIC_OK)
     *octree = made;
   else

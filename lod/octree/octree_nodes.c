@@ -67,7 +67,7 @@ static int close_nodes(conic_octree *octree, open_node *path, int depth, size_t 
   return depth;
 }
 
-const char *conic_octree_lay_out(conic_octree *octree) {
+static const char *lay_out_codes(conic_octree *octree) {
   open_node path[CONIC_OCTREE_DEPTH];
   size_t i_leaf = 0;
   int depth = 0;
@@ -95,6 +95,16 @@ const char *conic_octree_lay_out(conic_octree *octree) {
   if (octree->n_nodes ? i_leaf != octree->n_leaves : octree->n_leaves > 1)
     return "leaves that hang on no node";
   return NULL;
+}
+
+conic_status conic_octree_lay_out(conic_octree *octree, const char **wrong) {
+  *wrong = NULL;
+  octree->end = conic_memory_allocate(octree->context, octree->n_nodes, sizeof *octree->end);
+  octree->first_leaf = conic_memory_allocate(octree->context, octree->n_nodes + 1, sizeof *octree->first_leaf);
+  if (!octree->end || !octree->first_leaf)
+    return CONIC_ERROR_MEMORY;
+  *wrong = lay_out_codes(octree);
+  return CONIC_OK;
 }
 
 static void decode_chunk(void *data, size_t i_chunk, int i_thread) {

@@ -96,8 +96,8 @@ uint64_t conic_octree_file_bytes(const conic_octree *octree);
  * which would else see no further than the sums. */
 void conic_octree_mend(unsigned char *bytes, size_t n_bytes);
 
-/* Lays the codes' structure out: `end` and `first_leaf`. Returns what is wrong with it, or null. */
-const char *conic_octree_lay_out(conic_octree *octree);
+/* Lays the codes' structure out: `end` and `first_leaf`; *wrong is what is wrong with it, or null. Errors: MEMORY. */
+conic_status conic_octree_lay_out(conic_octree *octree, const char **wrong);
 
 static inline int conic_octree_n_direct(const conic_octree *octree, size_t i_node) {
   return conic_code_n_direct(octree->codes + i_node * CONIC_NODE_BYTES);

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "core/base/memory.h"
+#include "core/base/kept_memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/threads.h"
@@ -19,10 +19,8 @@ typedef struct octree_scratch {
   selection_piece *pieces;
   size_t n_pieces, pieces_room;
   uint32_t *sources; /* what each block gives, from its first leaf on: leaves, or CONIC_NODE_BIT and a node */
-  size_t sources_room;
+  conic_kept_memory sources_memory, clips;
   float *arrays; /* the selection's */
-  conic_clip *clips;
-  size_t clips_room;
 } octree_scratch;
 
 enum { PIECES_A_TASK = 2 };
@@ -45,9 +43,9 @@ void conic_selection_release(conic_context *context, conic_selection *selection)
   octree_scratch *kept = selection->scratch;
   if (kept) {
     conic_memory_release(context, kept->arrays);
-    conic_memory_release(context, kept->clips);
+    conic_memory_release(context, kept->clips.pointer);
     conic_memory_release(context, kept->pieces);
-    conic_memory_release(context, kept->sources);
+    conic_memory_release(context, kept->sources_memory.pointer);
   }
   conic_memory_release(context, kept);
   memset(selection, 0, sizeof *selection);
@@ -201,16 +199,6 @@ static conic_status place_pieces(octree_selecting *s) {
   return CONIC_OK;
 }
 
-/* Room for `count` elements in *memory; what was in it is gone if it had to grow. */
-static conic_status keep_room(conic_context *context, void **memory, size_t *room, size_t count, size_t size) {
-  if (*memory && *room >= count)
-    return CONIC_OK;
-  conic_memory_release(context, *memory);
-  *memory = conic_memory_allocate(context, count, size);
-  *room = *memory ? count : 0;
-  return *memory ? CONIC_OK : CONIC_ERROR_MEMORY;
-}
-
 /* The clip lines of the leaves that were chosen, in their new order. */
 static conic_status take_clips(octree_selecting *s) {
   const conic_octree *octree = s->octree;
@@ -220,11 +208,9 @@ static conic_status take_clips(octree_selecting *s) {
   splats->clips = NULL;
   if (octree->n_clips == 0)
     return CONIC_OK;
-  conic_status status = keep_room(octree->context, (void **)&s->scratch->clips, &s->scratch->clips_room,
-                                  octree->n_clips, sizeof *s->scratch->clips);
-  if (status != CONIC_OK)
-    return status;
-  splats->clips = s->scratch->clips;
+  splats->clips = conic_keep_room(octree->context, &s->scratch->clips, octree->n_clips, sizeof *splats->clips);
+  if (!splats->clips)
+    return CONIC_ERROR_MEMORY;
   for (size_t k = 0; k < splats->count; k++) {
     uint32_t id = selection->ids[k];
     if (id >= octree->n_points || octree->clip_of_point[id] == CONIC_NO_CLIP)
@@ -254,8 +240,8 @@ static conic_status keep_scratch(const conic_octree *octree, conic_selection *se
   octree_scratch *kept = selection->scratch;
   if (!kept)
     return CONIC_ERROR_MEMORY;
-  return keep_room(octree->context, (void **)&kept->sources, &kept->sources_room, octree->n_leaves,
-                   sizeof *kept->sources);
+  kept->sources = conic_keep_room(octree->context, &kept->sources_memory, octree->n_leaves, sizeof *kept->sources);
+  return kept->sources ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
 static const char *what_of_view_is_wrong(const conic_octree *octree, const conic_render_options *render,

@@ -29,24 +29,19 @@ struct conic_octree_view {
 void conic_octree_view_init(const conic_octree *octree, const conic_camera *camera, const conic_render_options *render,
                             double near_z, conic_octree_view *view);
 
-static inline void conic_octree_measure(const conic_octree *octree, const conic_octree_view *view, size_t begin,
-                                        size_t n, float *pixels) {
-  view->measure(octree, view, begin, n, pixels);
-}
-
 /* Some nodes that were measured together: the walk down the tree will look at most of them. */
 typedef struct conic_measured {
   size_t begin, end;
   float pixels[CONIC_OCTREE_GROUP];
 } conic_measured;
 
-/* What conic_octree_measure gives for node i. Where that is not known yet, measures it and those after it: its whole
+/* What measuring gives for node i. Where that is not known yet, measures it and those after it: its whole
  * subtree, if that is small. `measured` is zero before the first use. */
 static inline float conic_octree_look_up(const conic_octree *octree, const conic_octree_view *view, size_t i,
                                          conic_measured *measured) {
   if (i < measured->begin || i >= measured->end) {
     size_t n = octree->n_nodes - i < CONIC_OCTREE_GROUP ? octree->n_nodes - i : CONIC_OCTREE_GROUP;
-    conic_octree_measure(octree, view, i, n, measured->pixels);
+    view->measure(octree, view, i, n, measured->pixels);
     measured->begin = i;
     measured->end = i + n;
   }

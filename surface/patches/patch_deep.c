@@ -26,7 +26,7 @@ static void place_on_patch(const descent *d, double s, double t, double p[3]) {
   for (int axis = 0; axis < 3; axis++)
     place[axis] = (double)d->patch->center[axis] + s * (double)d->patch->along[axis] +
                   t * (double)d->patch->across[axis] + height * (double)d->patch->normal[axis];
-  conic_patches_to_camera(d->view, place, p);
+  conic_viewpoint_move(&d->view->from, place, p);
 }
 
 static void emit_cell(descent *d, const conic_grid_part *part) {

@@ -42,9 +42,9 @@ static int faces_away(const conic_patches_view *view, const conic_patch *patch, 
     center[axis] = (double)patch->center[axis];
     normal[axis] = (double)patch->normal[axis];
   }
-  conic_patches_to_camera(view, center, p);
+  conic_viewpoint_move(&view->from, center, p);
   for (int i = 0; i < 3; i++) {
-    n[i] = view->rotation[i][0] * normal[0] + view->rotation[i][1] * normal[1] + view->rotation[i][2] * normal[2];
+    n[i] = conic_dot(view->from.rotation[i], normal);
     along += n[i] * p[i];
     across2 += p[i] * p[i];
   }
@@ -57,7 +57,7 @@ static double place_of_patch(const conic_patches *patches, const conic_patches_v
   const conic_neighbours *tree = &patches->surface->tree;
   const double place[3] = {(double)tree->position[0][slot], (double)tree->position[1][slot],
                            (double)tree->position[2][slot]};
-  conic_patches_to_camera(view, place, p);
+  conic_viewpoint_move(&view->from, place, p);
   return (double)patches->patches[slot].reach;
 }
 
@@ -127,7 +127,7 @@ static void plan_node(patches_planning *work, size_t i_node) {
     half2 += half * half;
   }
   double around = 1.001 * sqrt(half2) + (double)patches->node_reach[i_node];
-  conic_patches_to_camera(work->view, center, p);
+  conic_viewpoint_move(&work->view->from, center, p);
   if (!conic_patches_sees(work->view, p, around))
     return; /* culled, as it was set */
   if (conic_patches_pixels(work->view, p, around, (double)patches->node_radius[i_node]) <= LEAST_RADIUS_PX)

@@ -4,10 +4,10 @@
 
 #include "conic/camera.h"
 #include "conic/render.h"
+#include "core/image/viewpoint.h"
 
 typedef struct conic_patches_view {
-  double rotation[3][3], translation[3]; /* of places relative to the set's origin */
-  double sides[4][3];      /* unit normals of the planes through the eye that bound what is seen, inwards */
+  conic_viewpoint from;    /* places from the set's origin; the sides as far out as the prefilter reaches */
   double near_z, focal_px; /* the longer focal length */
   double step_px;
   int cull_back;
@@ -17,18 +17,9 @@ typedef struct conic_patches_view {
 void conic_patches_view_init(conic_patches_view *view, const conic_camera *camera, const conic_render_options *render,
                              const double origin[3], double default_near, double step_px);
 
-static inline void conic_patches_to_camera(const conic_patches_view *view, const double place[3], double p[3]) {
-  for (int i = 0; i < 3; i++)
-    p[i] = view->rotation[i][0] * place[0] + view->rotation[i][1] * place[1] + view->rotation[i][2] * place[2] +
-           view->translation[i];
-}
-
 /* Whether a sphere about p, in camera space, may be seen. */
 static inline int conic_patches_sees(const conic_patches_view *view, const double p[3], double radius) {
-  int is_seen = p[2] + radius > view->near_z;
-  for (int i = 0; i < 4; i++)
-    is_seen &= !(view->sides[i][0] * p[0] + view->sides[i][1] * p[1] + view->sides[i][2] * p[2] < -radius);
-  return is_seen;
+  return p[2] + radius > view->near_z && !conic_viewpoint_misses(&view->from, p, radius);
 }
 
 /* How many pixels a length takes at most, in a sphere about p. */

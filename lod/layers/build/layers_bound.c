@@ -19,19 +19,12 @@ static const double outline_over_spacing = 1.5;
 static const double most_over_median = 4.0;
 
 static double size_of(uint16_t code) {
-  uint32_t bits = (uint32_t)code << 16;
-  float size = conic_float_of_bits(bits);
-  return (double)size;
+  return (double)conic_float_of_bits((uint32_t)code << 16);
 }
 
 static void steps_of(uint64_t key, double steps[3]) {
   for (int axis = 0; axis < 3; axis++)
     steps[axis] = (double)conic_layers_step(key, axis);
-}
-
-static double squared_distance(const double a[3], const double b[3]) {
-  double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return x * x + y * y + z * z;
 }
 
 /* Puts a value where it belongs among the smallest, ascending. */
@@ -128,9 +121,10 @@ static void find_sphere(conic_layers_branch *branch) {
     corner2 += half * half;
   }
   for (size_t i = 0; i < branch->n_drawn; i++) {
-    double at[3];
+    double at[3], way[3];
     steps_of(branch->keys[i], at);
-    double distance2 = squared_distance(at, branch->center);
+    conic_subtract(at, branch->center, way);
+    double distance2 = conic_dot(way, way);
     farthest2 = distance2 > farthest2 ? distance2 : farthest2;
   }
   double reach = sqrt(farthest2) + branch->covering, corner = sqrt(corner2);
@@ -145,7 +139,7 @@ static void find_axis(conic_layers_branch *branch) {
     for (int axis = 0; axis < 3; axis++)
       sum[axis] += (double)normal[axis];
   }
-  double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  double length = conic_length(sum);
   for (int axis = 0; axis < 3; axis++)
     branch->axis[axis] = length > 0.0 ? (double)(float)(sum[axis] / length) : axis == 2;
 }
@@ -211,10 +205,9 @@ static double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-void conic_layers_bound_node(const conic_layers_plan *plan, conic_thinner *thinner, conic_layers_branch *node) {
+void conic_layers_bound_node(conic_thinner *thinner, conic_layers_branch *node) {
   const conic_layers_branch *a = node->children[0], *b = node->children[1];
   bounding bounds = {node, thinner};
-  (void)plan;
   node->covering = 0.0;
   visit_below(node, node->n_place, reach_out, &bounds);
   node->area = a->area + b->area;

@@ -34,7 +34,7 @@ struct conic_layers_branch {
 conic_status conic_layers_bound_leaf(const conic_layers_plan *plan, conic_layers_branch *leaf);
 
 /* Of a node whose samples have been chosen, the grid of the thinner holding them. */
-void conic_layers_bound_node(const conic_layers_plan *plan, conic_thinner *thinner, conic_layers_branch *node);
+void conic_layers_bound_node(conic_thinner *thinner, conic_layers_branch *node);
 
 /* The entry's part that follows from it, all lengths rounded up. */
 void conic_layers_describe_branch(const conic_layers_plan *plan, const conic_layers_branch *branch,

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "lod/layers/build/layers_branch.h"
 
 /* Buckets in a row whose samples are one cell's, and what has grown of them. */
 typedef struct chunk {
@@ -103,8 +104,8 @@ static conic_status collect_chunk(growing *g, chunk *c) {
     all->part_bytes[i] += c->shelf.part_bytes[i];
   conic_status status = conic_spool_append(&g->forest->spool, c->shelf.bytes, c->shelf.n_bytes);
   conic_layers_shelf_release(&c->shelf);
-  if (c->branch)
-    conic_layers_branch_shift(c->branch, n_before);
+  for (int k = 0; k < 2 && c->branch; k++)
+    c->branch->nodes[k] += c->branch->nodes[k] != CONIC_LAYERS_NO_NODE ? n_before : 0;
   return status;
 }
 
@@ -133,13 +134,11 @@ static conic_status grow_chunks(growing *g) {
 
 /* The first of some chunks in a row that is past the middle of the place they share. */
 static size_t split_chunks(const growing *g, size_t first, size_t end) {
-  uint64_t low, high, unused;
-  conic_layers_branch_keys(g->chunks[first].branch, &low, &unused);
-  conic_layers_branch_keys(g->chunks[end - 1].branch, &unused, &high);
-  uint64_t bit = UINT64_C(1) << (63 - __builtin_clzll(low ^ high));
+  uint64_t differing = g->chunks[first].branch->first_key ^ g->chunks[end - 1].branch->last_key;
+  uint64_t bit = UINT64_C(1) << (63 - __builtin_clzll(differing));
   size_t at = first;
-  while (!(low & bit))
-    conic_layers_branch_keys(g->chunks[++at].branch, &low, &unused);
+  while (!(g->chunks[at].branch->first_key & bit))
+    at++;
   return at;
 }
 

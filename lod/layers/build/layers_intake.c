@@ -5,6 +5,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
+#include "core/base/vectors.h"
 
 conic_status conic_layers_intake_begin(conic_context *context, const char *path, size_t memory_bytes, float cutoff,
                                        conic_layers_intake *intake) {
@@ -47,11 +49,9 @@ static int is_direction(const float v[3]) {
 
 /* The upper half of a float's bits, not rounded down. */
 static uint16_t size_code(float size) {
-  uint32_t bits;
   if (!(size > 0.0f && size < 1e30f))
     return 0;
-  memcpy(&bits, &size, sizeof bits);
-  bits += 0xffff;
+  uint32_t bits = conic_bits_of_float(size) + 0xffff;
   return (uint16_t)(bits >> 16 ? bits >> 16 : 1);
 }
 
@@ -62,22 +62,16 @@ static int take_axes(const conic_layers_intake *intake, const conic_splats *batc
   vector_at(batch->tangent_v, i, v);
   if (!is_finite(u) || !is_finite(v) || !is_direction(u) || !is_direction(v))
     return 0;
-  double length2[2] = {0.0, 0.0}, a[3], b[3];
-  for (int axis = 0; axis < 3; axis++) {
-    length2[0] += (double)u[axis] * (double)u[axis];
-    length2[1] += (double)v[axis] * (double)v[axis];
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    a[axis] = (double)u[axis] / sqrt(length2[0]);
-    b[axis] = (double)v[axis] / sqrt(length2[1]);
-  }
-  const float normal[3] = {(float)(a[1] * b[2] - a[2] * b[1]), (float)(a[2] * b[0] - a[0] * b[2]),
-                           (float)(a[0] * b[1] - a[1] * b[0])};
+  double a[3] = {(double)u[0], (double)u[1], (double)u[2]}, b[3] = {(double)v[0], (double)v[1], (double)v[2]}, cross[3];
+  double longer = conic_length(conic_dot(a, a) > conic_dot(b, b) ? a : b);
+  conic_normalize(a);
+  conic_normalize(b);
+  conic_cross(a, b, cross);
+  const float normal[3] = {(float)cross[0], (float)cross[1], (float)cross[2]};
   if (!is_direction(normal))
     return 0;
   conic_layers_code_normal(normal, raw->normal);
-  double longer2 = length2[0] > length2[1] ? length2[0] : length2[1];
-  raw->size = size_code((float)(sqrt(longer2) * (double)intake->cutoff));
+  raw->size = size_code((float)(longer * (double)intake->cutoff));
   return 1;
 }
 

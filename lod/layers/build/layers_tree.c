@@ -72,17 +72,6 @@ void conic_layers_branch_destroy(conic_context *context, conic_layers_branch *br
   conic_memory_release(context, branch);
 }
 
-void conic_layers_branch_shift(conic_layers_branch *branch, uint32_t n_nodes) {
-  for (int i = 0; i < 2; i++)
-    if (branch->nodes[i] != CONIC_LAYERS_NO_NODE)
-      branch->nodes[i] += n_nodes;
-}
-
-void conic_layers_branch_keys(const conic_layers_branch *branch, uint64_t *first, uint64_t *last) {
-  *first = branch->first_key;
-  *last = branch->last_key;
-}
-
 /* A branch with room for n samples that are drawn. */
 static conic_layers_branch *create_branch(conic_context *context, size_t n) {
   conic_layers_branch *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
@@ -264,7 +253,7 @@ conic_status conic_layers_join(conic_layers_worker *worker, conic_layers_branch 
   }
   (*parent)->children[0] = children[0];
   (*parent)->children[1] = children[1];
-  conic_layers_bound_node(&worker->plan, worker->thinner, *parent);
+  conic_layers_bound_node(worker->thinner, *parent);
   status = shelve_rest(worker, children[0], worker->is_chosen, shelf, &(*parent)->nodes[0]);
   if (status == CONIC_OK)
     status = shelve_rest(worker, children[1], worker->is_chosen + n_first, shelf, &(*parent)->nodes[1]);

@@ -65,13 +65,7 @@ conic_status conic_layers_join(conic_layers_worker *worker, conic_layers_branch 
 conic_status conic_layers_finish_root(conic_layers_worker *worker, conic_layers_branch *branch,
                                       conic_layers_shelf *shelf);
 
-/* Of the branch's links to nodes: they are now so much farther on. */
-void conic_layers_branch_shift(conic_layers_branch *branch, uint32_t n_nodes);
-
-/* The first and last key of its place's samples. */
-void conic_layers_branch_keys(const conic_layers_branch *branch, uint64_t *first, uint64_t *last);
-
-/* And all that hangs on it; null is allowed. */
+/* The branch and all that hangs on it; null is allowed. */
 void conic_layers_branch_destroy(conic_context *context, conic_layers_branch *branch);
 
 #endif

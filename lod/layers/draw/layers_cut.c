@@ -103,13 +103,11 @@ static uint64_t count_cut(const conic_layers *layers, const conic_layers_view *v
 conic_status conic_layers_fit_budget(const conic_layers *layers, const conic_layers_view *view, int most_levels,
                                      uint64_t budget, double *error_px) {
   conic_layers_wish wish = {.error_px = 0.0, .most_levels = most_levels};
-  const double greatest = HUGE_VAL;
-  uint64_t low = 0, high;
-  memcpy(&high, &greatest, sizeof high);
+  uint64_t low = 0, high = conic_bits_of_double(HUGE_VAL);
   *error_px = 0.0;
   if (count_cut(layers, view, &wish, budget) <= budget)
     return CONIC_OK;
-  wish.error_px = greatest;
+  wish.error_px = HUGE_VAL;
   if (count_cut(layers, view, &wish, budget) > budget)
     return conic_fail(layers->context, CONIC_ERROR_ARGUMENT, "%s: the coarsest level alone has %u splats", layers->name,
                       layers->entries[0].n_drawn);

@@ -75,11 +75,11 @@ static conic_status make_do(layers_drawing *d, double until_s) {
     d->holding.n = 0;
     return status;
   }
-  if (!conic_layers_store_find(&layers->store, 0))
+  if (!layers->store.slots[0].block)
     return conic_fail(layers->context, CONIC_ERROR_IO, "%s: not even the coarsest cloud could be read%s", layers->name,
                       d->options->seconds > 0.0 ? " in time" : "");
   for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
-    int is_in = conic_layers_store_find(&layers->store, i) != NULL;
+    int is_in = layers->store.slots[i].block != NULL;
     d->drawn.n_clouds_missing += d->needed[i] && !is_in;
     d->needed[i] = (unsigned char)(!d->needed[i] || is_in);
   }

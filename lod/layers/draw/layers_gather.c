@@ -9,12 +9,17 @@
 /* Pieces are small: so many make a task. */
 enum { PIECES_A_TASK = 16 };
 
-typedef struct gather {
+typedef struct gather gather;
+
+typedef void piece_function(const gather *g, conic_layers_piece *piece);
+
+struct gather {
   conic_layers *layers;
   const conic_layers_gathering *asked;
   conic_layers_set *set;
   size_t first, end; /* pieces of the clouds that are in memory now */
-} gather;
+  piece_function *function;
+};
 
 void conic_layers_set_release(conic_context *context, conic_layers_set *set) {
   conic_memory_release(context, set->arrays);
@@ -143,7 +148,7 @@ static inline int is_chosen(const sieve *s, size_t i) {
   if (s->place->state != CONIC_PLACE_GRAZING)
     return 1;
   for (int axis = 0; axis < 3; axis++)
-    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->eye[axis]);
+    along += (double)s->cloud->normal[axis][i] * ((double)s->cloud->position[axis][i] - s->view->from.eye[axis]);
   return !(fabs(along) >= s->place->offset);
 }
 
@@ -175,14 +180,6 @@ static void count_piece(const gather *g, conic_layers_piece *piece) {
       piece->n_chosen++;
       piece->n_kept += (uint32_t)is_in_window(&s, i);
     }
-}
-
-static void count_task(void *data, size_t i_task, int i_thread) {
-  gather *g = data;
-  size_t begin = g->first + i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
-  (void)i_thread;
-  for (size_t i = begin; i < end && i < g->end; i++)
-    count_piece(g, &g->set->pieces[i]);
 }
 
 /* A piece's samples and their places in the set. */
@@ -242,7 +239,7 @@ static void copy_one(const copying *c, size_t i, size_t k, float sigma, uint32_t
   c->to_id[k] = id;
 }
 
-static void fill_piece(const gather *g, const conic_layers_piece *piece) {
+static void fill_piece(const gather *g, conic_layers_piece *piece) {
   conic_layers *layers = g->layers;
   const conic_layers_place *place = &g->asked->cut->places[piece->i_place];
   const conic_layers_cloud *cloud = cloud_of(layers, piece);
@@ -260,12 +257,17 @@ static void fill_piece(const gather *g, const conic_layers_piece *piece) {
       copy_one(&c, i, k++, sigma, first_id + (uint32_t)i);
 }
 
-static void fill_task(void *data, size_t i_task, int i_thread) {
-  gather *g = data;
+static void piece_task(void *data, size_t i_task, int i_thread) {
+  const gather *g = data;
   size_t begin = g->first + i_task * PIECES_A_TASK, end = begin + PIECES_A_TASK;
   (void)i_thread;
   for (size_t i = begin; i < end && i < g->end; i++)
-    fill_piece(g, &g->set->pieces[i]);
+    g->function(g, &g->set->pieces[i]);
+}
+
+static void for_pieces(gather *g, piece_function *function) {
+  g->function = function;
+  conic_parallel_for(g->layers->context, (g->end - g->first + PIECES_A_TASK - 1) / PIECES_A_TASK, piece_task, g);
 }
 
 /* Gives the pieces their places in the set. Returns where they end. */
@@ -288,15 +290,13 @@ static size_t place_pieces(gather *g) {
 
 /* Takes over what the pieces' clouds, now in memory, have. */
 static conic_status take_pieces(gather *g) {
-  conic_context *context = g->layers->context;
-  size_t n_tasks = (g->end - g->first + PIECES_A_TASK - 1) / PIECES_A_TASK;
-  conic_parallel_for(context, n_tasks, count_task, g);
+  for_pieces(g, count_piece);
   size_t count = place_pieces(g), used = g->set->splats.count;
   size_t wanted = count > g->set->room && used ? count + count / 4 : count;
   conic_status status = make_room_for_splats(g->layers, g->set, used, wanted);
   if (status != CONIC_OK)
     return status;
-  conic_parallel_for(context, n_tasks, fill_task, g);
+  for_pieces(g, fill_piece);
   g->set->splats.count = count;
   return CONIC_OK;
 }

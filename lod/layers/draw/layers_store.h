@@ -27,11 +27,6 @@ typedef struct conic_layers_store {
 conic_status conic_layers_store_open(conic_layers *layers);
 void conic_layers_store_close(conic_layers *layers);
 
-/* The cloud if it is in memory, or null. */
-static inline const conic_layers_cloud *conic_layers_store_find(const conic_layers_store *store, uint32_t cloud) {
-  return store->slots[cloud].block ? &store->slots[cloud].cloud : NULL;
-}
-
 typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;

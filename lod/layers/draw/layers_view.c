@@ -15,31 +15,9 @@ static const double slack = 1e-4;
  * steep they are. */
 static const double least_slope = 2e-3;
 
-/* The plane through the eye and a side of the picture: points with a·x + b·z ≥ 0 are inside. */
-static void set_layers_side(double side[3], int axis, double a, double b) {
-  double length = sqrt(a * a + b * b);
-  side[0] = side[1] = 0.0;
-  side[axis] = a / length;
-  side[2] = b / length;
-}
-
-static void set_frame(const conic_layers_header *header, const conic_camera *camera, conic_layers_view *view) {
-  const double *origin = header->origin;
-  for (int row = 0; row < 3; row++) {
-    const double *m = camera->cam_from_world[row];
-    view->translation[row] = ((m[0] * origin[0] + m[1] * origin[1]) + m[2] * origin[2]) + m[3];
-    memcpy(view->rotation[row], m, sizeof view->rotation[row]);
-  }
-  for (int axis = 0; axis < 3; axis++)
-    view->eye[axis] =
-        -((view->rotation[0][axis] * view->translation[0] + view->rotation[1][axis] * view->translation[1]) +
-          view->rotation[2][axis] * view->translation[2]);
-}
-
 void conic_layers_view_init(const conic_layers_header *header, const conic_camera *camera,
                             const conic_render_options *render, double near_z, conic_layers_view *view) {
   memset(view, 0, sizeof *view);
-  set_frame(header, camera, view);
   view->width = camera->width;
   view->height = camera->height;
   view->fx = camera->fx;
@@ -50,10 +28,7 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   view->greatest_focal = camera->fx < camera->fy ? camera->fy : camera->fx;
   double widening = (double)render->kernel.cutoff * sqrt((double)render->prefilter);
   double margin = view->growth_px = widening + 1.0;
-  set_layers_side(view->side[0], 0, camera->fx, camera->cx + margin);
-  set_layers_side(view->side[1], 0, -camera->fx, (double)camera->width + margin - camera->cx);
-  set_layers_side(view->side[2], 1, camera->fy, camera->cy + margin);
-  set_layers_side(view->side[3], 1, -camera->fy, (double)camera->height + margin - camera->cy);
+  conic_viewpoint_init(&view->from, camera, header->origin, margin);
   view->near_z = near_z;
   view->cull_back = render->cull_back;
   view->is_exact_outline = conic_method_has_exact_outline(render->method);
@@ -63,14 +38,6 @@ void conic_layers_view_init(const conic_layers_header *header, const conic_camer
   view->grows_with_size = render->method == CONIC_METHOD_AUTO;
   view->beyond_px = view->grows_with_size ? 1.5 * widening : widening;
   view->is_flat = conic_method_is_dot(render->method);
-}
-
-static void move_center(const conic_layers_view *view, const conic_layers_entry *entry, double p[3]) {
-  for (int row = 0; row < 3; row++) {
-    const double *m = view->rotation[row];
-    p[row] = ((m[0] * (double)entry->center[0] + m[1] * (double)entry->center[1]) + m[2] * (double)entry->center[2]) +
-             view->translation[row];
-  }
 }
 
 /* The sphere's radius, and more for what the renderer rounds. */
@@ -108,13 +75,6 @@ static int set_pixels(const conic_layers_view *view, const conic_layers_entry *e
   return sight->pixels.x_begin < sight->pixels.x_end && sight->pixels.y_begin < sight->pixels.y_end;
 }
 
-static int is_outside(const conic_layers_view *view, const double p[3], double radius) {
-  for (int i = 0; i < 4; i++)
-    if ((view->side[i][0] * p[0] + view->side[i][1] * p[1]) + view->side[i][2] * p[2] < -radius)
-      return 1;
-  return !(p[2] + radius > view->near_z);
-}
-
 /* The cosine and the sine of the angle between the cone's axis and the ray to the sphere's centre, and those of the sum
  * of the cone's half opening and the angle under which the sphere's radius is seen, with slack. 0 where that sum is a
  * right angle or more. */
@@ -122,7 +82,7 @@ static int cone_angles(const conic_layers_view *view, const conic_layers_entry *
                        double sine[2]) {
   double to[3], along = 0.0;
   for (int axis = 0; axis < 3; axis++)
-    to[axis] = (double)entry->center[axis] - view->eye[axis];
+    to[axis] = (double)entry->center[axis] - view->from.eye[axis];
   double distance = conic_length(to), sin_a = (double)entry->sphere / distance * (1.0 + slack) + slack;
   double cos_c = (double)entry->cone - slack;
   if (!(sin_a < 1.0) || !(cos_c > 0.0))
@@ -146,10 +106,11 @@ static int is_turned_away(const conic_layers_view *view, const conic_layers_entr
 
 int conic_layers_look(const conic_layers_view *view, const conic_layers_entry *entry, conic_layers_sight *sight) {
   double p[3];
-  move_center(view, entry, p);
+  conic_viewpoint_move_floats(&view->from, entry->center, p);
   double radius = padded_radius(entry, p), front = p[2] - radius, distance = conic_length(p);
   memset(sight, 0, sizeof *sight);
-  if (is_outside(view, p, radius) || (view->cull_back && is_turned_away(view, entry)))
+  if (conic_viewpoint_misses(&view->from, p, radius) || !(p[2] + radius > view->near_z) ||
+      (view->cull_back && is_turned_away(view, entry)))
     return 0;
   sight->distance = distance > radius ? distance - radius : 0.0;
   if (!(front > view->near_z)) {
@@ -172,11 +133,7 @@ static void narrow_range(double middle, double reach, int *begin, int *end) {
 
 int conic_layers_narrow(const conic_layers_view *view, const float position[3], double radius, conic_window *pixels) {
   double p[3];
-  for (int row = 0; row < 3; row++) {
-    const double *m = view->rotation[row];
-    p[row] = ((m[0] * (double)position[0] + m[1] * (double)position[1]) + m[2] * (double)position[2]) +
-             view->translation[row];
-  }
+  conic_viewpoint_move_floats(&view->from, position, p);
   double distance = conic_length(p), front = p[2] - radius * (1.0 + slack) - 1e-6 * distance;
   if (!(front > view->near_z))
     return 1;
@@ -189,7 +146,7 @@ int conic_layers_narrow(const conic_layers_view *view, const float position[3], 
 double conic_layers_least_offset(const conic_layers_view *view, const conic_layers_entry *entry) {
   double cosine[2], sine[2], to[3];
   for (int axis = 0; axis < 3; axis++)
-    to[axis] = (double)entry->center[axis] - view->eye[axis];
+    to[axis] = (double)entry->center[axis] - view->from.eye[axis];
   double nearest = conic_length(to) - (double)entry->sphere * (1.0 + slack);
   if (!(nearest > 0.0) || !cone_angles(view, entry, cosine, sine))
     return 0.0;

@@ -4,16 +4,15 @@
 
 #include "conic/camera.h"
 #include "conic/render.h"
+#include "core/image/viewpoint.h"
 #include "lod/layers/format/layers_format.h"
 #include "raster/view/part.h"
 
 typedef struct conic_layers_view {
   int width, height;
-  double rotation[3][3], translation[3]; /* camera space from positions relative to the origin */
-  double eye[3];                         /* relative to the origin */
+  conic_viewpoint from; /* places from the origin; the sides as far out as the prefilter reaches */
   double fx, fy, cx, cy;
   double least_focal, greatest_focal;
-  double side[4][3]; /* the planes of the picture's sides, widened by the prefilter: unit normals, inwards */
   double near_z;
   double growth_px; /* how far the prefilter moves an outline, and a pixel for all that rounds */
   double beyond_px; /* how far from its disc a pixel may lie at which a splat's plane counts; with grows_with_size the

@@ -25,24 +25,6 @@ static conic_status list_leaves(const conic_layers *layers, conic_layers_cut *cu
   return CONIC_OK;
 }
 
-static conic_status copy_out(const conic_layers *layers, const conic_layers_set *set, conic_splats *splats) {
-  const conic_splats *from = &set->splats;
-  unsigned fields = CONIC_SPLATS_TANGENTS | (from->color[0] ? CONIC_SPLATS_COLORS : 0);
-  size_t n_bytes = from->count * sizeof(float);
-  conic_status status = conic_splats_allocate(layers->context, from->count, fields, splats);
-  if (status != CONIC_OK)
-    return status;
-  memcpy(splats->origin, from->origin, sizeof splats->origin);
-  for (int axis = 0; axis < 3; axis++) {
-    memcpy(splats->position[axis], from->position[axis], n_bytes);
-    memcpy(splats->tangent_u[axis], from->tangent_u[axis], n_bytes);
-    memcpy(splats->tangent_v[axis], from->tangent_v[axis], n_bytes);
-    if (from->color[0])
-      memcpy(splats->color[axis], from->color[axis], n_bytes);
-  }
-  return CONIC_OK;
-}
-
 conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splats *splats) {
   conic_context *context = layers->context;
   conic_layers_cut cut = {0};
@@ -54,8 +36,9 @@ conic_status conic_layers_splats(conic_layers *layers, float cutoff, conic_splat
       .cut = &cut, .chosen = chosen, .n_chosen = cut.n, .cutoff = cutoff, .until_s = HUGE_VAL};
   if (status == CONIC_OK)
     status = conic_layers_gather(layers, &gathering, &set);
+  memcpy(splats->origin, set.splats.origin, sizeof splats->origin);
   if (status == CONIC_OK)
-    status = copy_out(layers, &set, splats);
+    status = conic_splats_append(context, splats, &set.splats);
   conic_memory_release(context, chosen);
   conic_layers_cut_release(context, &cut);
   conic_layers_set_release(context, &set);

@@ -120,13 +120,3 @@ void conic_layers_range(const conic_layers_header *header, const conic_layers_cl
   *first = first_from(cloud, below->key);
   *end = first_from(cloud, conic_layers_last_key(header, below) + 1);
 }
-
-void conic_layers_axes(const float normal[3], float radius, float cutoff, float tangent_u[3], float tangent_v[3]) {
-  const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-  double u[3], v[3], sigma = (double)radius / (double)cutoff;
-  conic_tangent_basis(n, u, v);
-  for (int axis = 0; axis < 3; axis++) {
-    tangent_u[axis] = (float)(u[axis] * sigma);
-    tangent_v[axis] = (float)(v[axis] * sigma);
-  }
-}

@@ -37,7 +37,4 @@ const char *conic_layers_decode(conic_layers_decoder *decoder, const conic_layer
 void conic_layers_range(const conic_layers_header *header, const conic_layers_cloud *cloud,
                         const conic_layers_entry *below, size_t *first, size_t *end);
 
-/* Tangent axes of a sample: a circle with the outline `radius` of `cutoff` standard deviations. */
-void conic_layers_axes(const float normal[3], float radius, float cutoff, float tangent_u[3], float tangent_v[3]);
-
 #endif

@@ -238,7 +238,7 @@ static void check_points(const spending *s) {
     float values[12];
     conic_hybrid_point_splat(&view, node, cutoff, values);
     for (int k = 0; k < 3; k++) {
-      way[k] = (double)node->bound.center[k] - view.eye[k];
+      way[k] = (double)node->bound.center[k] - view.from.eye[k];
       axis[k] = cutoff * (double)values[3 + k];
     }
     double distance2 = conic_dot(way, way), disc2 = conic_dot(axis, axis);
@@ -246,7 +246,7 @@ static void check_points(const spending *s) {
     CHECK(disc2 * distance2 >= radius * radius * (distance2 + disc2) * (1.0 - 1e-6));
     CHECK(conic_hybrid_point_error_px(&view, node) < HUGE_VAL);
     conic_hybrid_camera near = view;
-    near.near_z = conic_dot(view.rotation[2], way) - 0.9 * (double)node->bound.radius;
+    near.near_z = conic_dot(view.from.rotation[2], way) - 0.9 * (double)node->bound.radius;
     CHECK(conic_hybrid_point_error_px(&near, node) == HUGE_VAL);
     if (node->n_levels > 0)
       CHECK(conic_hybrid_error_px(&near, &node->bound, &h->levels[node->first_level]) == HUGE_VAL);

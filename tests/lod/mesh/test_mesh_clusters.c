@@ -65,13 +65,21 @@ static void check_sums(const clustered *c, uint32_t i_cluster) {
   CHECK(is_same);
 }
 
+static conic_joining_cost whole_cost(const conic_face_sums *a, const conic_face_sums *b, double shared,
+                                     double largest_area) {
+  conic_face_sums both;
+  conic_joining_cost cost = conic_joining_cost_without_plane(a, b, shared, largest_area, &both);
+  conic_joining_cost_add_plane(&both, &cost);
+  return cost;
+}
+
 /* Fit and direction by their definitions: means over the faces of the squared distance from the plane, by three places
  * in each, which is exact for what is quadratic, and of (1 - n·nᵢ)². */
 static void check_cost(const clustered *c, uint32_t a, uint32_t b) {
   conic_unit_box box = conic_unit_box_of(&c->mesh, &c->adjacency);
   const conic_face_sums *sa = &c->clusters.sums[a], *sb = &c->clusters.sums[b];
   conic_face_sums both = conic_face_sums_join(sa, sb, 0.0);
-  conic_joining_cost cost = conic_joining_cost_of(sa, sb, 0.0, 1.0);
+  conic_joining_cost cost = whole_cost(sa, sb, 0.0, 1.0);
   double normal[3], d, fit = 0.0, direction = 0.0, area = 0.0;
   conic_face_sums_plane(&both, normal, &d);
   for (size_t i = 0; i < c->mesh.n_faces; i++) {
@@ -285,7 +293,7 @@ static void test_two_squares(conic_context *context, int is_bent) {
   CHECK(c.clusters.n_clusters == 4);
   CHECK_NEAR(squares[0].outline, 4.0, 1e-12);
   CHECK_NEAR(conic_face_sums_raggedness(&squares[0]), 16.0 / (4.0 * 3.14159265358979), 1e-12);
-  conic_joining_cost cost = conic_joining_cost_of(&squares[0], &squares[1], 1.0, 4.0);
+  conic_joining_cost cost = whole_cost(&squares[0], &squares[1], 1.0, 4.0);
   double turn = 1.0 - sqrt(0.5);
   CHECK_NEAR(cost.fit, is_bent ? 1.0 / 24.0 : 0.0, 1e-12); /* ∫ (t - ½)²/2 dt from either side of the ridge */
   CHECK_NEAR(cost.direction, is_bent ? turn * turn : 0.0, 1e-12);

@@ -144,7 +144,7 @@ static void test_budget(int cull_back, double zoom) {
   conic_octree *octree = octree_build(f.context, &f.splats, 0);
   conic_octree_view view;
   conic_octree_view_init(octree, &f.camera, &f.options, conic_octree_near(octree), &view);
-  conic_octree_measure(octree, &view, 0, octree->n_nodes, pixels);
+  view.measure(octree, &view, 0, octree->n_nodes, pixels);
   for (uint64_t budget = 1; budget < 4000; budget += 1 + budget / 3) {
     octree_select(octree, &f, 0.0, budget, &selection);
     CHECK(selection.splats.count <= budget || selection.splats.count <= 1);

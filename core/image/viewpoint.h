@@ -1,0 +1,35 @@
+/* A camera for whoever chooses what to draw: where places are in its space, and which spheres are in its picture. */
+#ifndef CONIC_VIEWPOINT_H
+#define CONIC_VIEWPOINT_H
+
+#include "conic/camera.h"
+#include "core/base/vectors.h"
+
+typedef struct conic_viewpoint {
+  double rotation[3][3], translation[3]; /* camera space from places relative to an origin */
+  double eye[3];                         /* relative to the origin */
+  double side[4][3]; /* planes of the picture's sides, in camera space: unit normals, inwards, through the eye */
+} conic_viewpoint;
+
+/* The sides lie so many pixels out of the picture. */
+void conic_viewpoint_init(conic_viewpoint *from, const conic_camera *camera, const double origin[3], double margin_px);
+
+static inline void conic_viewpoint_move(const conic_viewpoint *from, const double place[3], double p[3]) {
+  for (int row = 0; row < 3; row++)
+    p[row] = conic_dot(from->rotation[row], place) + from->translation[row];
+}
+
+static inline void conic_viewpoint_move_floats(const conic_viewpoint *from, const float place[3], double p[3]) {
+  const double moved[3] = {(double)place[0], (double)place[1], (double)place[2]};
+  conic_viewpoint_move(from, moved, p);
+}
+
+/* Whether a sphere about p, in camera space, lies wholly beyond one of the sides. */
+static inline int conic_viewpoint_misses(const conic_viewpoint *from, const double p[3], double radius) {
+  int is_beyond = 0;
+  for (int i = 0; i < 4; i++)
+    is_beyond |= conic_dot(from->side[i], p) < -radius;
+  return is_beyond;
+}
+
+#endif
