@@ -58,7 +58,6 @@ static int parse_turntable(const char *text, void *value) {
 }
 
 /* gauss, hat, box, or confetti:A,B,N. */
-/* A name, and for Confetti its numbers: confetti:A,B,N. */
 static int parse_kernel(const char *text, void *value) {
   conic_kernel *kernel = value;
   double abn[3];
