@@ -36,7 +36,7 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
 static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const splat_rows *rows,
                        uint column, uint i_row, fragments *f) {
   int x = t->x + 4 * (int)column;
-  fragments_at(view, view->support, &splat->footprint, &splat->ray, &splat->clip, rows, columns_from(x),
+  fragments_at(view, view->support, &splat->footprint, &splat->ray, 0, &splat->clip, 0, rows, columns_from(x),
                splat->is_special, f);
   if (t->is_at_border)
     f->covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);

@@ -99,20 +99,20 @@ CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lane
   return (clip->is_or ? first | second : first & second) & within;
 }
 
-/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. `ray` and
- * `clip` are only looked at where there is one. */
+/* A splat's fragments at the pixels x. Special are rays and what has clip lines: where s3 is not above 0. Ray i_ray and
+ * record i_clip are only looked at where the splat has one. */
 CONIC_INLINE void fragments_at(const conic_view *view, float support, const conic_footprint *footprint,
-                               const conic_ray *ray, const conic_clip_record *clip, const splat_rows *rows, lanes x,
-                               int is_special, fragments *f) {
+                               const conic_ray *rays, uint32_t i_ray, const conic_clip_record *clips, size_t i_clip,
+                               const splat_rows *rows, lanes x, int is_special, fragments *f) {
   lanes dx = (x - rows->x) + rows->dx0;
   if (is_special && conic_is_laplace(footprint))
-    laplace_fragments(view, footprint, ray, dx, rows->dy, f);
+    laplace_fragments(view, footprint, &rays[i_ray], dx, rows->dy, f);
   else if (is_special && footprint->s3 == 0.0f)
-    ray_fragments(view, footprint, ray, dx, rows->dy, f);
+    ray_fragments(view, footprint, &rays[i_ray], dx, rows->dy, f);
   else
     ellipse_fragments(rows, support, dx, f);
   if (is_special && conic_is_clipped(footprint))
-    f->covered &= clip_keeps(clip, dx, rows->dy);
+    f->covered &= clip_keeps(&clips[i_clip], dx, rows->dy);
 }
 
 /* Which kernel a loop is made for. */

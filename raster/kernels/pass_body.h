@@ -45,10 +45,8 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
 
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
                            int is_special, fragments *f) {
-  const conic_ray *ray = is_special && footprint->s3 == 0.0f ? &from->rays[footprint->i_ray] : NULL;
-  const conic_clip_record *clip =
-      is_special && conic_is_clipped(footprint) ? &from->clips[footprint - from->footprints] : NULL;
-  fragments_at(from->view, from->support, footprint, ray, clip, rows, x, is_special, f);
+  fragments_at(from->view, from->support, footprint, from->rays, footprint->i_ray, from->clips,
+               (size_t)(footprint - from->footprints), rows, x, is_special, f);
 }
 
 /* What the splat after the next few is read from, in this pass and the next. */
