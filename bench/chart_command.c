@@ -299,7 +299,8 @@ static void print_fronts(const chart_job *job) {
       const cli_chart_point *p = &job->points[i];
       if (p->is_front[which])
         printf("  %-26s %-8s %-8s %-4g %8.2f ms  rmse %.3g\n", p->scene->name, conic_method_name(p->method),
-               conic_kernel_type_name(p->kernel.type), (double)p->kernel.cutoff, p->ms, cli_chart_error_of(p, which)->rmse);
+               conic_kernel_type_name(p->kernel.type), (double)p->kernel.cutoff, p->ms,
+               cli_chart_error_of(p, which)->rmse);
     }
   }
 }

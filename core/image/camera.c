@@ -10,13 +10,13 @@
 
 void conic_framing_init_sized(conic_framing *framing, size_t size) {
   static const conic_framing own = {.size = sizeof own,
-                             .width = 1024,
-                             .height = 1024,
-                             .azimuth_deg = 30.0,
-                             .elevation_deg = 15.0,
-                             .fov_deg = 40.0,
-                             .zoom = 1.0,
-                             .up = {0.0, 1.0, 0.0}};
+                                    .width = 1024,
+                                    .height = 1024,
+                                    .azimuth_deg = 30.0,
+                                    .elevation_deg = 15.0,
+                                    .fov_deg = 40.0,
+                                    .zoom = 1.0,
+                                    .up = {0.0, 1.0, 0.0}};
   conic_options_give(framing, size, &own);
 }
 

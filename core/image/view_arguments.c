@@ -10,12 +10,12 @@ static const double rotation_tolerance = 1e-3;
 
 void conic_render_options_init_sized(conic_render_options *options, size_t size) {
   static const conic_render_options own = {.size = sizeof own,
-                                    .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5},
-                                    .prefilter = 1.0f,
-                                    .epsilon = -1.0,
-                                    .passes = 3,
-                                    .shading = CONIC_SHADE_PHONG,
-                                    .tile = 64};
+                                           .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5},
+                                           .prefilter = 1.0f,
+                                           .epsilon = -1.0,
+                                           .passes = 3,
+                                           .shading = CONIC_SHADE_PHONG,
+                                           .tile = 64};
   conic_options_give(options, size, &own);
 }
 

@@ -2,7 +2,6 @@
  * sums. */
 #include "opencl/frame.h"
 #include "raster/tiles/coverage.h"
-#include "raster/tiles/coverage.h"
 #include "tests/support/opencl_fixture.h"
 
 /* What plain C makes of the splats: one chunk of records in file order, and what every pixel then has. */
