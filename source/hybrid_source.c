@@ -93,6 +93,7 @@ static const char *name_hybrid_splat(const conic_source *source, uint32_t splat,
   return "cluster";
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): other kinds count */
 static void tell_hybrid_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_hybrid_selection *selection = &((const hybrid_source *)source)->selection;
   (void)n_splats;

@@ -96,6 +96,7 @@ static const char *name_octree_splat(const conic_source *source, uint32_t splat,
   return id < n_points ? "point" : "node";
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): other kinds count */
 static void tell_octree_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_selection *selection = &((const octree_source *)source)->selection;
   (void)n_splats;

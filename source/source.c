@@ -70,7 +70,7 @@ conic_status conic_source_create(conic_context *context, const conic_source_kind
     return CONIC_ERROR_MEMORY;
   s->kind = kind;
   s->context = context;
-  s->name = strcpy((char *)s + kind->size, name);
+  s->name = memcpy((char *)s + kind->size, name, strlen(name) + 1);
   s->scale.abilities = kind->abilities;
   s->scale.up[1] = 1.0;
   s->scale.epsilon = -1.0;

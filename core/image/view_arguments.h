@@ -6,7 +6,7 @@
 #include "conic/render.h"
 
 /* What makes a matrix no rotation and translation, or null. */
-const char *conic_rotation_fault(const double cam_from_world[3][4]);
+const char *conic_rotation_fault(const double rows[3][4]);
 
 /* Copies what the caller gave (conic_options_take) to `own`. Errors: ARGUMENT: one is null, the options were not
  * initialised, or the camera is none to look through. */

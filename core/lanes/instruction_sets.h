@@ -25,6 +25,7 @@ int conic_isa_is_here(conic_isa isa);
  * UNSUPPORTED, where it is not here; then it is plain C. */
 conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa *chosen);
 
+/* NOLINTBEGIN(bugprone-macro-parentheses): types and names, which stand bare */
 #define CONIC_DECLARE_KERNELS_OF(family, NAME, name) void family##_##name(family *kernels);
 #define CONIC_OVERWRITE_KERNELS(family, NAME, name)                                                                    \
   if (isa >= CONIC_ISA_##NAME)                                                                                         \
@@ -46,6 +47,7 @@ conic_status conic_isa_choose(conic_context *context, conic_isa asked, conic_isa
 
 /* Begins what fills a table in a file that is compiled for one instruction set. */
 #define CONIC_FILL_KERNELS_BY(family, name) void family##_##name(family *kernels)
+/* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__AVX512F__)
 #define CONIC_FILL_KERNELS(family) CONIC_FILL_KERNELS_BY(family, avx512)
 #elif defined(__AVX2__)

@@ -8,6 +8,7 @@
 
 enum { TRIANGLES_COLUMNS = 11 };
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): who has the list may set it */
 static int list_components(conic_column *columns, float **components, int n, size_t *stride, size_t count,
                            unsigned field) {
   for (int i = 0; i < n; i++)

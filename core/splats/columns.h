@@ -22,8 +22,8 @@ static inline float conic_column_at(const float *floats, size_t stride, size_t i
 }
 
 /* What makes a set unusable, or null: it is null, its arrays are not whole, its strides or reserved words not sound. */
-const char *conic_splats_fault(const conic_splats *splats);
-const char *conic_triangles_fault(const conic_triangles *triangles);
+const char *conic_splats_fault(const conic_splats *given);
+const char *conic_triangles_fault(const conic_triangles *given);
 
 /* Errors: ARGUMENT, where there is a fault. */
 conic_status conic_splats_check(conic_context *context, const char *who, const conic_splats *splats);
