@@ -10,9 +10,10 @@
 #define CONIC_OBJECT(name) ((conic_fact){.type = CONIC_FACT_OBJECT, .key = (name)})
 #define CONIC_ARRAY(name) ((conic_fact){.type = CONIC_FACT_ARRAY, .key = (name)})
 #define CONIC_END ((conic_fact){.type = CONIC_FACT_END})
-/* NOLINTNEXTLINE(bugprone-macro-parentheses): a text that fills an array stands bare */
+/* NOLINTBEGIN(bugprone-macro-parentheses): a text that fills an array stands bare */
 #define CONIC_DEFECT(name, value, what)                                                                                \
   ((conic_fact){.type = CONIC_FACT_DEFECT, .key = (name), .count = (uint64_t)(value), .text = what})
+/* NOLINTEND(bugprone-macro-parentheses) */
 #define CONIC_LINE(label, ...) conic_fact_text(CONIC_FACT_LINE, label, __VA_ARGS__)
 
 /* A fact of a type with text. */

@@ -105,9 +105,11 @@ static void tell_hybrid_primitives(const conic_source *source, conic_facts *fact
 }
 
 static conic_status tell_hybrid_file(conic_source *source, conic_facts *facts) {
-  const char *const path = source->name;
-  const conic_hybrid_info *info = &((hybrid_source *)source)->info;
-  conic_status status = open_hybrid(source, &path, 1, NULL);
+  hybrid_source *h = (hybrid_source *)source;
+  const conic_hybrid_info *info = &h->info;
+  conic_status status = conic_hybrid_read(source->context, source->name, &h->hybrid);
+  if (status == CONIC_OK)
+    status = measure_hybrid(h);
   if (status != CONIC_OK)
     return status;
   CONIC_ADD_FACTS(
