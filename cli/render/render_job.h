@@ -22,6 +22,7 @@ typedef struct cli_render_job {
   conic_camera camera;          /* the file's */
   conic_framing framing;
   int is_up_given;
+  int is_plain; /* --plain: nothing is chosen by what looks best */
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   int is_warned; /* that a picture is empty */

@@ -1,0 +1,104 @@
+/* What the values of single options mean. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/scene_options.h"
+
+/* gauss, hat, box, or confetti:A,B,N. */
+int cli_parse_kernel(const char *text, void *value) {
+  conic_kernel *kernel = value;
+  double abn[3];
+  for (int i = 0; i < CONIC_N_KERNELS; i++)
+    if (strcmp(text, conic_kernel_type_name((conic_kernel_type)i)) == 0) {
+      kernel->type = (conic_kernel_type)i;
+      return 1;
+    }
+  if (strncmp(text, "confetti:", 9) != 0 || !cli_parse_vector(text + 9, abn) || !(abn[0] > 0.0) || !(abn[1] > 0.0) ||
+      !(abn[2] >= 1.0 && abn[2] <= 16.0) || abn[2] != (double)(int)abn[2])
+    return 0;
+  kernel->type = CONIC_KERNEL_CONFETTI;
+  kernel->a = (float)abn[0];
+  kernel->b = (float)abn[1];
+  kernel->n = (int)abn[2];
+  return 1;
+}
+
+int cli_parse_epsilon(const char *text, void *value) {
+  cli_length *epsilon = value;
+  if (strcmp(text, "auto") == 0) {
+    epsilon->value = -1.0;
+    return 1;
+  }
+  return cli_parse_length(text, value);
+}
+
+int cli_parse_near(const char *text, void *value) {
+  const cli_length *near_z = value;
+  return cli_parse_length(text, value) && near_z->value > 0.0;
+}
+
+/* x, -y, … or X,Y,Z. */
+int cli_parse_up(const char *text, void *value) {
+  double *up = value, sign = 1.0;
+  const char *letter = text;
+  if (*letter == '-' || *letter == '+')
+    sign = *letter++ == '-' ? -1.0 : 1.0;
+  if ((*letter == 'x' || *letter == 'y' || *letter == 'z') && !letter[1]) {
+    up[0] = up[1] = up[2] = 0.0;
+    up[*letter - 'x'] = sign;
+    return 1;
+  }
+  return cli_parse_vector(text, up) && (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0);
+}
+
+int cli_parse_background(const char *text, void *value) {
+  conic_render_options *options = value;
+  double rgb[3];
+  if (strcmp(text, "none") == 0) {
+    options->has_background = 0;
+    return 1;
+  }
+  if (!cli_parse_vector(text, rgb))
+    return 0;
+  options->has_background = 1;
+  for (int i = 0; i < 3; i++)
+    options->background[i] = (float)rgb[i];
+  return 1;
+}
+
+int cli_parse_light(const char *text, void *value) {
+  conic_render_options *options = value;
+  options->has_light = 1;
+  return cli_parse_vector(text, options->light) &&
+         (options->light[0] != 0.0 || options->light[1] != 0.0 || options->light[2] != 0.0);
+}
+
+static int find_plane(const char *name, size_t length) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    const char *known = conic_plane_describe((conic_plane)i)->name;
+    if (strlen(known) == length && strncmp(known, name, length) == 0)
+      return i;
+  }
+  return -1;
+}
+
+/* rgba,Z,N … or all. */
+int cli_parse_planes(const char *text, void *value) {
+  unsigned *planes = value;
+  *planes = 0;
+  if (strcmp(text, "all") == 0) {
+    *planes = CONIC_DRAWN_PLANES;
+    return 1;
+  }
+  while (*text) {
+    size_t length = strcspn(text, ",");
+    int plane = find_plane(text, length);
+    if (plane < 0)
+      return 0;
+    *planes |= 1u << plane;
+    text += length;
+    if (*text == ',' && text[1])
+      text++;
+  }
+  return *planes != 0;
+}

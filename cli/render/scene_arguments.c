@@ -1,0 +1,154 @@
+/* The options of a scene and its drawing. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/render/scene_options.h"
+
+static const char *const cull_words[] = {"none", "back", NULL};
+static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
+static const char *const only_words[] = {"triangles", "surfels", NULL};
+
+/* The words of choices that the library names, in the order of its numbers. */
+typedef struct library_words {
+  const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 1], *isas[CONIC_N_ISAS + 1];
+} library_words;
+
+static library_words find_words(void) {
+  library_words words = {.methods[CONIC_N_METHODS] = "patch"};
+  for (int i = 0; i < CONIC_N_METHODS; i++)
+    words.methods[i] = conic_method_name((conic_method)i);
+  for (int i = 0; i < CONIC_N_SHADINGS; i++)
+    words.shadings[i] = conic_shading_name((conic_shading)i);
+  for (int i = 0; i < CONIC_N_ISAS; i++)
+    words.isas[i] = conic_isa_name((conic_isa)i);
+  return words;
+}
+
+void cli_scene_defaults(cli_render_job *job) {
+  memset(job, 0, sizeof *job);
+  conic_framing_init(&job->framing);
+  conic_render_options_init(&job->options);
+  conic_source_options_init(&job->opening);
+  conic_patches_options_init(&job->patches);
+  conic_layers_access_init(&job->access);
+  conic_source_view_init(&job->view);
+  job->opening.patches = &job->patches;
+  job->opening.access = &job->access;
+  job->epsilon.value = job->near_z.value = -1.0;
+  job->n_frames = job->repeat = 1;
+  job->device.name = "cpu";
+  job->planes = 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z;
+}
+
+/* The command's own options, then those of the scene. */
+static int parse_all(cli_session *session, const cli_option *own, int n_own, const cli_option *scene, int n_scene,
+                     int argc, char **argv, cli_render_job *job) {
+  cli_option *table = calloc((size_t)n_own + (size_t)n_scene, sizeof *table);
+  job->inputs = calloc((size_t)argc + 1, sizeof *job->inputs);
+  int answer = CLI_RESOURCE;
+  if (table && job->inputs) {
+    memcpy(table, own, (size_t)n_own * sizeof *table);
+    memcpy(table + n_own, scene, (size_t)n_scene * sizeof *table);
+    answer = cli_parse(session, table, n_own + n_scene, argc, argv, job->inputs, &job->n_inputs);
+  } else
+    cli_error(CLI_RESOURCE, "%s: out of memory", session->command);
+  free(table);
+  return answer;
+}
+
+int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
+                    cli_render_job *job) {
+  cli_scene_words raw = {
+      .passes = 3, .cutoff = (double)job->options.kernel.cutoff, .prefilter = (double)job->options.prefilter};
+  conic_render_options *o = &job->options;
+  conic_framing *view = &job->framing;
+  int method = (int)o->method, shading = (int)o->shading;
+  const library_words words = find_words();
+  const cli_option table[] = {
+      {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
+      {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90,
+       .is_given = &raw.is_framing_given},
+      {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
+       .is_given = &raw.is_framing_given},
+      {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
+       .is_given = &raw.is_framing_given},
+      {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]",
+       .parse = cli_parse_up, .is_given = &job->is_up_given},
+      {"as", CLI_CHOICE, &raw.as, "WHAT",
+       "what a mesh is drawn as: points (a splat a vertex), mesh (triangles) or hybrid (both) [points]",
+       .choices = as_words},
+      {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
+      {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
+       "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      {"error", CLI_NUMBER, &job->view.error_px, "PX",
+       "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
+      {"budget", CLI_COUNT, &job->budget, "N",
+       "of a .cot, .lpc or hybrid, the N primitives or fewer whose error is the least", 1, 4294967294.0},
+      {"only", CLI_CHOICE, &job->view.only_kind, "KIND", "of a hybrid, draw every patch as triangles or as surfels",
+       .choices = only_words},
+      {"method", CLI_CHOICE, &method, "NAME",
+       "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
+       "surface [conic]",
+       .choices = words.methods},
+      {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
+       .parse = cli_parse_kernel},
+      {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
+      {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
+       10000},
+      {"epsilon", CLI_PARSED, &job->epsilon, "E",
+       "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
+      {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
+      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
+       CONIC_MAX_SAMPLES},
+      {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
+       .choices = cull_words},
+      {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
+       .parse = cli_parse_near},
+      {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
+      {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
+       .parse = cli_parse_light},
+      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+       .parse = cli_parse_background},
+      {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
+      {"aov", CLI_PARSED, &job->planes, "LIST",
+       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes},
+      {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
+       CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
+      {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
+       .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
+      {"k", CLI_INT, &job->opening.n_neighbours, "K",
+       "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+      {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
+      {"device", CLI_TEXT, &job->device.name, "NAME",
+       "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
+      {"allow-inexact", CLI_FLAG, &job->device.allow_inexact, NULL,
+       "also an OpenCL device whose rounding makes the picture another one"},
+      {"plain", CLI_FLAG, &job->is_plain, NULL,
+       "every default as the library has it: a mesh's vertices, a sphere's framing, a headlight, one sample"},
+      {"isa", CLI_CHOICE, &raw.isa, "NAME", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
+       .choices = words.isas},
+  };
+  int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
+  if (answer != CLI_DONE)
+    return answer;
+  job->is_patch = method == CONIC_N_METHODS;
+  o->method = job->is_patch ? CONIC_METHOD_CONIC : (conic_method)method;
+  o->shading = (conic_shading)shading;
+  o->kernel.cutoff = (float)raw.cutoff;
+  o->prefilter = (float)raw.prefilter;
+  o->passes = raw.passes;
+  o->isa = session->isa = (conic_isa)raw.isa;
+  job->view.budget = job->budget;
+  job->opening.cutoff = o->kernel.cutoff;
+  job->opening.h_in_spacings = raw.h.is_in_spacings;
+  job->patches.surface.h = raw.h.value;
+  job->patches.surface.isa = o->isa;
+  if (raw.is_size_given) {
+    view->width = raw.size[0];
+    view->height = raw.size[1];
+  }
+  return cli_scene_check(session, &raw, job);
+}

@@ -1,0 +1,63 @@
+/* Which options of a scene go together. */
+#include <unistd.h>
+
+#include "cli/outputs.h"
+#include "cli/render/scene_options.h"
+
+/* What goes with choosing less than everything, and with hybrid models. */
+static int check_choice(const cli_session *session, const cli_render_job *job, int as) {
+  const char *command = session->command;
+  int is_hybrid = (job->abilities & CONIC_SOURCE_CLUSTERS) != 0;
+  if (job->view.error_px > 0.0 && job->budget > 0)
+    return cli_usage("%s: --error and --budget are two ways to choose; give one of both", command);
+  if (job->is_patch && (as != CONIC_AS_POINTS || is_hybrid))
+    return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
+  if (job->is_patch && cli_lod_is_wanted(job))
+    return cli_usage("%s: --method patch draws samples of its own: not with --error or --budget", command);
+  if (is_hybrid)
+    return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+  if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
+    return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
+  if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)
+    return cli_usage("%s: of an .lpc it takes all; --error and --budget choose of one in conic render", command);
+  int may_choose = job->abilities & CONIC_SOURCE_CHOOSES || (job->n_inputs == 1 && access(job->inputs[0], R_OK) != 0);
+  if (cli_lod_is_wanted(job) && !may_choose)
+    return cli_usage(
+        "%s: --error and --budget need a single .cot, .lpc or .chy as input (conic octree, conic layer and "
+        "conic hybrid make them), or --as hybrid",
+        command);
+  return CLI_DONE;
+}
+
+int cli_scene_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job) {
+  const char *command = session->command;
+  if (job->n_inputs == 0)
+    return cli_usage("%s: no input; see conic help %s", command, command);
+  if (job->camera_path && words->is_size_given)
+    return cli_usage("%s: --size is the camera file's; give one of both", command);
+  if (job->camera_path && (words->is_framing_given || job->is_up_given))
+    return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
+                     command);
+  if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
+    return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
+  if (job->opening.is_smooth && words->as != CONIC_AS_MESH)
+    return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
+  if (!job->is_patch && words->is_patch_given)
+    return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
+  if (words->passes != 1 && words->passes != 3)
+    return cli_usage("%s: --passes takes 3 or 1", command);
+  if (job->options.tile & (job->options.tile - 1))
+    return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
+  job->opening.as = job->is_patch && words->as == CONIC_AS_POINTS ? CONIC_AS_PATCHES : (conic_representation)words->as;
+  job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
+  job->opening.is_whole = !cli_lod_is_wanted(job) && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
+  int answer = check_choice(session, job, words->as);
+  return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
+}
+
+int cli_scene_inputs_stay(const cli_session *session, const cli_render_job *job, const char *const *outputs,
+                          int n_outputs) {
+  const char *const beside[] = {job->camera_path, job->opening.texture_path};
+  int answer = cli_check_inputs_stay(session, job->inputs, job->n_inputs, outputs, n_outputs);
+  return answer == CLI_DONE ? cli_check_inputs_stay(session, beside, 2, outputs, n_outputs) : answer;
+}

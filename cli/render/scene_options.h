@@ -1,0 +1,35 @@
+/* The options of a scene and its drawing, which several commands share: their values, and what they mean together. */
+#ifndef CONIC_SCENE_OPTIONS_H
+#define CONIC_SCENE_OPTIONS_H
+
+#include "cli/command.h"
+#include "cli/render/render_job.h"
+
+/* Options that mean something only when all have been read. */
+typedef struct cli_scene_words {
+  int size[2], is_size_given, is_framing_given;
+  int isa;
+  double cutoff, prefilter;
+  int passes, is_patch_given;
+  int as; /* a conic_representation */
+  cli_length h;
+} cli_scene_words;
+
+/* Parsers of values, as cli_option has them; what `value` points to is said at each. Parsed:
+ * gauss, hat, box, or confetti:A,B,N into a conic_kernel, */
+int cli_parse_kernel(const char *text, void *value);
+/* a length, or auto, into a cli_length; a length above 0 likewise, */
+int cli_parse_epsilon(const char *text, void *value);
+int cli_parse_near(const char *text, void *value);
+/* x, -y, … or X,Y,Z into a double[3], */
+int cli_parse_up(const char *text, void *value);
+/* R,G,B or none, and X,Y,Z, into the background and the light of conic_render_options, */
+int cli_parse_background(const char *text, void *value);
+int cli_parse_light(const char *text, void *value);
+/* rgba,Z,N … or all into bits of planes. */
+int cli_parse_planes(const char *text, void *value);
+
+/* What the options of the scene and the drawing mean together. */
+int cli_scene_check(const cli_session *session, const cli_scene_words *words, cli_render_job *job);
+
+#endif
