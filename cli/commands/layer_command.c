@@ -103,6 +103,7 @@ static conic_status read_inputs(layer_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->options.cutoff;
+  options.columns = job->base.columns;
   for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
     struct stat found;
     job->base.input = job->inputs[i];
@@ -203,6 +204,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
+      CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);

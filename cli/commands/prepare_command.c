@@ -67,6 +67,7 @@ static int read_model(prepare_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->estimate.cutoff;
+  options.columns = job->base.columns;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   return cli_exit_of(status);
@@ -144,6 +145,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
        4294967294.0, .is_given = &job.has_count},
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
+      CLI_COLUMNS(&job.base.columns),
   };
   /* The output may be the input: it is read whole before. */
   return cli_build_run(&job, &steps,
