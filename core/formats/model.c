@@ -10,6 +10,7 @@
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
+#include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
@@ -20,7 +21,7 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 }
 
 const char *conic_model_kind_name(conic_model_kind kind) {
-  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  static const char *const names[] = {"ply", "obj", "xyz", "las", "pcd"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
@@ -80,6 +81,8 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
+  else if (conic_pcd_is_likely(bytes, n) || conic_file_has_ending(path, "pcd"))
+    *kind = CONIC_MODEL_PCD;
   else if (conic_file_has_ending(path, "ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
@@ -119,6 +122,9 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     break;
   case CONIC_MODEL_LAS:
     status = conic_las_read(input, delivery, model);
+    break;
+  case CONIC_MODEL_PCD:
+    status = conic_pcd_read(input, delivery, model);
     break;
   }
   model->kind = kind;
