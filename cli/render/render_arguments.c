@@ -96,7 +96,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
-       .parse = parse_output},
+       .parse = parse_output, .may_repeat = 1},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: id, depth, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
