@@ -1,4 +1,4 @@
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 #include "cli/source_facts.h"
 
 static double per_second_in_millions(double count, double ms) {
@@ -52,7 +52,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
-  cli_json_count(json, "frames", (uint64_t)job->n_frames);
+  cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
 }
 
 static void report_times(cli_json *json, const cli_render_job *job) {
