@@ -150,6 +150,17 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
+/* The finest that a hybrid has of one kind may not be as fine as it was asked to be. */
+static void warn_of_error(cli_session *session, cli_render_job *job) {
+  double wanted = job->view.error_px, reached = conic_source_chosen(job->source)->error_px;
+  const char *const kinds[] = {"--only triangles ", "--only surfels "};
+  if (!(wanted > 0.0) || reached <= wanted || job->is_error_warned)
+    return;
+  job->is_error_warned = 1;
+  conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
+            job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -163,6 +174,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
+  warn_of_error(session, job);
   describe(job, &camera, image);
   status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)

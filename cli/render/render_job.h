@@ -31,7 +31,8 @@ typedef struct cli_render_job {
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
   cli_frames frames;
-  int is_warned; /* that a picture is empty */
+  int is_warned;       /* that a picture is empty */
+  int is_error_warned; /* that --error is not kept */
   int repeat;
   unsigned planes;              /* bits 1 << conic_plane */
   int is_patch;                 /* --method patch: options.method draws its samples */

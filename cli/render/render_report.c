@@ -39,6 +39,8 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
     if (s->splats_by_method[i])
       cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
   cli_json_close(json);
+  if (job->view.error_px > 0.0)
+    cli_json_number(json, "error_px_asked", job->view.error_px);
   return report_source(json, job);
 }
 
