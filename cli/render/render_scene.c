@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -83,6 +83,7 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   conic_framing framing = job->framing;
   if (job->camera_path) {
     *camera = job->camera;
+    cli_frame_orbit(job, i_frame, camera);
     return CONIC_OK;
   }
   if (!job->is_up_given)
