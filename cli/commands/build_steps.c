@@ -76,6 +76,7 @@ void cli_build_report_seconds(cli_json *json, const cli_build *build, const char
     const cli_stage *stage = &build->stages[i];
     cli_json_number(json, stage->key ? stage->key : stage->name, stage->seconds > 0.0 ? stage->seconds : 0.0);
   }
+  cli_json_number(json, "other", cli_other_seconds(build->stages, count_stages(build), build->total_seconds));
   cli_json_number(json, "total", build->total_seconds);
   cli_json_close(json);
   cli_json_number(json, rate_key, rate);
