@@ -95,6 +95,14 @@ int cli_exit_after_signals(int exit_code) {
   return atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
 }
 
+void cli_note(const cli_session *session, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  if (!session->is_quiet)
+    print_message("", format, arguments);
+  va_end(arguments);
+}
+
 int cli_exit_of(conic_status status) {
   switch (status) {
   case CONIC_OK:

@@ -49,6 +49,9 @@ void cli_warn(const cli_session *session, const char *format, ...) __attribute__
  */
 int cli_exit_after_signals(int exit_code);
 
+/* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
+void cli_note(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);
 /* The process's peak resident set. */

@@ -252,8 +252,8 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_render = {
-    "render", "draws splats, points or meshes into pictures",
-    "conic render IN… -o OUT [options]\n"
-    "       IN: PLY, OBJ, LAS, XYZ, PTS, .cot, .chy, .lpc or its http:// URL; - is standard input",
-    run};
+const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
+                                "conic render IN… -o OUT [options]\n"
+                                "       IN: " CLI_READABLE " or its http:// URL;\n"
+                                "       - is standard input",
+                                run};

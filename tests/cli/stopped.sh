@@ -58,7 +58,7 @@ got=${PIPESTATUS[0]}
 # The progress bar of a turntable names the frame
 "$conic" make sphere -n 2000 -o a.ply
 if [[ -n $(type -P script) ]] && script -qec true /dev/null > /dev/null 2>&1 < /dev/null; then
-  turn="'$conic' render a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1"
+  turn="'$conic' render --plain a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1"
   TERM=xterm script -qec "$turn" /dev/null > out 2> err < /dev/null
   grep -q 'frame [0-9]*/20' out || fail "no frame in the progress bar: $(head -c 300 out)"
   for kind in TERM=dumb TERM=; do
