@@ -13,9 +13,9 @@ static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
   const cli_stage list[N_STAGES] = {{"start", job->begun_seconds - job->start_seconds},
                                     {"read", scale->read_seconds},
                                     {"estimate", scale->estimate_seconds},
-                                    {"draw", 1e-3 * job->frames_ms, "frames"},
+                                    {"draw", 1e-3 * job->frames_ms},
                                     {"write", 1e-3 * job->write_ms},
-                                    {"hash", 1e-3 * job->hash_ms}};
+                                    {"hashing", 1e-3 * job->hash_ms}};
   memcpy(stages, list, sizeof list);
 }
 

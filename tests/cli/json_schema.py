@@ -108,7 +108,7 @@ class Check:
         if "seconds" in value and isinstance(value["seconds"], dict):
             inside = {"cluster", "sample", "simplify"}  # of the work
             holds(value["seconds"], "total", set(value["seconds"]) - inside - {"total"})
-        if "frames" in value.get("ms", {}):
+        if "draw" in value.get("ms", {}):
             of_frame = {"lod", "setup", "bin", "visibility", "accumulate", "resolve", "frame_other"}
             holds(value["ms"], "frame", of_frame)
             holds(value["ms"], "total", set(value["ms"]) - of_frame - {"frame", "total"})
