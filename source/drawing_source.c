@@ -13,6 +13,7 @@ typedef struct drawing_source {
   conic_source base;
   conic_splats splats;
   conic_triangles triangles;
+  conic_repairs repairs; /* of all inputs */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -57,6 +58,15 @@ static void project_degrees(conic_context *context, const char *path, conic_spla
             middle[1]);
 }
 
+static void add_repairs(conic_repairs *to, const conic_repairs *more) {
+  to->nan += more->nan;
+  to->zero += more->zero;
+  to->duplicate += more->duplicate;
+  to->isolated += more->isolated;
+  to->failed += more->failed;
+  to->clip += more->clip;
+}
+
 /* Gives the points axes where they have none. */
 static conic_status take_points(drawing_source *d, const char *path, const conic_source_options *options,
                                 conic_model *model) {
@@ -72,6 +82,7 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);
+  add_repairs(&d->repairs, &repairs);
   return append_to_drawing(d, &model->points);
 }
 
@@ -206,6 +217,13 @@ static conic_status find_drawing_spacing(conic_source *source, double *spacing) 
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
+static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
+  const conic_repairs *repairs = &((const drawing_source *)source)->repairs;
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("skipped"), CONIC_COUNT("nan", repairs->nan), CONIC_COUNT("zero", repairs->zero),
+                  CONIC_COUNT("duplicate", repairs->duplicate), CONIC_COUNT("isolated", repairs->isolated),
+                  CONIC_COUNT("failed", repairs->failed), CONIC_COUNT("clip", repairs->clip), CONIC_END);
+}
+
 const conic_source_kind conic_source_kind_drawing = {
     .size = sizeof(drawing_source),
     .company = CONIC_SOURCE_MANY,
@@ -213,4 +231,5 @@ const conic_source_kind conic_source_kind_drawing = {
     .open = open_drawing,
     .close = close_drawing,
     .find_spacing = find_drawing_spacing,
+    .tell_rest = tell_drawing_rest,
 };

@@ -4,7 +4,6 @@
 
 #include "cli/command.h"
 #include "cli/render/frames.h"
-#include "cli/tell.h"
 #include "core/base/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -172,6 +171,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
                                    : cli_render_picture(job, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
+  for (int i = 0; i < job->repeat; i++)
+    job->frames_ms += repeats[i].ms.frame;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);
@@ -184,29 +185,12 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   return status == CONIC_OK ? write_deep(session, job, &camera, image, i_frame) : status;
 }
 
-static void tell(cli_session *session, const cli_render_job *job) {
-  const conic_render_statistics *s = &job->statistics;
-  const conic_render_milliseconds *ms = &s->ms;
-  const cli_stage of_frame[] = {{"choose", ms->lod > 0.0 ? 1e-3 * ms->lod : -1.0},
-                                {"set up", 1e-3 * ms->setup},
-                                {"bin", 1e-3 * ms->bin},
-                                {"visibility", 1e-3 * ms->visibility},
-                                {"accumulate", 1e-3 * ms->accumulate},
-                                {"resolve", 1e-3 * ms->resolve}};
-  const conic_source_scale *scale = conic_source_measure(job->source);
-  const cli_stage stages[] = {
-      {"read", scale->read_seconds}, {"estimate", scale->estimate_seconds}, {"write", 1e-3 * job->write_ms}};
-  conic_context *context = session->context;
-  if (s->triangles_in)
-    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
-              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
-              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
-  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
-            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
-            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
-  cli_tell_stages(session, of_frame, 6, cli_frames_count(job) * job->repeat > 1 ? "a frame" : "for the frame",
-                  1e-3 * ms->frame);
-  cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
+/* Only where they are reported: it takes a while. */
+static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
+  double start = cli_seconds();
+  for (int i = 0; i < CONIC_N_PLANES && session->json_path; i++)
+    job->hashes[i] = conic_image_hash(image, (conic_plane)i);
+  job->hash_ms = 1e3 * (cli_seconds() - start);
 }
 
 static int render_scene(cli_session *session, cli_render_job *job) {
@@ -220,9 +204,10 @@ static int render_scene(cli_session *session, cli_render_job *job) {
       cli_session_part(session, "frame", i + 1, n);
     status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
   }
-  job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
   if (status == CONIC_OK) {
-    tell(session, job);
+    hash_image(session, job, &image);
+    job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
+    cli_render_tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
@@ -257,6 +242,7 @@ static int run(cli_session *session, int argc, char **argv) {
     conic_status status = check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
+    job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
     exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
@@ -266,8 +252,8 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_render = {
-    "render", "draws splats, points or meshes into pictures",
-    "conic render IN… -o OUT [options]\n"
-    "       IN: PLY, OBJ, LAS, XYZ, PTS, .cot, .chy, .lpc or its http:// URL; - is standard input",
-    run};
+const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
+                                "conic render IN… -o OUT [options]\n"
+                                "       IN: " CLI_READABLE " or its http:// URL;\n"
+                                "       - is standard input",
+                                run};

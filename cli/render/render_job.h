@@ -56,7 +56,9 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, write_ms, total_ms;
+  double first_frame_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double begun_seconds;            /* when reading began */
+  uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -96,8 +98,9 @@ conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera,
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
 
-/* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
- * Returns the exit code. */
+/* Says what was drawn, and what it took. */
+void cli_render_tell(cli_session *session, const cli_render_job *job);
+/* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
 int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
 
 #endif

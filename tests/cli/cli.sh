@@ -211,6 +211,14 @@ for command in 'make torus -n 2000 -o told.ply' 'prepare a.ply -o told.ply' 'oct
   run 0 $command
   [[ ! -s err ]] || fail "conic $command: not silent: $(cat err)"
 done
+# What makes points of a mesh says so
+for command in 'prepare square.obj -o told.ply' 'octree square.obj -o told.cot' 'layer square.obj -o told.lpc'; do
+  [[ $command == layer* && $has_zstd -eq 0 ]] && continue
+  # shellcheck disable=SC2086
+  run 0 $command
+  grep -q '^conic: warning: square.obj: .* 2 faces are left out; conic render --as mesh' err ||
+    fail "conic $command loses faces in silence: $(cat err)"
+done
 printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n1 1 0\nnan 0 0\n' > odd.xyz
 for command in 'prepare -o told.ply' 'octree -o told.cot' 'render --size 64x48 -o told.pfm'; do
   # shellcheck disable=SC2086
