@@ -90,7 +90,7 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_OBJ;
   else if ((foreign = conic_foreign_kind_find(path, bytes, n, 0)))
     return refuse(input, foreign);
-  else if (is_text_name(path) || conic_xyz_is_likely(bytes, n))
+  else if (!memchr(bytes, 0, n) && (is_text_name(path) || conic_xyz_is_likely(bytes, n)))
     *kind = CONIC_MODEL_XYZ;
   else
     return refuse(input, NULL);
@@ -98,7 +98,9 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
 }
 
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  conic_status status = conic_input_skip_mark(input);
+  if (status == CONIC_OK)
+    status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
   return status == CONIC_OK ? find_kind(input, path, kind) : status;
 }
 
@@ -113,7 +115,7 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, delivery, model);
+    status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
     status = conic_las_read(input, delivery, model);
