@@ -7,6 +7,8 @@
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
+#include "core/formats/assimp_kinds.h"
+#include "core/formats/assimp_read.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
 #include "core/formats/ply_read.h"
@@ -19,7 +21,11 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 }
 
 const char *conic_model_kind_name(conic_model_kind kind) {
-  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  static const char *const names[] = {
+      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz",   [CONIC_MODEL_LAS] = "las",
+      [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf", [CONIC_MODEL_GLB] = "glb",
+      [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",   [CONIC_MODEL_3DS] = "3ds",
+      [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
@@ -41,9 +47,8 @@ static const signature other_kinds[] = {
     {"a point-octree", "CONICOT\n", 8}, {"a layered point cloud", "CONICLP\n", 8},
     {"a hybrid model", "CONICHY\n", 8}, {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
     {"a PNG image", "\x89PNG", 4},      {"a JPEG image", "\xff\xd8\xff", 3},
-    {"a binary glTF file", "glTF", 4},  {"a gzip archive", "\x1f\x8b", 2},
-    {"a ZIP archive", "PK\x03\x04", 4}, {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
-    {"an STL file", "solid ", 6},
+    {"a gzip archive", "\x1f\x8b", 2},  {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
+    {"a ZIP archive", "PK\x03\x04", 4},
 };
 
 static int is_ply(const char *bytes, size_t n) {
@@ -81,6 +86,9 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   const char *bytes = (const char *)conic_input_bytes(input);
   size_t n = conic_input_available(input);
   int is_xyz_name = conic_file_has_ending(path, "xyz") || conic_file_has_ending(path, "pts");
+  if (conic_assimp_find_content(bytes, n, conic_input_remaining_bytes(input), kind) ||
+      (n > 0 && conic_assimp_find_ending(path, kind) && !is_ply(bytes, n)))
+    return CONIC_OK;
   conic_status status = refuse_model(input, bytes, n);
   if (status != CONIC_OK)
     return status;
@@ -123,7 +131,10 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     break;
   case CONIC_MODEL_LAS:
     status = conic_las_read(input, delivery, model);
+    model->up[2] = 1.0;
     break;
+  default:
+    status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
   return status;
