@@ -15,6 +15,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_OPENEXR
 #define CONIC_HAVE_OPENEXR 0
 #endif
+#ifndef CONIC_HAVE_PNG
+#define CONIC_HAVE_PNG 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -26,11 +29,16 @@ const char *conic_version(void) {
 #endif
 
 static const conic_feature features[] = {
-    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", 1},        {"OpenCL", CONIC_HAVE_OPENCL},
-    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL}, {"Assimp", 1},
+    {"OpenEXR", CONIC_HAVE_OPENEXR},
+    {"OpenImageIO", 1},
+    {"OpenCL", CONIC_HAVE_OPENCL},
+    {"zstd", CONIC_HAVE_ZSTD},
+    {"CURL", CONIC_HAVE_CURL},
+    {"libpng", CONIC_HAVE_PNG},
+    {"Assimp", 1},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
-enum { I_OPENIMAGEIO = 1, I_ASSIMP = 5 };
+enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };
 
 const conic_feature *conic_feature_at(int i) {
   if (i == I_OPENIMAGEIO && !conic_bridge_is_there())

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
 
@@ -73,23 +73,11 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   matrix->values[15] = 1.0;
 }
 
-/* "dir/name.exr" becomes "dir/name.0001.exr" in a turntable. */
-static char *frame_path(const cli_render_job *job, const char *path, int i_frame) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-  size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path), room = strlen(path) + 16;
-  char *name = malloc(room);
-  if (name && job->is_turntable)
-    snprintf(name, room, "%.*s.%04d%s", (int)stem, path, i_frame + 1, path + stem);
-  else if (name)
-    snprintf(name, room, "%s", path);
-  return name;
-}
-
 static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   double start = cli_seconds();
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
-    char *path = frame_path(job, job->outputs[i], i_frame);
+    char *path = cli_frame_name(job, job->outputs[i], i_frame);
     status = path ? conic_image_write(session->context, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
@@ -104,7 +92,7 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   if (!job->overdraw_path)
     return CONIC_OK;
   conic_status status = conic_image_overdraw(session->context, image, &map);
-  char *path = frame_path(job, job->overdraw_path, i_frame);
+  char *path = cli_frame_name(job, job->overdraw_path, i_frame);
   if (status == CONIC_OK) {
     status = path ? conic_image_write(session->context, path, &map) : CONIC_ERROR_MEMORY;
     conic_image_release(session->context, &map);
@@ -119,7 +107,7 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
   double start = cli_seconds();
   if (!job->clusters_path)
     return CONIC_OK;
-  char *path = frame_path(job, job->clusters_path, i_frame);
+  char *path = cli_frame_name(job, job->clusters_path, i_frame);
   conic_status status = path ? cli_clusters_write(session, path, image) : CONIC_ERROR_MEMORY;
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -134,7 +122,7 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
   double start = cli_seconds();
   if (!job->deep_path)
     return CONIC_OK;
-  char *path = frame_path(job, job->deep_path, i_frame);
+  char *path = cli_frame_name(job, job->deep_path, i_frame);
   conic_status status =
       path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->options, &contributions)
            : CONIC_ERROR_MEMORY;
@@ -162,6 +150,17 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
+/* The finest that a hybrid has of one kind may not be as fine as it was asked to be. */
+static void warn_of_error(cli_session *session, cli_render_job *job) {
+  double wanted = job->view.error_px, reached = conic_source_chosen(job->source)->error_px;
+  const char *const kinds[] = {"--only triangles ", "--only surfels "};
+  if (!(wanted > 0.0) || reached <= wanted || job->is_error_warned)
+    return;
+  job->is_error_warned = 1;
+  conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
+            job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -175,6 +174,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     return status;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
+  warn_of_error(session, job);
   describe(job, &camera, image);
   status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -204,7 +204,7 @@ static void tell(cli_session *session, const cli_render_job *job) {
   conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
             (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
             (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
-  cli_tell_stages(session, of_frame, 6, job->n_frames * job->repeat > 1 ? "a frame" : "for the frame",
+  cli_tell_stages(session, of_frame, 6, cli_frames_count(job) * job->repeat > 1 ? "a frame" : "for the frame",
                   1e-3 * ms->frame);
   cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
 }
@@ -215,10 +215,10 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
+  for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
     if (job->is_turntable)
-      cli_session_part(session, "frame", i + 1, job->n_frames);
-    status = render_frame(session, job, i, &image, repeats);
+      cli_session_part(session, "frame", i + 1, n);
+    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
   }
   job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
   if (status == CONIC_OK) {
@@ -249,9 +249,10 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
   job.start_seconds = start;
-  session->draws_many_frames = (double)job.repeat * job.n_frames >= MANY;
-  if (exit_code == CLI_DONE)
+  if (exit_code == CLI_DONE) {
+    session->draws_many_frames = (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
+  }
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     if (status == CONIC_OK)

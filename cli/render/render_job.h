@@ -8,6 +8,11 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+/* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
+typedef struct cli_frames {
+  int first, last, step;
+} cli_frames;
+
 typedef struct cli_render_job {
   /* What was asked for. */
   const char **inputs;
@@ -25,7 +30,9 @@ typedef struct cli_render_job {
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
-  int is_warned; /* that a picture is empty */
+  cli_frames frames;
+  int is_warned;       /* that a picture is empty */
+  int is_error_warned; /* that --error is not kept */
   int repeat;
   unsigned planes;              /* bits 1 << conic_plane */
   int is_patch;                 /* --method patch: options.method draws its samples */
@@ -41,6 +48,7 @@ typedef struct cli_render_job {
   conic_source_options opening;
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
+  int is_for_looking; /* the command makes pictures, several samples a pixel unless said otherwise */
   int may_stream;     /* the command draws without having to know what */
   unsigned abilities; /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;

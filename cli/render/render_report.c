@@ -1,4 +1,4 @@
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 #include "cli/source_facts.h"
 
 static double per_second_in_millions(double count, double ms) {
@@ -39,6 +39,8 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
     if (s->splats_by_method[i])
       cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
   cli_json_close(json);
+  if (job->view.error_px > 0.0)
+    cli_json_number(json, "error_px_asked", job->view.error_px);
   return report_source(json, job);
 }
 
@@ -52,7 +54,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
-  cli_json_count(json, "frames", (uint64_t)job->n_frames);
+  cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
 }
 
 static void report_times(cli_json *json, const cli_render_job *job) {

@@ -53,7 +53,14 @@ static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_ki
   return 1;
 }
 
-int conic_assimp_find_content(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
+/* What other kinds of files begin with too. */
+static int is_wrapped(conic_model_kind kind, const char *bytes, size_t n) {
+  if (kind == CONIC_MODEL_3MF)
+    return n >= 4 && memcmp(bytes, "PK\x03\x04", 4) == 0;
+  return n >= 1 && bytes[0] == '<' && (kind == CONIC_MODEL_DAE || kind == CONIC_MODEL_X3D || kind == CONIC_MODEL_AMF);
+}
+
+int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
   size_t n_blanks = 0;
   if (has_length(bytes, n, size, kind))
     return 1;
@@ -71,6 +78,8 @@ int conic_assimp_find_content(const char *bytes, size_t n, uint64_t size, conic_
     if (!contents[i].within || has_text(bytes, n, contents[i].within))
       return 1;
   }
+  if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))
+    return 1;
   *kind = CONIC_MODEL_OFF;
   return is_off(bytes, n);
 }
