@@ -96,12 +96,15 @@ static void send_coordinates(conic_assimp_writer *w, const struct aiMesh *mesh, 
 
 static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
   float block[BLOCK][3];
+  int may_be_unset = strcmp(w->ending, "amf") == 0; /* there transparent black is no colour at all */
   for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
     m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
     for (unsigned i = 0; i < m; i++) {
-      block[i][0] = (float)mesh->mColors[0][done + i].r;
-      block[i][1] = (float)mesh->mColors[0][done + i].g;
-      block[i][2] = (float)mesh->mColors[0][done + i].b;
+      const struct aiColor4D *color = &mesh->mColors[0][done + i];
+      int is_unset = may_be_unset && color->a <= 0;
+      block[i][0] = is_unset ? 1.0f : (float)color->r;
+      block[i][1] = is_unset ? 1.0f : (float)color->g;
+      block[i][2] = is_unset ? 1.0f : (float)color->b;
     }
     conic_assimp_send_bytes(w, block, m * sizeof block[0]);
   }
@@ -224,7 +227,9 @@ static void read_model(const conic_assimp_request *request) {
   if (w.scene)
     send_scene(&w);
   else
-    conic_assimp_send_failure(&w, aiGetErrorString());
+    conic_assimp_send_failure(&w, strstr(aiGetErrorString(), "bad_alloc")
+                                      ? "it takes more memory than a file of its size should"
+                                      : aiGetErrorString());
 }
 
 #define TEXT_OF(x) #x
