@@ -86,9 +86,8 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   return append_to_drawing(d, &model->points);
 }
 
-/* *kind is what the model turned out to be. */
-static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options,
-                               conic_model_kind *kind) {
+/* `up` is the model's, where its file or its kind says it. */
+static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options, double up[3]) {
   conic_context *context = d->base.context;
   conic_read_options reading;
   conic_model model;
@@ -100,7 +99,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
-  *kind = model.kind;
+  memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
                         model.points.count ? "no point is finite" : "it holds no points");
@@ -114,12 +113,12 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
 }
 
 static conic_status read_into_drawing(drawing_source *d, const char *path, const conic_source_options *options,
-                                      conic_model_kind *kind) {
+                                      double up[3]) {
   const conic_source_kind *special = conic_source_kind_of_file(path);
   conic_source *part;
   conic_splats splats;
   if (!special || !special->take_splats)
-    return read_model(d, path, options, kind);
+    return read_model(d, path, options, up);
   conic_status status = conic_source_open_kind(d->base.context, special, &path, 1, options, &part);
   if (status != CONIC_OK)
     return status;
@@ -165,18 +164,18 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
                                  const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
   conic_source_scale *scale = &source->scale;
-  size_t n_surveys = 0;
+  double up[3] = {0.0, 0.0, 0.0};
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
-    conic_model_kind kind = CONIC_MODEL_PLY;
-    status = read_into_drawing(d, paths[i], options, &kind);
-    n_surveys += kind == CONIC_MODEL_LAS;
+    double own[3] = {0.0, 0.0, 0.0};
+    status = read_into_drawing(d, paths[i], options, own);
+    for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
+      up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
   if (status == CONIC_OK)
     status = dress(d, options);
-  if (n_surveys == n_paths) { /* which have heights in z */
-    scale->up[1] = 0.0;
-    scale->up[2] = 1.0;
+  if (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0) {
+    memcpy(scale->up, up, sizeof up);
     scale->up_basis = CONIC_UP_KIND;
   }
   return status == CONIC_OK ? measure_drawing(d) : status;

@@ -275,6 +275,7 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
                                           conic_model *model, conic_repairs *repairs) {
   conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
   memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  memcpy(copy.up, model->up, sizeof copy.up);
   conic_status status = conic_splats_append(context, &copy.points, &model->points);
   if (status == CONIC_OK)
     status = estimate_plain(context, options, &copy, repairs);
