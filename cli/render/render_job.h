@@ -34,7 +34,10 @@ typedef struct cli_render_job {
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */
   int repeat;
-  unsigned planes;              /* bits 1 << conic_plane */
+  unsigned planes; /* bits 1 << conic_plane */
+  int is_aov_given;
+  unsigned asked_planes;        /* of these, what --aov names */
+  conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
@@ -95,8 +98,18 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
 
+/* Wrong usage where a plane that was asked for goes into no file. */
+int cli_planes_check(const cli_session *session, const cli_render_job *job);
+/* Whether the outputs can be written, as far as their names tell. */
+conic_status cli_planes_check_formats(cli_session *session, const cli_render_job *job);
+/* Writes the image as PATH, or as a file a plane, where that is what the kind of file holds: "out.pfm", "out.Z.pfm" …
+ */
+conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
+                              const conic_image *image);
+
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
-conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
+conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
+                                const conic_image *image);
 
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);

@@ -203,11 +203,11 @@ conic_status conic_png_read(conic_context *context, const char *path, conic_imag
 #else
 
 conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
-  return conic_foreign_check(context, path, planes);
+  return conic_foreign_check(context, path, "png", planes);
 }
 
 conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
-  return conic_foreign_write(context, path, image);
+  return conic_foreign_write(context, path, "png", image);
 }
 
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
