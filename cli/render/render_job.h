@@ -36,6 +36,7 @@ typedef struct cli_render_job {
   int repeat;
   unsigned planes;              /* bits 1 << conic_plane */
   int is_patch;                 /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;    /* until it is found */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws: */
@@ -56,7 +57,7 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;            /* when reading began */
   uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
@@ -94,6 +95,9 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
 /* One picture, within what is left of the deadline. */
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
+
+/* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
+conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);
 
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
