@@ -77,6 +77,14 @@ int cli_error(int exit_code, const char *format, ...) {
   return exit_code;
 }
 
+void cli_note(const cli_session *session, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  if (!session->is_quiet)
+    print_message("", format, arguments);
+  va_end(arguments);
+}
+
 void cli_warn(const cli_session *session, const char *format, ...) {
   va_list arguments;
   if (session->is_quiet)
@@ -93,14 +101,6 @@ int cli_exit_after_signals(int exit_code) {
   if (atomic_load(&first_signal))
     return 128 + atomic_load(&first_signal);
   return atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
-}
-
-void cli_note(const cli_session *session, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  if (!session->is_quiet)
-    print_message("", format, arguments);
-  va_end(arguments);
 }
 
 int cli_exit_of(conic_status status) {

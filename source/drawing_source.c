@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "core/base/message.h"
 #include "core/splats/columns.h"
+#include "core/splats/degrees.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -46,6 +47,17 @@ static conic_status take_triangles(drawing_source *d, const char *path, conic_mo
   return status;
 }
 
+/* Ground in degrees becomes ground in metres, before it is asked how the points lie to each other. */
+static void project_degrees(conic_context *context, const char *path, conic_splats *points) {
+  double middle[2];
+  if (points->tangent_u[0] || !conic_points_are_degrees(points))
+    return;
+  conic_points_take_metres(points, middle);
+  conic_log(context, CONIC_LOG_WARNING,
+            "%s: x and y are degrees of longitude and latitude: drawn in metres about %.6f, %.6f", path, middle[0],
+            middle[1]);
+}
+
 static void add_repairs(conic_repairs *to, const conic_repairs *more) {
   to->nan += more->nan;
   to->zero += more->zero;
@@ -62,6 +74,8 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options estimate;
   conic_repairs repairs;
   conic_estimate_options_init(&estimate);
+  if (options->projects_degrees && model->n_triangles == 0)
+    project_degrees(context, path, &model->points);
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
