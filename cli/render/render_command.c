@@ -59,6 +59,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
@@ -164,7 +165,11 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
+  double start = cli_seconds();
   conic_status status = cli_scene_camera(job, i_frame, &camera);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    status = cli_choose_exposure(session, job, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)

@@ -39,6 +39,7 @@ typedef struct cli_render_job {
   unsigned asked_planes;        /* of these, what --aov names */
   conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;    /* until it is found */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws: */
@@ -59,7 +60,7 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;            /* when reading began */
   uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
@@ -106,6 +107,9 @@ conic_status cli_planes_check_formats(cli_session *session, const cli_render_job
  */
 conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
                               const conic_image *image);
+
+/* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
+conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);
 
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,

@@ -5,7 +5,7 @@
 #include "cli/tell.h"
 #include "core/base/message.h"
 
-enum { N_STAGES = 6, N_FRAME_STAGES = 6 };
+enum { N_STAGES = 7, N_FRAME_STAGES = 6 };
 
 /* What all of the run consists of. */
 static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
@@ -13,6 +13,7 @@ static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
   const cli_stage list[N_STAGES] = {{"start", job->begun_seconds - job->start_seconds},
                                     {"read", scale->read_seconds},
                                     {"estimate", scale->estimate_seconds},
+                                    {"camera", 1e-3 * job->camera_ms},
                                     {"draw", 1e-3 * job->frames_ms},
                                     {"write", 1e-3 * job->write_ms},
                                     {"hashing", 1e-3 * job->hash_ms}};
@@ -97,6 +98,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
   cli_json_count(json, "samples", (uint64_t)job->view.samples);
+  cli_json_number(json, "exposure", job->options.exposure);
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);

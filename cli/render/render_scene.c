@@ -71,7 +71,11 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
-  return status == CONIC_OK ? stand_upright(session, job) : status;
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = stand_upright(session, job);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  return status;
 }
 
 void cli_scene_release(cli_render_job *job) {

@@ -261,6 +261,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
     conic_image_release(context, reader->image);
     return status;
   }
+  reader->image->lacks_alpha = planes & 1u << CONIC_PLANE_RGBA && !has_alpha;
   complete_rgba(reader, has_alpha);
   read_attributes(reader);
   return CONIC_OK;

@@ -159,6 +159,7 @@ conic_status conic_foreign_read(conic_context *context, const char *path, conic_
     status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
   if (status == CONIC_OK) {
     conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
+    image->lacks_alpha = !conic_samples_have_alpha(layout);
     conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
                           image->planes[CONIC_PLANE_RGBA]);
   }
