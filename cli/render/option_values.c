@@ -66,13 +66,6 @@ int cli_parse_background(const char *text, void *value) {
   return 1;
 }
 
-int cli_parse_light(const char *text, void *value) {
-  conic_render_options *options = value;
-  options->has_light = 1;
-  return cli_parse_vector(text, options->light) &&
-         (options->light[0] != 0.0 || options->light[1] != 0.0 || options->light[2] != 0.0);
-}
-
 static int find_plane(const char *name, size_t length) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const char *known = conic_plane_describe((conic_plane)i)->name;
