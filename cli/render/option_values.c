@@ -66,13 +66,6 @@ int cli_parse_background(const char *text, void *value) {
   return 1;
 }
 
-int cli_parse_light(const char *text, void *value) {
-  conic_render_options *options = value;
-  options->has_light = 1;
-  return cli_parse_vector(text, options->light) &&
-         (options->light[0] != 0.0 || options->light[1] != 0.0 || options->light[2] != 0.0);
-}
-
 int cli_parse_exposure(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_exposure_automatic = strcmp(text, "auto") == 0;

@@ -27,8 +27,9 @@ typedef struct cli_render_job {
   conic_camera camera;          /* the file's */
   conic_framing framing;
   int is_up_given;
-  int is_plain; /* --plain: nothing is chosen by what looks best */
-  int n_frames; /* of a turntable; 1 without */
+  int is_plain;                                /* --plain: nothing is chosen by what looks best */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
+  int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
   cli_frames frames;
   int is_warned;       /* that a picture is empty */

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/lights.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
@@ -102,6 +103,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
+  cli_lights_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/lights.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -75,6 +76,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   if (status == CONIC_OK)
     status = stand_upright(session, job);
   job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    cli_lights_settle(job);
   return status;
 }
 

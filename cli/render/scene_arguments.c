@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
@@ -132,8 +133,13 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
-      {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
-       .parse = cli_parse_light},
+      {"light", CLI_PARSED, job, "LIGHT",
+       "X,Y,Z, towards a light that stands in the scene; camera:X,Y,Z, one that moves with the camera (right, up, "
+       "towards you); head, at your eye; each with :R,G,B behind it or without; studio; none. Up to 8 [studio]",
+       .parse = cli_parse_light, .may_repeat = 1},
+      {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
+       .parse = cli_parse_sky},
       {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
        .parse = cli_parse_background},
       {"exposure", CLI_PARSED, job, "EV",
