@@ -52,9 +52,10 @@ typedef struct conic_source_options {
   const conic_layers_access *access; /* of layered clouds; null: the defaults */
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
+  int finds_dots; /* raw points about which there is no surface become dots, which face each picture's camera */
 } conic_source_options;
 
-/* Splats, cutoff 1.5, 20 neighbours. */
+/* Splats, cutoff 1.5, 20 neighbours, no dots. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
