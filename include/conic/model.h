@@ -99,7 +99,8 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
-  uint64_t reserved[8];
+  size_t dots;      /* not put right, but told: whose neighbours make no surface, with finds_dots */
+  uint64_t reserved[7];
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -110,9 +111,12 @@ typedef struct conic_estimate_options {
   /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
    * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
   double feature_angle_deg;
+
+  /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
+  int finds_dots;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

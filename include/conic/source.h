@@ -53,9 +53,10 @@ typedef struct conic_source_options {
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
   int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
+  int finds_dots; /* raw points about which there is no surface become dots, which face each picture's camera */
 } conic_source_options;
 
-/* Splats, cutoff 1.5, 20 neighbours. */
+/* Splats, cutoff 1.5, 20 neighbours, no dots. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
