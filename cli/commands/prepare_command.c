@@ -12,7 +12,7 @@ typedef struct prepare_job {
   cli_build base;
   conic_estimate_options estimate;
   unsigned long long count, seed;
-  int has_count;
+  int has_count, is_plain;
 
   conic_model model;
   size_t n_in;
@@ -54,6 +54,7 @@ static conic_status thin_model(prepare_job *job) {
   if (model->n_triangles || model->points.tangent_u[0]) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
+    plain.finds_dots = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -70,10 +71,12 @@ static int read_model(prepare_job *job) {
   options.columns = job->base.columns;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
+  cli_build_hint_faces(&job->base, &job->model);
   return cli_exit_of(status);
 }
 
 static int find_axes(prepare_job *job) {
+  job->estimate.finds_dots = !job->is_plain;
   conic_status status = thin_model(job);
   if (status == CONIC_OK)
     status = conic_model_to_splats(job->base.session->context, &job->estimate, &job->model, &job->repairs);
@@ -96,6 +99,7 @@ static void report_prepared(cli_json *json, const void *cookie) {
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->model.points.count);
   cli_json_count(json, "clipped", job->model.points.n_clips);
+  cli_json_count(json, "dots", conic_splats_count_dots(&job->model.points));
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &job->repairs);
@@ -146,6 +150,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
+      {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
   /* The output may be the input: it is read whole before. */
   return cli_build_run(&job, &steps,
@@ -155,6 +160,6 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
 const cli_command cli_prepare = {
     .name = "prepare",
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
-    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S]",
+    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S] [--plain]",
     .run = run_prepare,
 };

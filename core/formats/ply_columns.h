@@ -18,7 +18,8 @@ typedef enum conic_ply_column {
   CONIC_PLY_ROTATION = 20,
   CONIC_PLY_HARMONIC = 24,
   CONIC_PLY_COORDINATE = 27, /* of a texture: two */
-  CONIC_PLY_N_COLUMNS = 29
+  CONIC_PLY_DOT = 29,
+  CONIC_PLY_N_COLUMNS = 30
 } conic_ply_column;
 
 /* Rows that are converted at a time, column by column. */

@@ -22,7 +22,8 @@ void conic_splats_list_columns(conic_splats *s, conic_column columns[CONIC_SPLAT
   columns += list_components(columns, s->tangent_v, 3, &s->strides.tangent_v, s->count, CONIC_SPLATS_TANGENTS);
   columns += list_components(columns, s->normal, 3, &s->strides.normal, s->count, CONIC_SPLATS_NORMALS);
   columns += list_components(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
-  list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  columns += list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  list_components(columns, &s->dot, 1, &s->dot_stride, s->count, CONIC_SPLATS_DOTS);
 }
 
 static void list_triangles_columns(conic_triangles *t, conic_column columns[TRIANGLES_COLUMNS]) {
@@ -150,6 +151,7 @@ conic_status conic_splats_enter(conic_context *context, const char *who, const c
   conic_splats_list_columns(close, columns);
   status = gather_columns(context, columns, CONIC_SPLATS_COLUMNS, block);
   memset(&close->strides, 0, sizeof close->strides);
+  close->dot_stride = 0;
   return status;
 }
 

@@ -4,10 +4,11 @@
 
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
+#include "tests/support/png_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, cot, lpc,
-                         chy */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, png,
+                         cot, lpc, chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -333,6 +334,23 @@ static inline void seeds_layers(seed_set *set, conic_context *context, size_t n,
   seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
 }
 
+/* Every kind of PNG that libpng turns into another; none where this build leaves them to another library. */
+static inline void seeds_all_png(seed_set *set) {
+  static const png_kind kinds[] = {{5, 4, PNG_COLOR_ALPHA, 8, 0, 0, 2},
+                                   {9, 9, PNG_COLOR, 16, 1, 1, 0},
+                                   {5, 4, PNG_BY_PALETTE, 2, 0, 1, 0},
+                                   {9, 3, PNG_GREY, 1, 1, 1, 1},
+                                   {3, 3, PNG_GREY_ALPHA, 16, 0, 0, 0}};
+  static png_file file;
+  int is_there = 0;
+  for (int i = 0; conic_feature_at(i); i++)
+    is_there |= strcmp(conic_feature_at(i)->name, "libpng") == 0 && conic_feature_at(i)->available;
+  for (size_t i = 0; is_there && i < sizeof kinds / sizeof *kinds; i++) {
+    png_make(&file, &kinds[i]);
+    seeds_add(set, "png", "png", 0, file.bytes, file.n_bytes);
+  }
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -341,6 +359,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_text(set);
   seeds_all_las(set);
   seeds_all_pcd(set);
+  seeds_all_png(set);
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);
