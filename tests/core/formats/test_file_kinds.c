@@ -19,6 +19,7 @@ static void test_bytes_tell(void) {
   REFUSED("a.las", "\x1f\x8b\x08", "a gzip archive", "gunzip");
   REFUSED("a", "PK\x03\x04", "a ZIP archive", "unzip");
   REFUSED("a.obj", "\x89PNG....", "a PNG image", "--texture");
+  REFUSED("a.json", "\x89PNG....", "a PNG image", "--texture");
   REFUSED("a.obj", "\xff\xd8\xff\xe0", "a JPEG image", "--texture");
   REFUSED("a.xyz", "\x76\x2f\x31\x01", "an OpenEXR image", "conic diff");
   REFUSED("a.obj", "II*\0\x08\0\0\0", "a TIFF image", "--texture");
