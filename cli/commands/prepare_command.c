@@ -150,7 +150,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
-      {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
+      {"plain", CLI_FLAG, &job.is_plain, NULL,
+       "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
   /* The output may be the input: it is read whole before. */
   return cli_build_run(&job, &steps,

@@ -12,7 +12,7 @@ static void check_refused(const char *name, const char *bytes, size_t n, const c
   CHECK(unlink(path) == 0);
 }
 
-#define REFUSED(name, bytes, kind, remedy) check_refused(name, bytes, sizeof bytes - 1, kind, remedy)
+#define REFUSED(name, bytes, kind, remedy) check_refused(name, bytes, sizeof(bytes) - 1, kind, remedy)
 
 static void test_bytes_tell(void) {
   REFUSED("a.dat", "ASTM-E57\1\0\0\0", "an E57 scan", "save it as LAS or PLY");
@@ -47,7 +47,7 @@ static void test_endings_tell(void) {
 static void test_unknown(void) {
   static const char rubbish[] = "\7\1\2\3\4\5\xfe";
   char archive[300] = {0};
-  memcpy(archive + 257, "ustar", 5);
+  memcpy(archive + 257, "ustar", sizeof "ustar");
   REFUSED("a.bin", rubbish, "no model that is known", "");
   check_refused("a", archive, sizeof archive, "a tar archive", "tar -x");
   CHECK(!conic_foreign_kind_find("a.xyz", "1 2 3\n", 6, 1) && !conic_foreign_kind_find("a.xyz", "1 2 3\n", 6, 0));
