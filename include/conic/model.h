@@ -40,9 +40,16 @@ typedef struct conic_read_options {
 
   /* Keep what only triangles have: normals and texture coordinates of corners, materials. */
   int keeps_faces;
+
+  /* What the columns of text are, "x,y,z,intensity,-,r,g,b" (docs/reference/formats.md); null: its header says so, or
+   * else their number. */
+  const char *columns;
+
+  /* The scalar of every point that is wanted besides, by the name that the file gives it; null: none. */
+  const char *field;
 } conic_read_options;
 
-/* Cutoff 1.5, points alone. */
+/* Cutoff 1.5, points alone, columns as the file has them. */
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
