@@ -75,6 +75,14 @@ int cli_error(int exit_code, const char *format, ...) {
   return exit_code;
 }
 
+void cli_note(const cli_session *session, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  if (!session->is_quiet)
+    print_message("", format, arguments);
+  va_end(arguments);
+}
+
 int cli_exit_of(conic_status status) {
   switch (status) {
   case CONIC_OK:

@@ -41,6 +41,9 @@ int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
+void cli_note(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);
 /* The process's peak resident set. */

@@ -152,6 +152,7 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   if (n_surveys == n_paths) { /* which have heights in z */
     scale->up[1] = 0.0;
     scale->up[2] = 1.0;
+    scale->up_basis = CONIC_UP_KIND;
   }
   return status == CONIC_OK ? measure_drawing(d) : status;
 }

@@ -92,7 +92,7 @@ static int check_outputs(const cli_session *session, const cli_render_job *job, 
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
-  job->may_stream = 1;
+  job->may_stream = job->is_for_looking = 1;
   int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",

@@ -41,6 +41,7 @@ typedef struct cli_render_job {
   conic_source_options opening;
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
+  int is_for_looking; /* the command makes pictures, several samples a pixel unless said otherwise */
   int may_stream;     /* the command draws without having to know what */
   unsigned abilities; /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;

@@ -48,6 +48,22 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* Finds out which way is up, and says so where that was a guess. */
+static conic_status stand_upright(cli_session *session, cli_render_job *job) {
+  static const char *const reasons[] = {[CONIC_UP_KIND] = NULL,
+                                        [CONIC_UP_FLAT] = "as it lies flat",
+                                        [CONIC_UP_OPEN] = "as its surface is open below",
+                                        [CONIC_UP_BASE] = "as it stands on a flat base",
+                                        [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
+  if (job->is_plain || job->is_up_given || job->camera_path)
+    return CONIC_OK;
+  conic_status status = conic_source_stand(job->source);
+  const char *reason = reasons[conic_source_measure(job->source)->up_basis];
+  if (status == CONIC_OK && reason)
+    cli_note(session, "up: z, %s; --up says otherwise", reason);
+  return status;
+}
+
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   conic_status status =
       conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
@@ -55,7 +71,7 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
-  return status;
+  return status == CONIC_OK ? stand_upright(session, job) : status;
 }
 
 void cli_scene_release(cli_render_job *job) {
@@ -72,5 +88,7 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  return conic_source_frame(job->source, &framing, camera);
+  if (job->is_plain)
+    return conic_source_frame(job->source, &framing, camera);
+  return conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera);
 }

@@ -6,6 +6,7 @@
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
+static const char *const quality_words[] = {"draft", "good", "final", NULL};
 static const char *const only_words[] = {"triangles", "surfels", NULL};
 
 /* The words of choices that the library names, in the order of its numbers. */
@@ -56,10 +57,29 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   return answer;
 }
 
+/* Whether what is drawn is to be looked at: not to be measured or taken apart, nor too large to have several samples.
+ */
+static int is_picture(const cli_scene_words *raw, const cli_render_job *job) {
+  int size = raw->size[0] > raw->size[1] ? raw->size[0] : raw->size[1];
+  return job->is_for_looking && job->repeat == 1 && !job->deep_path && size <= 65535 / 2;
+}
+
+/* What the quality stands for, where it is not said otherwise. */
+static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int *method) {
+  static const int samples[] = {1, 2, 4};
+  int is_wanted = raw->is_quality_given || !job->is_plain;
+  if (is_wanted && !raw->is_method_given)
+    *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
+  if (is_wanted && !raw->is_samples_given && (raw->is_quality_given || is_picture(raw, job)))
+    job->view.samples = samples[raw->quality];
+}
+
 int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
                     cli_render_job *job) {
-  cli_scene_words raw = {
-      .passes = 3, .cutoff = (double)job->options.kernel.cutoff, .prefilter = (double)job->options.prefilter};
+  cli_scene_words raw = {.quality = CLI_QUALITY_GOOD,
+                         .passes = 3,
+                         .cutoff = (double)job->options.kernel.cutoff,
+                         .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading;
@@ -91,8 +111,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = only_words},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
-       "surface [conic]",
-       .choices = words.methods},
+       "surface [auto]",
+       .choices = words.methods, .is_given = &raw.is_method_given},
+      {"quality", CLI_CHOICE, &raw.quality, "HOW",
+       "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
+       "[good]",
+       .choices = quality_words, .is_given = &raw.is_quality_given},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
        .parse = cli_parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
@@ -101,8 +125,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
-      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
-       CONIC_MAX_SAMPLES},
+      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [2]", 1,
+       CONIC_MAX_SAMPLES, .is_given = &raw.is_samples_given},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
@@ -134,6 +158,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
+  choose_quality(&raw, job, &method);
   job->is_patch = method == CONIC_N_METHODS;
   o->method = job->is_patch ? CONIC_METHOD_CONIC : (conic_method)method;
   o->shading = (conic_shading)shading;

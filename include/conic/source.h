@@ -79,6 +79,16 @@ CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybr
 /* Null is allowed. */
 CONIC_API void conic_source_close(conic_source *source);
 
+/* How it is known which way is up. */
+typedef enum conic_up_basis {
+  CONIC_UP_HABIT = 0, /* nothing tells: +y, and +z for points in text and .pcd */
+  CONIC_UP_KIND = 1,  /* the kind of file says it */
+  CONIC_UP_FLAT = 2,  /* it lies flat: +z */
+  CONIC_UP_OPEN = 3,  /* its surface is open below: +z */
+  CONIC_UP_BASE = 4,  /* it stands on a flat base: +z */
+  CONIC_UP_FACING = 5 /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
+} conic_up_basis;
+
 /* What a picture depends on as a whole. */
 typedef struct conic_source_scale {
   unsigned abilities;             /* bits of conic_source_ability */
@@ -91,6 +101,7 @@ typedef struct conic_source_scale {
   int n_levels;                   /* that can be drawn one after the other; 0: all comes at once */
   int has_colors;
   double read_seconds, estimate_seconds; /* what opening it took */
+  conic_up_basis up_basis;               /* of `up`: KIND, or HABIT until conic_source_stand has looked */
 } conic_source_scale;
 
 /* The source's own; stays until it is closed. */
@@ -104,6 +115,16 @@ CONIC_API conic_status conic_source_spacing(conic_source *source, double *spacin
  * reaches farther out than 1e20). */
 CONIC_API conic_status conic_source_frame(const conic_source *source, const conic_framing *framing,
                                           conic_camera *camera);
+
+/* Where no kind of file says which way is up, looks at the shape, and sets the scale's `up` and its basis. Errors: as
+ * conic_source_choose. */
+CONIC_API conic_status conic_source_stand(conic_source *source);
+
+/* A camera that its outline just fits: conic_drawing_frame of the source, of a hierarchy as far as a pixel shows it.
+ * What was chosen before is chosen anew by the next picture. Of what streams, conic_source_frame's camera. Null
+ * `framing` as there. Errors: as conic_source_frame, conic_source_choose and conic_drawing_frame. */
+CONIC_API conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
+                                        conic_camera *camera);
 
 /* Fills in what the options leave open: near_z and splat_length where they are 0, an epsilon below 0 where the source
  * has its own. Choosing and drawing do so by themselves. */

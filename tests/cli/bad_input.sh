@@ -24,6 +24,7 @@ fail() {
 run() { # EXIT_CODE, ARGUMENTS …
   local wanted=$1 got
   shift
+  [[ $1 != render && $1 != explain && $1 != verify ]] || set -- "$1" --plain "${@:2}"
   "$conic" "$@" > out 2> err < /dev/null
   got=$?
   [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 err)"

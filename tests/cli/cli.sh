@@ -220,7 +220,7 @@ run_wrong 3 'absent.ply' bench absent.ply
 
 # The progress bar of a turntable names the frame
 if [[ -n $(type -P script) ]] && script -qec true /dev/null > /dev/null 2>&1 < /dev/null; then
-  script -qec "'$conic' render a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1" /dev/null \
+  script -qec "'$conic' render --plain a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1" /dev/null \
     > out 2> err < /dev/null
   grep -q 'frame [0-9]*/20' out || fail "no frame in the progress bar: $(head -c 300 out)"
 else

@@ -46,7 +46,7 @@ for name in las:6 txt:3 obj:3 ply:100; do
 done
 
 draw() { # OUTPUT, ARGUMENTS …
-  "$conic" render "${@:2}" --size 40x40 -o "$1" || fail "render ${*:2}"
+  "$conic" render --plain "${@:2}" --size 40x40 -o "$1" || fail "render ${*:2}"
 }
 same() {
   "$conic" diff "$1" "$2" > out || fail "$1 and $2 differ: $(cat out)"

@@ -107,7 +107,7 @@ if [[ -e $module ]]; then
   program=$work/linked
   ln -s "$work/prefix/bin/conic" "$program"
   has_module() { "$program" --version | grep -q '^In this build:.*OpenImageIO'; }
-  draw_png() { "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.png"; }
+  draw_png() { "$program" render --plain "$work/plane.ply" --size 16x16 -o "$work/plane.png"; }
   refuses_png() { # WHAT the message says
     local code=0
     draw_png 2> "$work/message" || code=$?
@@ -122,5 +122,5 @@ if [[ -e $module ]]; then
   rm "$module"
   ! has_module
   refuses_png conic-openimageio.so
-  "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
+  "$program" render --plain "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
 fi
