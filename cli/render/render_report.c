@@ -1,3 +1,4 @@
+#include "cli/color_options.h"
 #include "cli/render/render_job.h"
 #include "cli/source_facts.h"
 
@@ -53,6 +54,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
   cli_json_count(json, "frames", (uint64_t)job->n_frames);
+  cli_color_report(json, conic_source_coloring(job->source));
 }
 
 static void report_times(cli_json *json, const cli_render_job *job) {

@@ -11,8 +11,8 @@
 #include "core/base/vectors.h"
 #include "core/formats/point_fields.h"
 #include "core/splats/color_ramp.h"
+#include "core/splats/coloring_stream.h"
 #include "core/splats/columns.h"
-#include "core/splats/value_limits.h"
 
 static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
 
@@ -100,33 +100,48 @@ static double value_of(const painting *p, const vertices *set, size_t i) {
 }
 
 static void normal_of(const vertices *set, size_t i, double normal[3]) {
+  const conic_splats *s = set->splats;
   double u[3], v[3];
+  int has_axes = s && s->tangent_u[0];
   for (int axis = 0; axis < 3; axis++) {
-    u[axis] = set->splats ? (double)set->splats->tangent_u[axis][i] : 0.0;
-    v[axis] = set->splats ? (double)set->splats->tangent_v[axis][i] : 0.0;
-    normal[axis] = set->splats ? 0.0 : (double)set->normal[axis][i];
+    u[axis] = has_axes ? (double)s->tangent_u[axis][i] : 0.0;
+    v[axis] = has_axes ? (double)s->tangent_v[axis][i] : 0.0;
+    normal[axis] = s ? (double)(has_axes ? 0.0f : s->normal[axis][i]) : (double)set->normal[axis][i];
   }
-  if (set->splats)
+  if (has_axes)
     conic_cross(u, v, normal);
 }
 
+/* Which side is the front of a scanned surface is a guess, the same for all of it: where more than half of the normals
+ * point steeply down, it was the wrong one. */
+static double front_of(const painting *p, const vertices *set) {
+  size_t n_down = 0;
+  double normal[3];
+  for (size_t i = 0; i < set->count && set->splats; i++) {
+    normal_of(set, i, normal);
+    n_down += conic_normalize(normal) && conic_dot(normal, p->up) < -0.5;
+  }
+  return n_down > set->count / 2 ? -1.0 : 1.0;
+}
+
 /* From −1 … 1 to what a picture shows from black to white. */
-static void paint_normal(double normal[3], float linear[3]) {
+static void paint_normal(double normal[3], double front, float linear[3]) {
   if (!conic_normalize(normal)) {
     paint_unknown(linear);
     return;
   }
   for (int axis = 0; axis < 3; axis++)
-    linear[axis] = (float)conic_srgb_decode(0.5 + 0.5 * normal[axis]);
+    linear[axis] = (float)conic_srgb_decode(0.5 + 0.5 * front * normal[axis]);
 }
 
 static void paint(const painting *p, const vertices *set) {
+  double front = p->kind == BY_NORMAL ? front_of(p, set) : 1.0;
   for (size_t i = 0; i < set->count; i++) {
     float linear[3];
     double normal[3];
     if (p->kind == BY_NORMAL) {
       normal_of(set, i, normal);
-      paint_normal(normal, linear);
+      paint_normal(normal, front, linear);
     } else
       conic_coloring_color(p->coloring, value_of(p, set, i), linear);
     for (int channel = 0; channel < 3; channel++)
@@ -280,6 +295,24 @@ static void drop_scalars(conic_context *context, float **scalar) {
   *scalar = NULL;
 }
 
+int conic_coloring_needs_range(const conic_coloring_options *options) {
+  int is_of_classes = options->ramp ? is_word(options->ramp, ramp_names[CONIC_RAMP_CLASSES])
+                                    : conic_field_is(options->by, "classification");
+  return !options->has_range && !is_of_classes && !is_word(options->by, "normal") && !is_word(options->by, "rgb");
+}
+
+void conic_coloring_sample(const conic_coloring_options *options, const conic_splats *batch,
+                           conic_value_sample *sample) {
+  painting p = {.kind = is_word(options->by, "height") ? BY_HEIGHT : BY_VALUE,
+                .up = {options->up[0], options->up[1], options->up[2]}};
+  float *scalar = batch->scalar;
+  const vertices set = {.count = batch->count, .origin = batch->origin, .position = batch->position, .scalar = &scalar};
+  if (!conic_normalize(p.up))
+    p.up[1] = 1.0;
+  for (size_t i = 0; i < batch->count; i++)
+    conic_value_sample_add(sample, value_of(&p, &set, i));
+}
+
 static conic_status paint_all(painting *p, conic_triangles *triangles) {
   conic_status status = need_normals(p, triangles);
   for (int k = 0; k < 2 && status == CONIC_OK; k++)
@@ -314,8 +347,8 @@ conic_status conic_drawing_color(conic_context *context, const conic_coloring_op
   if (!conic_normalize(p.up))
     p.up[1] = 1.0;
   status = choose(&p, &own, s->color[0] || t->color[0] || t->n_materials);
-  if (status == CONIC_OK && p.kind == BY_NORMAL && s->count && !s->tangent_u[0])
-    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "colouring: the points have no axes, and so no normals");
+  if (status == CONIC_OK && p.kind == BY_NORMAL && s->count && !s->tangent_u[0] && !s->normal[0])
+    status = conic_fail(context, CONIC_ERROR_ARGUMENT, "colouring: the points have no normals");
   if (status == CONIC_OK && coloring->field[0])
     status = paint_all(&p, t);
   drop_scalars(context, &s->scalar);
