@@ -14,6 +14,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_OPENEXR
 #define CONIC_HAVE_OPENEXR 0
 #endif
+#ifndef CONIC_HAVE_PNG
+#define CONIC_HAVE_PNG 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -26,7 +29,7 @@ const char *conic_version(void) {
 
 static const conic_feature features[] = {
     {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", 1},        {"OpenCL", CONIC_HAVE_OPENCL},
-    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL},
+    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL}, {"libpng", CONIC_HAVE_PNG},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0};
 enum { I_OPENIMAGEIO = 1 };

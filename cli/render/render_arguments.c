@@ -1,10 +1,8 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/outputs.h"
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 
@@ -13,17 +11,6 @@ static int parse_output(const char *text, void *value) {
   if (!*text || job->n_outputs == CLI_MAX_OUTPUTS)
     return 0;
   job->outputs[job->n_outputs++] = text;
-  return 1;
-}
-
-static int parse_turntable(const char *text, void *value) {
-  cli_render_job *job = value;
-  char *end;
-  long n = strtol(text, &end, 10);
-  if (*end || end == text || n < 1 || n > 9999)
-    return 0;
-  job->is_turntable = 1;
-  job->n_frames = (int)n;
   return 1;
 }
 
@@ -59,7 +46,7 @@ static int check_streaming(const cli_render_job *job, int is_given) {
 }
 
 /* What render's own options mean. */
-static int check_outputs(const cli_session *session, const cli_render_job *job, int is_streaming_given) {
+static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
   const char *paths[CLI_MAX_OUTPUTS + 4];
   int answer = CLI_DONE;
   if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->progressive_path)
@@ -85,12 +72,7 @@ static int check_outputs(const cli_session *session, const cli_render_job *job, 
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_streaming_given);
-  if (answer != CLI_DONE)
-    return answer;
-  if (job->camera_path && job->is_turntable)
-    return cli_usage("render: a turntable needs a framed camera, not --camera");
-  answer = cli_check_outputs(session, paths, job->n_outputs + 4);
-  return answer == CLI_DONE ? cli_scene_inputs_stay(session, job, paths, job->n_outputs + 4) : answer;
+  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 4) : answer;
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
@@ -99,14 +81,17 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
       {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
-       .parse = parse_output},
+       .parse = parse_output, .may_repeat = 1},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
        "every splat and triangle of every pixel, as a deep image: id, depth, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
       {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
-      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
+       .parse = cli_parse_turntable},
+      {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",
+       .parse = cli_parse_frames},
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},

@@ -8,6 +8,11 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+/* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
+typedef struct cli_frames {
+  int first, last, step;
+} cli_frames;
+
 typedef struct cli_render_job {
   /* What was asked for. */
   const char **inputs;
@@ -27,7 +32,9 @@ typedef struct cli_render_job {
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int n_frames; /* of a turntable; 1 without */
   int is_turntable;
-  int is_warned; /* that a picture is empty */
+  cli_frames frames;
+  int is_warned;       /* that a picture is empty */
+  int is_error_warned; /* that --error is not kept */
   int repeat;
   unsigned planes;              /* bits 1 << conic_plane */
   int is_patch;                 /* --method patch: options.method draws its samples */
@@ -52,7 +59,9 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, write_ms, total_ms;
+  double first_frame_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double begun_seconds;            /* when reading began */
+  uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -95,8 +104,9 @@ conic_status cli_clusters_write(cli_session *session, const char *path, const co
 /* --legend, --legend-out: what the colours mean, over the image and by itself. */
 conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
 
-/* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
- * Returns the exit code. */
+/* Says what was drawn, and what it took. */
+void cli_render_tell(cli_session *session, const cli_render_job *job);
+/* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
 int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
 
 #endif

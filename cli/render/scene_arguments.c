@@ -172,6 +172,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
+  job->opening.projects_degrees = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
   job->patches.surface.isa = o->isa;

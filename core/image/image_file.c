@@ -10,6 +10,7 @@
 #include "core/image/image_exr.h"
 #include "core/image/image_foreign.h"
 #include "core/image/image_pfm.h"
+#include "core/image/image_png.h"
 
 /* The part of PATH's name after its last dot; empty where there is none. */
 static const char *ending_of(const char *path) {
@@ -45,6 +46,8 @@ conic_status conic_image_check_output(conic_context *context, const char *path, 
     return conic_exr_check(context, path);
   if (conic_file_has_ending(path, "pfm"))
     return conic_pfm_check(context, path, planes);
+  if (conic_file_has_ending(path, "png"))
+    return conic_png_check(context, path, planes);
   return conic_foreign_check(context, path, planes);
 }
 
@@ -58,6 +61,8 @@ conic_status conic_image_write(conic_context *context, const char *path, const c
     return conic_exr_write(context, path, image);
   if (conic_file_has_ending(path, "pfm"))
     return conic_pfm_write(context, path, image);
+  if (conic_file_has_ending(path, "png"))
+    return conic_png_write(context, path, image);
   return conic_foreign_write(context, path, image);
 }
 
@@ -81,5 +86,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
     return conic_exr_read(context, path, image);
   if (start[0] == 'P' && (start[1] == 'F' || start[1] == 'f'))
     return conic_pfm_read(context, path, image);
+  if (n == 4 && memcmp(start, "\x89PNG", 4) == 0)
+    return conic_png_read(context, path, image);
   return conic_foreign_read(context, path, image);
 }

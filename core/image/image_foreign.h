@@ -1,4 +1,4 @@
-/* The formats of other libraries (PNG, TIFF, JPEG, HDR …) through OpenImageIO, which moves finished samples only: how
+/* The formats of other libraries (TIFF, JPEG, HDR …) through OpenImageIO, which moves finished samples only: how
  * linear colour becomes codes is decided here, so that the codes are the same whatever the library's version.
  *
  * Written: rgba. 8 bits, sRGB-encoded, for all but: tif 16 bits, sRGB-encoded; hdr (and other floating-point formats)

@@ -1,7 +1,7 @@
 /* The bridge to OpenImageIO: plain C, no C++ type and no exception comes through.
  *
  * It is a module of its own, conic-openimageio.so, that is loaded when the first file needs it: OpenImageIO brings some
- * 250 libraries along, and whoever draws into an EXR should not wait for them. */
+ * 250 libraries along, and whoever draws into an EXR or a PNG should not wait for them. */
 #ifndef CONIC_OPENIMAGEIO_BRIDGE_H
 #define CONIC_OPENIMAGEIO_BRIDGE_H
 

@@ -4,12 +4,13 @@
 
 #include "conic/model.h"
 
-/* Where a file's points go that are not kept: see conic_model_stream. XYZ and LAS deliver colours as they stand in the
- * file. */
+/* Where a file's points go that are not kept: see conic_model_stream. XYZ, LAS and PCD deliver colours as they stand in
+ * the file. */
 typedef struct conic_delivery {
   conic_batch_receiver *receive;
   void *cookie;
   size_t batch; /* points that are handed over at a time */
+  int is_again; /* the file has been read before: what can be told of it has been */
 } conic_delivery;
 
 typedef struct conic_builder {

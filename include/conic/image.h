@@ -82,8 +82,8 @@ CONIC_API void conic_image_release(conic_context *context, conic_image *image);
 CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane);
 
 /* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z
- * or weight as grey), and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats,
- * unpremultiplied where the format wants that). The file appears under its name only when it is whole. Errors: ARGUMENT
+ * or weight as grey), png, and what OpenImageIO knows (tif, jpg …): rgba, sRGB-encoded for integer formats,
+ * unpremultiplied where the format wants that. The file appears under its name only when it is whole. Errors: ARGUMENT
  * (no plane the format can hold, unknown ending, "-": there is no writing to standard output), UNSUPPORTED (not in this
  * build), MEMORY, IO. */
 CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
