@@ -17,6 +17,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_PNG
 #define CONIC_HAVE_PNG 0
 #endif
+#ifndef CONIC_HAVE_ZLIB
+#define CONIC_HAVE_ZLIB 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -30,6 +33,7 @@ const char *conic_version(void) {
 static const conic_feature features[] = {
     {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", 1},        {"OpenCL", CONIC_HAVE_OPENCL},
     {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL}, {"libpng", CONIC_HAVE_PNG},
+    {"zlib", CONIC_HAVE_ZLIB},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0};
 enum { I_OPENIMAGEIO = 1 };
