@@ -137,7 +137,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
   return cli_build_run(&job, &steps, exit_code);

@@ -179,7 +179,7 @@ static int check_layer_arguments(layer_job *job) {
   job->options.quantum = job->quantum.value;
   job->options.quantum_in_spacings = job->quantum.is_in_spacings;
   job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc", 0);
+  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {

@@ -103,7 +103,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
   return cli_build_run(&job, &steps, exit_code);
 }

@@ -138,6 +138,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   conic_estimate_options_init(&job.estimate);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
        64},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
@@ -146,9 +147,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
   };
-  /* The output may be the input: it is read whole before. */
   return cli_build_run(&job, &steps,
-                       cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply", 1));
+                       cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply"));
 }
 
 const cli_command cli_prepare = {
