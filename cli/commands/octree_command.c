@@ -113,7 +113,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       CLI_COLUMNS(&job.base.columns),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
   if (exit_code == CLI_DONE)
     exit_code = cli_coloring_check(session, &job.coloring);

@@ -149,6 +149,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   cli_coloring_init(&job.coloring);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
        64},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
@@ -160,8 +161,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       CLI_COLUMNS(&job.base.columns),
       {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
-  /* The output may be the input: it is read whole before. */
-  int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply", 1);
+  int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
   return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);
 }
 
