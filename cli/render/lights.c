@@ -2,14 +2,15 @@
 
 #include <string.h>
 
-/* Chosen by eye on scans, meshes and a terrain: a key light from the viewer's upper left gives the shape, a little from
- * the front keeps what it does not reach readable, and from all around comes a cool sky over a warm ground. White does
- * not burn out where all of them meet. */
+/* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool one
+ * from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
+ * readable, and from all around comes a sky over a darker ground. White does not burn out where they meet. */
 static const conic_light studio_lights[] = {
-    {.frame = CONIC_LIGHT_CAMERA, .color = {0.88f, 0.85f, 0.80f}, .direction = {-0.55, 0.65, 0.6}},
-    {.frame = CONIC_LIGHT_HEAD, .color = {0.16f, 0.16f, 0.17f}},
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.92f, 0.89f, 0.84f}, .direction = {-0.7, 0.8, 0.6}},
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.25f, 0.29f, 0.36f}, .direction = {0.9, 0.25, -0.2}},
+    {.frame = CONIC_LIGHT_HEAD, .color = {0.08f, 0.08f, 0.08f}},
 };
-static const float studio_sky[3] = {0.24f, 0.26f, 0.29f}, studio_ground[3] = {0.08f, 0.075f, 0.07f};
+static const float studio_sky[3] = {0.17f, 0.19f, 0.22f}, studio_ground[3] = {0.055f, 0.05f, 0.045f};
 static const float plain_sky = 0.05f;
 
 int cli_parse_color(const char *text, size_t length, float color[3]) {
