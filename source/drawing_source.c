@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "core/base/message.h"
 #include "core/splats/columns.h"
+#include "core/splats/degrees.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -12,6 +13,7 @@ typedef struct drawing_source {
   conic_source base;
   conic_splats splats;
   conic_triangles triangles;
+  conic_repairs repairs; /* of all inputs */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -45,6 +47,26 @@ static conic_status take_triangles(drawing_source *d, const char *path, conic_mo
   return status;
 }
 
+/* Ground in degrees becomes ground in metres, before it is asked how the points lie to each other. */
+static void project_degrees(conic_context *context, const char *path, conic_splats *points) {
+  double middle[2];
+  if (points->tangent_u[0] || !conic_points_are_degrees(points))
+    return;
+  conic_points_take_metres(points, middle);
+  conic_log(context, CONIC_LOG_WARNING,
+            "%s: x and y are degrees of longitude and latitude: drawn in metres about %.6f, %.6f", path, middle[0],
+            middle[1]);
+}
+
+static void add_repairs(conic_repairs *to, const conic_repairs *more) {
+  to->nan += more->nan;
+  to->zero += more->zero;
+  to->duplicate += more->duplicate;
+  to->isolated += more->isolated;
+  to->failed += more->failed;
+  to->clip += more->clip;
+}
+
 /* Gives the points axes where they have none. */
 static conic_status take_points(drawing_source *d, const char *path, const conic_source_options *options,
                                 conic_model *model) {
@@ -52,18 +74,20 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options estimate;
   conic_repairs repairs;
   conic_estimate_options_init(&estimate);
+  if (options->projects_degrees && model->n_triangles == 0)
+    project_degrees(context, path, &model->points);
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);
+  add_repairs(&d->repairs, &repairs);
   return append_to_drawing(d, &model->points);
 }
 
-/* *kind is what the model turned out to be. */
-static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options,
-                               conic_model_kind *kind) {
+/* `up` is the model's, where its file or its kind says it. */
+static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options, double up[3]) {
   conic_context *context = d->base.context;
   conic_read_options reading;
   conic_model model;
@@ -75,7 +99,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
-  *kind = model.kind;
+  memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
                         model.points.count ? "no point is finite" : "it holds no points");
@@ -89,12 +113,12 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
 }
 
 static conic_status read_into_drawing(drawing_source *d, const char *path, const conic_source_options *options,
-                                      conic_model_kind *kind) {
+                                      double up[3]) {
   const conic_source_kind *special = conic_source_kind_of_file(path);
   conic_source *part;
   conic_splats splats;
   if (!special || !special->take_splats)
-    return read_model(d, path, options, kind);
+    return read_model(d, path, options, up);
   conic_status status = conic_source_open_kind(d->base.context, special, &path, 1, options, &part);
   if (status != CONIC_OK)
     return status;
@@ -140,18 +164,18 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
                                  const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
   conic_source_scale *scale = &source->scale;
-  size_t n_surveys = 0;
+  double up[3] = {0.0, 0.0, 0.0};
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
-    conic_model_kind kind = CONIC_MODEL_PLY;
-    status = read_into_drawing(d, paths[i], options, &kind);
-    n_surveys += kind == CONIC_MODEL_LAS;
+    double own[3] = {0.0, 0.0, 0.0};
+    status = read_into_drawing(d, paths[i], options, own);
+    for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
+      up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
   if (status == CONIC_OK)
     status = dress(d, options);
-  if (n_surveys == n_paths) { /* which have heights in z */
-    scale->up[1] = 0.0;
-    scale->up[2] = 1.0;
+  if (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0) {
+    memcpy(scale->up, up, sizeof up);
     scale->up_basis = CONIC_UP_KIND;
   }
   return status == CONIC_OK ? measure_drawing(d) : status;
@@ -192,6 +216,13 @@ static conic_status find_drawing_spacing(conic_source *source, double *spacing) 
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
 }
 
+static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
+  const conic_repairs *repairs = &((const drawing_source *)source)->repairs;
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("skipped"), CONIC_COUNT("nan", repairs->nan), CONIC_COUNT("zero", repairs->zero),
+                  CONIC_COUNT("duplicate", repairs->duplicate), CONIC_COUNT("isolated", repairs->isolated),
+                  CONIC_COUNT("failed", repairs->failed), CONIC_COUNT("clip", repairs->clip), CONIC_END);
+}
+
 const conic_source_kind conic_source_kind_drawing = {
     .size = sizeof(drawing_source),
     .company = CONIC_SOURCE_MANY,
@@ -199,4 +230,5 @@ const conic_source_kind conic_source_kind_drawing = {
     .open = open_drawing,
     .close = close_drawing,
     .find_spacing = find_drawing_spacing,
+    .tell_rest = tell_drawing_rest,
 };

@@ -89,6 +89,12 @@ static void tell_patches_primitives(const conic_source *source, conic_facts *fac
   CONIC_ADD_FACTS(facts, CONIC_COUNT("patches", selection->n_patches), CONIC_COUNT("samples", selection->n_samples));
 }
 
+static void tell_patches_rest(const conic_source *source, conic_facts *facts) {
+  const conic_source *points = ((const patches_source *)source)->points;
+  if (points->kind->tell_rest)
+    points->kind->tell_rest(points, facts);
+}
+
 const conic_source_kind conic_source_kind_patches = {
     .size = sizeof(patches_source),
     .company = CONIC_SOURCE_MANY,
@@ -100,4 +106,5 @@ const conic_source_kind conic_source_kind_patches = {
     .name_image = name_patches_image,
     .name_splat = name_patches_splat,
     .tell_primitives = tell_patches_primitives,
+    .tell_rest = tell_patches_rest,
 };

@@ -33,6 +33,8 @@ static int make_hybrid(void *cookie) {
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;
   stages[SIMPLIFY].seconds = job->report.simplify_seconds;
+  for (int i = CLUSTER; i <= SIMPLIFY; i++)
+    stages[WORK].parts += stages[i].seconds;
   if (status == CONIC_OK)
     status = conic_hybrid_describe(job->hybrid, &job->info);
   if (status == CONIC_OK && !conic_is_in_reach(job->info.minimum, job->info.maximum))
@@ -110,7 +112,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
   hybrid_job job = {
       .base = {
           session,
-          .stages = {{"read"}, {"cluster"}, {"sample"}, {"simplify"}, {"all of the work", .key = "work"}, {"write"}}}};
+          .stages = {{"read"}, {"cluster"}, {"sample"}, {"simplify"}, {"rest of the work", .key = "work"}, {"write"}}}};
   int sampling = 0;
   conic_hybrid_options_init(&job.options);
   double cutoff = (double)job.options.cutoff;

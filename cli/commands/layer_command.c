@@ -76,6 +76,7 @@ static conic_status read_whole_file(layer_job *job, const conic_read_options *op
   conic_status status = conic_model_read(context, job->base.input, options, &model);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &model);
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
   if (status == CONIC_OK)
     conic_repairs_log(job->base.session->context, job->base.input, &repairs);

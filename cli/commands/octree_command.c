@@ -33,6 +33,7 @@ static conic_status build_from_model(octree_job *job) {
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &model);
   job->n_in = model.points.count;
   const char *why = conic_why_out_of_reach(&model.points);
   if (why) {

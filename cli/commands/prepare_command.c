@@ -69,6 +69,7 @@ static int read_model(prepare_job *job) {
   options.cutoff = job->estimate.cutoff;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
+  cli_build_hint_faces(&job->base, &job->model);
   return cli_exit_of(status);
 }
 

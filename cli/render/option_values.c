@@ -66,6 +66,14 @@ int cli_parse_background(const char *text, void *value) {
   return 1;
 }
 
+int cli_parse_exposure(const char *text, void *value) {
+  cli_render_job *job = value;
+  job->is_exposure_automatic = strcmp(text, "auto") == 0;
+  job->options.exposure = 0.0;
+  return job->is_exposure_automatic || (cli_parse_number(text, &job->options.exposure) &&
+                                        job->options.exposure >= -100.0 && job->options.exposure <= 100.0);
+}
+
 static int find_plane(const char *name, size_t length) {
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const char *known = conic_plane_describe((conic_plane)i)->name;

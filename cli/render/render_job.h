@@ -35,8 +35,12 @@ typedef struct cli_render_job {
   int is_warned;       /* that a picture is empty */
   int is_error_warned; /* that --error is not kept */
   int repeat;
-  unsigned planes;              /* bits 1 << conic_plane */
+  unsigned planes; /* bits 1 << conic_plane */
+  int is_aov_given;
+  unsigned asked_planes;        /* of these, what --aov names */
+  conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;    /* until it is found */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws: */
@@ -57,7 +61,9 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, write_ms, total_ms;
+  double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double begun_seconds;            /* when reading began */
+  uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -94,11 +100,25 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
 
-/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
-conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
+/* Wrong usage where a plane that was asked for goes into no file. */
+int cli_planes_check(const cli_session *session, const cli_render_job *job);
+/* Whether the outputs can be written, as far as their names tell. */
+conic_status cli_planes_check_formats(cli_session *session, const cli_render_job *job);
+/* Writes the image as PATH, or as a file a plane, where that is what the kind of file holds: "out.pfm", "out.Z.pfm" …
+ */
+conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
+                              const conic_image *image);
 
-/* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
- * Returns the exit code. */
+/* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
+conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);
+
+/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
+conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
+                                const conic_image *image);
+
+/* Says what was drawn, and what it took. */
+void cli_render_tell(cli_session *session, const cli_render_job *job);
+/* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
 int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
 
 #endif

@@ -142,9 +142,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_sky},
       {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
        .parse = cli_parse_background},
-      {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
+      {"exposure", CLI_PARSED, job, "EV",
+       "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
+       .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes},
+       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes,
+       .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
       {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
@@ -174,6 +177,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
+  job->opening.projects_degrees = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
   job->patches.surface.isa = o->isa;

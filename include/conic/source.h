@@ -52,6 +52,7 @@ typedef struct conic_source_options {
   const conic_layers_access *access; /* of layered clouds; null: the defaults */
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
+  int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours. */
