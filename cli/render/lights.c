@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool one
- * from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
+/* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool
+ * one from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
  * readable, and from all around comes a sky over a darker ground. White does not burn out where they meet. */
 static const conic_light studio_lights[] = {
     {.frame = CONIC_LIGHT_CAMERA, .color = {0.92f, 0.89f, 0.84f}, .direction = {-0.7, 0.8, 0.6}},
