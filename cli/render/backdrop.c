@@ -85,11 +85,7 @@ void cli_backdrop_report(cli_json *json, const cli_render_job *job) {
   const float *const colors[] = {options->has_background ? options->background : gradient->top, gradient->bottom};
   int n_colors = options->has_background ? 1 : gradient->is_given ? 2 : 0;
   cli_json_array(json, "background");
-  for (int i = 0; i < n_colors; i++) {
-    cli_json_array(json, NULL);
-    for (int c = 0; c < 3; c++)
-      cli_json_number(json, NULL, (double)colors[i][c]);
-    cli_json_close(json);
-  }
+  for (int i = 0; i < n_colors; i++)
+    cli_report_color(json, NULL, colors[i]);
   cli_json_close(json);
 }

@@ -1,5 +1,6 @@
 #include "cli/render/lights.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool
@@ -109,10 +110,13 @@ void cli_lights_settle(cli_render_job *job) {
   find_up(job, lighting->up);
 }
 
-static void report_floats(cli_json *json, const char *key, const float values[3]) {
+void cli_report_color(cli_json *json, const char *key, const float color[3]) {
+  char text[32];
   cli_json_array(json, key);
-  for (int i = 0; i < 3; i++)
-    cli_json_number(json, NULL, (double)values[i]);
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text, "%.7g", (double)color[i]);
+    cli_json_number(json, NULL, strtod(text, NULL));
+  }
   cli_json_close(json);
 }
 
@@ -131,10 +135,10 @@ void cli_lights_report(cli_json *json, const cli_render_job *job) {
     for (int axis = 0; axis < 3 && light->frame != CONIC_LIGHT_HEAD; axis++)
       cli_json_number(json, NULL, light->direction[axis]);
     cli_json_close(json);
-    report_floats(json, "color", light->color);
+    cli_report_color(json, "color", light->color);
     cli_json_close(json);
   }
   cli_json_close(json);
-  report_floats(json, "sky", lighting->sky);
-  report_floats(json, "ground", lighting->ground);
+  cli_report_color(json, "sky", lighting->sky);
+  cli_report_color(json, "ground", lighting->ground);
 }
