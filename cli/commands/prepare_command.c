@@ -71,6 +71,7 @@ static int read_model(prepare_job *job) {
   conic_read_options_init(&options);
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
+  options.columns = job->base.columns;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
@@ -156,6 +157,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
+      CLI_COLUMNS(&job.base.columns),
       {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
   /* The output may be the input: it is read whole before. */

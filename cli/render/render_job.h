@@ -48,6 +48,7 @@ typedef struct cli_render_job {
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given;
   unsigned asked_planes;        /* of these, what --aov names */
+  unsigned unwritten_planes;    /* drawn for what else is written */
   conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
   int is_exposure_automatic;    /* until it is found */
