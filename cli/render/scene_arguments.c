@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/color_options.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
@@ -144,7 +145,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
        .parse = cli_parse_sky},
-      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+      {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "linear colour behind, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, else none]",
        .parse = cli_parse_background},
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
