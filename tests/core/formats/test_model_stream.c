@@ -127,6 +127,7 @@ int main(void) {
   test_xyz(context, 60000.0, 200);
   test_las(context, 255, MANY);
   test_las(context, 65535, 500);
+  test_las(context, 4095, 500);
   test_las(context, 0, 500);
   const char *path = files_write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   check_same(context, path, 3, 1);
