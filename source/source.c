@@ -201,7 +201,8 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
                               : status;
   double start = conic_seconds_now();
   status = choose_settled(source, camera, &settled);
-  double ms = kind->choose ? 1e3 * (conic_seconds_now() - start) : 0.0;
+  int is_chosen = kind->choose && (!source->choice.is_all || source->choice.drawing.splats->dot);
+  double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (status == CONIC_OK)
     status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
                                   source->view.samples, image, statistics);

@@ -59,6 +59,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
@@ -70,6 +71,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   matrix->type = CONIC_ATTRIBUTE_MATRIX;
   memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
   matrix->values[15] = 1.0;
+  conic_image_describe_camera(image, camera);
 }
 
 static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
@@ -77,7 +79,7 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? conic_image_write(session->context, path, image) : CONIC_ERROR_MEMORY;
+    status = path ? cli_planes_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -93,7 +95,7 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   conic_status status = conic_image_overdraw(session->context, image, &map);
   char *path = cli_frame_name(job, job->overdraw_path, i_frame);
   if (status == CONIC_OK) {
-    status = path ? conic_image_write(session->context, path, &map) : CONIC_ERROR_MEMORY;
+    status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
     conic_image_release(session->context, &map);
   }
   free(path);
@@ -107,7 +109,7 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
   if (!job->clusters_path)
     return CONIC_OK;
   char *path = cli_frame_name(job, job->clusters_path, i_frame);
-  conic_status status = path ? cli_clusters_write(session, path, image) : CONIC_ERROR_MEMORY;
+  conic_status status = path ? cli_clusters_write(session, job, path, image) : CONIC_ERROR_MEMORY;
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
   return status;
@@ -163,7 +165,11 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
+  double start = cli_seconds();
   conic_status status = cli_scene_camera(job, i_frame, &camera);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    status = cli_choose_exposure(session, job, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
@@ -219,14 +225,12 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 }
 
 /* What cannot be written is said before anything is read. */
-static conic_status check_formats(const cli_session *session, const cli_render_job *job) {
+static conic_status check_formats(cli_session *session, const cli_render_job *job) {
   const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
-  conic_status status = CONIC_OK;
-  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++)
-    status = conic_image_check_output(session->context, job->outputs[i], job->planes);
+  conic_status status = cli_planes_check_formats(session, job);
   for (int i = 0; i < 3 && status == CONIC_OK; i++)
     if (maps[i])
-      status = conic_image_check_output(session->context, maps[i], 1u << CONIC_PLANE_RGBA);
+      status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;
 }
 

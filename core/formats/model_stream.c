@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "core/base/memory.h"
+#include "core/formats/assimp_kinds.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
 
@@ -86,7 +87,7 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   status = conic_model_find_kind(&input, path, &s.kind);
   if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
     status = pass(&s, &input, receive, cookie);
-  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || is_pipe))
+  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || conic_assimp_reads(s.kind) || is_pipe))
     status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);

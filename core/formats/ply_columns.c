@@ -23,6 +23,7 @@ static const struct {
                {CONIC_PLY_RED, {"diffuse_red", "diffuse_green", "diffuse_blue"}},
                {CONIC_PLY_RED, {"r", "g", "b"}},
                {CONIC_PLY_OPACITY, {"opacity"}},
+               {CONIC_PLY_DOT, {"dot"}},
                {CONIC_PLY_SCALE, {"scale_0", "scale_1", "scale_2"}},
                {CONIC_PLY_ROTATION, {"rot_0", "rot_1", "rot_2", "rot_3"}},
                {CONIC_PLY_HARMONIC, {"f_dc_0", "f_dc_1", "f_dc_2"}}};
@@ -111,6 +112,8 @@ static void choose_form(conic_ply_layout *layout) {
     layout->form = CONIC_PLY_AXES;
   if (layout->form != CONIC_PLY_AXES)
     drop_columns(layout, CONIC_PLY_TANGENT_U, 6);
+  if (layout->form != CONIC_PLY_AXES && layout->form != CONIC_PLY_CIRCLES)
+    drop_columns(layout, CONIC_PLY_DOT, 1);
   if (layout->form != CONIC_PLY_NORMALS && layout->form != CONIC_PLY_CIRCLES)
     drop_columns(layout, CONIC_PLY_NORMAL, 3);
   if (layout->form != CONIC_PLY_CIRCLES)
@@ -156,6 +159,8 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
     layout->fields |= CONIC_SPLATS_COLORS;
   if (has_columns(layout, CONIC_PLY_OPACITY, 1))
     layout->fields |= CONIC_SPLATS_OPACITIES;
+  if (has_columns(layout, CONIC_PLY_DOT, 1))
+    layout->fields |= CONIC_SPLATS_DOTS;
   return CONIC_OK;
 }
 
@@ -287,6 +292,8 @@ void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block bl
     store_colors(layout, block[first_color + axis], n, layout->type[first_color + axis], points->color[axis] + first);
   if (points->opacity)
     store_opacities(layout, block[CONIC_PLY_OPACITY], n, points->opacity + first);
+  for (size_t i = 0; points->dot && i < n; i++)
+    points->dot[first + i] = block[CONIC_PLY_DOT][i] != 0.0 ? 1.0f : 0.0f;
   if (layout->field_column >= 0)
     store_column(block[layout->field_column], n, 0.0, points->scalar + first);
 }

@@ -19,8 +19,9 @@ typedef enum conic_ply_column {
   CONIC_PLY_ROTATION = 20,
   CONIC_PLY_HARMONIC = 24,
   CONIC_PLY_COORDINATE = 27, /* of a texture: two */
-  CONIC_PLY_FIELD = 29,      /* that is asked for */
-  CONIC_PLY_N_COLUMNS = 30
+  CONIC_PLY_DOT = 29,
+  CONIC_PLY_FIELD = 30, /* that is asked for */
+  CONIC_PLY_N_COLUMNS = 31
 } conic_ply_column;
 
 /* Rows that are converted at a time, column by column. */

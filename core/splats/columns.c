@@ -23,6 +23,7 @@ void conic_splats_list_columns(conic_splats *s, conic_column columns[CONIC_SPLAT
   columns += list_components(columns, s->normal, 3, &s->strides.normal, s->count, CONIC_SPLATS_NORMALS);
   columns += list_components(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
   columns += list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  columns += list_components(columns, &s->dot, 1, &s->strides.dot, s->count, CONIC_SPLATS_DOTS);
   list_components(columns, &s->scalar, 1, &s->strides.scalar, s->count, CONIC_SPLATS_SCALARS);
 }
 

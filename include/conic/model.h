@@ -17,7 +17,20 @@ typedef enum conic_model_kind {
   CONIC_MODEL_PLY = 0,
   CONIC_MODEL_OBJ = 1,
   CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS */
-  CONIC_MODEL_LAS = 3
+  CONIC_MODEL_LAS = 3,
+
+  /* Those of Assimp, where it is there */
+  CONIC_MODEL_STL = 16,
+  CONIC_MODEL_OFF = 17,
+  CONIC_MODEL_GLTF = 18,
+  CONIC_MODEL_GLB = 19, /* binary glTF */
+  CONIC_MODEL_3MF = 20,
+  CONIC_MODEL_DAE = 21, /* COLLADA */
+  CONIC_MODEL_FBX = 22,
+  CONIC_MODEL_3DS = 23,
+  CONIC_MODEL_X3D = 24,
+  CONIC_MODEL_DXF = 25,
+  CONIC_MODEL_AMF = 26
 } conic_model_kind;
 
 /* "ply", "obj" …; null for a number that is no kind. */
@@ -36,9 +49,10 @@ typedef struct conic_model {
   uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
   conic_model_kind kind;     /* of the file that was read */
   struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
+  double up[3];              /* the direction that the file, or its kind, says is up; zero where neither does */
   conic_model_field *fields; /* what else the points have by name, in the file's order */
   size_t n_fields;
-  uint64_t reserved[6];
+  uint64_t reserved[3];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -64,12 +78,13 @@ typedef struct conic_read_options {
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
-/* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/reference/formats.md); "-" is standard input. The format is told by
- * the content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
- * sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double or 32-bit integer in a
- * PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the origin; else the origin
- * is zero. On success the caller owns *model and releases it; on failure it is empty and the log says file, line or
- * byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
+/* Reads a model: PLY, OBJ, XYZ and PTS, LAS, and what Assimp reads (docs/reference/formats.md); "-" is standard input.
+ * The format is told by the content first, then by the name's ending. Integer colours of a PLY and all colours of the
+ * others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double
+ * or 32-bit integer in a PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the
+ * origin; else the origin is zero. On success the caller owns *model and releases it; on failure it is empty and the
+ * log says file, line or byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT,
+ * INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it is not there), IO (no process for it). */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
@@ -78,9 +93,9 @@ CONIC_API conic_status conic_model_read(conic_context *context, const char *path
 typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batch);
 
 /* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
- * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ,
- * and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All batches have the
- * same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
+ * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ
+ * and Assimp's, and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All
+ * batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);
 
@@ -95,7 +110,8 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
-  uint64_t reserved[8];
+  size_t dots;      /* not put right, but told: whose neighbours make no surface, with finds_dots */
+  uint64_t reserved[7];
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -106,9 +122,12 @@ typedef struct conic_estimate_options {
   /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
    * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
   double feature_angle_deg;
+
+  /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
+  int finds_dots;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

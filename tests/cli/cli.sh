@@ -75,11 +75,11 @@ for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|
   run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
 done
 # What cannot be written is said before anything is read
-run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'standard output' render absent.ply -o - -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
 run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
 run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
-run_wrong 2 'a lone Z' render absent.ply -o outputs/a.pfm --aov Z,N
+run_wrong 2 'no output holds the plane Z' render absent.ply -o outputs/a.png --aov rgba,Z
 run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
 run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
 run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
