@@ -75,6 +75,8 @@ conic_status conic_model_tell_fields(conic_context *context, const char *path, c
     if (range.n)
       CONIC_ADD_FACTS(facts, CONIC_NUMBER("minimum", range.minimum), CONIC_NUMBER("maximum", range.maximum));
     CONIC_ADD_FACTS(facts, CONIC_END);
+    if (may_read_again && !range.n)
+      CONIC_ADD_FACTS(facts, CONIC_LINE(i ? "" : "values", "%s: no number", field->name));
     if (range.n)
       CONIC_ADD_FACTS(facts,
                       CONIC_LINE(i ? "" : "values", "%s: %.7g to %.7g", field->name, range.minimum, range.maximum));

@@ -63,7 +63,7 @@ cmp -s plain2.pfm plain.pfm || fail "--legend without colours"
 
 # What cannot be.
 run 3 render slope.ply -o no.pfm --color-by intensty
-grep -q "no field 'intensty'; there are: x, y, z, nx, ny, nz, Intensity, scalar_Classification, heat" err ||
+grep -q "no field 'intensty' (did you mean 'Intensity'?); there are: x, y, z, nx, ny, nz, Intensity, scalar_Classification, heat" err ||
   fail "the fields are not listed"
 run 2 render slope.ply -o no.pfm --color-by x --ramp sequentail
 grep -q "did you mean 'sequential'" err || fail "no ramp is suggested"

@@ -154,6 +154,24 @@ static void test_ply(void) {
   CHECK(unlink(path) == 0);
 }
 
+/* Columns by their names, or by their numbers; what is no number in one that means nothing is none. */
+static void test_text(void) {
+  static const float amplitudes[] = {5.0f, 6.5f, -9.0f}, fifth[] = {1.0f, 2.0f, 3.0f}, xs[] = {0.0f, 1.0f, 0.0f};
+  conic_model model;
+  const char *path = files_write("a.csv", "x,y,z,Amplitude,label\n0,0,0,5,a\n1,0,0,6.5,7\n0,1,0,-9,c\n");
+  check_values(path, "amplitude", amplitudes, 3);
+  check_values(path, "x", xs, 3);
+  CHECK_OK(read_field(path, "label", 0, &model));
+  CHECK(model.points.scalar && isnan(model.points.scalar[0]) && model.points.scalar[1] == 7.0f);
+  CHECK(model.n_fields == 5 && strcmp(model.fields[3].name, "Amplitude") == 0);
+  conic_model_release(context, &model);
+  files_check_failed("name", read_field(path, "amplitud", 0, &model), "did you mean 'Amplitude'?", NULL);
+  CHECK(unlink(path) == 0);
+  path = files_write("a.xyz", "0 0 0 5 1\n1 0 0 6 2\n0 1 0 9 3\n");
+  check_values(path, "5", fifth, 3);
+  CHECK(unlink(path) == 0);
+}
+
 typedef struct gathering {
   conic_splats all;
   size_t n_batches;
@@ -210,6 +228,7 @@ int main(void) {
     test_las(4, format, 22);
   test_extra_bytes();
   test_ply();
+  test_text();
   test_batches();
   test_without();
   files_end(context);
