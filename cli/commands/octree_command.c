@@ -47,7 +47,7 @@ static conic_status build_from_model(octree_job *job) {
   }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, model.kind, &model.points, NULL);
+    status = cli_coloring_apply(job->base.session, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);
   if (status == CONIC_OK)
     status = conic_octree_build(context, &model.points, &job->options, &job->octree);

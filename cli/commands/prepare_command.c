@@ -84,7 +84,7 @@ static int find_axes(prepare_job *job) {
   if (status == CONIC_OK)
     status = conic_model_to_splats(job->base.session->context, &job->estimate, &job->model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.kind, &job->model.points, NULL);
+    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.up, &job->model.points, NULL);
   if (status != CONIC_OK)
     return cli_exit_of(status);
   if (job->repairs.nan + job->repairs.failed >= job->model.points.count)
@@ -159,7 +159,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
       CLI_COLUMNS(&job.base.columns),
-      {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
+      {"plain", CLI_FLAG, &job.is_plain, NULL,
+       "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
   int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
   return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);
