@@ -87,10 +87,9 @@ conic_status conic_assimp_process_start(conic_context *context, const char *name
 /* Why there is no more to read. */
 static conic_status explain_end(conic_assimp_process *process) {
   int state = 0;
-  pid_t ended;
-  do
-    ended = waitpid(process->id, &state, 0);
-  while (ended < 0 && errno == EINTR);
+  pid_t ended = 0;
+  while (process->id > 0 && (ended = waitpid(process->id, &state, 0)) < 0 && errno == EINTR)
+    ;
   process->id = 0;
   int is_slow = ended > 0 && WIFSIGNALED(state) && WTERMSIG(state) == SIGXCPU;
   return conic_fail(process->context, CONIC_ERROR_INPUT,

@@ -68,19 +68,16 @@ static conic_status read_whole(conic_input *input, whole_file *file) {
 }
 
 typedef struct assimp_reader {
-  conic_input *input;
-  conic_assimp_process process;
+  const conic_input *input;
+  conic_assimp_process *process;
   conic_assimp_part_builder parts;
 } assimp_reader;
 
-/* A text of the process, on one line. */
+/* A text of the process, without what ends lines or sentences. */
 static conic_status take_text(assimp_reader *reader, const conic_assimp_record *record, char text[LONGEST_TEXT]) {
   size_t n = record->n_bytes < LONGEST_TEXT ? (size_t)record->n_bytes : LONGEST_TEXT - 1;
-  conic_status status = conic_assimp_process_take(&reader->process, text, n);
-  for (size_t i = 0; i < n; i++)
-    if ((unsigned char)text[i] < 0x20)
-      text[i] = ' ';
-  while (n > 0 && (text[n - 1] == ' ' || text[n - 1] == '.'))
+  conic_status status = conic_assimp_process_take(reader->process, text, n);
+  while (n > 0 && ((unsigned char)text[n - 1] <= ' ' || text[n - 1] == '.'))
     n--;
   text[n] = '\0';
   return status;
@@ -101,78 +98,76 @@ static conic_status note_opened(assimp_reader *reader, const conic_assimp_record
   return take_text(reader, record, path);
 }
 
-static conic_status take_up(assimp_reader *reader, const conic_assimp_record *record) {
+static conic_status take_end(assimp_reader *reader, const conic_assimp_record *record) {
   conic_model *model = reader->parts.builder.model;
   memcpy(model->up, record->up, sizeof model->up);
   if (model->points.count == 0)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: there is neither a face nor a point in the file that Assimp can read", reader->input->name);
-  return CONIC_OK;
+                      "%s: Assimp finds neither a face nor a point in the file", reader->input->name);
+  return conic_assimp_parts_end(&reader->parts);
 }
 
-static conic_status take_records(assimp_reader *reader) {
-  conic_assimp_record record;
-  for (;;) {
-    conic_status status = conic_assimp_process_take(&reader->process, &record, sizeof record);
-    if (status == CONIC_OK)
-      switch (record.type) {
-      case CONIC_ASSIMP_MATERIAL:
-        status = conic_assimp_take_material(reader->input, &reader->process, &record, &reader->parts);
-        break;
-      case CONIC_ASSIMP_PART:
-        status = conic_assimp_take_part(&reader->process, &record, &reader->parts);
-        break;
-      case CONIC_ASSIMP_OPENED:
-        status = note_opened(reader, &record);
-        break;
-      case CONIC_ASSIMP_FAILED:
-        return fail_as_told(reader, &record);
-      case CONIC_ASSIMP_END:
-        return take_up(reader, &record);
-      default:
-        status = conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: cannot read: Assimp has lost its way",
-                            reader->input->name);
-      }
-    if (status != CONIC_OK)
-      return status;
+static conic_status take_record(assimp_reader *reader, const conic_assimp_record *record) {
+  switch (record->type) {
+  case CONIC_ASSIMP_MATERIAL:
+    return conic_assimp_take_material(reader->input, reader->process, record, &reader->parts);
+  case CONIC_ASSIMP_PART:
+    return conic_assimp_take_part(reader->process, record, &reader->parts);
+  case CONIC_ASSIMP_OPENED:
+    return note_opened(reader, record);
+  case CONIC_ASSIMP_FAILED:
+    return fail_as_told(reader, record);
+  case CONIC_ASSIMP_END:
+    return take_end(reader, record);
+  default:
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: cannot read: Assimp has lost its way",
+                      reader->input->name);
   }
 }
 
-static conic_status read_file(assimp_reader *reader, const conic_assimp_bridge_functions *bridge, conic_model_kind kind,
-                              const whole_file *file) {
+conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process, conic_model_kind kind,
+                                       const conic_read_options *options, conic_model *model) {
+  conic_assimp_record record = {.type = 0};
+  assimp_reader reader = {.input = input, .process = process};
+  conic_status status = conic_assimp_parts_begin(input->context, kind, options, model, &reader.parts);
+  while (status == CONIC_OK && record.type != CONIC_ASSIMP_END) {
+    status = conic_assimp_process_take(process, &record, sizeof record);
+    if (status == CONIC_OK)
+      status = take_record(&reader, &record);
+  }
+  conic_assimp_parts_release(&reader.parts);
+  return status;
+}
+
+static conic_status start(const conic_input *input, const conic_assimp_bridge_functions *bridge, conic_model_kind kind,
+                          const conic_read_options *options, const whole_file *file, conic_assimp_process *process) {
   char name[32];
-  const char *path = reader->input->name, *slash = strrchr(path, '/');
+  const char *slash = strrchr(input->name, '/');
   snprintf(name, sizeof name, "model.%s", conic_model_kind_name(kind));
   conic_assimp_request request = {.name = name,
                                   .bytes = file->bytes,
                                   .n_bytes = file->n_bytes,
-                                  .folder = path,
-                                  .folder_length = slash ? (size_t)(slash + 1 - path) : 0,
-                                  .keeps_faces = reader->parts.faces != NULL};
-  conic_status status = conic_assimp_process_start(reader->input->context, path, bridge, request, &reader->process);
-  if (status == CONIC_OK)
-    status = take_records(reader);
-  conic_assimp_process_end(&reader->process);
-  return status;
+                                  .folder = input->name,
+                                  .folder_length = slash ? (size_t)(slash + 1 - input->name) : 0,
+                                  .keeps_faces = options->keeps_faces};
+  return conic_assimp_process_start(input->context, input->name, bridge, request, process);
 }
 
 conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                conic_model *model) {
   char message[CONIC_MODULE_MESSAGE] = "";
   whole_file file = {NULL, 0, 0};
-  assimp_reader reader = {.input = input, .process = {.descriptor = -1}};
+  conic_assimp_process process = {.descriptor = -1};
   const conic_assimp_bridge_functions *bridge = load_bridge(message);
   if (!bridge)
     return conic_fail(input->context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read %s: %s", input->name,
                       conic_model_kind_name(kind), message);
-  conic_status status = conic_assimp_parts_begin(input->context, kind, options, model, &reader.parts);
+  conic_status status = read_whole(input, &file);
   if (status == CONIC_OK)
-    status = read_whole(input, &file);
+    status = start(input, bridge, kind, options, &file, &process);
+  conic_memory_release(input->context, file.bytes); /* the process has its own */
   if (status == CONIC_OK)
-    status = read_file(&reader, bridge, kind, &file);
-  if (status == CONIC_OK)
-    status = conic_assimp_parts_end(&reader.parts);
-  conic_assimp_parts_release(&reader.parts);
-  conic_memory_release(input->context, file.bytes);
+    status = conic_assimp_read_records(input, &process, kind, options, model);
+  conic_assimp_process_end(&process);
   return status;
 }
