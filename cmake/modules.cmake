@@ -24,5 +24,5 @@ if(TARGET OpenImageIO::OpenImageIO)
 endif()
 if(TARGET assimp::assimp)
   conic_add_module(assimp assimp::assimp core/formats/assimp_bridge.c core/formats/assimp_files_bridge.c
-    core/formats/assimp_materials_bridge.c)
+    core/formats/assimp_materials_bridge.c core/formats/assimp_settle_bridge.c)
 endif()

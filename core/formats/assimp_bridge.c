@@ -6,6 +6,7 @@
 #include <assimp/postprocess.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "conic/export.h"
 #include "conic/version.h"
@@ -215,7 +216,8 @@ static void send_scene(conic_assimp_writer *w) {
   free(w->sent);
 }
 
-static void read_model(const conic_assimp_request *request) {
+static void read_model(conic_assimp_request *request) {
+  conic_assimp_settle(request);
   conic_assimp_writer w = {.request = request, .ending = strrchr(request->name, '.') + 1};
   struct aiFileIO io = conic_assimp_files(&w);
   struct aiPropertyStore *properties = aiCreatePropertyStore();
@@ -230,6 +232,7 @@ static void read_model(const conic_assimp_request *request) {
     conic_assimp_send_failure(&w, strstr(aiGetErrorString(), "bad_alloc")
                                       ? "it takes more memory than a file of its size should"
                                       : aiGetErrorString());
+  _exit(0);
 }
 
 #define TEXT_OF(x) #x

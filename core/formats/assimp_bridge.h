@@ -53,8 +53,8 @@ typedef struct conic_assimp_request {
 typedef struct conic_assimp_bridge_functions {
   const char *version; /* as of every module (core/base/module.h) */
 
-  /* Reads the file and writes the records; for a process that ends afterwards. */
-  void (*read)(const conic_assimp_request *request);
+  /* Reads the file and writes the records, and ends the process, which should be one of its own. */
+  void (*read)(conic_assimp_request *request);
 } conic_assimp_bridge_functions;
 
 #endif

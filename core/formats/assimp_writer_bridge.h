@@ -17,6 +17,10 @@ typedef struct conic_assimp_writer {
   int is_failed;
 } conic_assimp_writer;
 
+/* Makes the process one for this file alone: it says nothing, ends with its parent, takes no more memory and time than
+ * a file of that size should, and dies of what it does wrong. */
+void conic_assimp_settle(conic_assimp_request *request);
+
 void conic_assimp_send_bytes(conic_assimp_writer *w, const void *bytes, size_t n_bytes);
 /* A record about bytes, and those. */
 void conic_assimp_send(conic_assimp_writer *w, conic_assimp_record record, const void *bytes, size_t n_bytes);
