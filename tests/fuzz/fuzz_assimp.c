@@ -1,4 +1,4 @@
-#include "core/formats/assimp_kinds.h"
+#include "core/assimp/assimp_kinds.h"
 #include "tests/fuzz/fuzz.h"
 
 /* Files of any kind of Assimp's, which reads them in a process that may break down. */

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_read.h"
+#include "core/assimp/assimp_read.h"
 #include "tests/fuzz/fuzz.h"
 
 /* What the process that reads a file writes, were it to write anything. */

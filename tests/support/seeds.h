@@ -2,7 +2,7 @@
 #ifndef CONIC_SEEDS_H
 #define CONIC_SEEDS_H
 
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
 #include "tests/support/mesh_file.h"

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_process.h"
+#include "core/assimp/assimp_process.h"
 
 #include <errno.h>
 #include <fcntl.h>

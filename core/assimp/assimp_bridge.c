@@ -1,5 +1,5 @@
 /* What Assimp has read, as records: the scene's meshes where their nodes place them. */
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -10,7 +10,7 @@
 
 #include "conic/export.h"
 #include "conic/version.h"
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
 enum { BLOCK = 1024 };
 

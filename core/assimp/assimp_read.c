@@ -1,15 +1,15 @@
-#include "core/formats/assimp_read.h"
+#include "core/assimp/assimp_read.h"
 
 #include <stdio.h>
 #include <string.h>
 
+#include "core/assimp/assimp_kinds.h"
+#include "core/assimp/assimp_material.h"
+#include "core/assimp/assimp_part.h"
+#include "core/assimp/assimp_process.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/module.h"
-#include "core/formats/assimp_kinds.h"
-#include "core/formats/assimp_material.h"
-#include "core/formats/assimp_part.h"
-#include "core/formats/assimp_process.h"
 
 static const char module[] = "conic-assimp.so";
 

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_part.h"
+#include "core/assimp/assimp_part.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
 enum { BLOCK = 1024 };
 

@@ -5,7 +5,7 @@
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
 
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 
 typedef struct conic_assimp_writer {
   const conic_assimp_request *request;

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_kinds.h"
+#include "core/assimp/assimp_kinds.h"
 
 #include <string.h>
 

@@ -3,8 +3,8 @@
 #define CONIC_ASSIMP_READ_H
 
 #include "conic/model.h"
+#include "core/assimp/assimp_process.h"
 #include "core/files/input.h"
-#include "core/formats/assimp_process.h"
 
 /* Whether there is the module that leads to Assimp. */
 int conic_assimp_is_there(void);

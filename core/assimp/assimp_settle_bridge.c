@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
 /* What any file may take beyond what it takes by its size. */
 static const uint64_t least_memory_bytes = UINT64_C(2) << 30, least_seconds = 60;
