@@ -97,7 +97,7 @@ static void send_coordinates(conic_assimp_writer *w, const struct aiMesh *mesh, 
 
 static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
   float block[BLOCK][3];
-  int may_be_unset = strcmp(w->ending, "amf") == 0; /* there transparent black is no colour at all */
+  int may_be_unset = strcmp(w->request->ending, "amf") == 0; /* there transparent black is no colour at all */
   for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
     m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
     for (unsigned i = 0; i < m; i++) {
@@ -148,7 +148,8 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
                                 .n_vertices = mesh->mNumVertices,
                                 .n_triangles = n_triangles,
                                 .i_material = w->request->keeps_faces ? conic_assimp_material(w, mesh) : UINT32_MAX};
-  int has_normals = mesh->mNormals && strcmp(w->ending, "stl") != 0; /* there the faces' own, and seldom right */
+  int has_normals =
+      mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* there the faces' own, and seldom right */
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
                   (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
@@ -183,13 +184,13 @@ static int find_number(const struct aiMetadata *data, const char *key, int none)
 static void find_up(const conic_assimp_writer *w, double up[3]) {
   static const char *const z_up[] = {"stl", "3mf", "amf"};
   int axis = 1;
-  if (strcmp(w->ending, "off") == 0)
+  if (strcmp(w->request->ending, "off") == 0)
     return;
   for (size_t i = 0; i < sizeof z_up / sizeof z_up[0]; i++)
-    if (strcmp(w->ending, z_up[i]) == 0)
+    if (strcmp(w->request->ending, z_up[i]) == 0)
       axis = 2;
   double sign = 1.0;
-  if (strcmp(w->ending, "fbx") == 0) {
+  if (strcmp(w->request->ending, "fbx") == 0) {
     axis = find_number(w->scene->mMetaData, "UpAxis", 1);
     sign = find_number(w->scene->mMetaData, "UpAxisSign", 1) < 0 ? -1.0 : 1.0;
   }
@@ -218,7 +219,7 @@ static void send_scene(conic_assimp_writer *w) {
 
 static void read_model(conic_assimp_request *request) {
   conic_assimp_settle(request);
-  conic_assimp_writer w = {.request = request, .ending = strrchr(request->name, '.') + 1};
+  conic_assimp_writer w = {.request = request};
   struct aiFileIO io = conic_assimp_files(&w);
   struct aiPropertyStore *properties = aiCreatePropertyStore();
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, 0);

@@ -40,7 +40,8 @@ typedef struct conic_assimp_record {
 } conic_assimp_record;
 
 typedef struct conic_assimp_request {
-  const char *name; /* "model.ENDING"; the ending says who reads it */
+  const char *name;   /* of the file, without a folder: for messages of Assimp's */
+  const char *ending; /* that of the name, in lower case, which says who reads it */
   const unsigned char *bytes;
   size_t n_bytes;
   size_t folder_length; /* what it names besides is looked for in here, "…/" or "", and below */

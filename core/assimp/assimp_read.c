@@ -10,6 +10,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/module.h"
+#include "core/files/file.h"
 
 static const char module[] = "conic-assimp.so";
 
@@ -139,17 +140,37 @@ conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_pr
   return status;
 }
 
+/* Texts of which Assimp reads what there is: the word that the last bytes have. */
+static void warn_if_cut(const conic_input *input, conic_model_kind kind, const whole_file *file) {
+  static const struct {
+    conic_model_kind kind;
+    const char *start, *end;
+  } texts[] = {{CONIC_MODEL_STL, "solid", "endsolid"}, {CONIC_MODEL_DXF, "", "EOF"}};
+  size_t i = 0, n_last = file->n_bytes < 300 ? file->n_bytes : 300;
+  while (i < sizeof texts / sizeof *texts && texts[i].kind != kind)
+    i++;
+  if (i == sizeof texts / sizeof *texts || conic_assimp_is_binary(file->bytes, file->n_bytes) ||
+      !conic_assimp_has_text(file->bytes, n_last, texts[i].start) ||
+      conic_assimp_has_text(file->bytes + file->n_bytes - n_last, n_last, texts[i].end))
+    return;
+  conic_log(input->context, CONIC_LOG_WARNING, "%s: the file ends without %s: only a part of it may be there",
+            input->name, texts[i].end);
+}
+
 static conic_status start(const conic_input *input, const conic_assimp_bridge_functions *bridge, conic_model_kind kind,
                           const conic_read_options *options, const whole_file *file, conic_assimp_process *process) {
-  char name[32];
-  const char *slash = strrchr(input->name, '/');
-  snprintf(name, sizeof name, "model.%s", conic_model_kind_name(kind));
-  conic_assimp_request request = {.name = name,
+  char made[16];
+  const char *ending = conic_model_kind_name(kind), *slash = strrchr(input->name, '/');
+  const char *name = slash ? slash + 1 : input->name;
+  snprintf(made, sizeof made, "model.%s", ending);
+  conic_assimp_request request = {.name = conic_file_has_ending(name, ending) ? name : made,
+                                  .ending = ending,
                                   .bytes = file->bytes,
                                   .n_bytes = file->n_bytes,
                                   .folder = input->name,
                                   .folder_length = slash ? (size_t)(slash + 1 - input->name) : 0,
                                   .keeps_faces = options->keeps_faces};
+  warn_if_cut(input, kind, file);
   return conic_assimp_process_start(input->context, input->name, bridge, request, process);
 }
 

@@ -9,7 +9,6 @@
 
 typedef struct conic_assimp_writer {
   const conic_assimp_request *request;
-  const char *ending; /* of the name, behind its dot */
   const struct aiScene *scene;
   int64_t *sent; /* of each material, which record it was; -1: not sent */
   uint32_t n_sent;
