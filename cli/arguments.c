@@ -44,7 +44,7 @@ static int parse_decimal(const char *text, const char **end, double *number) {
   return stop != text && *number - *number == 0.0;
 }
 
-static int parse_number(const char *text, double *number) {
+int cli_parse_number(const char *text, double *number) {
   const char *end;
   return parse_decimal(text, &end, number) && *end == '\0';
 }
@@ -165,7 +165,7 @@ static int store_value(const cli_session *session, const cli_option *option, con
     is_in_range = is_understood && is_within_limits(option, (double)*(unsigned long long *)option->value);
     break;
   case CLI_NUMBER:
-    is_understood = parse_number(text, option->value);
+    is_understood = cli_parse_number(text, option->value);
     is_in_range = is_understood && is_within_limits(option, *(double *)option->value);
     break;
   case CLI_TEXT:

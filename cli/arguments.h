@@ -48,6 +48,9 @@ int cli_parse_length(const char *text, void *length);
 /* Parses a count as CLI_COUNT does: 100000, 10k, 2M, 1e6; 0 where it is none. */
 int cli_parse_count(const char *text, unsigned long long *value);
 
+/* Parses a decimal number whole; 0 where it is none. */
+int cli_parse_number(const char *text, double *number);
+
 /* Parses "X,Y,Z" whole; 0 where it is not. */
 int cli_parse_vector(const char *text, double vector[3]);
 

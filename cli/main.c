@@ -45,7 +45,8 @@ static void print_usage(FILE *to) {
 static int help(int argc, char **argv) {
   if (argc < 2 || strcmp(argv[1], "help") == 0 || argv[1][0] == '-') {
     print_usage(stdout);
-    fputs("\nexit codes:\n"
+    fputs("\nreads: " CLI_READABLE "\n"
+          "\nexit codes:\n"
           "  0  done\n"
           "  1  compared and different\n"
           "  2  wrong usage\n"

@@ -66,8 +66,9 @@ char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame) {
   char *name = malloc(room);
   if (!name)
     return NULL;
-  const char *pattern = job->is_turntable ? find_pattern(path, &length, &width) : NULL;
-  if (!job->is_turntable)
+  int is_numbered = job->is_turntable && strcmp(path, "-") != 0; /* there one comes after the other */
+  const char *pattern = is_numbered ? find_pattern(path, &length, &width) : NULL;
+  if (!is_numbered)
     snprintf(name, room, "%s", path);
   else if (pattern)
     snprintf(name, room, "%.*s%0*d%s", (int)(pattern - path), path, width, i_frame + 1, pattern + length);

@@ -13,6 +13,7 @@
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
@@ -34,6 +35,7 @@ void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
   conic_faces_destroy(context, model->faces);
+  conic_memory_release(context, model->fields);
   memset(model, 0, sizeof *model);
 }
 
@@ -100,7 +102,7 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_OBJ;
   else if ((foreign = conic_foreign_kind_find(path, bytes, n, 0)))
     return refuse(input, foreign);
-  else if (is_text_name(path) || conic_xyz_is_likely(bytes, n))
+  else if (!memchr(bytes, 0, n) && (is_text_name(path) || conic_xyz_is_likely(bytes, n)))
     *kind = CONIC_MODEL_XYZ;
   else
     return refuse(input, NULL);
@@ -108,7 +110,9 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
 }
 
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  conic_status status = conic_input_skip_mark(input);
+  if (status == CONIC_OK)
+    status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
   return status == CONIC_OK ? find_kind(input, path, kind) : status;
 }
 
@@ -123,17 +127,17 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, delivery, model);
+    status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, delivery, model);
+    status = conic_las_read(input, options, delivery, model);
     model->up[2] = 1.0;
     break;
   default:
     status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
-  return status;
+  return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }
 
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,

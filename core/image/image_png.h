@@ -1,7 +1,7 @@
 /* PNG files through libpng. A build without it leaves them to OpenImageIO, which gives the same samples.
  *
- * Written: rgba, 8 bits, sRGB-encoded and said to be so, the colour divided by alpha. Read: any kind; grey, palettes and
- * transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
+ * Written: rgba, 8 bits, sRGB-encoded and said to be so, the colour divided by alpha. Read: any kind; grey, palettes
+ * and transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
 #ifndef CONIC_IMAGE_PNG_H
 #define CONIC_IMAGE_PNG_H
 

@@ -35,13 +35,14 @@ typedef enum conic_bridge_result {
 typedef struct conic_bridge {
   const char *version; /* as of every module (core/base/module.h) */
 
-  /* Who writes files whose name ends as PATH's. */
-  conic_bridge_result (*find_writer)(const char *path, conic_bridge_writer *writer, char message[CONIC_BRIDGE_MESSAGE]);
+  /* Who writes files with this ending. */
+  conic_bridge_result (*find_writer)(const char *ending, conic_bridge_writer *writer,
+                                     char message[CONIC_BRIDGE_MESSAGE]);
 
-  /* Encodes `samples` (row by row, channels side by side, colour sRGB-encoded unless they are floats) as a file of
-   * PATH's ending, and hands its bytes to `take`, which returns 0 to stop. Formats that only write to a file of their
+  /* Encodes `samples` (row by row, channels side by side, colour sRGB-encoded unless they are floats) as a file of a
+   * writer's format, and hands its bytes to `take`, which returns 0 to stop. Formats that only write to a file of their
    * own fail. */
-  conic_bridge_result (*write)(const char *path, const conic_bridge_picture *picture, const void *samples,
+  conic_bridge_result (*write)(const char *format, const conic_bridge_picture *picture, const void *samples,
                                int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie,
                                char message[CONIC_BRIDGE_MESSAGE]);
 

@@ -157,7 +157,7 @@ static void set_turns(const conic_framing *framing, size_t n_turns, const double
 /* The side that does not decide is narrowed until it touches as well: only then the outline is in the middle. */
 static conic_status find_eye(conic_context *context, const conic_framing *framing, size_t n_turns, double least_gap,
                              reach *r, stand *found) {
-  enum { N_ROUNDS = 4 };
+  enum { N_ROUNDS = 6 };
   double part = CONIC_FRAMING_PART, greatest = 0.0;
   double tangents[2] = {part * conic_framing_tangent(framing, framing->width),
                         part * conic_framing_tangent(framing, framing->height)};

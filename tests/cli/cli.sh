@@ -75,11 +75,11 @@ for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|
   run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
 done
 # What cannot be written is said before anything is read
-run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'standard output' render absent.ply -o - -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
 run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
 run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
-run_wrong 2 'a lone Z' render absent.ply -o outputs/a.pfm --aov Z,N
+run_wrong 2 'no output holds the plane Z' render absent.ply -o outputs/a.png --aov rgba,Z
 run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
 run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
 run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
@@ -210,6 +210,14 @@ for command in 'make torus -n 2000 -o told.ply' 'prepare a.ply -o told.ply' 'oct
   # shellcheck disable=SC2086
   run 0 $command
   [[ ! -s err ]] || fail "conic $command: not silent: $(cat err)"
+done
+# What makes points of a mesh says so
+for command in 'prepare square.obj -o told.ply' 'octree square.obj -o told.cot' 'layer square.obj -o told.lpc'; do
+  [[ $command == layer* && $has_zstd -eq 0 ]] && continue
+  # shellcheck disable=SC2086
+  run 0 $command
+  grep -q '^conic: warning: square.obj: .* 2 faces are left out; conic render --as mesh' err ||
+    fail "conic $command loses faces in silence: $(cat err)"
 done
 printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n1 1 0\nnan 0 0\n' > odd.xyz
 for command in 'prepare -o told.ply' 'octree -o told.cot' 'render --size 64x48 -o told.pfm'; do

@@ -14,7 +14,7 @@ typedef struct seed {
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
-  int is_text; /* what is left of it when it is cut may still be sound */
+  int may_be_cut; /* what is left of it may be sound */
 } seed;
 
 enum { SEEDS_ROOM = 96 };
@@ -24,13 +24,13 @@ typedef struct seed_set {
   int n;
 } seed_set;
 
-static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int is_text, const void *bytes,
+static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int may_be_cut, const void *bytes,
                               size_t n_bytes) {
   seed *added = &set->seeds[set->n++];
   if (set->n > SEEDS_ROOM)
     exit(1);
   added->target = target;
-  added->is_text = is_text;
+  added->may_be_cut = may_be_cut;
   snprintf(added->name, sizeof added->name, "%02d.%s", set->n, ending);
   added->n_bytes = n_bytes;
   added->bytes = malloc(n_bytes + 1);
@@ -162,14 +162,14 @@ static inline void seeds_all_text(seed_set *set) {
 }
 
 static inline void seeds_all_las(seed_set *set) {
-  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}};
+  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}, {3, 4}, {3, 5}, {4, 10}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     las_file file = las_begin(kinds[i][0], kinds[i][1], 3, i);
     las_set_scale(&file, 0.01, 589500.0, 231300.0, 0.0);
     las_set_point(&file, 1, 100, -200, 300);
-    if (kinds[i][1] == 3 || kinds[i][1] == 2 || kinds[i][1] > 6)
+    if (kinds[i][1] == 2 || kinds[i][1] == 3 || kinds[i][1] == 5 || kinds[i][1] > 6)
       las_set_color(&file, 2, 255, 128, i == 2 ? 65535 : 7);
-    seeds_add(set, "las", "las", 0, file.bytes, file.n_bytes);
+    seeds_add(set, "las", "las", 1, file.bytes, file.n_bytes);
     free(file.bytes);
   }
 }
