@@ -1,5 +1,6 @@
-#include "core/assimp/assimp_kinds.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "core/assimp/assimp_kinds.h"
 
 /* Files of any kind of Assimp's, which reads them in a process that may break down. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {

@@ -1,5 +1,6 @@
-#include "core/assimp/assimp_read.h"
 #include "tests/fuzz/fuzz.h"
+
+#include "core/assimp/assimp_read.h"
 
 /* What the process that reads a file writes, were it to write anything. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
