@@ -12,7 +12,7 @@
 #include "conic/version.h"
 #include "core/assimp/assimp_writer_bridge.h"
 
-enum { BLOCK = 1024 };
+enum { BLOCK = 1024, MOST_NOTES = 4 };
 
 /* Rows of world from mesh, in double; and of what turns normals. */
 typedef struct placement {
@@ -217,22 +217,48 @@ static void send_scene(conic_assimp_writer *w) {
   free(w->sent);
 }
 
-static void read_model(conic_assimp_request *request) {
-  conic_assimp_settle(request);
-  conic_assimp_writer w = {.request = request};
-  struct aiFileIO io = conic_assimp_files(&w);
+/* Of all that Assimp says, what tells that something of the file is left out; and what may not be. */
+static void hear(const char *message, char *cookie) {
+  static const char *const told[] = {"drop", "nvalid", "incorrect", "unexpected", "empty", "unknown type: 3D/Objects/"};
+  conic_assimp_writer *w = (conic_assimp_writer *)cookie;
+  const char *text = strstr(message, ": ");
+  if (strncmp(message, "Warn", 4) != 0 || !text)
+    return;
+  text += 2;
+  if (strstr(text, "out-of-range")) {
+    w->why_refused = "a face's index is out of range";
+    return;
+  }
+  for (size_t i = 0; i < sizeof told / sizeof told[0] && w->n_notes < MOST_NOTES; i++)
+    if (strstr(text, told[i])) {
+      conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_NOTE}, text, strlen(text));
+      w->n_notes++;
+      break;
+    }
+}
+
+static const struct aiScene *import(conic_assimp_writer *w) {
+  struct aiFileIO io = conic_assimp_files(w);
+  struct aiLogStream stream = {hear, (char *)w};
   struct aiPropertyStore *properties = aiCreatePropertyStore();
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, 0);
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, 0);
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-  w.scene =
-      aiImportFileExWithProperties(request->name, aiProcess_Triangulate | aiProcess_TransformUVCoords, &io, properties);
-  if (w.scene)
+  aiAttachLogStream(&stream);
+  return aiImportFileExWithProperties(w->request->name, aiProcess_Triangulate | aiProcess_TransformUVCoords, &io,
+                                      properties);
+}
+
+static void read_model(conic_assimp_request *request) {
+  conic_assimp_settle(request);
+  conic_assimp_writer w = {.request = request};
+  w.scene = import(&w);
+  const char *why = w.why_refused ? w.why_refused : aiGetErrorString();
+  if (w.scene && !w.why_refused)
     send_scene(&w);
   else
-    conic_assimp_send_failure(&w, strstr(aiGetErrorString(), "bad_alloc")
-                                      ? "it takes more memory than a file of its size should"
-                                      : aiGetErrorString());
+    conic_assimp_send_failure(&w,
+                              strstr(why, "bad_alloc") ? "it takes more memory than a file of its size should" : why);
   _exit(0);
 }
 

@@ -14,7 +14,8 @@ typedef enum conic_assimp_record_type {
   CONIC_ASSIMP_PART = 2,     /* vertices, and triangles between them; points where there are none */
   CONIC_ASSIMP_OPENED = 3,   /* n_bytes: the path of a file that was read besides */
   CONIC_ASSIMP_FAILED = 4,   /* n_bytes: why; the last */
-  CONIC_ASSIMP_END = 5       /* all is read; the last */
+  CONIC_ASSIMP_END = 5,      /* all is read; the last */
+  CONIC_ASSIMP_NOTE = 6      /* n_bytes: what a user should know of the file */
 } conic_assimp_record_type;
 
 /* What of a material's picture follows. */

@@ -93,6 +93,14 @@ static conic_status fail_as_told(assimp_reader *reader, const conic_assimp_recor
                     text[0] ? text : "Assimp gives no reason");
 }
 
+static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_record *record) {
+  char text[LONGEST_TEXT];
+  conic_status status = take_text(reader, record, text);
+  if (status == CONIC_OK)
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: Assimp says: %.200s", reader->input->name, text);
+  return status;
+}
+
 /* A file that was read besides. */
 static conic_status note_opened(assimp_reader *reader, const conic_assimp_record *record) {
   char path[LONGEST_TEXT];
@@ -104,7 +112,8 @@ static conic_status take_end(assimp_reader *reader, const conic_assimp_record *r
   memcpy(model->up, record->up, sizeof model->up);
   if (model->points.count == 0)
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: Assimp finds neither a face nor a point in the file", reader->input->name);
+                      "%s: Assimp finds neither faces nor points in the file (lines are not drawn)",
+                      reader->input->name);
   return conic_assimp_parts_end(&reader->parts);
 }
 
@@ -116,6 +125,8 @@ static conic_status take_record(assimp_reader *reader, const conic_assimp_record
     return conic_assimp_take_part(reader->process, record, &reader->parts);
   case CONIC_ASSIMP_OPENED:
     return note_opened(reader, record);
+  case CONIC_ASSIMP_NOTE:
+    return pass_note_on(reader, record);
   case CONIC_ASSIMP_FAILED:
     return fail_as_told(reader, record);
   case CONIC_ASSIMP_END:

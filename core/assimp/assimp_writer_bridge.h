@@ -13,7 +13,8 @@ typedef struct conic_assimp_writer {
   int64_t *sent; /* of each material, which record it was; -1: not sent */
   uint32_t n_sent;
   int has_triangles;
-  int is_failed;
+  int is_failed, n_notes;
+  const char *why_refused; /* null: it is not */
 } conic_assimp_writer;
 
 /* Makes the process one for this file alone: it says nothing, ends with its parent, takes no more memory and time than

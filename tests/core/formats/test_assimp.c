@@ -275,6 +275,12 @@ static void test_refused(void) {
   check_refused("a.stl", "\0\0\0", 3, "cannot read: ");
   check_refused("a.fbx", "rubbish", 7, "cannot read: ");
   check_refused("a.gltf", nothing, sizeof nothing - 1, "a.gltf: ");
+  file.n = 0;
+  mesh_glb(&file);
+  for (size_t i = 0; i + sizeof mesh_faces <= file.n; i++)
+    if (memcmp(file.bytes + i, mesh_faces, sizeof mesh_faces) == 0)
+      file.bytes[i] = 4;
+  check_refused("a.glb", file.bytes, file.n, "index is out of range");
   for (int i = 0; i < MESH_N_KINDS; i++) { /* none of these is whole when its second half is missing */
     file.n = 0;
     mesh_kinds[i].make(&file);
