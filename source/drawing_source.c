@@ -100,6 +100,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   reading.cutoff = options->cutoff;
   reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH;
+  conic_coloring_read(options->coloring, &reading);
   conic_status status = conic_model_read(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;
@@ -124,6 +125,11 @@ static conic_status read_into_drawing(drawing_source *d, const char *path, const
   conic_splats splats;
   if (!special || !special->take_splats)
     return read_model(d, path, options, up);
+  conic_read_options reading;
+  conic_read_options_init(&reading);
+  conic_coloring_read(options->coloring, &reading);
+  if (reading.field && !reading.field_is_optional)
+    return conic_coloring_refuse(d->base.context, path, options);
   conic_status status = conic_source_open_kind(d->base.context, special, &path, 1, options, &part);
   if (status != CONIC_OK)
     return status;
@@ -215,6 +221,8 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
     memcpy(scale->up, up, sizeof up);
     scale->up_basis = CONIC_UP_KIND;
   }
+  if (status == CONIC_OK)
+    status = conic_source_color(source, options, &d->splats, &d->triangles);
   return status == CONIC_OK ? measure_drawing(d) : status;
 }
 

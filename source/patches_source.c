@@ -48,6 +48,7 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   unsigned abilities = source->scale.abilities;
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
+  source->coloring = p->points->coloring;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;

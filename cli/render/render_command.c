@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "core/base/message.h"
 
@@ -79,7 +80,7 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_planes_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -183,7 +184,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   describe(job, &camera, image);
-  status = write_frame(session, job, image, i_frame);
+  status = cli_legend_show(session, job, image);
+  if (status == CONIC_OK)
+    status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -224,9 +227,9 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 
 /* What cannot be written is said before anything is read. */
 static conic_status check_formats(cli_session *session, const cli_render_job *job) {
-  const char *const maps[] = {job->overdraw_path, job->clusters_path};
+  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
   conic_status status = cli_planes_check_formats(session, job);
-  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+  for (int i = 0; i < 3 && status == CONIC_OK; i++)
     if (maps[i])
       status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;

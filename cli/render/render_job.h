@@ -8,6 +8,12 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+/* A gradient from top to bottom, in linear colours (cli/render/backdrop.h). */
+typedef struct cli_backdrop {
+  int is_given;
+  float top[3], bottom[3];
+} cli_backdrop;
+
 /* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
 typedef struct cli_frames {
   int first, last, step;
@@ -22,12 +28,16 @@ typedef struct cli_render_job {
   const char *deep_path;        /* --deep; null: none */
   const char *overdraw_path;    /* --overdraw; null: none */
   const char *clusters_path;    /* --clusters; null: none */
+  const char *legend_path;      /* --legend-out; null: none */
+  int has_legend;               /* --legend: in the picture */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
   conic_framing framing;
   int is_up_given;
-  int is_plain;                                /* --plain: nothing is chosen by what looks best */
+  int is_plain; /* --plain: nothing is chosen by what looks best */
+  int is_background_given;
+  cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
   int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
@@ -38,6 +48,7 @@ typedef struct cli_render_job {
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given;
   unsigned asked_planes;        /* of these, what --aov names */
+  unsigned unwritten_planes;    /* drawn for what else is written */
   conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
   int is_exposure_automatic;    /* until it is found */
@@ -53,9 +64,10 @@ typedef struct cli_render_job {
   conic_source_options opening;
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
-  int is_for_looking; /* the command makes pictures, several samples a pixel unless said otherwise */
-  int may_stream;     /* the command draws without having to know what */
-  unsigned abilities; /* what the source can do, bits of conic_source_ability; known before it is open */
+  conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
+  int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
+  int may_stream;                  /* the command draws without having to know what */
+  unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;
   conic_source *source;
 
@@ -115,6 +127,9 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
+
+/* --legend, --legend-out: what the colours mean, over the image and by itself. */
+conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
 
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);

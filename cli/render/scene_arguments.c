@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/color_options.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
@@ -34,6 +36,8 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->view);
+  conic_coloring_options_init(&job->coloring);
+  job->coloring.by = NULL;
   job->opening.patches = &job->patches;
   job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
@@ -104,6 +108,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
       {"budget", CLI_COUNT, &job->budget, "N",
@@ -140,7 +145,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
        .parse = cli_parse_sky},
-      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+      {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "linear colour behind, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, else none]",
        .parse = cli_parse_background},
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",

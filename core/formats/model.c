@@ -2,18 +2,19 @@
 
 #include <string.h>
 
+#include "core/assimp/assimp_kinds.h"
+#include "core/assimp/assimp_read.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
-#include "core/formats/assimp_kinds.h"
-#include "core/formats/assimp_read.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
 #include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
@@ -35,6 +36,7 @@ void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
   conic_faces_destroy(context, model->faces);
+  conic_memory_release(context, model->fields);
   memset(model, 0, sizeof *model);
 }
 
@@ -131,7 +133,7 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, delivery, model);
+    status = conic_las_read(input, options, delivery, model);
     model->up[2] = 1.0;
     break;
   case CONIC_MODEL_PCD:
@@ -141,7 +143,7 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
-  return status;
+  return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }
 
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
