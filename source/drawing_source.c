@@ -4,6 +4,7 @@
 #include "core/base/clock.h"
 #include "core/base/message.h"
 #include "core/splats/columns.h"
+#include "core/splats/estimate.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -54,6 +55,9 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options_init(&estimate);
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
+  estimate.stays_at_mesh = 1;
+  if (model->n_triangles && !model->points.tangent_u[0])
+    d->base.tolerance = conic_mesh_tolerance(&model->points);
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;

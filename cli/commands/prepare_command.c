@@ -54,6 +54,7 @@ static conic_status thin_model(prepare_job *job) {
   if (model->n_triangles || model->points.tangent_u[0]) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
+    plain.stays_at_mesh = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -135,6 +136,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_prepared, tell_prepared, report_prepared, release_prepared};
   prepare_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
+  job.estimate.stays_at_mesh = 1;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,

@@ -88,9 +88,14 @@ typedef struct conic_estimate_options {
   /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
    * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
   double feature_angle_deg;
+
+  /* Splats of a mesh stay at it, to less than anybody would see: where a vertex's would not, the vertex becomes a splat
+   * for each of its triangles. Vertices of no triangle, if they are less than a tenth, are leftovers and get no splat.
+   * With creases all of this is so anyway. */
+  int stays_at_mesh;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases. */
+/* 20 neighbours, cutoff 1.5, no creases, a splat a vertex. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 
