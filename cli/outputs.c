@@ -92,8 +92,9 @@ int cli_check_inputs_stay(const cli_session *session, const char *const *inputs,
 }
 
 int cli_check_ending(const char *path, const char *ending) {
-  static const char *const known[] = {"ply", "obj", "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy",
-                                      "exr", "png", "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
+  static const char *const known[] = {"ply", "obj",  "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy", "stl",
+                                      "off", "gltf", "glb", "3mf",  "dae", "fbx",  "3ds", "x3d", "dxf", "amf",
+                                      "exr", "png",  "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
   const char *slash = path ? strrchr(path, '/') : NULL, *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
   if (!dot || strcasecmp(dot + 1, ending) == 0)
     return CLI_DONE;

@@ -12,6 +12,7 @@ typedef struct cli_session {
   const char *command; /* the sub-command's name */
   int threads;         /* --threads; 0: all */
   int is_quiet, is_verbose;
+  int has_bar;           /* there is a terminal that can show one, and it is wanted */
   const char *json_path; /* --json; null: none */
   char task[32];         /* what the progress bar is about; empty: nothing yet */
   double task_seconds;   /* when that began */
@@ -43,6 +44,12 @@ int cli_error(int exit_code, const char *format, ...) __attribute__((format(prin
 
 /* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
 void cli_note(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Prints "conic: warning: …" unless the session is quiet. */
+void cli_warn(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The exit code of the program where a command's is `exit_code`: 128 and the signal's number where one has stopped it.
+ */
+int cli_exit_after_signals(int exit_code);
 
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);

@@ -48,6 +48,7 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   unsigned abilities = source->scale.abilities;
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
+  source->coloring = p->points->coloring;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;
@@ -90,6 +91,12 @@ static void tell_patches_primitives(const conic_source *source, conic_facts *fac
   CONIC_ADD_FACTS(facts, CONIC_COUNT("patches", selection->n_patches), CONIC_COUNT("samples", selection->n_samples));
 }
 
+static void tell_patches_rest(const conic_source *source, conic_facts *facts) {
+  const conic_source *points = ((const patches_source *)source)->points;
+  if (points->kind->tell_rest)
+    points->kind->tell_rest(points, facts);
+}
+
 const conic_source_kind conic_source_kind_patches = {
     .size = sizeof(patches_source),
     .company = CONIC_SOURCE_MANY,
@@ -101,4 +108,5 @@ const conic_source_kind conic_source_kind_patches = {
     .name_image = name_patches_image,
     .name_splat = name_patches_splat,
     .tell_primitives = tell_patches_primitives,
+    .tell_rest = tell_patches_rest,
 };

@@ -106,6 +106,8 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
   const conic_source_kind *kind = find_kind(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself, and made of one mesh", paths[0]);
+  if (conic_coloring_is_asked(&own) && (kind == &conic_source_kind_octree || kind == &conic_source_kind_layers))
+    return conic_coloring_refuse(context, paths[0], &own);
   return conic_source_open_kind(context, kind, paths, n_paths, &own, source);
 }
 

@@ -27,6 +27,14 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
   return cli_build_check(build, &build->input, 1, ending, may_replace);
 }
 
+void cli_build_hint_faces(const cli_build *build, const conic_model *model) {
+  if (model->n_triangles)
+    cli_warn(build->session,
+             "%s: the vertices become splats, and its %zu faces are left out; conic render --as mesh and conic hybrid "
+             "draw faces",
+             build->input, model->n_triangles);
+}
+
 static int count_stages(const cli_build *build) {
   int n = 0;
   while (n < (int)(sizeof build->stages / sizeof *build->stages) && build->stages[n].name)
@@ -76,6 +84,7 @@ void cli_build_report_seconds(cli_json *json, const cli_build *build, const char
     const cli_stage *stage = &build->stages[i];
     cli_json_number(json, stage->key ? stage->key : stage->name, stage->seconds > 0.0 ? stage->seconds : 0.0);
   }
+  cli_json_number(json, "other", cli_other_seconds(build->stages, count_stages(build), build->total_seconds));
   cli_json_number(json, "total", build->total_seconds);
   cli_json_close(json);
   cli_json_number(json, rate_key, rate);

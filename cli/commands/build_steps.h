@@ -32,6 +32,9 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending,
                     int may_replace);
 
+/* Warns where the input is a mesh, of which the output will only hold what stands for the vertices. */
+void cli_build_hint_faces(const cli_build *build, const conic_model *model);
+
 /* Opens the session, makes the file, says so, and writes --json; nothing where `parsed`, which cli_build_parse
  * returned, is not CLI_DONE. Returns the exit code. */
 int cli_build_run(void *job, const cli_build_steps *steps, int parsed);

@@ -58,6 +58,7 @@ static conic_status read_points(mls_job *job) {
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
   double low[3], high[3];
   job->n_in = points->count;

@@ -25,7 +25,7 @@ static conic_status write_progress(cli_session *session, const cli_render_job *j
   int length = snprintf(path, sizeof path, "%s/%04d.exr", job->progressive_path, i_picture);
   if (length < 0 || (size_t)length >= sizeof path)
     return CONIC_ERROR_IO;
-  return conic_image_write(session->context, path, image);
+  return conic_image_write_as(session->context, path, image, &job->writing);
 }
 
 static conic_status make_folder(const char *path) {

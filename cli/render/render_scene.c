@@ -3,7 +3,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
+#include "cli/render/lights.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -55,7 +56,7 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
                                         [CONIC_UP_OPEN] = "as its surface is open below",
                                         [CONIC_UP_BASE] = "as it stands on a flat base",
                                         [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
-  if (job->is_plain || job->is_up_given || job->camera_path)
+  if (job->is_plain || job->is_up_given || (job->camera_path && !job->is_turntable))
     return CONIC_OK;
   conic_status status = conic_source_stand(job->source);
   const char *reason = reasons[conic_source_measure(job->source)->up_basis];
@@ -71,7 +72,13 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
-  return status == CONIC_OK ? stand_upright(session, job) : status;
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = stand_upright(session, job);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    cli_lights_settle(job);
+  return status;
 }
 
 void cli_scene_release(cli_render_job *job) {
@@ -83,6 +90,7 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   conic_framing framing = job->framing;
   if (job->camera_path) {
     *camera = job->camera;
+    cli_frame_orbit(job, i_frame, camera);
     return CONIC_OK;
   }
   if (!job->is_up_given)

@@ -23,7 +23,7 @@ typedef struct facing_work {
 size_t conic_splats_count_dots(const conic_splats *splats) {
   size_t n = 0;
   for (size_t i = 0; splats->dot && i < splats->count; i++)
-    n += conic_column_at(splats->dot, splats->dot_stride, i) != 0.0f;
+    n += conic_column_at(splats->dot, splats->strides.dot, i) != 0.0f;
   return n;
 }
 
@@ -92,7 +92,7 @@ static void face_chunk(void *data, size_t i_item, int i_thread) {
   size_t begin = i_item * CHUNK, end = begin + CHUNK < splats->count ? begin + CHUNK : splats->count;
   (void)i_thread;
   for (size_t i = begin; i < end; i++)
-    if (conic_column_at(splats->dot, splats->dot_stride, i) != 0.0f)
+    if (conic_column_at(splats->dot, splats->strides.dot, i) != 0.0f)
       face_dot(work, i);
 }
 

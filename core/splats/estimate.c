@@ -3,6 +3,7 @@
 #include "core/splats/estimate.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
+#include "core/splats/degrees.h"
 
 #include <math.h>
 #include <string.h>
@@ -305,6 +306,7 @@ static conic_status estimate_sharp_points(conic_context *context, const conic_es
                                           conic_model *model, conic_repairs *repairs) {
   conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
   memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  memcpy(copy.up, model->up, sizeof copy.up);
   conic_status status = conic_splats_append(context, &copy.points, &model->points);
   if (status == CONIC_OK)
     status = estimate_plain(context, options, &copy, repairs);
@@ -333,6 +335,10 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   conic_status status = conic_splats_check_own(context, "estimate", &model->points);
   if (status != CONIC_OK)
     return status;
+  if (model->n_triangles == 0 && !model->points.tangent_u[0] && conic_points_are_degrees(&model->points))
+    conic_log(context, CONIC_LOG_WARNING,
+              "x and y are degrees of longitude and latitude, beside heights in metres: what becomes of them is a "
+              "needle; reproject them, as pdal does by filters.reprojection");
   double cosine = conic_cos(conic_radians(options->feature_angle_deg));
   if (options->feature_angle_deg == 0.0 || model->points.count == 0)
     return estimate_plain(context, options, model, repairs);

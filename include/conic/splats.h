@@ -37,7 +37,7 @@ typedef struct conic_clip {
  * array of count × 3 floats at p, the components are p, p + 1, p + 2 and the stride is 3 × sizeof(float); in an array
  * of structs it is the struct's size. Multiples of sizeof(float). */
 typedef struct conic_splats_strides {
-  size_t position, tangent_u, tangent_v, normal, color, opacity;
+  size_t position, tangent_u, tangent_v, normal, color, opacity, scalar, dot;
 } conic_splats_strides;
 
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
@@ -78,9 +78,11 @@ typedef struct conic_splats {
   /* Which splats are dots: other than 0 where one is; optional (null: none). Of a dot, the axes as kept give the size
    * and the normal. The renderer does not look at this: see conic_splats_face. */
   float *dot;
-  size_t dot_stride; /* as those of `strides` */
 
-  uint64_t reserved[6];
+  /* One more value a splat, such as a scan's intensity, of which colours can be made (conic/coloring.h); optional, and
+   * of no matter to the picture. NaN where a splat has none. */
+  float *scalar;
+  uint64_t reserved[4];
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */
@@ -90,7 +92,8 @@ typedef enum conic_splats_field {
   CONIC_SPLATS_COLORS = 4,
   CONIC_SPLATS_OPACITIES = 8,
   CONIC_SPLATS_CLIPS = 16,
-  CONIC_SPLATS_DOTS = 32
+  CONIC_SPLATS_DOTS = 32,
+  CONIC_SPLATS_SCALARS = 64
 } conic_splats_field;
 
 /* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents
@@ -103,8 +106,8 @@ CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t coun
 CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
 
 /* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
- * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; no clip
- * lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
+ * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; NaN scalars; no
+ * clip lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
 
 /* How many of the splats are dots. */

@@ -73,6 +73,7 @@ static void check_understood(void) {
   CHECK(parse(&got, "--even 4") == CLI_DONE && got.parsed == 4);
   CHECK(parse(&got, "--threads 7 --json - --quiet --verbose") == CLI_DONE && got.session.threads == 7 &&
         strcmp(got.session.json_path, "-") == 0 && got.session.is_quiet && got.session.is_verbose);
+  CHECK(parse(&got, "-q -v") == CLI_DONE && got.session.is_quiet && got.session.is_verbose);
 }
 
 static void check_counts(void) {

@@ -4,14 +4,15 @@
 
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
+#include "tests/support/png_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,
-                         chy */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, png,
+                         cot, lpc, chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
-  int is_text; /* what is left of it when it is cut may still be sound */
+  int may_be_cut; /* what is left of it may be sound */
 } seed;
 
 enum { SEEDS_ROOM = 64 };
@@ -21,13 +22,13 @@ typedef struct seed_set {
   int n;
 } seed_set;
 
-static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int is_text, const void *bytes,
+static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int may_be_cut, const void *bytes,
                               size_t n_bytes) {
   seed *added = &set->seeds[set->n++];
   if (set->n > SEEDS_ROOM)
     exit(1);
   added->target = target;
-  added->is_text = is_text;
+  added->may_be_cut = may_be_cut;
   snprintf(added->name, sizeof added->name, "%02d.%s", set->n, ending);
   added->n_bytes = n_bytes;
   added->bytes = malloc(n_bytes + 1);
@@ -159,14 +160,14 @@ static inline void seeds_all_text(seed_set *set) {
 }
 
 static inline void seeds_all_las(seed_set *set) {
-  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}};
+  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}, {3, 4}, {3, 5}, {4, 10}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     las_file file = las_begin(kinds[i][0], kinds[i][1], 3, i);
     las_set_scale(&file, 0.01, 589500.0, 231300.0, 0.0);
     las_set_point(&file, 1, 100, -200, 300);
-    if (kinds[i][1] == 3 || kinds[i][1] == 2 || kinds[i][1] > 6)
+    if (kinds[i][1] == 2 || kinds[i][1] == 3 || kinds[i][1] == 5 || kinds[i][1] > 6)
       las_set_color(&file, 2, 255, 128, i == 2 ? 65535 : 7);
-    seeds_add(set, "las", "las", 0, file.bytes, file.n_bytes);
+    seeds_add(set, "las", "las", 1, file.bytes, file.n_bytes);
     free(file.bytes);
   }
 }
@@ -306,6 +307,23 @@ static inline void seeds_layers(seed_set *set, conic_context *context, size_t n,
   seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
 }
 
+/* Every kind of PNG that libpng turns into another; none where this build leaves them to another library. */
+static inline void seeds_all_png(seed_set *set) {
+  static const png_kind kinds[] = {{5, 4, PNG_COLOR_ALPHA, 8, 0, 0, 2},
+                                   {9, 9, PNG_COLOR, 16, 1, 1, 0},
+                                   {5, 4, PNG_BY_PALETTE, 2, 0, 1, 0},
+                                   {9, 3, PNG_GREY, 1, 1, 1, 1},
+                                   {3, 3, PNG_GREY_ALPHA, 16, 0, 0, 0}};
+  static png_file file;
+  int is_there = 0;
+  for (int i = 0; conic_feature_at(i); i++)
+    is_there |= strcmp(conic_feature_at(i)->name, "libpng") == 0 && conic_feature_at(i)->available;
+  for (size_t i = 0; is_there && i < sizeof kinds / sizeof *kinds; i++) {
+    png_make(&file, &kinds[i]);
+    seeds_add(set, "png", "png", 0, file.bytes, file.n_bytes);
+  }
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -313,6 +331,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_ply(set);
   seeds_all_text(set);
   seeds_all_las(set);
+  seeds_all_png(set);
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);

@@ -24,6 +24,9 @@ static size_t size_at(const void *options) {
 static void init_context(void *o, size_t size) {
   conic_context_options_init_sized(o, size);
 }
+static void init_image(void *o, size_t size) {
+  conic_image_options_init_sized(o, size);
+}
 static void init_framing(void *o, size_t size) {
   conic_framing_init_sized(o, size);
 }
@@ -91,20 +94,21 @@ static void init_patches(void *o, size_t size) {
 static const struct {
   void (*init)(void *options, size_t size);
   size_t size;
-} all[] = {{init_context, sizeof(conic_context_options)},     {init_framing, sizeof(conic_framing)},
-           {init_read, sizeof(conic_read_options)},           {init_write, sizeof(conic_write_options)},
-           {init_estimate, sizeof(conic_estimate_options)},   {init_scene, sizeof(conic_scene_options)},
-           {init_render, sizeof(conic_render_options)},       {init_octree, sizeof(conic_octree_options)},
-           {init_selection, sizeof(conic_selection_options)}, {init_hybrid, sizeof(conic_hybrid_options)},
-           {init_hybrid_view, sizeof(conic_hybrid_view)},     {init_layers, sizeof(conic_layers_options)},
-           {init_access, sizeof(conic_layers_access)},        {init_draw, sizeof(conic_layers_draw_options)},
-           {init_opencl, sizeof(conic_opencl_options)},       {init_surface, sizeof(conic_surface_options)},
-           {init_clean, sizeof(conic_clean_options)},         {init_thin, sizeof(conic_thin_options)},
-           {init_densify, sizeof(conic_densify_options)},     {init_patches, sizeof(conic_patches_options)},
-           {init_source, sizeof(conic_source_options)},       {init_view, sizeof(conic_source_view)}};
+} all[] = {{init_context, sizeof(conic_context_options)},  {init_image, sizeof(conic_image_options)},
+           {init_framing, sizeof(conic_framing)},          {init_read, sizeof(conic_read_options)},
+           {init_write, sizeof(conic_write_options)},      {init_estimate, sizeof(conic_estimate_options)},
+           {init_scene, sizeof(conic_scene_options)},      {init_render, sizeof(conic_render_options)},
+           {init_octree, sizeof(conic_octree_options)},    {init_selection, sizeof(conic_selection_options)},
+           {init_hybrid, sizeof(conic_hybrid_options)},    {init_hybrid_view, sizeof(conic_hybrid_view)},
+           {init_layers, sizeof(conic_layers_options)},    {init_access, sizeof(conic_layers_access)},
+           {init_draw, sizeof(conic_layers_draw_options)}, {init_opencl, sizeof(conic_opencl_options)},
+           {init_surface, sizeof(conic_surface_options)},  {init_clean, sizeof(conic_clean_options)},
+           {init_thin, sizeof(conic_thin_options)},        {init_densify, sizeof(conic_densify_options)},
+           {init_patches, sizeof(conic_patches_options)},  {init_source, sizeof(conic_source_options)},
+           {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
-  unsigned char whole[1024], other[1024];
+  unsigned char whole[2048], other[2048];
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     size_t size = all[i].size, smaller = size - sizeof(size_t), larger = size + 40;
     memset(whole, CANARY, sizeof whole);
@@ -179,6 +183,7 @@ static void test_sizes_that_are_none(void) {
 static void test_other_structs_keep_their_size(void) {
   if (sizeof(void *) != 8)
     return;
+  CHECK(sizeof(conic_light) == 40 && sizeof(conic_lighting) == 408);
   static const struct {
     const char *name;
     size_t size, pinned;

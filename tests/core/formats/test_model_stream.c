@@ -106,8 +106,9 @@ static conic_status refuse(void *cookie, const conic_splats *batch) {
 
 static void test_failures(conic_context *context) {
   int n_calls = 0;
-  const char *path = files_write("short.xyz", "3\n0 0 0\n1 0 0\n");
-  files_check_failed("too few", conic_model_stream(context, path, NULL, refuse, &n_calls), "short.xyz", "(line ", NULL);
+  const char *path = files_write("short.xyz", "3\n0 0 0\n1 0\n");
+  files_check_failed("too few values", conic_model_stream(context, path, NULL, refuse, &n_calls), "short.xyz", "(line ",
+                     NULL);
   CHECK(n_calls == 0);
   CHECK(unlink(path) == 0);
   path = files_write("a.xyz", "0 0 0\n1 0 0\n");

@@ -74,7 +74,7 @@ static void reach_of_triangles(const reach *r, size_t first, size_t end, double 
     }
 }
 
-static void measure_some(void *data, size_t i_item, int i_thread) {
+static void measure_task(void *data, size_t i_item, int i_thread) {
   const reach *r = data;
   int is_splats = i_item < r->n_splat_tasks;
   size_t count = is_splats ? r->drawing->splats->count : r->drawing->triangles->count;
@@ -87,19 +87,19 @@ static void measure_some(void *data, size_t i_item, int i_thread) {
   (is_splats ? reach_of_splats : reach_of_triangles)(r, first, end, farthest);
 }
 
-static size_t count_tasks(size_t count) {
+static size_t tasks_for(size_t count) {
   return (count + MEASURED_TOGETHER - 1) / MEASURED_TOGETHER;
 }
 
 /* The farthest of all, into the first task's place. */
-static conic_status measure_all(conic_context *context, reach *r) {
-  r->n_splat_tasks = count_tasks(r->drawing->splats->count);
-  size_t n_tasks = r->n_splat_tasks + count_tasks(r->drawing->triangles->count);
+static conic_status measure_reach(conic_context *context, reach *r) {
+  r->n_splat_tasks = tasks_for(r->drawing->splats->count);
+  size_t n_tasks = r->n_splat_tasks + tasks_for(r->drawing->triangles->count);
   conic_memory_release(context, r->farthest);
   r->farthest = conic_memory_allocate(context, n_tasks * r->n, sizeof *r->farthest);
   if (!r->farthest)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, n_tasks, measure_some, r);
+  conic_parallel_for(context, n_tasks, measure_task, r);
   for (size_t task = 1; task < n_tasks; task++)
     for (size_t i = 0; i < r->n; i++)
       if (r->farthest[task * r->n + i] > r->farthest[i])
@@ -157,13 +157,13 @@ static void set_turns(const conic_framing *framing, size_t n_turns, const double
 /* The side that does not decide is narrowed until it touches as well: only then the outline is in the middle. */
 static conic_status find_eye(conic_context *context, const conic_framing *framing, size_t n_turns, double least_gap,
                              reach *r, stand *found) {
-  enum { N_ROUNDS = 4 };
+  enum { N_ROUNDS = 6 };
   double part = CONIC_FRAMING_PART, greatest = 0.0;
   double tangents[2] = {part * conic_framing_tangent(framing, framing->width),
                         part * conic_framing_tangent(framing, framing->height)};
   for (int round = 0; round < N_ROUNDS; round++) {
     set_turns(framing, n_turns, tangents, r);
-    conic_status status = measure_all(context, r);
+    conic_status status = measure_reach(context, r);
     if (status != CONIC_OK)
       return status;
     find_stand(r, tangents, n_turns, least_gap, found);

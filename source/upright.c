@@ -1,7 +1,7 @@
 /* A measured guess at which way up a model stands. Files say it seldom, and half of the world has y up and half z: so
  * the two are what is told apart, by what survey data, scans and parts have in common. The limits were found on some
  * sixty files whose way up is known: each is where no file is laid on its back by it. */
-#include "core/splats/upright.h"
+#include "source/upright.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ static size_t stride_of(size_t count) {
   return 1 + count / MOST_SAMPLES;
 }
 
-static void sample_splats(samples *s, const conic_splats *splats) {
+static void take_splat_samples(samples *s, const conic_splats *splats) {
   double u[3], v[3], place[3], area[3];
   for (size_t i = 0; splats->tangent_u[0] && i < splats->count; i += stride_of(splats->count)) {
     for (int axis = 0; axis < 3; axis++) {
@@ -58,7 +58,7 @@ static void sample_splats(samples *s, const conic_splats *splats) {
   }
 }
 
-static void sample_triangles(samples *s, const conic_triangles *t) {
+static void take_triangle_samples(samples *s, const conic_triangles *t) {
   double corner[3][3], side[2][3], place[3], area[3];
   for (size_t i = 0; i < t->count; i += stride_of(t->count)) {
     for (int axis = 0; axis < 3; axis++) {
@@ -73,7 +73,7 @@ static void sample_triangles(samples *s, const conic_triangles *t) {
   }
 }
 
-static int compare_doubles(const void *a, const void *b) {
+static int compare_places(const void *a, const void *b) {
   const double *first = a, *second = b;
   return (*first > *second) - (*first < *second);
 }
@@ -83,7 +83,7 @@ static void find_extent(const samples *s, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < s->count; i++)
       s->sorted[i] = s->place[i][axis];
-    qsort(s->sorted, s->count, sizeof *s->sorted, compare_doubles);
+    qsort(s->sorted, s->count, sizeof *s->sorted, compare_places);
     low[axis] = s->sorted[s->count / 100];
     high[axis] = s->sorted[s->count - 1 - s->count / 100];
   }
@@ -155,8 +155,8 @@ conic_status conic_upright_look(conic_context *context, const conic_drawing *dra
   conic_status status = s.place && s.area && s.sorted ? CONIC_OK : CONIC_ERROR_MEMORY;
   *basis = CONIC_UP_HABIT;
   if (status == CONIC_OK) {
-    sample_splats(&s, drawing->splats);
-    sample_triangles(&s, drawing->triangles);
+    take_splat_samples(&s, drawing->splats);
+    take_triangle_samples(&s, drawing->triangles);
     *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s);
   }
   conic_memory_release(context, s.place);

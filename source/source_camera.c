@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "conic/source.h"
-#include "core/splats/upright.h"
+#include "source/upright.h"
 #include "source/source_kind.h"
 
 /* A hierarchy's outline is known well enough from what this error leaves, in pixels of the framed picture. */
