@@ -178,7 +178,8 @@ static void check_facing(conic_context *context) {
   float faced[6][4] = {{0.0f}};
   float *const u[3] = {faced[0], faced[1], faced[2]}, *const v[3] = {faced[3], faced[4], faced[5]};
   const size_t stride = sizeof packed[0];
-  conic_splats splats = {.count = 4, .strides = {stride, stride, stride, 0, 0, 0}, .dot_stride = stride};
+  conic_splats splats = {.count = 4,
+                         .strides = {.position = stride, .tangent_u = stride, .tangent_v = stride, .dot = stride}};
   conic_camera camera = {.width = 64, .height = 64, .fx = 64, .fy = 64, .cx = 32, .cy = 32};
   for (int axis = 0; axis < 3; axis++) {
     splats.position[axis] = &packed[0][axis];
