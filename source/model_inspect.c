@@ -53,11 +53,11 @@ static void tell_defects(const conic_splats *points, conic_facts *facts) {
 }
 
 static void tell_fields(unsigned fields, conic_facts *facts) {
-  static const char *const names[] = {"axes", "normals", "colors", "opacities", "clip lines"}; /* as the bits go */
+  static const char *const names[] = {"axes", "normals", "colors", "opacities", "clip lines", "dots"}; /* as the bits go */
   char text[96] = "positions";
   size_t length = sizeof "positions" - 1;
   CONIC_ADD_FACTS(facts, CONIC_ARRAY("fields"));
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (fields & 1u << i) {
       CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, NULL, "%s", names[i]));
       length += (size_t)snprintf(text + length, sizeof text - length, ", %s", names[i]);

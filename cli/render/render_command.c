@@ -183,7 +183,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   describe(job, &camera, image);
-  status = write_frame(session, job, image, i_frame);
+  status = cli_legend_show(session, job, image);
+  if (status == CONIC_OK)
+    status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -224,9 +226,9 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 
 /* What cannot be written is said before anything is read. */
 static conic_status check_formats(cli_session *session, const cli_render_job *job) {
-  const char *const maps[] = {job->overdraw_path, job->clusters_path};
+  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
   conic_status status = cli_planes_check_formats(session, job);
-  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+  for (int i = 0; i < 3 && status == CONIC_OK; i++)
     if (maps[i])
       status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;

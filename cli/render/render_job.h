@@ -22,6 +22,8 @@ typedef struct cli_render_job {
   const char *deep_path;        /* --deep; null: none */
   const char *overdraw_path;    /* --overdraw; null: none */
   const char *clusters_path;    /* --clusters; null: none */
+  const char *legend_path;      /* --legend-out; null: none */
+  int has_legend;               /* --legend: in the picture */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
@@ -53,9 +55,10 @@ typedef struct cli_render_job {
   conic_source_options opening;
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
-  int is_for_looking; /* the command makes pictures, several samples a pixel unless said otherwise */
-  int may_stream;     /* the command draws without having to know what */
-  unsigned abilities; /* what the source can do, bits of conic_source_ability; known before it is open */
+  conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
+  int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
+  int may_stream;                  /* the command draws without having to know what */
+  unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;
   conic_source *source;
 
@@ -115,6 +118,9 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
+
+/* --legend, --legend-out: what the colours mean, over the image and by itself. */
+conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
 
 /* Says what was drawn, and what it took. */
 void cli_render_tell(cli_session *session, const cli_render_job *job);

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "cli/color_options.h"
 #include "cli/render/frames.h"
 #include "cli/render/lights.h"
 #include "cli/source_facts.h"
@@ -105,6 +106,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "near", s->near_z);
   cli_lights_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
+  cli_color_report(json, conic_source_coloring(job->source));
 }
 
 static void report_stages(cli_json *json, const cli_stage *stages, int n) {

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/color_options.h"
 #include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
@@ -34,6 +35,8 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->view);
+  conic_coloring_options_init(&job->coloring);
+  job->coloring.by = NULL;
   job->opening.patches = &job->patches;
   job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
@@ -104,6 +107,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
       {"budget", CLI_COUNT, &job->budget, "N",
@@ -178,6 +182,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
   job->opening.projects_degrees = !job->is_plain;
+  job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
   job->patches.surface.isa = o->isa;

@@ -13,6 +13,7 @@
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
@@ -34,6 +35,7 @@ void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
   conic_faces_destroy(context, model->faces);
+  conic_memory_release(context, model->fields);
   memset(model, 0, sizeof *model);
 }
 
@@ -128,14 +130,14 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, delivery, model);
+    status = conic_las_read(input, options, delivery, model);
     model->up[2] = 1.0;
     break;
   default:
     status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
-  return status;
+  return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }
 
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,

@@ -8,7 +8,7 @@
 #include "core/formats/material_file.h"
 #include "core/splats/faces.h"
 
-/* Moves the model's vertices, their colours and normals, and its faces. */
+/* Moves the model's vertices, their colours, normals and scalars, and its faces. */
 static void take_arrays(conic_model *model, conic_triangles *triangles) {
   conic_splats *points = &model->points;
   triangles->count = model->n_triangles;
@@ -18,7 +18,9 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
   memcpy(triangles->position, points->position, sizeof triangles->position);
   memcpy(triangles->color, points->color, sizeof triangles->color);
   memcpy(triangles->normal, points->normal, sizeof triangles->normal);
+  triangles->scalar = points->scalar;
   triangles->n_normals = triangles->normal[0] ? points->count : 0;
+  points->scalar = NULL;
   memset(points->position, 0, sizeof points->position);
   memset(points->color, 0, sizeof points->color);
   memset(points->normal, 0, sizeof points->normal);

@@ -18,7 +18,7 @@ typedef struct conic_builder {
   const conic_delivery *delivery; /* null: the points are kept */
   uint64_t n_delivered;           /* no longer in the model */
   conic_model *model;             /* points.count says how many points have been filled in */
-  size_t point_capacity, triangle_capacity, clip_capacity;
+  size_t point_capacity, triangle_capacity, clip_capacity, field_capacity;
   int is_origin_set;
 } conic_builder;
 

@@ -78,6 +78,7 @@ conic_status conic_splats_thin(conic_context *context, conic_splats *splats, siz
     keep_points(splats->color[axis], n, seed, below);
   }
   keep_points(splats->opacity, n, seed, below);
+  keep_points(splats->dot, n, seed, below);
   keep_clips(splats, seed, below);
   splats->count = count;
   return CONIC_OK;

@@ -36,6 +36,13 @@ typedef enum conic_model_kind {
 /* "ply", "obj" …; null for a number that is no kind. */
 CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
 
+/* A value that the points of a file have by name: what conic_read_options.field may ask for. */
+typedef struct conic_model_field {
+  char name[40];    /* longer ones are cut */
+  const char *type; /* as numbers are stored: "uint8" … "int32", "float", "double"; static */
+  uint64_t reserved[2];
+} conic_model_field;
+
 typedef struct conic_model {
   conic_splats points;       /* vertices, raw points or splats */
   size_t n_triangles;        /* 0 for a set of points */
@@ -43,7 +50,9 @@ typedef struct conic_model {
   conic_model_kind kind;     /* of the file that was read */
   struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
   double up[3];              /* the direction that the file, or its kind, says is up; zero where neither does */
-  uint64_t reserved[5];
+  conic_model_field *fields; /* what else the points have by name, in the file's order */
+  size_t n_fields;
+  uint64_t reserved[3];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -59,8 +68,10 @@ typedef struct conic_read_options {
    * else their number. */
   const char *columns;
 
-  /* The scalar of every point that is wanted besides, by the name that the file gives it; null: none. */
+  /* The scalar of every point that is wanted besides, by the name that the file gives it, for conic_splats.scalar;
+   * null: none. Upper and lower case, "_", "-" and blanks do not matter, nor does "scalar_" before it. */
   const char *field;
+  int field_is_optional; /* a file that has it not is read without */
 } conic_read_options;
 
 /* Cutoff 1.5, points alone, columns as the file has them. */
@@ -99,7 +110,8 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
-  uint64_t reserved[8];
+  size_t dots;      /* not put right, but told: whose neighbours make no surface, with finds_dots */
+  uint64_t reserved[7];
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -110,9 +122,12 @@ typedef struct conic_estimate_options {
   /* Creases sharper than this become sharp, in degrees between the planes (or faces) that meet, up to 90; 0: none do. A
    * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
   double feature_angle_deg;
+
+  /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
+  int finds_dots;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 
