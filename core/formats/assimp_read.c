@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/module.h"
+#include "core/files/guard.h"
 #include "core/formats/assimp_kinds.h"
 #include "core/formats/assimp_material.h"
 #include "core/formats/assimp_part.h"
@@ -98,7 +99,8 @@ static conic_status fail_as_told(assimp_reader *reader, const conic_assimp_recor
 /* A file that was read besides. */
 static conic_status note_opened(assimp_reader *reader, const conic_assimp_record *record) {
   char path[LONGEST_TEXT];
-  return take_text(reader, record, path);
+  conic_status status = take_text(reader, record, path);
+  return status == CONIC_OK ? conic_guard_note_path(reader->input->context, path) : status;
 }
 
 static conic_status take_up(assimp_reader *reader, const conic_assimp_record *record) {
