@@ -37,6 +37,10 @@ if(CONIC_WITH_OPENIMAGEIO)
   endif()
 endif()
 
+if(CONIC_WITH_ASSIMP)
+  find_package(assimp 5 CONFIG QUIET)
+endif()
+
 if(CONIC_WITH_OPENCL)
   find_package(OpenCL QUIET)
 else()
@@ -64,13 +68,15 @@ set(found_openexr ${OpenEXR_FOUND})
 set(found_png ${PNG_FOUND})
 set(found_zlib ${ZLIB_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
+set(found_assimp ${assimp_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
         "zlib:zlib (compressed deep images)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
-        "opencl:OpenCL (other devices)" "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
+        "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
+        "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

@@ -41,12 +41,14 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   conic_source_options whole = *options;
   whole.as = CONIC_AS_POINTS;
   whole.is_whole = 1;
+  whole.finds_dots = 0; /* polynomials are laid through all points alike */
   conic_status status = conic_source_open(source->context, paths, n_paths, &whole, &p->points);
   if (status != CONIC_OK)
     return status;
   unsigned abilities = source->scale.abilities;
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
+  source->coloring = p->points->coloring;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;

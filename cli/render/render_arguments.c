@@ -49,7 +49,7 @@ static int check_streaming(const cli_render_job *job, int is_given) {
 
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
-  const char *paths[CLI_MAX_OUTPUTS + 3];
+  const char *paths[CLI_MAX_OUTPUTS + 4];
   int answer = CLI_DONE;
   if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
@@ -58,12 +58,15 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   paths[job->n_outputs] = job->deep_path;
   paths[job->n_outputs + 1] = job->overdraw_path;
   paths[job->n_outputs + 2] = job->clusters_path;
+  paths[job->n_outputs + 3] = job->legend_path;
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
   if (answer == CLI_DONE && job->overdraw_path)
     answer = check_output(job, job->overdraw_path);
   if (answer == CLI_DONE && job->clusters_path)
     answer = check_output(job, job->clusters_path);
+  if (answer == CLI_DONE && job->legend_path)
+    answer = check_output(job, job->legend_path);
   if (answer != CLI_DONE)
     return answer;
   if (cli_lod_is_wanted(job) && job->deep_path && !(job->abilities & CONIC_SOURCE_CLUSTERS))
@@ -73,7 +76,7 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   answer = check_streaming(job, is_streaming_given);
   if (answer == CLI_DONE)
     answer = cli_planes_check(session, job);
-  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 3) : answer;
+  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 4) : answer;
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
@@ -99,6 +102,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
+      {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
+      {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
        .parse = cli_parse_turntable},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "core/base/message.h"
 
@@ -59,6 +60,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
@@ -78,7 +80,7 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_planes_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -164,7 +166,11 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
+  double start = cli_seconds();
   conic_status status = cli_scene_camera(job, i_frame, &camera);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    status = cli_choose_exposure(session, job, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
@@ -181,7 +187,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   describe(job, &camera, image);
-  status = write_frame(session, job, image, i_frame);
+  status = cli_legend_show(session, job, image);
+  if (status == CONIC_OK)
+    status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -222,9 +230,9 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 
 /* What cannot be written is said before anything is read. */
 static conic_status check_formats(cli_session *session, const cli_render_job *job) {
-  const char *const maps[] = {job->overdraw_path, job->clusters_path};
+  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
   conic_status status = cli_planes_check_formats(session, job);
-  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+  for (int i = 0; i < 3 && status == CONIC_OK; i++)
     if (maps[i])
       status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;

@@ -1,11 +1,14 @@
+#include "cli/render/backdrop.h"
 #include <string.h>
 
+#include "cli/color_options.h"
 #include "cli/render/frames.h"
+#include "cli/render/lights.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
 
-enum { N_STAGES = 6, N_FRAME_STAGES = 6 };
+enum { N_STAGES = 7, N_FRAME_STAGES = 6 };
 
 /* What all of the run consists of. */
 static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
@@ -13,6 +16,7 @@ static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
   const cli_stage list[N_STAGES] = {{"start", job->begun_seconds - job->start_seconds},
                                     {"read", scale->read_seconds},
                                     {"estimate", scale->estimate_seconds},
+                                    {"camera", 1e-3 * job->camera_ms},
                                     {"draw", 1e-3 * job->frames_ms},
                                     {"write", 1e-3 * job->write_ms},
                                     {"hashing", 1e-3 * job->hash_ms}};
@@ -97,10 +101,14 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
   cli_json_count(json, "samples", (uint64_t)job->view.samples);
+  cli_json_number(json, "exposure", job->options.exposure);
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
+  cli_lights_report(json, job);
+  cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
+  cli_color_report(json, conic_source_coloring(job->source));
 }
 
 static void report_stages(cli_json *json, const cli_stage *stages, int n) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "cli/render/frames.h"
+#include "cli/render/lights.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -71,7 +72,13 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
-  return status == CONIC_OK ? stand_upright(session, job) : status;
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = stand_upright(session, job);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    cli_lights_settle(job);
+  return status;
 }
 
 void cli_scene_release(cli_render_job *job) {

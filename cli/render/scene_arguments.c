@@ -2,6 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/color_options.h"
+#include "cli/render/backdrop.h"
+#include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
@@ -33,6 +36,8 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->view);
+  conic_coloring_options_init(&job->coloring);
+  job->coloring.by = NULL;
   job->opening.patches = &job->patches;
   job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
@@ -103,6 +108,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
       {"budget", CLI_COUNT, &job->budget, "N",
@@ -132,11 +138,19 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
-      {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
-       .parse = cli_parse_light},
-      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+      {"light", CLI_PARSED, job, "LIGHT",
+       "X,Y,Z, towards a light that stands in the scene; camera:X,Y,Z, one that moves with the camera (right, up, "
+       "towards you); head, at your eye; each with :R,G,B behind it or without; studio; none. Up to 8 [studio]",
+       .parse = cli_parse_light, .may_repeat = 1},
+      {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
+       .parse = cli_parse_sky},
+      {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "linear colour behind, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, else none]",
        .parse = cli_parse_background},
-      {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
+      {"exposure", CLI_PARSED, job, "EV",
+       "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
+       .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given},
@@ -146,6 +160,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+      CLI_COLUMNS(&job->opening.columns),
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
@@ -170,6 +185,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
   job->opening.projects_degrees = !job->is_plain;
+  job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
   job->patches.surface.isa = o->isa;

@@ -4,8 +4,9 @@
 
 #include "core/files/file.h"
 
-const char conic_readable_kinds[] = "conic reads PLY, OBJ, LAS, PCD, text with a point a line (XYZ, PTS, CSV, TXT, "
-                                    "ASC), and its own .cot, .lpc and .chy";
+const char conic_readable_kinds[] =
+    "conic reads PLY, OBJ, LAS, PCD, text with a point a line (XYZ, PTS, CSV, TXT, "
+    "ASC), STL, OFF, glTF, 3MF, DAE, FBX, 3DS, X3D, DXF, AMF, and its own .cot, .lpc and .chy";
 
 #define MESH_REMEDY "save it as OBJ or PLY (Blender, MeshLab, or: assimp export FILE out.obj)"
 #define SCAN_REMEDY "save it as LAS or PLY (CloudCompare, or: pdal translate FILE out.las)"
@@ -29,22 +30,12 @@ static const conic_foreign_kind kinds[] = {
     {"a Radiance image", PICTURE_REMEDY, "hdr", BYTES("#?RADIANCE"), 0},
     {"a WebP image", PICTURE_REMEDY, "webp", BYTES("WEBPVP8"), 8},
     {"a PDF document", "give the model that it shows", "pdf", BYTES("%PDF"), 0},
-    {"a binary glTF file", MESH_REMEDY, "glb", BYTES("glTF"), 0},
-    {"a glTF file", MESH_REMEDY, "gltf", NULL, 0, 0},
-    {"an FBX file", MESH_REMEDY, "fbx", BYTES("Kaydara FBX Binary"), 0},
-    {"an FBX file", MESH_REMEDY, NULL, BYTES("; FBX"), 0},
-    {"a COLLADA file", MESH_REMEDY, "dae", NULL, 0, 0},
-    {"an STL file", MESH_REMEDY, "stl", BYTES("solid "), 0},
-    {"an OFF file", MESH_REMEDY, "off", BYTES("OFF"), 0},
-    {"an OFF file", MESH_REMEDY, NULL, BYTES("COFF"), 0},
-    {"an OFF file", MESH_REMEDY, NULL, BYTES("NOFF"), 0},
     {"a Blender file", "export OBJ or PLY from Blender", "blend", BYTES("BLENDER"), 0},
     {"a USD scene", "export OBJ or PLY from it (Blender reads USD)", "usdc", BYTES("PXR-USDC"), 0},
     {"a USD scene", "export OBJ or PLY from it (Blender reads USD)", "usd usda", BYTES("#usda"), 0},
     {"a USDZ archive", "export OBJ or PLY from it (Blender reads USD)", "usdz", NULL, 0, 0},
     {"a Draco file", "decode it (draco_decoder -i FILE -o out.ply)", "drc", BYTES("DRACO"), 0},
     {"an AutoCAD drawing", "export a mesh or points from it as OBJ, PLY or LAS", "dwg", BYTES("AC10"), 0},
-    {"a DXF drawing", "export a mesh or points from it as OBJ, PLY or LAS", "dxf", NULL, 0, 0},
     {"a shapefile", "convert its points to CSV (ogr2ogr -f CSV -lco GEOMETRY=AS_XYZ out.csv FILE)", "shp",
      BYTES("\0\0\x27\x0a"), 0},
     {"a VTK file", "save it as PLY (ParaView: Save Data)", "vtk", BYTES("# vtk DataFile"), 0},
@@ -53,8 +44,7 @@ static const conic_foreign_kind kinds[] = {
     {"a NumPy array", "write its points as text (numpy.savetxt) or PLY", "npy", BYTES("\x93NUMPY"), 0},
     {"a NumPy archive", "write its points as text (numpy.savetxt) or PLY", "npz", NULL, 0, 0},
     {"a Parquet table", "write its points as CSV", "parquet", BYTES("PAR1"), 0},
-    {"a 3MF model", MESH_REMEDY, "3mf", NULL, 0, 0},
-    {"a 3D Studio model", MESH_REMEDY, "3ds max", NULL, 0, 0},
+    {"a 3D Studio model", MESH_REMEDY, "max", NULL, 0, 0},
     {"a CAD model", "export a mesh from it as OBJ or PLY (FreeCAD)", "step stp iges igs fcstd", NULL, 0, 0},
     {"a material file", "give the .obj that names it", "mtl", BYTES("newmtl "), 0},
     {"a compressed cloud of Gaussians (SPZ)", CLOUD_REMEDY, "spz", BYTES("NGSP"), 0},

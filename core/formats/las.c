@@ -6,7 +6,9 @@
 #include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/files/file_fields.h"
+#include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
 #include "core/splats/builder.h"
 
@@ -48,6 +50,8 @@ typedef struct las_reader {
   double first[3]; /* the first point's integers */
   conic_builder builder;
   double block[3][BLOCK];
+  conic_las_fields fields;
+  int field; /* of these, which one the points' scalars are; −1: none */
 } las_reader;
 
 static conic_status wrong_las(const las_reader *reader, const char *what, uint64_t at) {
@@ -168,12 +172,31 @@ static conic_status check_sizes(las_reader *reader) {
   return CONIC_OK;
 }
 
-static conic_status skip_to_points(las_reader *reader) {
-  uint64_t skipped;
-  conic_status status = conic_input_skip(reader->input, reader->points_offset, &skipped);
-  return status == CONIC_OK && skipped < reader->points_offset
-             ? wrong_las(reader, "the file ends before its points", skipped)
+static conic_status skip_to(las_reader *reader, uint64_t offset) {
+  uint64_t left = offset - conic_input_offset(reader->input), skipped;
+  conic_status status = conic_input_skip(reader->input, left, &skipped);
+  return status == CONIC_OK && skipped < left
+             ? wrong_las(reader, "the file ends before its points", offset - left + skipped)
              : status;
+}
+
+/* Past the header and its records, which name fields. */
+static conic_status skip_to_points(las_reader *reader, const conic_read_options *options) {
+  unsigned format = reader->header[AT_FORMAT];
+  uint64_t n_records = unsigned_at(reader, AT_N_RECORDS, 4);
+  conic_las_fields *fields = &reader->fields;
+  conic_las_fields_of_format(format, fields);
+  conic_status status = skip_to(reader, unsigned_at(reader, AT_HEADER_BYTES, 2));
+  if (status == CONIC_OK)
+    status = conic_las_fields_read(reader->input, n_records, reader->points_offset, (size_t)formats[format].n_bytes,
+                                   reader->point_bytes, fields);
+  if (status == CONIC_OK)
+    status = skip_to(reader, reader->points_offset);
+  for (size_t i = 0; status == CONIC_OK && i < fields->n; i++)
+    status = conic_fields_add(&reader->builder, fields->list[i].name, strlen(fields->list[i].name),
+                              conic_las_field_type(&fields->list[i]));
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
+                            : status;
 }
 
 /* Three integers of each of n points, as doubles, into the reader's block. */
@@ -201,6 +224,11 @@ static void store_records(las_reader *reader, size_t n) {
   for (int channel = 0; channel < 3 && reader->color; channel++)
     for (size_t i = 0; i < n; i++)
       points->color[channel][points->count + i] = (float)reader->block[channel][i];
+  if (reader->field >= 0)
+    conic_las_field_convert(&reader->fields.list[reader->field], conic_input_bytes(reader->input), reader->point_bytes,
+                            n, reader->block[0]);
+  for (size_t i = 0; i < n && reader->field >= 0; i++)
+    points->scalar[points->count + i] = (float)reader->block[0][i];
   points->count += n;
 }
 
@@ -232,7 +260,8 @@ static conic_status read_points(las_reader *reader) {
   return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
 }
 
-conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
+conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
   las_reader reader = {.input = input, .is_again = delivery && delivery->is_again};
   conic_status status = read_las_header(&reader);
   if (status == CONIC_OK)
@@ -245,7 +274,7 @@ conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, 
     status =
         conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, delivery, &reader.builder);
   if (status == CONIC_OK)
-    status = skip_to_points(&reader);
+    status = skip_to_points(&reader, options);
   if (status == CONIC_OK)
     status = read_points(&reader);
   if (status == CONIC_OK && !delivery)

@@ -7,10 +7,14 @@
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
+#include "core/formats/assimp_kinds.h"
+#include "core/formats/assimp_read.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
+#include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
@@ -20,7 +24,11 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 }
 
 const char *conic_model_kind_name(conic_model_kind kind) {
-  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  static const char *const names[] = {
+      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
+      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
+      [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",
+      [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
@@ -28,6 +36,7 @@ void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
   conic_faces_destroy(context, model->faces);
+  conic_memory_release(context, model->fields);
   memset(model, 0, sizeof *model);
 }
 
@@ -72,6 +81,8 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   size_t n = conic_input_available(input);
   int is_xyz_name = conic_file_has_ending(path, "xyz") || conic_file_has_ending(path, "pts");
   const conic_foreign_kind *foreign = conic_foreign_kind_find(path, bytes, n, 1);
+  if (conic_assimp_find_content(path, bytes, n, conic_input_remaining_bytes(input), kind))
+    return CONIC_OK;
   if (n == 0)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
   if (foreign)
@@ -80,17 +91,21 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
+  else if (conic_pcd_is_likely(bytes, n) || conic_file_has_ending(path, "pcd"))
+    *kind = CONIC_MODEL_PCD;
   else if (conic_file_has_ending(path, "ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
   else if (conic_file_has_ending(path, "las") || conic_file_has_ending(path, "laz"))
     return conic_fail(input->context, CONIC_ERROR_INPUT,
                       "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
+  else if (conic_assimp_find_ending(path, kind))
+    return CONIC_OK;
   else if (conic_file_has_ending(path, "obj") || (!is_xyz_name && is_obj(bytes, n)))
     *kind = CONIC_MODEL_OBJ;
   else if ((foreign = conic_foreign_kind_find(path, bytes, n, 0)))
     return refuse(input, foreign);
-  else if (is_text_name(path) || conic_xyz_is_likely(bytes, n))
+  else if (!memchr(bytes, 0, n) && (is_text_name(path) || conic_xyz_is_likely(bytes, n)))
     *kind = CONIC_MODEL_XYZ;
   else
     return refuse(input, NULL);
@@ -98,7 +113,9 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
 }
 
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  conic_status status = conic_input_skip_mark(input);
+  if (status == CONIC_OK)
+    status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
   return status == CONIC_OK ? find_kind(input, path, kind) : status;
 }
 
@@ -113,14 +130,20 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, delivery, model);
+    status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, delivery, model);
+    status = conic_las_read(input, options, delivery, model);
+    model->up[2] = 1.0;
     break;
+  case CONIC_MODEL_PCD:
+    status = conic_pcd_read(input, delivery, model);
+    break;
+  default:
+    status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
-  return status;
+  return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }
 
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,

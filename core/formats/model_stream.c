@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "core/base/memory.h"
+#include "core/formats/assimp_kinds.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
 
@@ -15,13 +16,13 @@ typedef struct streaming {
   conic_model_kind kind;
   conic_batch_receiver *receive;
   void *cookie;
-  float largest;
+  conic_raw_range range;
   conic_raw_scale scale;
 } streaming;
 
-static conic_status find_largest(void *cookie, const conic_splats *batch) {
+static conic_status see_colors(void *cookie, const conic_splats *batch) {
   streaming *s = cookie;
-  s->largest = conic_raw_colors_largest(batch, s->largest);
+  conic_raw_colors_see(batch, &s->range);
   return CONIC_OK;
 }
 
@@ -58,9 +59,9 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
 /* A first pass finds what the colours are fractions of, a second hands over. */
 static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
   conic_input again;
-  conic_status status = pass(s, input, find_largest, s);
+  conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, s->largest, s->kind == CONIC_MODEL_XYZ, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, s->kind != CONIC_MODEL_LAS, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)
@@ -86,7 +87,7 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   status = conic_model_find_kind(&input, path, &s.kind);
   if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
     status = pass(&s, &input, receive, cookie);
-  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || is_pipe))
+  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || conic_assimp_reads(s.kind) || is_pipe))
     status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);

@@ -18,9 +18,10 @@ conic_channel conic_channel_find_in(const char *name, int is_luminance) {
   return conic_channel_find(is_luminance && strcmp(name, "Y") == 0 ? "R" : name);
 }
 
-void conic_channels_complete(const conic_image *image, int has_alpha, int is_luminance) {
+void conic_channels_complete(conic_image *image, int has_alpha, int is_luminance) {
   float *rgba = image->planes[CONIC_PLANE_RGBA];
   size_t n = rgba ? conic_image_pixels(image) : 0;
+  image->lacks_alpha = rgba && !has_alpha;
   for (size_t i = 0; i < n; i++) {
     if (!has_alpha)
       rgba[4 * i + 3] = 1.0f;

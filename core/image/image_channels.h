@@ -15,6 +15,6 @@ conic_channel conic_channel_find(const char *name);
 conic_channel conic_channel_find_in(const char *name, int is_luminance);
 
 /* What the file says nothing of: alpha 1, and grey for a picture of luminance alone. */
-void conic_channels_complete(const conic_image *image, int has_alpha, int is_luminance);
+void conic_channels_complete(conic_image *image, int has_alpha, int is_luminance);
 
 #endif

@@ -219,8 +219,10 @@ static conic_status take_colors(conic_context *context, const conic_bridge_pictu
                                 conic_image *image) {
   const conic_samples_layout layout = {picture->n_channels, picture->sample_bytes, picture->is_straight};
   conic_status status = conic_image_allocate(context, picture->width, picture->height, 1u << CONIC_PLANE_RGBA, image);
-  if (status == CONIC_OK)
-    conic_samples_to_rgba(context, samples, picture->width, picture->height, layout, image->planes[CONIC_PLANE_RGBA]);
+  if (status != CONIC_OK)
+    return status;
+  image->lacks_alpha = !conic_samples_have_alpha(layout);
+  conic_samples_to_rgba(context, samples, picture->width, picture->height, layout, image->planes[CONIC_PLANE_RGBA]);
   return status;
 }
 

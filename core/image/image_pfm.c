@@ -193,6 +193,7 @@ static conic_status read_pfm(conic_context *context, const char *path, FILE *fil
   conic_status status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
   if (status != CONIC_OK)
     return status;
+  image->lacks_alpha = 1;
   status = read_rows(context, path, file, is_grey, sign > 0, image);
   if (status != CONIC_OK)
     conic_image_release(context, image);

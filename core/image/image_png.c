@@ -180,10 +180,12 @@ static conic_status read_samples(png_work *work, conic_image *image) {
   if (!decode_rows(work, is_interlaced ? PNG_INTERLACE_ADAM7_PASSES : 1))
     return fail_to_read(work);
   status = conic_image_allocate(context, work->width, work->height, 1u << CONIC_PLANE_RGBA, image);
-  if (status == CONIC_OK)
-    conic_samples_to_rgba(context, work->samples, work->width, work->height, work->layout,
-                          image->planes[CONIC_PLANE_RGBA]);
-  return status;
+  if (status != CONIC_OK)
+    return status;
+  image->lacks_alpha = !conic_samples_have_alpha(work->layout);
+  conic_samples_to_rgba(context, work->samples, work->width, work->height, work->layout,
+                        image->planes[CONIC_PLANE_RGBA]);
+  return CONIC_OK;
 }
 
 conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {

@@ -31,7 +31,7 @@ typedef struct conic_bridge_writer {
   int has_alpha;
 } conic_bridge_writer;
 
-enum { CONIC_BRIDGE_MESSAGE = 256 };
+enum { CONIC_BRIDGE_MESSAGE = 256 }; /* CONIC_MODULE_MESSAGE */
 
 /* What happened. */
 typedef enum conic_bridge_result {
@@ -42,8 +42,7 @@ typedef enum conic_bridge_result {
 
 /* What the module gives, as its one symbol, conic_openimageio_bridge. */
 typedef struct conic_bridge {
-  /* conic_version() of the build that the module belongs to; no other may use it. */
-  const char *version;
+  const char *version; /* as of every module (core/base/module.h) */
 
   /* Who writes files with this ending. */
   conic_bridge_result (*find_writer)(const char *ending, conic_bridge_writer *writer,

@@ -24,6 +24,7 @@ typedef struct conic_estimate {
   uint8_t *states;     /* conic_point_state of each point */
   float *tangent_u[3]; /* of each point, beside the model's own: valid where FACED, SPREAD or ISOLATED */
   float *tangent_v[3];
+  float *dot; /* of each point; null: none are looked for */
 } conic_estimate;
 
 /* How far an outline reaches beyond the cell that it must cover: curved surfaces take the cells of neighbours

@@ -268,6 +268,7 @@ conic_status conic_creases_split(conic_context *context, double cosine, const co
     status = split_model(&s, split, creases);
   release_splitting(&s);
   split->kind = model->kind;
+  memcpy(split->up, model->up, sizeof split->up);
   if (status != CONIC_OK) {
     conic_model_release(context, split);
     conic_creases_release(context, creases);

@@ -72,7 +72,8 @@ typedef struct conic_image {
   void *planes[CONIC_MAX_PLANES]; /* float or uint32_t by conic_plane_describe; null: not there */
   int n_attributes;
   conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
-  uint64_t reserved[8];
+  uint64_t lacks_alpha; /* A of rgba, which is 1, is not in the file that the image was read from */
+  uint64_t reserved[7];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.
@@ -153,7 +154,7 @@ typedef struct conic_plane_difference {
 } conic_plane_difference;
 
 typedef struct conic_difference {
-  int identical;           /* same size, same planes, same bits */
+  int identical;           /* same size, same planes, same bits, a missing A being 1 */
   int same_size;           /* where 0, nothing below is set */
   double max_abs, rmse;    /* over all common planes but id and count; NaN against a number counts as infinite */
   double p999;             /* 99.9 % of the pixels differ by no more in any of those planes */
@@ -164,7 +165,8 @@ typedef struct conic_difference {
   size_t differing_pixels; /* pixels where any common plane differs */
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_MAX_PLANES];
-  uint64_t reserved[8];
+  uint64_t lacks_alpha; /* of rgba only R, G and B are compared: at least one of the images has no A */
+  uint64_t reserved[7];
 } conic_difference;
 
 /* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */
@@ -180,6 +182,11 @@ CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_i
 /* The same of ꟻLIP: black at 0, then linearly over blue, red and yellow to white at 1. Errors: as there. */
 CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                                 conic_image *heatmap);
+
+/* The exposure in stops that makes a picture with an rgba plane as bright as is good: the greatest multiple of 1/8, from
+ * -16 to 16, with which at most one in twenty of the covered pixels (A at least 1/2) has a luminance above 2^(-3/8). 0
+ * where nothing is covered, or all is black. */
+CONIC_API double conic_image_exposure(const conic_image *image);
 
 /* A false-colour picture of how many splats were blended in each pixel (count plane needed): black for none, blue for
  * one, red for 4, yellow for 16, white for 64 and more, by the logarithm between. On success the caller owns *map.

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "conic/camera.h"
+#include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
@@ -53,9 +54,15 @@ typedef struct conic_source_options {
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
   int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
+  int finds_dots; /* raw points about which there is no surface become dots, which face each picture's camera */
+
+  /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
+   * of a .cot or .lpc, with is_whole. */
+  const conic_coloring_options *coloring;
+  const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
 } conic_source_options;
 
-/* Splats, cutoff 1.5, 20 neighbours. */
+/* Splats, cutoff 1.5, 20 neighbours, no dots. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
@@ -107,6 +114,9 @@ typedef struct conic_source_scale {
 
 /* The source's own; stays until it is closed. */
 CONIC_API const conic_source_scale *conic_source_measure(const conic_source *source);
+
+/* What the colours were made of; null: they are as the files have them. The source's own. */
+CONIC_API const conic_coloring *conic_source_coloring(const conic_source *source);
 
 /* The median sample spacing, looked for where it is not known. Errors: ARGUMENT (a hybrid has none), MEMORY, CANCELLED.
  */

@@ -27,7 +27,7 @@ typedef struct conic_material {
 
 /* As conic_splats_strides, of the arrays of floats. */
 typedef struct conic_triangles_strides {
-  size_t position, color, normal, texture_coordinate;
+  size_t position, color, normal, texture_coordinate, scalar;
 } conic_triangles_strides;
 
 /* A set of triangles: positions that are shared by index, and attributes with indices of their own where corners that
@@ -64,7 +64,8 @@ typedef struct conic_triangles {
   uint32_t *cluster; /* [count]: what a triangle belongs to; optional, and of no matter to the picture */
 
   conic_triangles_strides strides;
-  uint64_t reserved[8];
+  float *scalar; /* [n_vertices]: as in conic_splats; optional */
+  uint64_t reserved[6];
 } conic_triangles;
 
 /* The optional arrays of a set, as bits. */
@@ -72,7 +73,8 @@ typedef enum conic_triangles_field {
   CONIC_TRIANGLES_COLORS = 1,
   CONIC_TRIANGLES_NORMALS = 2,             /* one a vertex, unless n_normals is set by the caller */
   CONIC_TRIANGLES_TEXTURE_COORDINATES = 4, /* likewise */
-  CONIC_TRIANGLES_CLUSTERS = 8
+  CONIC_TRIANGLES_CLUSTERS = 8,
+  CONIC_TRIANGLES_SCALARS = 16
 } conic_triangles_field;
 
 /* Allocates a set with the optional arrays of `fields` (bits of conic_triangles_field), normals and texture coordinates

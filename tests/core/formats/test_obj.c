@@ -79,7 +79,8 @@ static void test_content_tells(void) {
   conic_model_release(context, &model);
   unlink(path);
   path = files_write("words.txt", "one two three\n");
-  files_check_failed("text", conic_model_read(context, path, NULL, &model), "number", "line 1", (const char *)NULL);
+  files_check_failed("text", conic_model_read(context, path, NULL, &model), "names of columns", "line 1",
+                     (const char *)NULL);
   unlink(path);
   path = files_write_bytes("image.obj", "\x89PNG....", 8);
   files_check_failed("image", conic_model_read(context, path, NULL, &model), "PNG", "byte 0", (const char *)NULL);
