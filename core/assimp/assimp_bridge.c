@@ -2,6 +2,7 @@
 #include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <stdlib.h>
@@ -237,6 +238,16 @@ static void hear(const char *message, char *cookie) {
     }
 }
 
+/* Assimp multiplies a node's translation and rotation of glTF 1 the wrong way round, and nobody can tell afterwards. */
+static void warn_of_gltf_1(conic_assimp_writer *w) {
+  static const char note[] = "this is glTF 1, of which parts that are moved and turned may stand in wrong places";
+  const struct aiMetadata *data = w->scene->mMetaData;
+  for (unsigned i = 0; data && i < data->mNumProperties; i++)
+    if (strcmp(data->mKeys[i].data, AI_METADATA_SOURCE_FORMAT) == 0 && data->mValues[i].mType == AI_AISTRING &&
+        strcmp(((const struct aiString *)data->mValues[i].mData)->data, "glTF Importer") == 0)
+      conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_NOTE}, note, sizeof note - 1);
+}
+
 static const struct aiScene *import(conic_assimp_writer *w) {
   struct aiFileIO io = conic_assimp_files(w);
   struct aiLogStream stream = {hear, (char *)w};
@@ -254,9 +265,10 @@ static void read_model(conic_assimp_request *request) {
   conic_assimp_writer w = {.request = request};
   w.scene = import(&w);
   const char *why = w.why_refused ? w.why_refused : aiGetErrorString();
-  if (w.scene && !w.why_refused)
+  if (w.scene && !w.why_refused) {
+    warn_of_gltf_1(&w);
     send_scene(&w);
-  else
+  } else
     conic_assimp_send_failure(&w,
                               strstr(why, "bad_alloc") ? "it takes more memory than a file of its size should" : why);
   _exit(0);

@@ -97,7 +97,7 @@ static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_recor
   char text[LONGEST_TEXT];
   conic_status status = take_text(reader, record, text);
   if (status == CONIC_OK)
-    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: Assimp says: %.200s", reader->input->name, text);
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %.200s", reader->input->name, text);
   return status;
 }
 
