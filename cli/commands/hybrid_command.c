@@ -29,7 +29,7 @@ static int make_hybrid(void *cookie) {
   conic_status status =
       conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, CONIC_MODEL_PLY, NULL, &mesh);
+    status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK) {
     conic_triangles_release(job->base.session->context, &mesh);

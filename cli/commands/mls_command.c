@@ -54,7 +54,10 @@ static conic_status find_unit(mls_job *job) {
 static conic_status read_points(mls_job *job) {
   conic_context *context = job->base.session->context;
   double start = cli_seconds();
-  conic_status status = conic_model_read(context, job->base.input, NULL, &job->model);
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.columns = job->base.columns;
+  conic_status status = conic_model_read(context, job->base.input, &options, &job->model);
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
@@ -116,8 +119,9 @@ static conic_status clean_cells(mls_job *job) {
   options.memory_bytes = (size_t)job->memory_mib << 20;
   options.scratch = strcmp(job->base.output, "-") == 0 ? job->base.input : job->base.output;
   double start = cli_seconds();
-  conic_status status = cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points,
-                                      job->base.input, job->base.output, &job->report, &job->base.stages[WORK].seconds);
+  conic_status status =
+      cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points, job->base.input,
+                    job->base.columns, job->base.output, &job->report, &job->base.stages[WORK].seconds);
   job->base.stages[WRITE].seconds = cli_seconds() - start - job->base.stages[WORK].seconds;
   job->n_in = job->report.n_in;
   job->n_out = job->report.n_out;
@@ -342,6 +346,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_names},
+      CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);
