@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "cli/command.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 #include "core/formats/text_columns.h"
 
 enum { N_COMMON = 8 };
@@ -239,7 +239,7 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++)
       if (set->tables[table][i].name[1])
-        nearest = cli_nearer_word(name, nearest, set->tables[table][i].name);
+        nearest = conic_nearer_word(name, nearest, set->tables[table][i].name);
   if (access(argument, F_OK) == 0)
     return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
   if (nearest)

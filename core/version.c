@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "core/formats/assimp_read.h"
+#include "core/assimp/assimp_read.h"
 #include "core/image/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x

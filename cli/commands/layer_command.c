@@ -207,7 +207,7 @@ static int check_layer_arguments(layer_job *job) {
   int answer = cli_coloring_check(job->base.session, &job->coloring);
   if (answer != CLI_DONE)
     return answer;
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc", 0);
+  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {

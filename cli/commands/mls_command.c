@@ -292,8 +292,9 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (n_positional != 2)
     return cli_usage("mls %s: %s; see conic help mls", name,
                      n_positional > 2 ? "one input at a time" : "no input given");
-  if (!job->base.output)
-    return cli_usage("mls %s: no output given (-o OUT.ply)", name);
+  int exit_code = cli_build_take_paths(&job->base, positional[1], "ply");
+  if (exit_code != CLI_DONE)
+    return exit_code;
   if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
     return cli_usage("mls thin: needs --count N or --max-error E");
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
@@ -305,9 +306,7 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
                      name);
-  job->base.input = positional[1];
-  /* The output may be the input: it appears when all is read. */
-  int exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply", 1);
+  exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply");
   return exit_code == CLI_DONE ? cli_isa_check(job->base.session, (conic_isa)job->isa) : exit_code;
 }
 
@@ -319,6 +318,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
   conic_surface_options_init(&job.options);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"type", CLI_CHOICE, &job.type, "T", "mls: polynomials over planes; apss: algebraic spheres [mls]",
        .choices = type_names},
       {"plane", CLI_CHOICE, &job.plane, "P",

@@ -47,7 +47,7 @@ static conic_status build_from_model(octree_job *job) {
   }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, model.kind, &model.points, NULL);
+    status = cli_coloring_apply(job->base.session, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);
   if (status == CONIC_OK)
     status = conic_octree_build(context, &model.points, &job->options, &job->octree);
@@ -113,7 +113,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       CLI_COLUMNS(&job.base.columns),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
   if (exit_code == CLI_DONE)
     exit_code = cli_coloring_check(session, &job.coloring);

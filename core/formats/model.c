@@ -2,13 +2,13 @@
 
 #include <string.h>
 
+#include "core/assimp/assimp_kinds.h"
+#include "core/assimp/assimp_read.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
-#include "core/formats/assimp_kinds.h"
-#include "core/formats/assimp_read.h"
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"

@@ -1,8 +1,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
-#include "core/formats/assimp_kinds.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
 

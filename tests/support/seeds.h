@@ -2,8 +2,10 @@
 #ifndef CONIC_SEEDS_H
 #define CONIC_SEEDS_H
 
+#include "core/assimp/assimp_bridge.h"
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
+#include "tests/support/mesh_file.h"
 #include "tests/support/png_file.h"
 
 typedef struct seed {
@@ -349,6 +351,37 @@ static inline void seeds_all_png(seed_set *set) {
     png_make(&file, &kinds[i]);
     seeds_add(set, "png", "png", 0, file.bytes, file.n_bytes);
   }
+}
+
+/* For Assimp, whose readers are not ours to test byte by byte: these are for fuzzing alone. */
+static inline void seeds_all_assimp(seed_set *set) {
+  static mesh_file file;
+  for (int i = 0; i < MESH_N_KINDS; i++) {
+    file.n = 0;
+    mesh_kinds[i].make(&file);
+    seeds_add(set, "assimp", mesh_kinds[i].ending, mesh_kinds[i].is_text, file.bytes, file.n);
+  }
+}
+
+/* A material with texels, one with a path, and a part of three vertices with everything. */
+static inline void seeds_all_records(seed_set *set) {
+  static mesh_file file;
+  const conic_assimp_record records[] = {
+      {.type = CONIC_ASSIMP_OPENED, .n_bytes = 5},
+      {.type = CONIC_ASSIMP_MATERIAL, .picture = CONIC_ASSIMP_TEXELS, .width = 2, .height = 1, .n_bytes = 8},
+      {.type = CONIC_ASSIMP_MATERIAL, .color = {1, 0.5f, 0.25f}, .picture = CONIC_ASSIMP_PATH, .n_bytes = 8},
+      {.type = CONIC_ASSIMP_PART, .fields = 7, .i_material = 1, .n_vertices = 3, .n_triangles = 1},
+      {.type = CONIC_ASSIMP_END, .up = {0, 1, 0}}};
+  const size_t n_after[] = {5, 8, 8, 3 * (24 + 12 + 8 + 12), 0};
+  file.n = 0;
+  for (int i = 0; i < 5; i++) {
+    mesh_put(&file, &records[i], sizeof records[i]);
+    for (size_t k = 0; k < n_after[i]; k++)
+      mesh_number(&file, i == 3 ? (uint32_t)(k * 5) : 'a', 1);
+    for (uint32_t k = 0; i == 3 && k < 3; k++)
+      mesh_number(&file, k, 4);
+  }
+  seeds_add(set, "assimp_records", "bin", 0, file.bytes, file.n);
 }
 
 static inline seed_set *seeds_make(conic_context *context) {

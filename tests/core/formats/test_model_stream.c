@@ -147,6 +147,7 @@ int main(void) {
   test_xyz(context, 60000.0, 200);
   test_las(context, 255, MANY);
   test_las(context, 65535, 500);
+  test_las(context, 4095, 500);
   test_las(context, 0, 500);
   test_pcd(context, 1, 0, 70000);
   test_pcd(context, 0, 65535, 500);

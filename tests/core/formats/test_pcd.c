@@ -156,6 +156,10 @@ static void test_ascii(void) {
   check_vector(model.points.color, 0, 0.0f, 1.0f, 0.0f);
   check_vector(model.points.color, 1, 0.0f, 0.0f, 1.0f);
   conic_model_release(context, &model);
+  file = begin("FIELDS a x y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 3 1 1 1\nPOINTS 1\nDATA ascii\n7 7 7 1 2 3\n");
+  model = read_points(&file, 1, 0);
+  CHECK(model.points.origin[0] == 1.0 && model.points.origin[2] == 3.0);
+  conic_model_release(context, &model);
   file = begin("FIELDS X Y Z Red Green Blue\nSIZE 8 8 8 2 2 2\nTYPE F F F U U U\nPOINTS 3\nDATA ascii\n"
                "nan nan nan 0 0 0\n1e6 2 3 65535 0 256\n");
   model = read_points(&file, 2, CONIC_SPLATS_COLORS);
