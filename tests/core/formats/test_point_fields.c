@@ -77,49 +77,29 @@ static void test_las(int minor, int format, size_t time_at) {
   free(file.bytes);
 }
 
-/* The record before the points describes two values behind the format's own; the second is scaled. */
 static void test_extra_bytes(void) {
-  enum { HEADER = 375, RECORD = 54, EXTRA = 2 + 4, POINTS = 2 };
+  enum { POINTS = 2 };
   static const float heights[] = {-1.0f, 2.5f}, speeds[] = {1.5f, -3.25f};
   conic_model model;
-  las_file file = las_begin(4, 6, POINTS, EXTRA);
-  size_t offset = HEADER + RECORD + 2 * 192, n_bytes = offset + POINTS * file.point_bytes;
-  unsigned char *bytes = calloc(n_bytes, 1);
-  if (!bytes)
-    exit(1);
-  memcpy(bytes, file.bytes, HEADER);
-  free(file.bytes);
-  file.bytes = bytes;
-  file.n_bytes = n_bytes;
-  las_put(&file, 96, offset, 4);
-  memcpy(bytes + HEADER + 2, "LASF_Spec", 9);
-  las_put(&file, HEADER + 18, 4, 2);
-  las_put(&file, HEADER + 20, 2 * 192, 2);
-  unsigned char *first = bytes + HEADER + RECORD, *second = first + 192;
-  first[2] = 4; /* int16 */
-  first[3] = 8 | 16;
-  memcpy(first + 4, "height\nabove", 12);
-  las_put_double(&file, HEADER + RECORD + 112, 0.5);
-  las_put_double(&file, HEADER + RECORD + 136, -1.0);
-  second[2] = 9; /* float */
-  memcpy(second + 4, "speed", 5);
-  las_put(&file, offset + file.point_bytes + 30, 7, 2);
+  las_file file = las_begin(4, 6, POINTS, 6);
+  size_t described_at = las_describe_extra(&file, POINTS);
+  las_put(&file, file.points_offset + file.point_bytes + 30, 7, 2);
   for (size_t i = 0; i < POINTS; i++)
-    memcpy(bytes + offset + i * file.point_bytes + 32, &speeds[i], 4);
-  const char *path = files_write_bytes("extra.las", bytes, n_bytes);
+    memcpy(file.bytes + file.points_offset + i * file.point_bytes + 32, &speeds[i], 4);
+  const char *path = files_write_bytes("extra.las", file.bytes, file.n_bytes);
   check_values(path, "height?above", heights, 2);
   check_values(path, "speed", speeds, 2);
   CHECK_OK(conic_model_read(context, path, NULL, &model));
   CHECK(!model.points.scalar && find(&model, "speed") && strcmp(find(&model, "speed")->type, "float") == 0);
   CHECK(find(&model, "intensity") && strcmp(find(&model, "intensity")->type, "uint16") == 0);
   conic_model_release(context, &model);
-
-  first[2] = 7; /* 64 bits are not read: no room is left for what follows */
   CHECK(unlink(path) == 0);
-  path = files_write_bytes("extra.las", bytes, n_bytes);
+
+  file.bytes[described_at + 2] = 7; /* 64 bits are not read: no room is left for what follows */
+  path = files_write_bytes("extra.las", file.bytes, file.n_bytes);
   files_check_failed("too far", read_field(path, "speed", 0, &model), "no field 'speed'", NULL);
   CHECK(unlink(path) == 0);
-  free(bytes);
+  free(file.bytes);
 }
 
 static void test_ply(void) {
