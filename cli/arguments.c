@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "core/base/nearest_word.h"
+#include "core/formats/text_columns.h"
 
 enum { N_COMMON = 8 };
 
@@ -103,6 +104,12 @@ int cli_parse_length(const char *text, void *length) {
     return 0;
   parsed->is_in_spacings = *end == 'x';
   return end[parsed->is_in_spacings] == '\0';
+}
+
+int cli_parse_columns(const char *text, void *columns) {
+  conic_text_columns parsed;
+  *(const char **)columns = text;
+  return conic_text_columns_parse(text, &parsed) == NULL;
 }
 
 static int parse_size(const char *text, int size[2]) {

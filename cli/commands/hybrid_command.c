@@ -147,7 +147,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "without the simpler levels that --error chooses from"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
   if (exit_code == CLI_DONE)

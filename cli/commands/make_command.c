@@ -61,7 +61,7 @@ static int check_arguments(const char *const *scenes, int n_scenes, make_job *jo
   int exit_code = find_scene(scenes[0], &job->scene.type);
   if (exit_code == CLI_DONE && !job->base.output)
     exit_code = cli_usage("make: where to? It needs -o OUT.ply");
-  return exit_code == CLI_DONE ? cli_build_check(&job->base, NULL, 0, "ply", 1) : exit_code;
+  return exit_code == CLI_DONE ? cli_build_check(&job->base, NULL, 0, "ply") : exit_code;
 }
 
 static int parse_scene(int argc, char **argv, make_job *job) {

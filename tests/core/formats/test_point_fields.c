@@ -152,6 +152,28 @@ static void test_text(void) {
   CHECK(unlink(path) == 0);
 }
 
+static void test_pcd(void) {
+  static const float curvatures[] = {0.5f, -2.0f}, labels[] = {3.0f, 200.0f};
+  conic_model model;
+  const char *path = files_write("a.pcd", "VERSION .7\nFIELDS x y z fpfh curvature label\nSIZE 4 4 4 4 4 1\n"
+                                          "TYPE F F F F F U\nCOUNT 1 1 1 2 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
+                                          "DATA ascii\n0 0 0 9 9 .5 3\n1 0 0 9 9 -2 200\n");
+  check_values(path, "curvature", curvatures, 2);
+  check_values(path, "classification", labels, 2);
+  files_check_failed("pcd", read_field(path, "fpfh", 0, &model), "no field 'fpfh'", "x, y, z, curvature, label", NULL);
+  CHECK(unlink(path) == 0);
+  char binary[300];
+  int n = snprintf(binary, sizeof binary,
+                   "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\n"
+                   "COUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n");
+  memset(binary + n, 0, 32);
+  memcpy(binary + n + 12, &curvatures[0], 4);
+  memcpy(binary + n + 28, &curvatures[1], 4);
+  path = files_write_bytes("b.pcd", binary, (size_t)n + 32);
+  check_values(path, "Intensity", curvatures, 2);
+  CHECK(unlink(path) == 0);
+}
+
 typedef struct gathering {
   conic_splats all;
   size_t n_batches;
@@ -209,6 +231,7 @@ int main(void) {
   test_extra_bytes();
   test_ply();
   test_text();
+  test_pcd();
   test_batches();
   test_without();
   files_end(context);

@@ -1,26 +1,34 @@
-#include "core/formats/assimp_kinds.h"
+#include "core/assimp/assimp_kinds.h"
 
 #include <string.h>
 
 #include "core/files/file.h"
 
-/* How a file of a kind begins, and what it has besides within the first bytes; null: nothing more. */
+/* How a file of a kind begins, and what it has besides within the first bytes; empty: nothing more. */
 typedef struct content {
   conic_model_kind kind;
-  const char *start, *within;
+  const char *start, *within, *also;
 } content;
 
 static const content contents[] = {
-    {CONIC_MODEL_GLB, "glTF", NULL},       {CONIC_MODEL_FBX, "Kaydara FBX Binary", NULL},
-    {CONIC_MODEL_FBX, "; FBX", NULL},      {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model"},
-    {CONIC_MODEL_STL, "solid", "facet"},   {CONIC_MODEL_STL, "solid", "endsolid"},
-    {CONIC_MODEL_GLTF, "{", "\"asset\""},  {CONIC_MODEL_DAE, "<", "<COLLADA"},
-    {CONIC_MODEL_X3D, "<", "<X3D"},        {CONIC_MODEL_AMF, "<", "<amf"},
-    {CONIC_MODEL_DXF, "0\nSECTION", NULL}, {CONIC_MODEL_DXF, "0\r\nSECTION", NULL},
+    {CONIC_MODEL_GLB, "glTF", "", ""},
+    {CONIC_MODEL_FBX, "Kaydara FBX Binary", "", ""},
+    {CONIC_MODEL_FBX, "; FBX", "", ""},
+    {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model", ""},
+    {CONIC_MODEL_STL, "solid", "facet", ""},
+    {CONIC_MODEL_STL, "solid", "endsolid", ""},
+    {CONIC_MODEL_GLTF, "{", "\"asset\"", "\"version\""},
+    {CONIC_MODEL_DAE, "<", "<COLLADA", ""},
+    {CONIC_MODEL_X3D, "<", "<X3D", ""},
+    {CONIC_MODEL_AMF, "<", "<amf", ""},
+    {CONIC_MODEL_DXF, "0\nSECTION", "", ""},
+    {CONIC_MODEL_DXF, "0\r\nSECTION", "", ""},
 };
 
-static int has_text(const char *bytes, size_t n, const char *text) {
+int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
   size_t length = strlen(text);
+  if (length == 0)
+    return 1;
   for (const char *c = bytes; n >= length; c++, n--)
     if (*c == *text && memcmp(c, text, length) == 0)
       return 1;
@@ -42,9 +50,18 @@ static uint64_t number_at(const char *bytes, size_t at) {
   return number;
 }
 
+/* Whether a file of that size is a binary STL, which says how many faces it has. */
+static int is_stl(const char *bytes, size_t n, uint64_t size) {
+  return n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80);
+}
+
+int conic_assimp_is_binary(const void *bytes, uint64_t n) {
+  return is_stl(bytes, n < 84 ? 0 : 84, n);
+}
+
 /* Binary files of which the length must be what they say. */
 static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
-  if (n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80))
+  if (is_stl(bytes, n, size))
     *kind = CONIC_MODEL_STL;
   else if (n >= 6 && memcmp(bytes, "MM", 2) == 0 && size == number_at(bytes, 2))
     *kind = CONIC_MODEL_3DS;
@@ -75,7 +92,7 @@ int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uin
     if (n < length || memcmp(bytes, contents[i].start, length) != 0)
       continue;
     *kind = contents[i].kind;
-    if (!contents[i].within || has_text(bytes, n, contents[i].within))
+    if (conic_assimp_has_text(bytes, n, contents[i].within) && conic_assimp_has_text(bytes, n, contents[i].also))
       return 1;
   }
   if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))
