@@ -75,8 +75,8 @@ static void paint_unknown(float linear[3]) {
   linear[0] = linear[1] = linear[2] = 0.2f;
 }
 
-void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]) {
-  int ramp = coloring->ramp ? find_ramp(coloring->ramp) : CONIC_N_RAMPS;
+/* `ramp`: the coloring's, or CONIC_N_RAMPS. */
+static void paint_value(const conic_coloring *coloring, int ramp, double value, float linear[3]) {
   double extent = coloring->maximum - coloring->minimum;
   if (!(value - value == 0.0) || ramp == CONIC_N_RAMPS) {
     paint_unknown(linear);
@@ -88,6 +88,10 @@ void conic_coloring_color(const conic_coloring *coloring, double value, float li
   }
   double t = extent != 0.0 ? (value - coloring->minimum) / extent : 0.5;
   conic_ramp_color((conic_ramp)ramp, coloring->is_root && t > 0.0 ? sqrt(t) : t, linear);
+}
+
+void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]) {
+  paint_value(coloring, coloring->ramp ? find_ramp(coloring->ramp) : CONIC_N_RAMPS, value, linear);
 }
 
 static double value_at_vertex(const painting *p, const vertices *set, size_t i) {
@@ -136,6 +140,7 @@ static void paint_normal(double normal[3], double front, float linear[3]) {
 
 static void paint_vertices(const painting *p, const vertices *set) {
   double front = p->kind == BY_NORMAL ? front_of(p, set) : 1.0;
+  int ramp = p->coloring->ramp ? find_ramp(p->coloring->ramp) : CONIC_N_RAMPS;
   for (size_t i = 0; i < set->count; i++) {
     float linear[3];
     double normal[3];
@@ -143,7 +148,7 @@ static void paint_vertices(const painting *p, const vertices *set) {
       normal_at_vertex(set, i, normal);
       paint_normal(normal, front, linear);
     } else
-      conic_coloring_color(p->coloring, value_at_vertex(p, set, i), linear);
+      paint_value(p->coloring, ramp, value_at_vertex(p, set, i), linear);
     for (int channel = 0; channel < 3; channel++)
       set->color[channel][i] = linear[channel];
   }
