@@ -23,6 +23,6 @@ if(TARGET OpenImageIO::OpenImageIO)
   target_compile_options(conic_openimageio PRIVATE -Wno-shadow)
 endif()
 if(TARGET assimp::assimp)
-  conic_add_module(assimp assimp::assimp core/formats/assimp_bridge.c core/formats/assimp_files_bridge.c
-    core/formats/assimp_materials_bridge.c)
+  conic_add_module(assimp assimp::assimp core/assimp/assimp_bridge.c core/assimp/assimp_files_bridge.c
+    core/assimp/assimp_materials_bridge.c core/assimp/assimp_settle_bridge.c)
 endif()

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#include "core/formats/assimp_read.h"
+#include "core/assimp/assimp_read.h"
 #include "core/image/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x
@@ -17,6 +17,9 @@ const char *conic_version(void) {
 #endif
 #ifndef CONIC_HAVE_PNG
 #define CONIC_HAVE_PNG 0
+#endif
+#ifndef CONIC_HAVE_ZLIB
+#define CONIC_HAVE_ZLIB 0
 #endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
@@ -36,6 +39,7 @@ static const conic_feature features[] = {
     {"CURL", CONIC_HAVE_CURL},
     {"libpng", CONIC_HAVE_PNG},
     {"Assimp", 1},
+    {"zlib", CONIC_HAVE_ZLIB},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
 enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };

@@ -98,6 +98,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   double low[3], high[3];
   conic_read_options_init(&reading);
   reading.cutoff = options->cutoff;
+  reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH;
   conic_coloring_read(options->coloring, &reading);
   conic_status status = conic_model_read(context, path, &reading, &model);

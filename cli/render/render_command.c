@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "core/base/message.h"
 
@@ -79,7 +80,7 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_planes_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);

@@ -1,8 +1,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
-#include "core/formats/assimp_kinds.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
 
@@ -61,7 +61,7 @@ static conic_status pass_twice(streaming *s, conic_input *input, const char *pat
   conic_input again;
   conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, &s->range, s->kind == CONIC_MODEL_XYZ, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, s->kind != CONIC_MODEL_LAS, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)

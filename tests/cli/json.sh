@@ -107,6 +107,10 @@ grep -q '"nan": 1,' runs/render-odd.json || fail "render does not count what it 
 grep -q '"duplicate": 1,' runs/render-odd.json || fail "render does not count what lies where others are"
 write render-odd-patches render_patches render odd.xyz -o odd.exr --size 64x64 --method patch
 grep -q '"nan": 1,' runs/render-odd-patches.json || fail "render does not count what it lays no patches about"
+write render-colored render render knot.ply -o height.exr --color-by height --size 64x64
+write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
+write octree-colored octree octree colored.ply -o colored.cot --color-by height
+write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 write verify verify verify thinner.ply --size 160x120
@@ -135,6 +139,7 @@ unseen="device.name device.platform device.version device.driver device.is_cpu d
   device.rounds_correctly device.compute_units device.memory_bytes"
 if [[ $has_zstd -eq 1 ]]; then
   write layer layer layer knot.ply -o knot.lpc
+  write layer-colored layer layer knot.ply -o colored.lpc --color-by x
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check

@@ -113,18 +113,18 @@ static inline void mesh_base64(mesh_file *file, const unsigned char *bytes, size
   }
 }
 
-/* All but where the bytes of the buffer and of the picture are: `buffer` and `image` say so. */
-static inline void mesh_gltf_json(mesh_file *file, const char *buffer, const char *node, const char *material,
+/* All but where the bytes of the buffer and of the picture are: `buffer` and `image` say so. The scene is node 0. */
+static inline void mesh_gltf_json(mesh_file *file, const char *buffer, const char *nodes, const char *material,
                                   const char *image, size_t image_bytes) {
   mesh_text(file,
-            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0%s}],"
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],"
             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},\"indices\":2%s}]}],"
             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
             "\"max\":[3,2,1]},{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
             "{\"bufferView\":2,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],"
             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},"
             "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":24}",
-            node, material[0] ? ",\"material\":0" : "");
+            nodes, material[0] ? ",\"material\":0" : "");
   if (image_bytes)
     mesh_text(file, ",{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":%zu}", MESH_BUFFER_BYTES, image_bytes);
   mesh_text(file, "],\"buffers\":[{\"byteLength\":%zu%s", MESH_BUFFER_BYTES + image_bytes, buffer);
@@ -143,13 +143,13 @@ static inline void mesh_gltf_json(mesh_file *file, const char *buffer, const cha
   mesh_text(file, "}");
 }
 
-/* A picture of 2 × 2 in the file; the node moves and doubles the mesh. */
+/* A picture of 2 × 2 in the file; a node doubles the mesh, and the one above moves it. */
 static inline void mesh_glb(mesh_file *file) {
   static const png_kind picture = {.width = 2, .height = 2, .kind = PNG_COLOR, .depth = 8};
   png_file png;
   mesh_file json = {.n = 0};
   png_make(&png, &picture);
-  mesh_gltf_json(&json, "", ",\"scale\":[2,2,2],\"translation\":[10,0,0]",
+  mesh_gltf_json(&json, "", "{\"children\":[1],\"translation\":[10,0,0]},{\"mesh\":0,\"scale\":[2,2,2]}",
                  "\"baseColorFactor\":[0.5,1,0.25,1],\"baseColorTexture\":{\"index\":0}",
                  "{\"mimeType\":\"image/png\",\"bufferView\":3}", png.n_bytes);
   while (json.n % 4)
@@ -168,7 +168,7 @@ static inline void mesh_glb(mesh_file *file) {
 }
 
 static inline void mesh_gltf(mesh_file *file) {
-  mesh_gltf_json(file, "", "", "", "", 0);
+  mesh_gltf_json(file, "", "{\"mesh\":0}", "", "", 0);
 }
 
 static inline void mesh_dae(mesh_file *file) {

@@ -4,6 +4,7 @@
 #include "tests/support/mesh_file.h"
 
 static conic_context *context;
+static const char one_node[] = "{\"mesh\":0}";
 
 static conic_triangles read_triangles(const char *name, const void *bytes, size_t n, conic_status expected) {
   conic_triangles t;
@@ -147,7 +148,7 @@ static void test_files_beside(void) {
   mesh_buffer(&buffer);
   snprintf(bin, sizeof bin, "%s", files_write_bytes("b.bin", buffer.bytes, buffer.n));
   snprintf(picture, sizeof picture, "%s", write_pfm("a b.pfm"));
-  mesh_gltf_json(&file, ",\"uri\":\"b.bin\"", "", base, "{\"uri\":\"elsewhere/a%20b.pfm\"}", 0);
+  mesh_gltf_json(&file, ",\"uri\":\"b.bin\"", one_node, base, "{\"uri\":\"elsewhere/a%20b.pfm\"}", 0);
   conic_triangles t = read_triangles("a.gltf", file.bytes, file.n, CONIC_OK);
   CHECK(t.count == 4 && t.n_materials == 2 && t.materials[0].texture);
   if (t.materials[0].texture)
@@ -171,7 +172,7 @@ static void test_files_beside(void) {
   char above[200];
   snprintf(above, sizeof above, ",\"uri\":\"../%s/b.bin\"", strrchr(files_folder, '/') + 1);
   snprintf(bin, sizeof bin, "%s", files_write_bytes("b.bin", buffer.bytes, buffer.n));
-  mesh_gltf_json(&file, above, "", "", "", 0);
+  mesh_gltf_json(&file, above, one_node, "", "", 0);
   t = read_triangles("a.gltf", file.bytes, file.n, CONIC_ERROR_INPUT);
   CHECK(unlink(bin) == 0);
   files_message[0] = 0;
@@ -181,7 +182,7 @@ static void test_files_beside(void) {
 static void test_mirrored(void) {
   static mesh_file file;
   file.n = 0;
-  mesh_gltf_json(&file, "", ",\"scale\":[-1,1,1]", "", "", 0);
+  mesh_gltf_json(&file, "", "{\"mesh\":0,\"scale\":[-1,1,1]}", "", "", 0);
   conic_triangles t = read_triangles("a.gltf", file.bytes, file.n, CONIC_OK);
   CHECK(t.count == 4);
   double volume = 0.0;
@@ -204,7 +205,7 @@ static void test_origin(void) {
   static mesh_file file;
   conic_model model;
   file.n = 0;
-  mesh_gltf_json(&file, "", ",\"translation\":[4000000,0,0]", "", "", 0);
+  mesh_gltf_json(&file, "", "{\"mesh\":0,\"translation\":[4000000,0,0]}", "", "", 0);
   const char *path = files_write_bytes("a.gltf", file.bytes, file.n);
   CHECK_OK(conic_model_read(context, path, NULL, &model));
   CHECK(model.points.origin[0] == 4000000.0 && model.points.position[0][0] == 0.0f);
@@ -274,6 +275,12 @@ static void test_refused(void) {
   check_refused("a.stl", "\0\0\0", 3, "cannot read: ");
   check_refused("a.fbx", "rubbish", 7, "cannot read: ");
   check_refused("a.gltf", nothing, sizeof nothing - 1, "a.gltf: ");
+  file.n = 0;
+  mesh_glb(&file);
+  for (size_t i = 0; i + sizeof mesh_faces <= file.n; i++)
+    if (memcmp(file.bytes + i, mesh_faces, sizeof mesh_faces) == 0)
+      file.bytes[i] = 4;
+  check_refused("a.glb", file.bytes, file.n, "index is out of range");
   for (int i = 0; i < MESH_N_KINDS; i++) { /* none of these is whole when its second half is missing */
     file.n = 0;
     mesh_kinds[i].make(&file);

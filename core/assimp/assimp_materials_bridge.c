@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
 enum { BLOCK = 1024 };
 
@@ -69,13 +69,13 @@ static int find_texture(const struct aiMaterial *material, struct aiString *path
 static int is_default(const conic_assimp_writer *w, const struct aiMaterial *material) {
   struct aiString name = {0};
   aiGetMaterialString(material, AI_MATKEY_NAME, &name);
-  if (strcmp(w->ending, "stl") == 0)
+  if (strcmp(w->request->ending, "stl") == 0)
     return 0; /* here that name is the file's own colour */
-  return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0 || strcmp(w->ending, "off") == 0;
+  return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0 || strcmp(w->request->ending, "off") == 0;
 }
 
 static int is_gltf(const conic_assimp_writer *w) {
-  return strcmp(w->ending, "gltf") == 0 || strcmp(w->ending, "glb") == 0;
+  return strcmp(w->request->ending, "gltf") == 0 || strcmp(w->request->ending, "glb") == 0;
 }
 
 /* A texture takes the place of a colour, but for glTF, where it is multiplied. */

@@ -1,13 +1,10 @@
-#include "core/formats/assimp_process.h"
+#include "core/assimp/assimp_process.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdio.h>
 #include <string.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,70 +12,26 @@
 
 enum { POLL_MILLISECONDS = 50 };
 
-/* What any file may take beyond what it takes by its size. */
-static const uint64_t least_memory_bytes = UINT64_C(2) << 30, least_seconds = 60;
-static const uint64_t memory_per_byte = 64, bytes_per_second = 100000;
-
-static void set_limit(int resource, uint64_t most) {
-  struct rlimit limit;
-  if (getrlimit(resource, &limit) != 0)
-    return;
-  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY || most < limit.rlim_max ? (rlim_t)most : limit.rlim_max;
-  setrlimit(resource, &limit);
-}
-
-/* Address space that is there already (a sanitizer has much); 0 where it cannot be told. */
-static uint64_t own_address_space(void) {
-  unsigned long long pages = 0;
-  FILE *file = fopen("/proc/self/statm", "r");
-  int n = file ? fscanf(file, "%llu", &pages) : 0;
-  if (file)
-    fclose(file);
-  return n == 1 ? pages * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
-}
-
-/* From here on this is the new process: it says nothing, ends with its parent, and dies of what it does wrong. */
-static void settle(uint64_t address_space, size_t n_bytes, pid_t parent) {
-  static const int signals[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGINT,
-                                SIGTERM, SIGPIPE, SIGXCPU, SIGALRM, SIGCHLD, SIGHUP};
-  for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
-    signal(signals[i], SIG_DFL);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent)
-    _exit(1);
-  int nowhere = open("/dev/null", O_RDWR);
-  for (int descriptor = 0; descriptor < 3; descriptor++)
-    dup2(nowhere, descriptor);
-  set_limit(RLIMIT_CORE, 0);
-  set_limit(RLIMIT_CPU, least_seconds + n_bytes / bytes_per_second);
-  if (address_space)
-    set_limit(RLIMIT_AS, address_space + least_memory_bytes + memory_per_byte * n_bytes);
-}
-
 conic_status conic_assimp_process_start(conic_context *context, const char *name,
                                         const conic_assimp_bridge_functions *bridge, conic_assimp_request request,
                                         conic_assimp_process *process) {
   int ends[2];
-  uint64_t address_space = own_address_space();
-  pid_t parent = getpid();
   *process = (conic_assimp_process){.context = context, .name = name, .descriptor = -1};
   if (pipe(ends) != 0)
     return conic_fail(context, CONIC_ERROR_IO, "%s: cannot read: %s", name, strerror(errno));
+  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+  fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   pid_t id = fork();
   if (id == 0) {
     close(ends[0]);
-    /* Not one of those that settling redirects. */
-    request.descriptor = fcntl(ends[1], F_DUPFD, 3);
-    settle(address_space, request.n_bytes, parent);
-    bridge->read(&request);
-    _exit(0);
+    request.descriptor = ends[1];
+    bridge->read(&request); /* and that is its end */
   }
   close(ends[1]);
   if (id < 0) {
     close(ends[0]);
     return conic_fail(context, CONIC_ERROR_IO, "%s: cannot read: no process for it: %s", name, strerror(errno));
   }
-  fcntl(ends[0], F_SETFD, FD_CLOEXEC);
   process->id = id;
   process->descriptor = ends[0];
   return CONIC_OK;
@@ -87,10 +40,9 @@ conic_status conic_assimp_process_start(conic_context *context, const char *name
 /* Why there is no more to read. */
 static conic_status explain_end(conic_assimp_process *process) {
   int state = 0;
-  pid_t ended;
-  do
-    ended = waitpid(process->id, &state, 0);
-  while (ended < 0 && errno == EINTR);
+  pid_t ended = 0;
+  while (process->id > 0 && (ended = waitpid(process->id, &state, 0)) < 0 && errno == EINTR)
+    ;
   process->id = 0;
   int is_slow = ended > 0 && WIFSIGNALED(state) && WTERMSIG(state) == SIGXCPU;
   return conic_fail(process->context, CONIC_ERROR_INPUT,

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
 enum { MOST_SIDE_BYTES = 0x7FFFFFFF };
 

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_part.h"
+#include "core/assimp/assimp_part.h"
 
 #include <string.h>
 
@@ -8,13 +8,13 @@
 #include "core/base/vectors.h"
 
 /* A part's arrays as they come, and which point each vertex has become. */
-typedef struct part {
+typedef struct assimp_part {
   size_t n_vertices, n_triangles;
   double (*position)[3];
   float (*normal)[3], (*coordinate)[2], (*color)[3];
   uint32_t (*triangles)[3];
   uint32_t *point;
-} part;
+} assimp_part;
 
 float conic_assimp_decode(const conic_assimp_part_builder *parts, float value) {
   if (parts->is_linear)
@@ -41,7 +41,7 @@ void conic_assimp_parts_release(conic_assimp_part_builder *parts) {
   conic_memory_release(parts->context, parts->normals);
 }
 
-static void release_part(conic_context *context, part *taken) {
+static void release_part(conic_context *context, assimp_part *taken) {
   conic_memory_release(context, taken->position);
   conic_memory_release(context, taken->normal);
   conic_memory_release(context, taken->coordinate);
@@ -59,7 +59,7 @@ static conic_status take_array(conic_assimp_process *process, int is_there, size
   return bytes ? conic_assimp_process_take(process, bytes, n * size) : CONIC_ERROR_MEMORY;
 }
 
-static conic_status take_arrays(conic_assimp_process *process, const conic_assimp_record *record, part *taken) {
+static conic_status take_arrays(conic_assimp_process *process, const conic_assimp_record *record, assimp_part *taken) {
   size_t n = taken->n_vertices, n_triangles = taken->n_triangles;
   conic_status status = take_array(process, 1, n, sizeof *taken->position, &taken->position);
   if (status == CONIC_OK)
@@ -138,7 +138,7 @@ static conic_status reserve_slots(conic_assimp_part_builder *parts, size_t count
 }
 
 /* The point that a vertex is: an earlier one, or the model's next. */
-static uint32_t add_vertex(conic_assimp_part_builder *parts, const part *taken, size_t i) {
+static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *taken, size_t i) {
   conic_splats *points = &parts->builder.model->points;
   size_t next = points->count;
   conic_builder_store_position(&parts->builder, taken->position[i]);
@@ -154,7 +154,7 @@ static uint32_t add_vertex(conic_assimp_part_builder *parts, const part *taken, 
   return (uint32_t)next;
 }
 
-static conic_status add_vertices(conic_assimp_part_builder *parts, part *taken) {
+static conic_status add_vertices(conic_assimp_part_builder *parts, assimp_part *taken) {
   size_t count = parts->builder.model->points.count + taken->n_vertices;
   if (count > CONIC_MAX_POINTS)
     return conic_fail(parts->context, CONIC_ERROR_INPUT, "there are too many vertices");
@@ -173,12 +173,12 @@ static conic_status add_vertices(conic_assimp_part_builder *parts, part *taken) 
   return CONIC_OK;
 }
 
-static void add_normal(conic_assimp_part_builder *parts, const part *taken, size_t i_vertex) {
+static void add_normal(conic_assimp_part_builder *parts, const assimp_part *taken, size_t i_vertex) {
   for (int axis = 0; axis < 3; axis++)
     parts->normals[taken->point[i_vertex]][axis] += (double)taken->normal[i_vertex][axis];
 }
 
-static conic_status add_normals(conic_assimp_part_builder *parts, const part *taken) {
+static conic_status add_normals(conic_assimp_part_builder *parts, const assimp_part *taken) {
   size_t n = parts->builder.model->points.count, n_before = parts->normal_room;
   conic_status status =
       conic_memory_reserve(parts->context, &parts->normals, n_before, n, &parts->normal_room, sizeof *parts->normals);
@@ -197,7 +197,7 @@ static conic_status add_normals(conic_assimp_part_builder *parts, const part *ta
 }
 
 /* What the corners have, which all keep for themselves. */
-static conic_status add_attributes(conic_assimp_part_builder *parts, const part *taken) {
+static conic_status add_attributes(conic_assimp_part_builder *parts, const assimp_part *taken) {
   conic_status status = CONIC_OK;
   for (size_t i = 0; status == CONIC_OK && taken->normal && i < taken->n_vertices; i++) {
     const double normal[3] = {(double)taken->normal[i][0], (double)taken->normal[i][1], (double)taken->normal[i][2]};
@@ -210,7 +210,7 @@ static conic_status add_attributes(conic_assimp_part_builder *parts, const part 
   return status;
 }
 
-static conic_status add_triangles(conic_assimp_part_builder *parts, const part *taken) {
+static conic_status add_triangles(conic_assimp_part_builder *parts, const assimp_part *taken) {
   size_t first_normal = parts->faces ? parts->faces->n_normals : 0;
   size_t first_coordinate = parts->faces ? parts->faces->n_coordinates : 0;
   conic_status status = parts->faces ? add_attributes(parts, taken) : CONIC_OK;
@@ -235,7 +235,7 @@ static conic_status add_triangles(conic_assimp_part_builder *parts, const part *
 
 conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,
                                     conic_assimp_part_builder *parts) {
-  part taken = {.n_vertices = (size_t)record->n_vertices, .n_triangles = (size_t)record->n_triangles};
+  assimp_part taken = {.n_vertices = (size_t)record->n_vertices, .n_triangles = (size_t)record->n_triangles};
   if (record->n_vertices > CONIC_MAX_POINTS || record->n_triangles > SIZE_MAX / sizeof *taken.triangles)
     return conic_fail(process->context, CONIC_ERROR_INPUT, "%s: there are too many vertices", process->name);
   conic_status status = take_arrays(process, record, &taken);

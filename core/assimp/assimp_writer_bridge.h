@@ -5,17 +5,21 @@
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
 
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 
 typedef struct conic_assimp_writer {
   const conic_assimp_request *request;
-  const char *ending; /* of the name, behind its dot */
   const struct aiScene *scene;
   int64_t *sent; /* of each material, which record it was; -1: not sent */
   uint32_t n_sent;
   int has_triangles;
-  int is_failed;
+  int is_failed, n_notes;
+  const char *why_refused; /* null: it is not */
 } conic_assimp_writer;
+
+/* Makes the process one for this file alone: it says nothing, ends with its parent, takes no more memory and time than
+ * a file of that size should, and dies of what it does wrong. */
+void conic_assimp_settle(conic_assimp_request *request);
 
 void conic_assimp_send_bytes(conic_assimp_writer *w, const void *bytes, size_t n_bytes);
 /* A record about bytes, and those. */

@@ -1,4 +1,4 @@
-#include "core/formats/assimp_kinds.h"
+#include "core/assimp/assimp_kinds.h"
 
 #include <string.h>
 
@@ -19,7 +19,7 @@ static const content contents[] = {
     {CONIC_MODEL_DXF, "0\nSECTION", NULL}, {CONIC_MODEL_DXF, "0\r\nSECTION", NULL},
 };
 
-static int has_text(const char *bytes, size_t n, const char *text) {
+int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
   size_t length = strlen(text);
   for (const char *c = bytes; n >= length; c++, n--)
     if (*c == *text && memcmp(c, text, length) == 0)
@@ -42,9 +42,18 @@ static uint64_t number_at(const char *bytes, size_t at) {
   return number;
 }
 
+/* Whether a file of that size is a binary STL, which says how many faces it has. */
+static int is_stl(const char *bytes, size_t n, uint64_t size) {
+  return n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80);
+}
+
+int conic_assimp_is_binary(const void *bytes, uint64_t n) {
+  return is_stl(bytes, n < 84 ? 0 : 84, n);
+}
+
 /* Binary files of which the length must be what they say. */
 static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
-  if (n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80))
+  if (is_stl(bytes, n, size))
     *kind = CONIC_MODEL_STL;
   else if (n >= 6 && memcmp(bytes, "MM", 2) == 0 && size == number_at(bytes, 2))
     *kind = CONIC_MODEL_3DS;
@@ -75,7 +84,7 @@ int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uin
     if (n < length || memcmp(bytes, contents[i].start, length) != 0)
       continue;
     *kind = contents[i].kind;
-    if (!contents[i].within || has_text(bytes, n, contents[i].within))
+    if (!contents[i].within || conic_assimp_has_text(bytes, n, contents[i].within))
       return 1;
   }
   if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))

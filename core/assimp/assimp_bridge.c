@@ -1,17 +1,18 @@
 /* What Assimp has read, as records: the scene's meshes where their nodes place them. */
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "conic/export.h"
 #include "conic/version.h"
-#include "core/formats/assimp_writer_bridge.h"
+#include "core/assimp/assimp_writer_bridge.h"
 
-enum { BLOCK = 1024 };
+enum { BLOCK = 1024, MOST_NOTES = 4 };
 
 /* Rows of world from mesh, in double; and of what turns normals. */
 typedef struct placement {
@@ -96,7 +97,7 @@ static void send_coordinates(conic_assimp_writer *w, const struct aiMesh *mesh, 
 
 static void send_colors(conic_assimp_writer *w, const struct aiMesh *mesh) {
   float block[BLOCK][3];
-  int may_be_unset = strcmp(w->ending, "amf") == 0; /* there transparent black is no colour at all */
+  int may_be_unset = strcmp(w->request->ending, "amf") == 0; /* there transparent black is no colour at all */
   for (unsigned done = 0, m; done < mesh->mNumVertices; done += m) {
     m = mesh->mNumVertices - done < BLOCK ? mesh->mNumVertices - done : BLOCK;
     for (unsigned i = 0; i < m; i++) {
@@ -147,7 +148,8 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
                                 .n_vertices = mesh->mNumVertices,
                                 .n_triangles = n_triangles,
                                 .i_material = w->request->keeps_faces ? conic_assimp_material(w, mesh) : UINT32_MAX};
-  int has_normals = mesh->mNormals && strcmp(w->ending, "stl") != 0; /* there the faces' own, and seldom right */
+  int has_normals =
+      mesh->mNormals && strcmp(w->request->ending, "stl") != 0; /* there the faces' own, and seldom right */
   record.fields = (has_normals ? CONIC_ASSIMP_NORMALS : 0u) | (coordinates ? CONIC_ASSIMP_COORDINATES : 0u) |
                   (mesh->mColors[0] ? CONIC_ASSIMP_COLORS : 0u);
   conic_assimp_send_bytes(w, &record, sizeof record);
@@ -182,13 +184,13 @@ static int find_number(const struct aiMetadata *data, const char *key, int none)
 static void find_up(const conic_assimp_writer *w, double up[3]) {
   static const char *const z_up[] = {"stl", "3mf", "amf"};
   int axis = 1;
-  if (strcmp(w->ending, "off") == 0)
+  if (strcmp(w->request->ending, "off") == 0)
     return;
   for (size_t i = 0; i < sizeof z_up / sizeof z_up[0]; i++)
-    if (strcmp(w->ending, z_up[i]) == 0)
+    if (strcmp(w->request->ending, z_up[i]) == 0)
       axis = 2;
   double sign = 1.0;
-  if (strcmp(w->ending, "fbx") == 0) {
+  if (strcmp(w->request->ending, "fbx") == 0) {
     axis = find_number(w->scene->mMetaData, "UpAxis", 1);
     sign = find_number(w->scene->mMetaData, "UpAxisSign", 1) < 0 ? -1.0 : 1.0;
   }
@@ -215,21 +217,49 @@ static void send_scene(conic_assimp_writer *w) {
   free(w->sent);
 }
 
-static void read_model(const conic_assimp_request *request) {
-  conic_assimp_writer w = {.request = request, .ending = strrchr(request->name, '.') + 1};
-  struct aiFileIO io = conic_assimp_files(&w);
+/* Of all that Assimp says, what tells that something of the file is left out; and what may not be. */
+static void hear(const char *message, char *cookie) {
+  static const char *const told[] = {"drop", "nvalid", "incorrect", "unexpected", "empty", "unknown type: 3D/Objects/"};
+  conic_assimp_writer *w = (conic_assimp_writer *)cookie;
+  const char *text = strstr(message, ": ");
+  if (strncmp(message, "Warn", 4) != 0 || !text)
+    return;
+  text += 2;
+  if (strstr(text, "out-of-range")) {
+    w->why_refused = "a face's index is out of range";
+    return;
+  }
+  for (size_t i = 0; i < sizeof told / sizeof told[0] && w->n_notes < MOST_NOTES; i++)
+    if (strstr(text, told[i])) {
+      conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_NOTE}, text, strlen(text));
+      w->n_notes++;
+      break;
+    }
+}
+
+static const struct aiScene *import(conic_assimp_writer *w) {
+  struct aiFileIO io = conic_assimp_files(w);
+  struct aiLogStream stream = {hear, (char *)w};
   struct aiPropertyStore *properties = aiCreatePropertyStore();
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, 0);
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, 0);
   aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-  w.scene =
-      aiImportFileExWithProperties(request->name, aiProcess_Triangulate | aiProcess_TransformUVCoords, &io, properties);
-  if (w.scene)
+  aiAttachLogStream(&stream);
+  return aiImportFileExWithProperties(w->request->name, aiProcess_Triangulate | aiProcess_TransformUVCoords, &io,
+                                      properties);
+}
+
+static void read_model(conic_assimp_request *request) {
+  conic_assimp_settle(request);
+  conic_assimp_writer w = {.request = request};
+  w.scene = import(&w);
+  const char *why = w.why_refused ? w.why_refused : aiGetErrorString();
+  if (w.scene && !w.why_refused)
     send_scene(&w);
   else
-    conic_assimp_send_failure(&w, strstr(aiGetErrorString(), "bad_alloc")
-                                      ? "it takes more memory than a file of its size should"
-                                      : aiGetErrorString());
+    conic_assimp_send_failure(&w,
+                              strstr(why, "bad_alloc") ? "it takes more memory than a file of its size should" : why);
+  _exit(0);
 }
 
 #define TEXT_OF(x) #x

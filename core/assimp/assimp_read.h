@@ -3,6 +3,7 @@
 #define CONIC_ASSIMP_READ_H
 
 #include "conic/model.h"
+#include "core/assimp/assimp_process.h"
 #include "core/files/input.h"
 
 /* Whether there is the module that leads to Assimp. */
@@ -13,5 +14,9 @@ int conic_assimp_is_there(void);
  */
 conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const conic_read_options *options,
                                conic_model *model);
+
+/* The same of what a process writes that has read it. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_process *process, conic_model_kind kind,
+                                       const conic_read_options *options, conic_model *model);
 
 #endif

@@ -6,7 +6,7 @@
 #include <sys/types.h>
 
 #include "conic/context.h"
-#include "core/formats/assimp_bridge.h"
+#include "core/assimp/assimp_bridge.h"
 
 typedef struct conic_assimp_process {
   conic_context *context;

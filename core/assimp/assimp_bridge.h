@@ -14,7 +14,8 @@ typedef enum conic_assimp_record_type {
   CONIC_ASSIMP_PART = 2,     /* vertices, and triangles between them; points where there are none */
   CONIC_ASSIMP_OPENED = 3,   /* n_bytes: the path of a file that was read besides */
   CONIC_ASSIMP_FAILED = 4,   /* n_bytes: why; the last */
-  CONIC_ASSIMP_END = 5       /* all is read; the last */
+  CONIC_ASSIMP_END = 5,      /* all is read; the last */
+  CONIC_ASSIMP_NOTE = 6      /* n_bytes: what a user should know of the file */
 } conic_assimp_record_type;
 
 /* What of a material's picture follows. */
@@ -40,7 +41,8 @@ typedef struct conic_assimp_record {
 } conic_assimp_record;
 
 typedef struct conic_assimp_request {
-  const char *name; /* "model.ENDING"; the ending says who reads it */
+  const char *name;   /* of the file, without a folder: for messages of Assimp's */
+  const char *ending; /* that of the name, in lower case, which says who reads it */
   const unsigned char *bytes;
   size_t n_bytes;
   size_t folder_length; /* what it names besides is looked for in here, "…/" or "", and below */
@@ -53,8 +55,8 @@ typedef struct conic_assimp_request {
 typedef struct conic_assimp_bridge_functions {
   const char *version; /* as of every module (core/base/module.h) */
 
-  /* Reads the file and writes the records; for a process that ends afterwards. */
-  void (*read)(const conic_assimp_request *request);
+  /* Reads the file and writes the records, and ends the process, which should be one of its own. */
+  void (*read)(conic_assimp_request *request);
 } conic_assimp_bridge_functions;
 
 #endif

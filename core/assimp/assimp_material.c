@@ -1,4 +1,4 @@
-#include "core/formats/assimp_material.h"
+#include "core/assimp/assimp_material.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef CONIC_ASSIMP_MATERIAL_H
 #define CONIC_ASSIMP_MATERIAL_H
 
+#include "core/assimp/assimp_part.h"
 #include "core/files/input.h"
-#include "core/formats/assimp_part.h"
 
 /* Takes what follows a material's record: it becomes the next of the model's faces. A picture that is not there or
  * cannot be read is a warning. Errors: INPUT, MEMORY, CANCELLED. */

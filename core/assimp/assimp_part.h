@@ -3,7 +3,7 @@
 #ifndef CONIC_ASSIMP_PART_H
 #define CONIC_ASSIMP_PART_H
 
-#include "core/formats/assimp_process.h"
+#include "core/assimp/assimp_process.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
 
