@@ -6,7 +6,8 @@
 #include <unistd.h>
 
 #include "cli/command.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
+#include "core/formats/text_columns.h"
 
 enum { N_COMMON = 8 };
 
@@ -103,6 +104,12 @@ int cli_parse_length(const char *text, void *length) {
     return 0;
   parsed->is_in_spacings = *end == 'x';
   return end[parsed->is_in_spacings] == '\0';
+}
+
+int cli_parse_columns(const char *text, void *columns) {
+  conic_text_columns parsed;
+  *(const char **)columns = text;
+  return conic_text_columns_parse(text, &parsed) == NULL;
 }
 
 static int parse_size(const char *text, int size[2]) {
@@ -232,7 +239,7 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++)
       if (set->tables[table][i].name[1])
-        nearest = cli_nearer_word(name, nearest, set->tables[table][i].name);
+        nearest = conic_nearer_word(name, nearest, set->tables[table][i].name);
   if (access(argument, F_OK) == 0)
     return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
   if (nearest)

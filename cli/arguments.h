@@ -45,6 +45,14 @@ typedef struct cli_length {
 /* Parses a length that is not negative into a cli_length: a `parse` for CLI_PARSED. 0 where it is none. */
 int cli_parse_length(const char *text, void *length);
 
+/* What the columns of text are: the option --columns, into a const char *, and its parser. */
+#define CLI_COLUMNS(to)                                                                                                \
+  {                                                                                                                    \
+    "columns", CLI_PARSED, to, "NAMES",                                                                                \
+        "of text: what its columns are, as x,y,z,intensity,-,r,g,b [as its header says]", .parse = cli_parse_columns   \
+  }
+int cli_parse_columns(const char *text, void *columns);
+
 /* Parses a count as CLI_COUNT does: 100000, 10k, 2M, 1e6; 0 where it is none. */
 int cli_parse_count(const char *text, unsigned long long *value);
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 
 int cli_parse_color_range(const char *text, void *value) {
   conic_coloring_options *coloring = value;
@@ -23,7 +23,7 @@ static int check_ramp(const cli_session *session, const char *ramp) {
   for (int i = 0; (name = conic_ramp_name(i)); i++) {
     if (strcmp(name, ramp) == 0)
       return CLI_DONE;
-    nearest = cli_nearer_word(ramp, nearest, name);
+    nearest = conic_nearer_word(ramp, nearest, name);
   }
   return cli_usage("%s: there is no ramp '%s'%s%s%s", session->command, ramp, nearest ? "; did you mean '" : "",
                    nearest ? nearest : "", nearest ? "'?" : "");

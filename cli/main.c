@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {&cli_make,    &cli_prepare, &cli_octree, &cli_layer,  &cli_mls,
                                               &cli_hybrid,  &cli_render,  &cli_diff,   &cli_info,   &cli_verify,
@@ -21,11 +21,11 @@ const cli_command *cli_find_command(const char *name) {
 static int refuse_command(const char *name) {
   int is_option = name[0] == '-';
   const char *kind = is_option ? "option" : "command";
-  const char *nearest = cli_nearer_word(name, NULL, is_option ? "--version" : "help");
+  const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");
   if (is_option)
-    nearest = cli_nearer_word(name, nearest, "--help");
+    nearest = conic_nearer_word(name, nearest, "--help");
   for (int i = 0; i < N_COMMANDS && !is_option; i++)
-    nearest = cli_nearer_word(name, nearest, commands[i]->name);
+    nearest = conic_nearer_word(name, nearest, commands[i]->name);
   if (nearest)
     return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
   return cli_usage("unknown %s %s; see conic help", kind, name);

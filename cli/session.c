@@ -12,10 +12,14 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
+#include "core/files/guard.h"
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
 static int bar_is_shown;
+
+/* One thing that fails may do so in every thread, and make others fail: the first is told. */
+static atomic_int has_failed;
 
 /* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
 static atomic_llong interrupted_at_ms;
@@ -199,6 +203,8 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
   cli_session *session = cookie;
   if ((level == CONIC_LOG_WARNING && session->is_quiet) || (level == CONIC_LOG_INFO && !session->is_verbose))
     return;
+  if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
+    return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
   erase_bar();
@@ -254,6 +260,7 @@ int cli_session_open(cli_session *session) {
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
+  conic_guard_inputs(session->context, session->replaced_path);
   session->has_bar = !session->is_quiet && can_draw_bar();
   const int wishes[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
   for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)

@@ -19,9 +19,11 @@ typedef struct cli_session {
   double drawn_seconds;  /* when the bar was last drawn */
   const char *part;      /* cli_session_part; null: none */
   int i_part, n_parts;
-  double part_share;      /* of the part, what is done */
-  int draws_many_frames;  /* of the same model; this and isa are set before cli_session_open */
-  conic_isa isa;          /* --isa */
+  double part_share;     /* of the part, what is done */
+  int draws_many_frames; /* of the same model; this and isa are set before cli_session_open */
+  conic_isa isa;         /* --isa */
+  const char
+      *replaced_path;     /* --in-place: the only input that may be written over; null: none may. Set before opening */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
 

@@ -16,6 +16,12 @@ else()
   set(PNG_FOUND FALSE)
 endif()
 
+if(CONIC_WITH_ZLIB)
+  find_package(ZLIB QUIET)
+else()
+  set(ZLIB_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_OPENIMAGEIO)
   if(NOT CMAKE_CXX_COMPILER)
     unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
@@ -60,12 +66,14 @@ endif()
 
 set(found_openexr ${OpenEXR_FOUND})
 set(found_png ${PNG_FOUND})
+set(found_zlib ${ZLIB_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
 set(found_assimp ${assimp_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
+        "zlib:zlib (compressed deep images)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
         "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
         "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")

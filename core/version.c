@@ -18,6 +18,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_PNG
 #define CONIC_HAVE_PNG 0
 #endif
+#ifndef CONIC_HAVE_ZLIB
+#define CONIC_HAVE_ZLIB 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -36,6 +39,7 @@ static const conic_feature features[] = {
     {"CURL", CONIC_HAVE_CURL},
     {"libpng", CONIC_HAVE_PNG},
     {"Assimp", 1},
+    {"zlib", CONIC_HAVE_ZLIB},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
 enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };

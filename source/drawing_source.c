@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
+#include "core/splats/estimate.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -82,6 +83,9 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.finds_dots = options->finds_dots;
+  estimate.stays_at_mesh = 1;
+  if (model->n_triangles && !model->points.tangent_u[0])
+    d->base.tolerance = conic_mesh_tolerance(&model->points);
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;
@@ -98,6 +102,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   double low[3], high[3];
   conic_read_options_init(&reading);
   reading.cutoff = options->cutoff;
+  reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH;
   conic_coloring_read(options->coloring, &reading);
   conic_status status = conic_model_read(context, path, &reading, &model);

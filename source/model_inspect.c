@@ -81,6 +81,7 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     conic_facts_add_bounds(facts, low, high);
   if (is_checked)
     tell_defects(&model.points, facts);
+  status = conic_model_tell_fields(context, path, &model, is_checked, facts);
   conic_model_release(context, &model);
-  return CONIC_OK;
+  return status;
 }

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "conic/source.h"
-#include "source/upright.h"
 #include "source/source_kind.h"
+#include "source/upright.h"
 
 /* A hierarchy's outline is known well enough from what this error leaves, in pixels of the framed picture. */
 static const double outline_error_px = 1.0;

@@ -3,8 +3,8 @@
 
 #include "core/base/message.h"
 #include "core/base/options.h"
-#include "source/upright.h"
 #include "source/source_kind.h"
+#include "source/upright.h"
 
 int conic_coloring_is_asked(const conic_source_options *options) {
   const char *by = options->coloring ? options->coloring->by : "rgb";
@@ -20,8 +20,9 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
 
 /* Heights need to know which way is up, and so does the front of normals. */
 static conic_status find_up(conic_source *source, conic_splats *splats, conic_triangles *triangles) {
+  static conic_splats no_splats;
   conic_source_scale *scale = &source->scale;
-  const conic_drawing drawing = {splats, triangles};
+  const conic_drawing drawing = {splats ? splats : &no_splats, triangles};
   if (scale->up_basis != CONIC_UP_HABIT)
     return CONIC_OK;
   conic_status status = conic_upright_look(source->context, &drawing, &scale->up_basis);

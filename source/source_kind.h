@@ -58,6 +58,7 @@ struct conic_source {
   conic_source_choice choice;
   conic_source_view view; /* of the last picture */
   conic_coloring coloring;
+  double tolerance;       /* by which splats made of meshes are off these; 0: none are */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
@@ -83,7 +84,9 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
 conic_status conic_source_color(conic_source *source, const conic_source_options *options, conic_splats *splats,
                                 conic_triangles *triangles);
 
-/* conic_source_inspect of a file that is read as a model. */
+/* conic_source_inspect of a file that is read as a model; and of that the values that its points have by name. */
+conic_status conic_model_tell_fields(conic_context *context, const char *path, const conic_model *model, int is_checked,
+                                     conic_facts *facts);
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
 
 #endif

@@ -23,19 +23,16 @@ void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading
     conic_coloring_read(&coloring->options, reading);
 }
 
-static void use_up(cli_coloring *coloring, int is_survey) {
-  if (coloring->is_up_given)
-    return;
-  coloring->options.up[0] = 0.0;
-  coloring->options.up[1] = is_survey ? 0.0 : 1.0;
-  coloring->options.up[2] = is_survey ? 1.0 : 0.0;
+static void use_up(cli_coloring *coloring, const double up[3]) {
+  if (!coloring->is_up_given)
+    memcpy(coloring->options.up, up, sizeof coloring->options.up);
 }
 
-conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, conic_model_kind kind,
-                                conic_splats *splats, conic_triangles *triangles) {
+conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
+                                conic_triangles *triangles) {
   if (!coloring->options.by)
     return CONIC_OK;
-  use_up(coloring, kind == CONIC_MODEL_LAS);
+  use_up(coloring, up);
   return conic_drawing_color(session->context, &coloring->options, splats, triangles, &coloring->done);
 }
 
@@ -59,7 +56,7 @@ conic_status cli_coloring_find_range(cli_session *session, cli_coloring *colorin
     return CONIC_OK;
   for (int i = 0; i < n_inputs; i++)
     n_surveys += conic_file_begins_with(inputs[i], "LASF", 4);
-  use_up(coloring, n_surveys == n_inputs);
+  use_up(coloring, (const double[3]){0.0, n_surveys == n_inputs ? 0.0 : 1.0, n_surveys == n_inputs ? 1.0 : 0.0});
   if (!conic_coloring_needs_range(options))
     return CONIC_OK;
   range_search search = {options, conic_memory_allocate_zeroed(session->context, 1, sizeof *search.sample)};

@@ -27,9 +27,9 @@ int cli_coloring_check(const cli_session *session, cli_coloring *coloring);
 /* What is to be read. */
 void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading);
 
-/* Colours splats or triangles that are read and measured; either may be null. Errors: as conic_drawing_color. */
-conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, conic_model_kind kind,
-                                conic_splats *splats, conic_triangles *triangles);
+/* Colours splats or triangles, of which either may be null; `up` is what their file says, or zero. Errors: as conic_drawing_color. */
+conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
+                                conic_triangles *triangles);
 
 /* Of inputs that are coloured a batch at a time: reads them once to find the range. Errors: as conic_model_stream. */
 conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,

@@ -29,7 +29,7 @@ static int make_hybrid(void *cookie) {
   conic_status status =
       conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, CONIC_MODEL_PLY, NULL, &mesh);
+    status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK) {
     conic_triangles_release(job->base.session->context, &mesh);
@@ -147,7 +147,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        "without the simpler levels that --error chooses from"},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
   if (exit_code == CLI_DONE)

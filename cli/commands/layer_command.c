@@ -127,6 +127,7 @@ static conic_status read_inputs(layer_job *job) {
   options.cutoff = job->options.cutoff;
   cli_coloring_read(&job->coloring, &options);
   status = cli_coloring_find_range(job->base.session, &job->coloring, job->inputs, job->n_inputs, &options);
+  options.columns = job->base.columns;
   for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
     struct stat found;
     job->base.input = job->inputs[i];
@@ -206,7 +207,7 @@ static int check_layer_arguments(layer_job *job) {
   int answer = cli_coloring_check(job->base.session, &job->coloring);
   if (answer != CLI_DONE)
     return answer;
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc", 0);
+  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {
@@ -233,6 +234,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);

@@ -32,6 +32,7 @@ static conic_status build_from_model(octree_job *job) {
   read_options.cutoff = job->options.cutoff;
   cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
+  read_options.columns = job->base.columns;
   conic_status status = conic_model_read(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
@@ -46,7 +47,7 @@ static conic_status build_from_model(octree_job *job) {
   }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, model.kind, &model.points, NULL);
+    status = cli_coloring_apply(job->base.session, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);
   if (status == CONIC_OK)
     status = conic_octree_build(context, &model.points, &job->options, &job->octree);
@@ -110,8 +111,9 @@ static int run_octree(cli_session *session, int argc, char **argv) {
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_COLUMNS(&job.base.columns),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
   if (exit_code == CLI_DONE)
     exit_code = cli_coloring_check(session, &job.coloring);

@@ -57,6 +57,7 @@ static conic_status thin_model(prepare_job *job) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
     plain.finds_dots = 0;
+    plain.stays_at_mesh = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -71,6 +72,7 @@ static int read_model(prepare_job *job) {
   conic_read_options_init(&options);
   options.cutoff = job->estimate.cutoff;
   cli_coloring_read(&job->coloring, &options);
+  options.columns = job->base.columns;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
@@ -83,7 +85,7 @@ static int find_axes(prepare_job *job) {
   if (status == CONIC_OK)
     status = conic_model_to_splats(job->base.session->context, &job->estimate, &job->model, &job->repairs);
   if (status == CONIC_OK)
-    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.kind, &job->model.points, NULL);
+    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.up, &job->model.points, NULL);
   if (status != CONIC_OK)
     return cli_exit_of(status);
   if (job->repairs.nan + job->repairs.failed >= job->model.points.count)
@@ -146,8 +148,10 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   prepare_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
   cli_coloring_init(&job.coloring);
+  job.estimate.stays_at_mesh = 1;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
        64},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
@@ -156,10 +160,11 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
        4294967294.0, .is_given = &job.has_count},
       CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
-      {"plain", CLI_FLAG, &job.is_plain, NULL, "no dots: every point becomes an ellipse, where there is no surface, too"},
+      CLI_COLUMNS(&job.base.columns),
+      {"plain", CLI_FLAG, &job.is_plain, NULL,
+       "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
-  /* The output may be the input: it is read whole before. */
-  int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply", 1);
+  int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
   return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);
 }
 

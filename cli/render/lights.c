@@ -1,15 +1,17 @@
 #include "cli/render/lights.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-/* Chosen by eye on scans, meshes and a terrain: a key light from the viewer's upper left gives the shape, a little from
- * the front keeps what it does not reach readable, and from all around comes a cool sky over a warm ground. White does
- * not burn out where all of them meet. */
+/* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool
+ * one from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
+ * readable, and from all around comes a sky over a darker ground. White does not burn out where they meet. */
 static const conic_light studio_lights[] = {
-    {.frame = CONIC_LIGHT_CAMERA, .color = {0.88f, 0.85f, 0.80f}, .direction = {-0.55, 0.65, 0.6}},
-    {.frame = CONIC_LIGHT_HEAD, .color = {0.16f, 0.16f, 0.17f}},
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.92f, 0.89f, 0.84f}, .direction = {-0.7, 0.8, 0.6}},
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.25f, 0.29f, 0.36f}, .direction = {0.9, 0.25, -0.2}},
+    {.frame = CONIC_LIGHT_HEAD, .color = {0.08f, 0.08f, 0.08f}},
 };
-static const float studio_sky[3] = {0.24f, 0.26f, 0.29f}, studio_ground[3] = {0.08f, 0.075f, 0.07f};
+static const float studio_sky[3] = {0.17f, 0.19f, 0.22f}, studio_ground[3] = {0.055f, 0.05f, 0.045f};
 static const float plain_sky = 0.05f;
 
 int cli_parse_color(const char *text, size_t length, float color[3]) {
@@ -108,10 +110,13 @@ void cli_lights_settle(cli_render_job *job) {
   find_up(job, lighting->up);
 }
 
-static void report_floats(cli_json *json, const char *key, const float values[3]) {
+void cli_report_color(cli_json *json, const char *key, const float color[3]) {
+  char text[32];
   cli_json_array(json, key);
-  for (int i = 0; i < 3; i++)
-    cli_json_number(json, NULL, (double)values[i]);
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text, "%.7g", (double)color[i]);
+    cli_json_number(json, NULL, strtod(text, NULL));
+  }
   cli_json_close(json);
 }
 
@@ -130,10 +135,10 @@ void cli_lights_report(cli_json *json, const cli_render_job *job) {
     for (int axis = 0; axis < 3 && light->frame != CONIC_LIGHT_HEAD; axis++)
       cli_json_number(json, NULL, light->direction[axis]);
     cli_json_close(json);
-    report_floats(json, "color", light->color);
+    cli_report_color(json, "color", light->color);
     cli_json_close(json);
   }
   cli_json_close(json);
-  report_floats(json, "sky", lighting->sky);
-  report_floats(json, "ground", lighting->ground);
+  cli_report_color(json, "sky", lighting->sky);
+  cli_report_color(json, "ground", lighting->ground);
 }

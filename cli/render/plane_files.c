@@ -108,11 +108,16 @@ static conic_status write_plane(cli_session *session, const cli_render_job *job,
 }
 
 conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
-                              const conic_image *image) {
+                              const conic_image *drawn) {
   unsigned set = set_of(job, path);
+  conic_image kept = *drawn;
+  const conic_image *image = &kept;
   conic_status status = CONIC_OK;
   const char *ending = ending_of(path);
   size_t n_room = strlen(path) + 32;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (job->unwritten_planes >> i & 1)
+      kept.planes[i] = NULL;
   if (!set)
     return conic_image_write_as(session->context, path, image, &job->writing);
   char *name = malloc(n_room);

@@ -99,7 +99,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"compression", CLI_CHOICE, &compression, "NAME",
        "of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]", .choices = compression_words},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
-       "every splat and triangle of every pixel, as a deep image: id, depth, weight"},
+       "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
@@ -130,6 +130,11 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
   job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0;
+  if (job->deep_path)
+    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_RGBA; /* which its samples make */
+  if (job->planes & 1u << CONIC_PLANE_POSITION)
+    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z; /* by which places are found */
+  job->planes |= job->unwritten_planes;
   if (job->overdraw_path)
     job->planes |= 1u << CONIC_PLANE_COUNT;
   if (job->clusters_path)

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
 #include "core/base/message.h"
 
@@ -79,7 +80,7 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
     char *path = cli_frame_name(job, job->outputs[i], i_frame);
-    status = path ? cli_planes_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -179,6 +180,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     return status;
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
+  status = conic_image_locate(session->context, &camera, job->view.samples, image);
+  if (status != CONIC_OK)
+    return status;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);

@@ -8,6 +8,12 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+/* A gradient from top to bottom, in linear colours (cli/render/backdrop.h). */
+typedef struct cli_backdrop {
+  int is_given;
+  float top[3], bottom[3];
+} cli_backdrop;
+
 /* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
 typedef struct cli_frames {
   int first, last, step;
@@ -29,7 +35,9 @@ typedef struct cli_render_job {
   conic_camera camera;          /* the file's */
   conic_framing framing;
   int is_up_given;
-  int is_plain;                                /* --plain: nothing is chosen by what looks best */
+  int is_plain; /* --plain: nothing is chosen by what looks best */
+  int is_background_given;
+  cli_backdrop backdrop;                       /* --background with two colours */
   int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
   int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
@@ -40,6 +48,7 @@ typedef struct cli_render_job {
   unsigned planes; /* bits 1 << conic_plane */
   int is_aov_given;
   unsigned asked_planes;        /* of these, what --aov names */
+  unsigned unwritten_planes;    /* drawn for what else is written */
   conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
   int is_exposure_automatic;    /* until it is found */

@@ -1,3 +1,4 @@
+#include "cli/render/backdrop.h"
 #include <string.h>
 
 #include "cli/color_options.h"
@@ -105,6 +106,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
   cli_lights_report(json, job);
+  cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
   cli_color_report(json, conic_source_coloring(job->source));
 }

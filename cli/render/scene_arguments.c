@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/color_options.h"
+#include "cli/render/backdrop.h"
 #include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
@@ -144,20 +145,22 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
        "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
        .parse = cli_parse_sky},
-      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+      {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "linear colour behind, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, else none]",
        .parse = cli_parse_background},
       {"exposure", CLI_PARSED, job, "EV",
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes,
-       .is_given = &job->is_aov_given},
+       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids [rgba,Z]",
+       .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
       {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
        .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+      CLI_COLUMNS(&job->opening.columns),
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},

@@ -27,8 +27,6 @@ int cli_parse_epsilon(const char *text, void *value);
 int cli_parse_near(const char *text, void *value);
 /* x, -y, … or X,Y,Z into a double[3], */
 int cli_parse_up(const char *text, void *value);
-/* R,G,B or none into the background of conic_render_options, */
-int cli_parse_background(const char *text, void *value);
 /* a number of stops, or auto, into a job's exposure, */
 int cli_parse_exposure(const char *text, void *value);
 /* rgba,Z,N … or all into bits of planes. */

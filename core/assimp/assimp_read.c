@@ -1,4 +1,5 @@
 #include "core/assimp/assimp_read.h"
+#include "core/files/guard.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -104,7 +105,8 @@ static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_recor
 /* A file that was read besides. */
 static conic_status note_opened(assimp_reader *reader, const conic_assimp_record *record) {
   char path[LONGEST_TEXT];
-  return take_text(reader, record, path);
+  conic_status status = take_text(reader, record, path);
+  return status == CONIC_OK ? conic_guard_note_path(reader->input->context, path) : status;
 }
 
 static conic_status take_end(assimp_reader *reader, const conic_assimp_record *record) {

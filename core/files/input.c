@@ -10,6 +10,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/guard.h"
 
 /* Progress is reported this often: a few times a second on a fast disk. */
 static const uint64_t report_bytes = 64u << 20;
@@ -20,6 +21,9 @@ static conic_status check_kind(conic_input *input) {
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", input->name, strerror(errno));
   if (S_ISDIR(found.st_mode))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", input->name);
+  conic_status status = conic_guard_note(input->context, &found);
+  if (status != CONIC_OK)
+    return status;
   if (S_ISREG(found.st_mode)) { /* standard input may be a file that was read in part */
     off_t start = lseek(input->descriptor, 0, SEEK_CUR);
     input->has_size = start >= 0 && found.st_size >= start;

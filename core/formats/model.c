@@ -12,6 +12,7 @@
 #include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
+#include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
 #include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
@@ -24,10 +25,10 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 
 const char *conic_model_kind_name(conic_model_kind kind) {
   static const char *const names[] = {
-      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz",   [CONIC_MODEL_LAS] = "las",
-      [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf", [CONIC_MODEL_GLB] = "glb",
-      [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",   [CONIC_MODEL_3DS] = "3ds",
-      [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
+      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
+      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
+      [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",
+      [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
@@ -90,6 +91,8 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
+  else if (conic_pcd_is_likely(bytes, n) || conic_file_has_ending(path, "pcd"))
+    *kind = CONIC_MODEL_PCD;
   else if (conic_file_has_ending(path, "ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
@@ -132,6 +135,9 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
   case CONIC_MODEL_LAS:
     status = conic_las_read(input, options, delivery, model);
     model->up[2] = 1.0;
+    break;
+  case CONIC_MODEL_PCD:
+    status = conic_pcd_read(input, delivery, model);
     break;
   default:
     status = conic_assimp_read(input, kind, options, model);

@@ -61,7 +61,7 @@ static conic_status pass_twice(streaming *s, conic_input *input, const char *pat
   conic_input again;
   conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, &s->range, s->kind == CONIC_MODEL_XYZ, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, s->kind != CONIC_MODEL_LAS, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)

@@ -140,9 +140,14 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
   memset(layout, 0, sizeof *layout);
   layout->field_column = -1;
   find_columns(header, vertices, layout);
-  if (!has_columns(layout, CONIC_PLY_X, 3))
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the vertices lack x, y or z (line %llu)", input->name,
+  if (!has_columns(layout, CONIC_PLY_X, 3)) {
+    int is_packed = conic_ply_find_property(header, vertices, "packed_position") >= 0;
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", input->name,
+                      is_packed
+                          ? "the vertices are packed, as SuperSplat packs Gaussians: save them as a plain PLY there"
+                          : "the vertices lack x, y or z",
                       (unsigned long long)vertices->line);
+  }
   choose_form(layout);
   find_clip_lists(header, vertices, layout);
   if (keeps_coordinates)

@@ -20,7 +20,7 @@ typedef enum conic_ply_column {
   CONIC_PLY_HARMONIC = 24,
   CONIC_PLY_COORDINATE = 27, /* of a texture: two */
   CONIC_PLY_DOT = 29,
-  CONIC_PLY_FIELD = 30,      /* that is asked for */
+  CONIC_PLY_FIELD = 30, /* that is asked for */
   CONIC_PLY_N_COLUMNS = 31
 } conic_ply_column;
 

@@ -5,6 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/nearest_word.h"
 
 enum { NAME_ROOM = sizeof(((conic_model_field *)0)->name) };
 
@@ -59,10 +60,14 @@ static void list_names(const conic_model *model, char *text, size_t room) {
 
 static conic_status refuse(conic_context *context, const char *file, const char *wanted, const conic_model *model) {
   char names[400] = "";
+  const char *nearest = NULL;
   list_names(model, names, sizeof names);
+  for (size_t i = 0; i < model->n_fields; i++)
+    nearest = conic_nearer_word(wanted, nearest, model->fields[i].name);
   if (!model->n_fields)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: no field '%s': its points have none by name", file, wanted);
-  return conic_fail(context, CONIC_ERROR_INPUT, "%s: no field '%s'; there are: %s", file, wanted, names);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: no field '%s'%s%s%s; there are: %s", file, wanted,
+                    nearest ? " (did you mean '" : "", nearest ? nearest : "", nearest ? "'?)" : "", names);
 }
 
 /* The very name, else one that means the same. */

@@ -1,8 +1,11 @@
 #include "core/formats/xyz.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/base/message.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
 #include "core/formats/xyz_heading.h"
 
@@ -11,6 +14,7 @@ typedef struct xyz_reader {
   conic_builder builder;
   conic_xyz_heading heading;
   int is_origin_set;
+  int field;                /* the column that scalars come from; −1: none */
   uint64_t n_odd, odd_line; /* lines that have other values than the header says, and the first of them */
 } xyz_reader;
 
@@ -21,7 +25,7 @@ static void find_origin(xyz_reader *reader, const double *p) {
   reader->is_origin_set = 1;
 }
 
-static conic_status append_point(xyz_reader *reader, const double values[CONIC_TEXT_N_MEANINGS]) {
+static conic_status append_point(xyz_reader *reader, const double values[CONIC_TEXT_N_MEANINGS], double scalar) {
   conic_splats *points = &reader->builder.model->points;
   if (conic_builder_points(&reader->builder) >= CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
@@ -36,6 +40,8 @@ static conic_status append_point(xyz_reader *reader, const double values[CONIC_T
     if (points->normal[axis])
       points->normal[axis][points->count] = (float)values[CONIC_TEXT_NORMAL + axis];
   }
+  if (points->scalar)
+    points->scalar[points->count] = (float)scalar;
   points->count++;
   return conic_builder_deliver(&reader->builder, 0);
 }
@@ -58,7 +64,7 @@ static conic_status take_odd_line(xyz_reader *reader, size_t n) {
 static conic_status read_row(xyz_reader *reader, conic_text_word line) {
   const conic_text_columns *columns = &reader->heading.columns;
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
-  double values[CONIC_TEXT_N_MEANINGS] = {0.0};
+  double values[CONIC_TEXT_N_MEANINGS] = {0.0}, scalar = NAN;
   size_t n = conic_xyz_split(&reader->heading, line, words);
   if (is_next_count(reader, n))
     return conic_xyz_take_count(reader->input, words[0], &reader->heading);
@@ -67,14 +73,36 @@ static conic_status read_row(xyz_reader *reader, conic_text_word line) {
   for (size_t i = 0; i < n; i++) {
     int meaning = columns->meaning[i];
     double value;
-    if (meaning < 0 && reader->heading.names != CONIC_XYZ_UNNAMED)
+    int may_be_anything = meaning < 0 && reader->heading.names != CONIC_XYZ_UNNAMED;
+    if (may_be_anything && (int)i != reader->field)
       continue;
-    if (!conic_text_number(&reader->heading.dialect, words[i], &value))
+    if (!conic_text_number(&reader->heading.dialect, words[i], &value)) {
+      if (may_be_anything)
+        continue;
       return conic_input_wrong(reader->input, "a value is not a number");
+    }
     if (meaning >= 0)
       values[meaning] = value;
+    if ((int)i == reader->field)
+      scalar = value;
   }
-  return append_point(reader, values);
+  return append_point(reader, values, scalar);
+}
+
+/* Every column is a field, and one without a name goes by its number, from 1. */
+static conic_status choose_field(xyz_reader *reader, const conic_read_options *options) {
+  const conic_text_columns *columns = &reader->heading.columns;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < columns->n && status == CONIC_OK; i++) {
+    char number[24];
+    const char *name = columns->name[i];
+    snprintf(number, sizeof number, "%zu", i + 1);
+    if (strcmp(name, "-") == 0)
+      name = number;
+    status = conic_fields_add(&reader->builder, name, strlen(name), "text");
+  }
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
+                            : status;
 }
 
 static conic_status read_rows(xyz_reader *reader) {
@@ -125,6 +153,8 @@ conic_status conic_xyz_read(conic_input *input, const conic_read_options *option
     status = conic_xyz_heading_read(input, options->columns, &reader.heading, &has_points);
   if (status == CONIC_OK && has_points && !is_again)
     conic_xyz_tell_columns(input, &reader.heading);
+  if (status == CONIC_OK && has_points)
+    status = choose_field(&reader, options);
   if (status == CONIC_OK && has_points)
     status = read_rows(&reader);
   if (status == CONIC_OK)

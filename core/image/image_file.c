@@ -3,10 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "conic/image.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "core/image/image_exr.h"
 #include "core/image/image_foreign.h"
@@ -115,10 +117,14 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   FILE *file = fopen(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+  struct stat found;
+  conic_status status = fstat(fileno(file), &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
   errno = 0;
   size_t n = fread(start, 1, sizeof start, file);
   int error = ferror(file) ? errno : 0;
   fclose(file);
+  if (status != CONIC_OK)
+    return status;
   if (error)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(error));
   if (n == 0)

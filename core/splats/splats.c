@@ -9,7 +9,8 @@
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 
-/* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot; no scalar. */
+/* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot and no scalar.
+ */
 static float absent_value(const conic_column *column) {
   if (column->field == CONIC_SPLATS_SCALARS)
     return NAN;

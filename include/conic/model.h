@@ -16,8 +16,9 @@ extern "C" {
 typedef enum conic_model_kind {
   CONIC_MODEL_PLY = 0,
   CONIC_MODEL_OBJ = 1,
-  CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS */
+  CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS, CSV */
   CONIC_MODEL_LAS = 3,
+  CONIC_MODEL_PCD = 4,
 
   /* Those of Assimp, where it is there */
   CONIC_MODEL_STL = 16,
@@ -78,13 +79,14 @@ typedef struct conic_read_options {
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
-/* Reads a model: PLY, OBJ, XYZ and PTS, LAS, and what Assimp reads (docs/reference/formats.md); "-" is standard input.
- * The format is told by the content first, then by the name's ending. Integer colours of a PLY and all colours of the
- * others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double
- * or 32-bit integer in a PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the
- * origin; else the origin is zero. On success the caller owns *model and releases it; on failure it is empty and the
- * log says file, line or byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT,
- * INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it is not there), IO (no process for it). */
+/* Reads a model: PLY, OBJ, LAS, PCD, text with a point a line, and what Assimp reads (docs/reference/formats.md); "-"
+ * is standard input. The format is told by the content first, then by the name's ending. Integer colours of a PLY and
+ * all colours of the others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float
+ * cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ, all of text and LAS) are kept from the
+ * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on
+ * failure it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the
+ * defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it is not there), IO (no process
+ * for it). */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
@@ -94,7 +96,7 @@ typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batc
 
 /* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
  * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ
- * and Assimp's, and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All
+ * and Assimp's, and text, LAS and PCD where the file is a pipe, for how colours are meant is known only at its end. All
  * batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);
@@ -125,9 +127,14 @@ typedef struct conic_estimate_options {
 
   /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
   int finds_dots;
+
+  /* Splats of a mesh stay at it, to less than anybody would see: where a vertex's would not, the vertex becomes a splat
+   * for each of its triangles. Vertices of no triangle, if they are less than a tenth, are leftovers and get no splat.
+   * With creases all of this is so anyway. */
+  int stays_at_mesh;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases, no dots. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots, a splat a vertex. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

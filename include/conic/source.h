@@ -59,6 +59,7 @@ typedef struct conic_source_options {
   /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
    * of a .cot or .lpc, with is_whole. */
   const conic_coloring_options *coloring;
+  const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots. */

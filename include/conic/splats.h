@@ -37,7 +37,7 @@ typedef struct conic_clip {
  * array of count × 3 floats at p, the components are p, p + 1, p + 2 and the stride is 3 × sizeof(float); in an array
  * of structs it is the struct's size. Multiples of sizeof(float). */
 typedef struct conic_splats_strides {
-  size_t position, tangent_u, tangent_v, normal, color, opacity, scalar, dot;
+  size_t position, tangent_u, tangent_v, normal, color, opacity, dot, scalar;
 } conic_splats_strides;
 
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
@@ -106,8 +106,8 @@ CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t coun
 CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
 
 /* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
- * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; NaN scalars; no
- * clip lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
+ * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; NaN scalars;
+ * no clip lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
 
 /* How many of the splats are dots. */

@@ -32,7 +32,7 @@ stop 129 HUP
 stop 152 XCPU
 # Signals that come at once, as from a terminal or from timeout, are one
 stop 143 TERM TERM
-stop 130 INT TERM
+stop 130 INT INT
 
 # A later one ends a run that hangs: here, of a pipe that nobody writes to
 mkfifo pipe

@@ -9,7 +9,7 @@
 #include "tests/support/png_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, png,
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, png,
                          cot, lpc, chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
@@ -154,11 +154,38 @@ static inline void seeds_all_text(seed_set *set) {
   seeds_text(set, "xyz", "xyz", "// X,Y,Z,R,G,B\n0,0,0,255,0,10\n1,2,3,0,1,2\n");
   seeds_text(set, "xyz", "pts", "3\n0 0 0 -100 255 0 10\n1 2 3 50 0 1 2\n5 6 7 0 1 2 3\n");
   seeds_text(set, "xyz", "xyz", "0 0 0 0 0 1\n1 2 nan 0 1 0\n");
+  seeds_text(set, "xyz", "csv", "\xEF\xBB\xBF\"X\";\"Y\";\"Z\";id\n\"1,5\";\"2\";\"3,25\";a\n4;5;6;\n");
+  seeds_text(set, "xyz", "csv", "id\tNx\tNy\tNz\tX\tY\tZ\na b\t0\t0\t1\t1,5\t2\t3\n\t0\t1\t0\t4\t5\t6\n");
+  seeds_text(set, "xyz", "asc", "//X Y Z R G B I\n2\n1 2 3 4 5 6 7\n1,2,3;4,5,6 7;\n1\n9 8 7 6 5 4 3\n");
+  seeds_text(set, "xyz", "xyz", "1 2 3 255 0 4 -7 0 0 1\n4 5 6 7 8 9 10 1 0 0\n");
+  seeds_text(set, "xyz", "csv", "X,Y,Z\n1,2,3\n1,2\n4,,6\n");
   seeds_text(set, "xyz", "xyz", "0 0 0 65535 256 1 0 0 1\n1 2 3 7 8 9 0 1 0\n");
   seeds_text(
       set, "camera", "json",
       "{\"width\": 64, \"height\": 48, \"fx\": 50.5, \"fy\": 5e1, \"cx\": 32, \"cy\": 24, \"more\": [true, null,\n"
       "{\"a\\u0041\": \"b\\n\"}],\n\"world_to_camera\": [[1,0,0,0],[0,1,0,0],[0,0,1,-3.5],[0,0,0,1]]}\n");
+}
+
+/* Three points in each of the ways of storing them. */
+static inline void seeds_all_pcd(seed_set *set) {
+  static const char header[] = "VERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z a\nSIZE 4 4 4 4 4 4 4 1\n"
+                               "TYPE F F F U F F F U\nCOUNT 1 1 1 1 1 1 1 2\nWIDTH 3\nHEIGHT 1\n"
+                               "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ";
+  enum { ROWS = 3 * 30 };
+  unsigned char bytes[1024];
+  size_t n = (size_t)snprintf((char *)bytes, sizeof bytes, "%sbinary\n", header);
+  for (int i = 0; i < ROWS; i++)
+    bytes[n + (size_t)i] = (unsigned char)(i % 30 % 4 == 3 ? 0x3f : 7 * i);
+  seeds_add(set, "pcd", "pcd", 1, bytes, n + ROWS);
+  /* four bytes as they are, and then 86 that repeat them */
+  n = (size_t)snprintf((char *)bytes, sizeof bytes, "%sbinary_compressed\n%c%c%c%c%c%c%c%c%cabcd%c%c%c", header, 8, 0,
+                       0, 0, ROWS, 0, 0, 0, 3, 0xE0, 77, 3);
+  seeds_add(set, "pcd", "pcd", 1, bytes, n);
+  seeds_text(set, "pcd", "pcd",
+             "# .PCD v0.7\nFIELDS z x y rgba label\nSIZE 8 4 4 4 2\nTYPE F F F F U\nWIDTH 2\nHEIGHT 2\nDATA ascii\n"
+             "1e7 2 3 4.2108e+06 7\n4 5 nan 4.808e+06 1\n\n0 0 0 0 0\n-1 +2 .5 1 2\n");
+  seeds_text(set, "pcd", "pcd",
+             "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE I I F U U U\nPOINTS 1\nDATA ascii\n1 2 3 255 0 9\n");
 }
 
 static inline void seeds_all_las(seed_set *set) {
@@ -364,6 +391,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_ply(set);
   seeds_all_text(set);
   seeds_all_las(set);
+  seeds_all_pcd(set);
   seeds_all_png(set);
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);

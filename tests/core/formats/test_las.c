@@ -56,6 +56,16 @@ static void test_colors(void) {
   CHECK(model.points.color[0] && model.points.color[0][1] == 1.0f && model.points.color[0][0] == 0.0f);
   CHECK(model.points.color[0] && model.points.color[1][1] == (float)conic_srgb_decode(128.0 / 255.0));
   conic_model_release(context, &model);
+  las_set_color(&file, 1, 255 << 8, 128 << 8, 1 << 8); /* 8 bits in the upper half of 16 */
+  CHECK_OK(read_bytes(&file, file.n_bytes, &model));
+  CHECK(model.points.color[0] && model.points.color[0][1] == 1.0f);
+  CHECK(model.points.color[0] && model.points.color[1][1] == (float)conic_srgb_decode(128.0 / 255.0));
+  conic_model_release(context, &model);
+  las_set_color(&file, 1, 4095, 300, 0); /* 12 bits */
+  CHECK_OK(read_bytes(&file, file.n_bytes, &model));
+  CHECK(model.points.color[0] && model.points.color[0][1] == 1.0f);
+  CHECK(model.points.color[0] && model.points.color[1][1] == (float)conic_srgb_decode(300.0 / 4095.0));
+  conic_model_release(context, &model);
   las_set_color(&file, 1, 0, 0, 0);
   CHECK_OK(read_bytes(&file, file.n_bytes, &model));
   CHECK(model.points.count == 2 && !model.points.color[0]);
