@@ -6,7 +6,7 @@
 #include "bench/bench_job.h"
 #include "cli/arguments.h"
 #include "cli/device_option.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 #include "core/lanes/instruction_sets.h"
 
 static const char default_scenes[] = "sphere-100k,sphere-1M,sphere-4M,gyroid-1M,mixed,subpixel,needles,huge";
@@ -71,7 +71,7 @@ static int take_method(cli_bench_job *job, const char *word) {
       add_method(job, i);
     if (strcmp(word, cli_bench_methods[i].name) == 0)
       return CLI_DONE;
-    nearest = cli_nearer_word(word, nearest, cli_bench_methods[i].name);
+    nearest = conic_nearer_word(word, nearest, cli_bench_methods[i].name);
   }
   if (strcmp(word, "all") == 0)
     return CLI_DONE;

@@ -4,7 +4,7 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
 
@@ -134,9 +134,9 @@ static int refuse_scene(const char *name, size_t length) {
   const char *nearest = NULL;
   snprintf(base, sizeof base, "%.*s", (int)length, name);
   for (int i = 0; i < N_MIXES; i++)
-    nearest = cli_nearer_word(base, nearest, mixes[i].name);
+    nearest = conic_nearer_word(base, nearest, mixes[i].name);
   for (int i = 0; i < CONIC_N_SCENES; i++)
-    nearest = cli_nearer_word(base, nearest, conic_scene_name((conic_scene_type)i));
+    nearest = conic_nearer_word(base, nearest, conic_scene_name((conic_scene_type)i));
   if (nearest)
     return cli_usage("bench: unknown scene %s; did you mean %s?", name, nearest);
   return cli_usage("bench: unknown scene %s; see conic help bench", name);

@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include "cli/command.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
+#include "core/formats/text_columns.h"
 
-enum { N_COMMON = 6 };
+enum { N_COMMON = 8 };
 
 /* The options of every command. */
 static void list_common(cli_session *session, int *is_help, cli_option common[N_COMMON]) {
@@ -24,9 +25,11 @@ static void list_common(cli_session *session, int *is_help, cli_option common[N_
        .value = &session->json_path,
        .argument = "FILE",
        .help = "write the run's statistics; - is standard output"},
-      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "no progress bar, no warnings"},
-      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "say more on standard error"},
-      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "this text"},
+      {.name = "quiet", .type = CLI_FLAG, .value = &session->is_quiet, .help = "or -q: no progress bar, no warnings"},
+      {.name = "q", .type = CLI_FLAG, .value = &session->is_quiet},
+      {.name = "verbose", .type = CLI_FLAG, .value = &session->is_verbose, .help = "or -v: say more on standard error"},
+      {.name = "v", .type = CLI_FLAG, .value = &session->is_verbose},
+      {.name = "help", .type = CLI_FLAG, .value = is_help, .help = "or -h: this text"},
       {.name = "h", .type = CLI_FLAG, .value = is_help},
   };
   memcpy(common, list, sizeof list);
@@ -42,7 +45,7 @@ static int parse_decimal(const char *text, const char **end, double *number) {
   return stop != text && *number - *number == 0.0;
 }
 
-static int parse_number(const char *text, double *number) {
+int cli_parse_number(const char *text, double *number) {
   const char *end;
   return parse_decimal(text, &end, number) && *end == '\0';
 }
@@ -101,6 +104,12 @@ int cli_parse_length(const char *text, void *length) {
     return 0;
   parsed->is_in_spacings = *end == 'x';
   return end[parsed->is_in_spacings] == '\0';
+}
+
+int cli_parse_columns(const char *text, void *columns) {
+  conic_text_columns parsed;
+  *(const char **)columns = text;
+  return conic_text_columns_parse(text, &parsed) == NULL;
 }
 
 static int parse_size(const char *text, int size[2]) {
@@ -163,7 +172,7 @@ static int store_value(const cli_session *session, const cli_option *option, con
     is_in_range = is_understood && is_within_limits(option, (double)*(unsigned long long *)option->value);
     break;
   case CLI_NUMBER:
-    is_understood = parse_number(text, option->value);
+    is_understood = cli_parse_number(text, option->value);
     is_in_range = is_understood && is_within_limits(option, *(double *)option->value);
     break;
   case CLI_TEXT:
@@ -198,17 +207,28 @@ static int store_value(const cli_session *session, const cli_option *option, con
 typedef struct option_set {
   const cli_option *tables[2];
   int counts[2];
+  const char **values[2]; /* each option's, as it was given last */
 } option_set;
 
-static const cli_option *find_option(const option_set *set, const char *name, size_t length, int is_long) {
+static const cli_option *find_option(const option_set *set, const char *name, size_t length, int is_long,
+                                     const char ***value) {
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++) {
       const cli_option *option = &set->tables[table][i];
+      *value = &set->values[table][i];
       if (strlen(option->name) == length && strncmp(option->name, name, length) == 0 &&
           is_long == (dashes(option)[1] == '-'))
         return option;
     }
   return NULL;
+}
+
+/* The last value holds, as scripts and aliases rely on; that another one is lost is said. */
+static void warn_of_repeated(const cli_session *session, const cli_option *option, const char *former,
+                             const char *value) {
+  if (former && !option->may_repeat && strcmp(former, value) != 0)
+    cli_warn(session, "%s: %s%s %s holds, and not %s, which was given before it", session->command, dashes(option),
+             option->name, value, former);
 }
 
 static int refuse_option(const cli_session *session, const option_set *set, const char *argument) {
@@ -219,7 +239,7 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
   for (int table = 0; table < 2; table++)
     for (int i = 0; i < set->counts[table]; i++)
       if (set->tables[table][i].name[1])
-        nearest = cli_nearer_word(name, nearest, set->tables[table][i].name);
+        nearest = conic_nearer_word(name, nearest, set->tables[table][i].name);
   if (access(argument, F_OK) == 0)
     return cli_usage("%s: unknown option %s; the file of that name is ./%s", session->command, argument, argument);
   if (nearest)
@@ -229,11 +249,11 @@ static int refuse_option(const cli_session *session, const option_set *set, cons
 
 /* Reads the option at argv[*i] and its value, which may be the next argument; *i moves to the last one used. */
 static int parse_option(const cli_session *session, const option_set *set, int argc, char **argv, int *i) {
-  const char *argument = argv[*i], *value = NULL;
+  const char *argument = argv[*i], *value = NULL, **former;
   int is_long = argument[1] == '-';
   const char *name = argument + 1 + is_long;
   size_t length = is_long ? strcspn(name, "=") : 1;
-  const cli_option *option = find_option(set, name, length, is_long);
+  const cli_option *option = find_option(set, name, length, is_long, &former);
   if (!option)
     return refuse_option(session, set, argument);
   if (name[length])
@@ -245,13 +265,15 @@ static int parse_option(const cli_session *session, const option_set *set, int a
     return cli_usage("%s: %s%s needs a value: %s", session->command, dashes(option), option->name, option->argument);
   if (!value)
     value = argv[++*i];
+  warn_of_repeated(session, option, *former, value);
+  *former = value;
   return store_value(session, option, value);
 }
 
-/* Whether help is asked for anywhere, whatever else is wrong with the arguments. */
-static int asks_for_help(int argc, char **argv) {
+/* Whether a flag is given anywhere, whatever else is wrong with the arguments. */
+static int asks_for(int argc, char **argv, const char *name, const char *letter) {
   for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)
+    if (strcmp(argv[i], name) == 0 || strcmp(argv[i], letter) == 0)
       return 1;
   return 0;
 }
@@ -268,12 +290,15 @@ int cli_parse(cli_session *session, const cli_option *options, int n_options, in
   int is_help = 0, exit_code = CLI_DONE, is_over = 0;
   cli_option common[N_COMMON];
   list_common(session, &is_help, common);
-  option_set set = {{options, common}, {n_options, N_COMMON}};
   *n_positional = 0;
-  if (asks_for_help(argc, argv)) {
+  if (asks_for(argc, argv, "--help", "-h")) {
     print_help(session, options, n_options);
     return -1;
   }
+  session->is_quiet = asks_for(argc, argv, "--quiet", "-q"); /* about the other arguments, too */
+  const char *values[n_options + N_COMMON];
+  memset(values, 0, sizeof values);
+  option_set set = {{options, common}, {n_options, N_COMMON}, {values, values + n_options}};
   for (int i = 1; i < argc && exit_code == CLI_DONE; i++) {
     if (!is_over && strcmp(argv[i], "--") == 0)
       is_over = 1;

@@ -27,11 +27,12 @@ typedef struct cli_option {
   int (*parse)(const char *text, void *value); /* 0: not understood */
   int *is_given;                               /* set to 1 when the option is given; may be null */
   const char *dashes;                          /* null: one before a name of one letter, else two */
+  int may_repeat;                              /* `parse` takes every value; else the last one holds */
 } cli_option;
 
 /* Reads arguments into the options' values, and what is no option into positional[0 … *n_positional); --threads,
- * --json, --quiet, --verbose (and --help) are understood for every command. Returns CLI_DONE, or CLI_USAGE after a
- * message; -1 when help was asked for and printed. `positional` has room for argc. */
+ * --json, --quiet, --verbose (and --help), and -q -v -h, are understood for every command. Returns CLI_DONE, or
+ * CLI_USAGE after a message; -1 when help was asked for and printed. `positional` has room for argc. */
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
 
@@ -44,8 +45,19 @@ typedef struct cli_length {
 /* Parses a length that is not negative into a cli_length: a `parse` for CLI_PARSED. 0 where it is none. */
 int cli_parse_length(const char *text, void *length);
 
+/* What the columns of text are: the option --columns, into a const char *, and its parser. */
+#define CLI_COLUMNS(to)                                                                                                \
+  {                                                                                                                    \
+    "columns", CLI_PARSED, to, "NAMES",                                                                                \
+        "of text: what its columns are, as x,y,z,intensity,-,r,g,b [as its header says]", .parse = cli_parse_columns   \
+  }
+int cli_parse_columns(const char *text, void *columns);
+
 /* Parses a count as CLI_COUNT does: 100000, 10k, 2M, 1e6; 0 where it is none. */
 int cli_parse_count(const char *text, unsigned long long *value);
+
+/* Parses a decimal number whole; 0 where it is none. */
+int cli_parse_number(const char *text, double *number);
 
 /* Parses "X,Y,Z" whole; 0 where it is not. */
 int cli_parse_vector(const char *text, double vector[3]);

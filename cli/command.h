@@ -4,6 +4,9 @@
 
 #include "cli/session.h"
 
+/* Whatever a scene is read from. */
+#define CLI_READABLE "PLY, XYZ, PTS, CSV, LAS, PCD, OBJ, STL, OFF, glTF, GLB, 3MF, DAE, FBX, .cot, .chy, .lpc"
+
 typedef struct cli_command {
   const char *name;
   const char *summary; /* one line for `conic help` */

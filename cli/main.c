@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 
 static const cli_command *const commands[] = {&cli_make,    &cli_prepare, &cli_octree, &cli_layer,  &cli_mls,
                                               &cli_hybrid,  &cli_render,  &cli_diff,   &cli_info,   &cli_verify,
@@ -21,11 +21,11 @@ const cli_command *cli_find_command(const char *name) {
 static int refuse_command(const char *name) {
   int is_option = name[0] == '-';
   const char *kind = is_option ? "option" : "command";
-  const char *nearest = cli_nearer_word(name, NULL, is_option ? "--version" : "help");
+  const char *nearest = conic_nearer_word(name, NULL, is_option ? "--version" : "help");
   if (is_option)
-    nearest = cli_nearer_word(name, nearest, "--help");
+    nearest = conic_nearer_word(name, nearest, "--help");
   for (int i = 0; i < N_COMMANDS && !is_option; i++)
-    nearest = cli_nearer_word(name, nearest, commands[i]->name);
+    nearest = conic_nearer_word(name, nearest, commands[i]->name);
   if (nearest)
     return cli_usage("unknown %s %s; did you mean %s?", kind, name, nearest);
   return cli_usage("unknown %s %s; see conic help", kind, name);
@@ -35,7 +35,7 @@ static void print_usage(FILE *to) {
   fputs("conic draws point-sampled surfaces as splats.\n\n"
         "usage: conic COMMAND [arguments]\n"
         "       conic help [COMMAND]\n"
-        "       conic --version\n\n"
+        "       conic --version, -V\n\n"
         "commands:\n",
         to);
   for (int i = 0; i < N_COMMANDS; i++)
@@ -45,12 +45,15 @@ static void print_usage(FILE *to) {
 static int help(int argc, char **argv) {
   if (argc < 2 || strcmp(argv[1], "help") == 0 || argv[1][0] == '-') {
     print_usage(stdout);
-    fputs("\nexit codes:\n"
+    fputs("\nreads: " CLI_READABLE "\n"
+          "\nexit codes:\n"
           "  0  done\n"
           "  1  compared and different\n"
           "  2  wrong usage\n"
           "  3  an input that cannot be used\n"
-          "  4  a resource failed: memory, disk, what this build or machine lacks\n",
+          "  4  a resource failed: memory, disk, what this build or machine lacks\n"
+          "  128 and a signal's number: stopped by it; 130 by Ctrl-C\n"
+          "\nThe guide begins with docs/guide/first-picture.md beside conic's source.\n",
           stdout);
     return CLI_DONE;
   }
@@ -97,7 +100,7 @@ static int run(int argc, char **argv) {
   }
   if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
     return help(argc - 1, argv + 1);
-  if (strcmp(argv[1], "--version") == 0)
+  if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)
     return print_version();
   return run_command(argc - 1, argv + 1);
 }
@@ -106,6 +109,7 @@ int main(int argc, char **argv) {
   int exit_code = run(argc, argv);
   errno = 0;
   if ((fflush(stdout) != 0 || ferror(stdout)) && exit_code < CLI_USAGE)
-    return cli_error(CLI_RESOURCE, "standard output: cannot write: %s", errno ? strerror(errno) : "the device failed");
-  return exit_code;
+    exit_code =
+        cli_error(CLI_RESOURCE, "standard output: cannot write: %s", errno ? strerror(errno) : "the device failed");
+  return cli_exit_after_signals(exit_code);
 }

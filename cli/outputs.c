@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/files/file.h"
+
 /* Whether there is a folder that PATH can be written in; devices and pipes stand where they are. */
 static int check_folder(const char *path) {
   char folder[4096];
@@ -14,11 +16,12 @@ static int check_folder(const char *path) {
     return CLI_DONE;
   if (stat(path, &found) == 0 && S_ISDIR(found.st_mode))
     return cli_error(CLI_RESOURCE, "%s: cannot write: it is a directory", path);
-  const char *slash = strrchr(path, '/');
-  int n = slash ? slash == path ? 1 : (int)(slash - path) : 0;
+  char target[4096];
+  const char *real = conic_file_follow(path, target, sizeof target) ? target : path, *slash = strrchr(real, '/');
+  int n = slash ? slash == real ? 1 : (int)(slash - real) : 0;
   if (n >= (int)sizeof folder)
     return CLI_DONE; /* whoever opens it will say so */
-  snprintf(folder, sizeof folder, "%.*s", n, path);
+  snprintf(folder, sizeof folder, "%.*s", n, real);
   if (access(n ? folder : ".", W_OK | X_OK) != 0)
     return cli_error(CLI_RESOURCE, "%s: cannot write: %s", path, strerror(errno));
   return CLI_DONE;
@@ -56,13 +59,16 @@ static int is_one(const struct stat *first, const struct stat *second) {
 /* Whether two names are those of one file, be it there or not; devices can be written to twice. */
 static int is_same_file(const char *first, const char *second) {
   struct stat a, b;
+  char first_target[4096], second_target[4096];
   if (strcmp(first, "-") == 0 || strcmp(second, "-") == 0 || strcmp(first, second) == 0)
     return strcmp(first, second) == 0 && strncmp(first, "/dev/", 5) != 0;
   int is_first = stat(first, &a) == 0, is_second = stat(second, &b) == 0;
   if (is_first || is_second)
     return is_first && is_second && S_ISREG(a.st_mode) && is_one(&a, &b);
-  return strcmp(name_in_folder(first), name_in_folder(second)) == 0 && find_folder(first, &a) &&
-         find_folder(second, &b) && is_one(&a, &b);
+  return conic_file_follow(first, first_target, sizeof first_target) &&
+         conic_file_follow(second, second_target, sizeof second_target) &&
+         strcmp(name_in_folder(first_target), name_in_folder(second_target)) == 0 && find_folder(first_target, &a) &&
+         find_folder(second_target, &b) && is_one(&a, &b);
 }
 
 int cli_check_outputs(const cli_session *session, const char *const *paths, int n_paths) {
@@ -92,8 +98,9 @@ int cli_check_inputs_stay(const cli_session *session, const char *const *inputs,
 }
 
 int cli_check_ending(const char *path, const char *ending) {
-  static const char *const known[] = {"ply", "obj", "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy",
-                                      "exr", "png", "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
+  static const char *const known[] = {"ply", "obj",  "las", "laz",  "xyz", "pts",  "cot", "lpc", "chy", "stl",
+                                      "off", "gltf", "glb", "3mf",  "dae", "fbx",  "3ds", "x3d", "dxf", "amf",
+                                      "exr", "png",  "jpg", "jpeg", "tif", "tiff", "pfm", "hdr", "json"};
   const char *slash = path ? strrchr(path, '/') : NULL, *dot = path ? strrchr(slash ? slash : path, '.') : NULL;
   if (!dot || strcasecmp(dot + 1, ending) == 0)
     return CLI_DONE;

@@ -12,13 +12,19 @@
 #include <unistd.h>
 
 #include "core/base/clock.h"
+#include "core/files/guard.h"
 
 /* Messages may come from any of the context's threads, and each must first take the progress bar off the screen. */
 static pthread_mutex_t screen = PTHREAD_MUTEX_INITIALIZER;
 static int bar_is_shown;
 
+/* One thing that fails may do so in every thread, and make others fail: the first is told. */
+static atomic_int has_failed;
+
 /* When the first signal came, by the monotonic clock; 0: none has. Threads may handle signals at the same time. */
 static atomic_llong interrupted_at_ms;
+static atomic_int first_signal;
+static atomic_int pipe_is_closed; /* what is written to a pipe has no reader any more */
 
 double cli_seconds(void) {
   return conic_seconds_now();
@@ -73,6 +79,32 @@ int cli_error(int exit_code, const char *format, ...) {
   print_message("error: ", format, arguments);
   va_end(arguments);
   return exit_code;
+}
+
+void cli_note(const cli_session *session, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  if (!session->is_quiet)
+    print_message("", format, arguments);
+  va_end(arguments);
+}
+
+void cli_warn(const cli_session *session, const char *format, ...) {
+  va_list arguments;
+  if (session->is_quiet)
+    return;
+  va_start(arguments, format);
+  print_message("warning: ", format, arguments);
+  va_end(arguments);
+}
+
+/* What failed after a signal was stopped by it; what was done all the same, or was wrong before, stays what it was. */
+int cli_exit_after_signals(int exit_code) {
+  if (exit_code != CLI_RESOURCE)
+    return exit_code;
+  if (atomic_load(&first_signal))
+    return 128 + atomic_load(&first_signal);
+  return atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
 }
 
 int cli_exit_of(conic_status status) {
@@ -151,9 +183,15 @@ static void show_progress(cli_session *session, const char *task, double fractio
     draw_bar(session, fraction, now);
 }
 
+/* A terminal that moves its cursor where it is told to. */
+static int can_draw_bar(void) {
+  const char *kind = getenv("TERM");
+  return isatty(STDERR_FILENO) && kind && *kind && strcmp(kind, "dumb") != 0;
+}
+
 static int on_progress(void *cookie, const char *task, double fraction) {
   cli_session *session = cookie;
-  if (!session->is_quiet && isatty(STDERR_FILENO)) {
+  if (session->has_bar) {
     pthread_mutex_lock(&screen);
     show_progress(session, task, fraction);
     pthread_mutex_unlock(&screen);
@@ -165,6 +203,8 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
   cli_session *session = cookie;
   if ((level == CONIC_LOG_WARNING && session->is_quiet) || (level == CONIC_LOG_INFO && !session->is_verbose))
     return;
+  if (level == CONIC_LOG_ERROR && atomic_exchange(&has_failed, 1) && !session->is_verbose)
+    return;
   const char *label = level == CONIC_LOG_ERROR ? "error: " : level == CONIC_LOG_WARNING ? "warning: " : "";
   pthread_mutex_lock(&screen);
   erase_bar();
@@ -173,27 +213,35 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
 }
 
 /* Signals that come together are one wish to stop: a terminal, timeout and service managers signal the process and then
- * its group, and so reach it twice. */
-static const long long one_wish_ms = 1000;
+ * its group, and so reach it twice. Nobody's fingers are that fast. */
+static const long long one_wish_ms = 100;
 
 /* The first signal asks the work to stop, so that it removes what it has half written; a later one kills. */
 static void on_interrupt(int signal_number) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   long long now_ms = (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000 + 1, first_ms = 0;
+  int none = 0;
+  atomic_compare_exchange_strong(&first_signal, &none, signal_number);
   if (atomic_compare_exchange_strong(&interrupted_at_ms, &first_ms, now_ms) || now_ms - first_ms < one_wish_ms)
     return;
   signal(signal_number, SIG_DFL);
   raise(signal_number); /* takes effect when the handler returns */
 }
 
+/* The write fails, after which is cleaned up as after any other failure. */
+static void on_closed_pipe(int signal_number) {
+  (void)signal_number;
+  atomic_store(&pipe_is_closed, 1);
+}
+
 /* A signal that whoever started the program has turned off stays off. */
-static void catch_signal(int signal_number) {
+static void catch_signal(int signal_number, void (*handler)(int)) {
   struct sigaction action;
   if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
     return;
   memset(&action, 0, sizeof action);
-  action.sa_handler = on_interrupt;
+  action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(signal_number, &action, NULL);
@@ -212,8 +260,12 @@ int cli_session_open(cli_session *session) {
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
-  catch_signal(SIGINT);
-  catch_signal(SIGTERM);
+  conic_guard_inputs(session->context, session->replaced_path);
+  session->has_bar = !session->is_quiet && can_draw_bar();
+  const int wishes[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+  for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
+    catch_signal(wishes[i], on_interrupt);
+  catch_signal(SIGPIPE, on_closed_pipe);
   signal(SIGXFSZ, SIG_IGN); /* a file that may not grow further is a failed write, after which is cleaned up */
   return CLI_DONE;
 }

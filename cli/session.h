@@ -12,15 +12,18 @@ typedef struct cli_session {
   const char *command; /* the sub-command's name */
   int threads;         /* --threads; 0: all */
   int is_quiet, is_verbose;
+  int has_bar;           /* there is a terminal that can show one, and it is wanted */
   const char *json_path; /* --json; null: none */
   char task[32];         /* what the progress bar is about; empty: nothing yet */
   double task_seconds;   /* when that began */
   double drawn_seconds;  /* when the bar was last drawn */
   const char *part;      /* cli_session_part; null: none */
   int i_part, n_parts;
-  double part_share;      /* of the part, what is done */
-  int draws_many_frames;  /* of the same model; this and isa are set before cli_session_open */
-  conic_isa isa;          /* --isa */
+  double part_share;     /* of the part, what is done */
+  int draws_many_frames; /* of the same model; this and isa are set before cli_session_open */
+  conic_isa isa;         /* --isa */
+  const char
+      *replaced_path;     /* --in-place: the only input that may be written over; null: none may. Set before opening */
   conic_context *context; /* made by cli_session_open */
 } cli_session;
 
@@ -40,6 +43,15 @@ int cli_exit_of(conic_status status);
 int cli_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints "conic: error: …" and returns `exit_code`. */
 int cli_error(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints "conic: …", unless the run is quiet: what was chosen for the user, who may want it otherwise. */
+void cli_note(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Prints "conic: warning: …" unless the session is quiet. */
+void cli_warn(const cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The exit code of the program where a command's is `exit_code`: 128 and the signal's number where one has stopped it.
+ */
+int cli_exit_after_signals(int exit_code);
 
 /* Seconds of a monotonic clock. */
 double cli_seconds(void);

@@ -24,17 +24,28 @@ static void print_seconds(char *text, size_t room, double seconds) {
     snprintf(text, room, "%.2f s", seconds);
 }
 
+double cli_other_seconds(const cli_stage *stages, int n_stages, double whole_seconds) {
+  double other = whole_seconds;
+  for (int i = 0; i < n_stages; i++)
+    other -= stages[i].seconds > 0.0 ? stages[i].seconds - stages[i].parts : 0.0;
+  return other > 0.0 ? other : 0.0;
+}
+
+static void append_stage(text_line *to, const char *name, double stage_seconds) {
+  char seconds[32], piece[64];
+  print_seconds(seconds, sizeof seconds, stage_seconds);
+  snprintf(piece, sizeof piece, "%s %s", name, seconds);
+  append_piece(to, piece);
+}
+
 void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages, const char *whole,
                      double whole_seconds) {
   text_line told = {"", 0};
-  char seconds[32], piece[64];
-  for (int i = 0; i < n_stages; i++) {
-    if (stages[i].seconds < 0.0)
-      continue;
-    print_seconds(seconds, sizeof seconds, stages[i].seconds);
-    snprintf(piece, sizeof piece, "%s %s", stages[i].name, seconds);
-    append_piece(&told, piece);
-  }
+  char seconds[32];
+  for (int i = 0; i < n_stages; i++)
+    if (stages[i].seconds >= 0.0)
+      append_stage(&told, stages[i].name, stages[i].seconds - stages[i].parts);
+  append_stage(&told, "other", cli_other_seconds(stages, n_stages, whole_seconds));
   print_seconds(seconds, sizeof seconds, whole_seconds);
   conic_log(session->context, CONIC_LOG_INFO, "%s; %s %s", told.text, seconds, whole);
 }

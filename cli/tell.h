@@ -10,9 +10,13 @@ typedef struct cli_stage {
   const char *name;
   double seconds;
   const char *key; /* in JSON; null: the name */
+  double parts;    /* of the seconds, what other stages are about */
 } cli_stage;
 
-/* The stages in their order, and what they are together: "a frame", "in all". */
+/* What of the whole belongs to none of the stages. */
+double cli_other_seconds(const cli_stage *stages, int n_stages, double whole_seconds);
+
+/* The stages in their order, what else there was, and what they are together: "a frame", "in all". */
 void cli_tell_stages(cli_session *session, const cli_stage *stages, int n_stages, const char *whole,
                      double whole_seconds);
 

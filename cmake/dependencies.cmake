@@ -10,6 +10,18 @@ if(CONIC_WITH_OPENEXR)
   unset(CMAKE_MESSAGE_LOG_LEVEL)
 endif()
 
+if(CONIC_WITH_PNG)
+  find_package(PNG 1.6 QUIET)
+else()
+  set(PNG_FOUND FALSE)
+endif()
+
+if(CONIC_WITH_ZLIB)
+  find_package(ZLIB QUIET)
+else()
+  set(ZLIB_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_OPENIMAGEIO)
   if(NOT CMAKE_CXX_COMPILER)
     unset(CMAKE_CXX_COMPILER CACHE) # one may have been installed since the last look
@@ -23,6 +35,10 @@ if(CONIC_WITH_OPENIMAGEIO)
     set(CMAKE_CXX_VISIBILITY_PRESET hidden)
     include(cmake/openimageio.cmake)
   endif()
+endif()
+
+if(CONIC_WITH_ASSIMP)
+  find_package(assimp 5 CONFIG QUIET)
 endif()
 
 if(CONIC_WITH_OPENCL)
@@ -49,12 +65,18 @@ else()
 endif()
 
 set(found_openexr ${OpenEXR_FOUND})
+set(found_png ${PNG_FOUND})
+set(found_zlib ${ZLIB_FOUND})
 set(found_openimageio ${OpenImageIO_FOUND})
+set(found_assimp ${assimp_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
-foreach(dependency "openexr:OpenEXR (EXR images)" "openimageio:OpenImageIO (PNG, TIFF, JPEG … images)"
-        "opencl:OpenCL (other devices)" "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
+foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
+        "zlib:zlib (compressed deep images)"
+        "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
+        "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
+        "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

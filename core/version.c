@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "core/assimp/assimp_read.h"
 #include "core/image/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x
@@ -14,6 +15,12 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_OPENEXR
 #define CONIC_HAVE_OPENEXR 0
 #endif
+#ifndef CONIC_HAVE_PNG
+#define CONIC_HAVE_PNG 0
+#endif
+#ifndef CONIC_HAVE_ZLIB
+#define CONIC_HAVE_ZLIB 0
+#endif
 #ifndef CONIC_HAVE_OPENCL
 #define CONIC_HAVE_OPENCL 0
 #endif
@@ -25,14 +32,22 @@ const char *conic_version(void) {
 #endif
 
 static const conic_feature features[] = {
-    {"OpenEXR", CONIC_HAVE_OPENEXR}, {"OpenImageIO", 1},        {"OpenCL", CONIC_HAVE_OPENCL},
-    {"zstd", CONIC_HAVE_ZSTD},       {"CURL", CONIC_HAVE_CURL},
+    {"OpenEXR", CONIC_HAVE_OPENEXR},
+    {"OpenImageIO", 1},
+    {"OpenCL", CONIC_HAVE_OPENCL},
+    {"zstd", CONIC_HAVE_ZSTD},
+    {"CURL", CONIC_HAVE_CURL},
+    {"libpng", CONIC_HAVE_PNG},
+    {"Assimp", 1},
+    {"zlib", CONIC_HAVE_ZLIB},
 };
-static const conic_feature without_openimageio = {"OpenImageIO", 0};
-enum { I_OPENIMAGEIO = 1 };
+static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
+enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };
 
 const conic_feature *conic_feature_at(int i) {
   if (i == I_OPENIMAGEIO && !conic_bridge_is_there())
     return &without_openimageio;
+  if (i == I_ASSIMP && !conic_assimp_is_there())
+    return &without_assimp;
   return i >= 0 && (size_t)i < sizeof features / sizeof features[0] ? &features[i] : NULL;
 }

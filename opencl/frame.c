@@ -255,9 +255,8 @@ static conic_status walk_parts(conic_frame *f, walk purpose, size_t *part) {
 static void set_finish(const conic_finish *finish, conic_device_frame *c) {
   c->is_single_pass = finish->options->passes == 1;
   c->shading = (int32_t)finish->options->shading;
-  c->has_light = finish->options->has_light;
   memcpy(c->world_from_cam, finish->world_from_cam, sizeof c->world_from_cam);
-  memcpy(c->light, finish->light, sizeof c->light);
+  c->lights = *finish->lights;
   memcpy(c->background, finish->background, sizeof c->background);
   c->exposure = finish->exposure;
 }

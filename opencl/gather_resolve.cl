@@ -69,14 +69,12 @@ static void gather_store(const gather_sums *s, __global float *sums, const gathe
 /* The finish that the shared shading reads. */
 static void finish_of(const conic_device_frame *frame, conic_render_options *options, conic_finish *finish) {
   options->shading = (conic_shading)frame->shading;
-  options->has_light = frame->has_light;
   finish->options = options;
+  finish->lights = &frame->lights;
   finish->exposure = frame->exposure;
-  for (int i = 0; i < 3; i++) {
-    finish->light[i] = frame->light[i];
+  for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       finish->world_from_cam[i][j] = frame->world_from_cam[i][j];
-  }
   for (int channel = 0; channel < 4; channel++)
     finish->background[channel] = frame->background[channel];
 }

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "raster/tiles/finish.h"
+
 /* Tiles are the smaller the more work-items share one. Their edge in pixels goes to the programs as CONIC_DEVICE_TILE,
  * and its binary logarithm as CONIC_DEVICE_TILE_BITS, when they are built. */
 enum { CONIC_TILE_BITS_OF_PIXELS = 4, CONIC_TILE_BITS_OF_TILES = 5 };
@@ -78,9 +80,9 @@ typedef struct conic_device_frame {
   int32_t is_first, is_last; /* of the parts in which the splats come */
   int32_t keeps_sums;        /* leaves them in memory, though the part is the last */
   int32_t planes;            /* that the image has, as bits 1 << conic_plane */
-  int32_t shading, has_light;
+  int32_t shading;
   float world_from_cam[3][3];
-  float light[3];
+  conic_finish_lights lights;
   float exposure;
   float background[4];
   /* Where triangles are drawn, too: they are there before the splats' first part, and the picture is theirs to finish.

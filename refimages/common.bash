@@ -28,5 +28,5 @@ needs() {
 }
 
 draw() { # FILES and options of conic render
-  "$conic" render "$@" --quiet -o out.png --json out.json
+  "$conic" render --plain "$@" --quiet -o out.png --json out.json
 }

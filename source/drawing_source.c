@@ -2,8 +2,10 @@
 #include <string.h>
 
 #include "core/base/clock.h"
+#include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/splats/columns.h"
+#include "core/splats/degrees.h"
 #include "core/splats/estimate.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
@@ -13,6 +15,9 @@ typedef struct drawing_source {
   conic_source base;
   conic_splats splats;
   conic_triangles triangles;
+  conic_repairs repairs; /* of all inputs */
+  size_t n_dots;
+  conic_splats facing; /* the same with the dots turned to the camera: axes of its own, where there are dots */
 } drawing_source;
 
 static int takes_drawing(const char *path, const conic_source_options *options) {
@@ -46,6 +51,26 @@ static conic_status take_triangles(drawing_source *d, const char *path, conic_mo
   return status;
 }
 
+/* Ground in degrees becomes ground in metres, before it is asked how the points lie to each other. */
+static void project_degrees(conic_context *context, const char *path, conic_splats *points) {
+  double middle[2];
+  if (points->tangent_u[0] || !conic_points_are_degrees(points))
+    return;
+  conic_points_take_metres(points, middle);
+  conic_log(context, CONIC_LOG_WARNING,
+            "%s: x and y are degrees of longitude and latitude: drawn in metres about %.6f, %.6f", path, middle[0],
+            middle[1]);
+}
+
+static void add_repairs(conic_repairs *to, const conic_repairs *more) {
+  to->nan += more->nan;
+  to->zero += more->zero;
+  to->duplicate += more->duplicate;
+  to->isolated += more->isolated;
+  to->failed += more->failed;
+  to->clip += more->clip;
+}
+
 /* Gives the points axes where they have none. */
 static conic_status take_points(drawing_source *d, const char *path, const conic_source_options *options,
                                 conic_model *model) {
@@ -53,33 +78,38 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   conic_estimate_options estimate;
   conic_repairs repairs;
   conic_estimate_options_init(&estimate);
+  if (options->projects_degrees && model->n_triangles == 0)
+    project_degrees(context, path, &model->points);
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.stays_at_mesh = 1;
   if (model->n_triangles && !model->points.tangent_u[0])
     d->base.tolerance = conic_mesh_tolerance(&model->points);
+  estimate.finds_dots = options->finds_dots;
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;
   conic_repairs_log(context, path, &repairs);
+  add_repairs(&d->repairs, &repairs);
   return append_to_drawing(d, &model->points);
 }
 
-/* *kind is what the model turned out to be. */
-static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options,
-                               conic_model_kind *kind) {
+/* `up` is the model's, where its file or its kind says it. */
+static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options, double up[3]) {
   conic_context *context = d->base.context;
   conic_read_options reading;
   conic_model model;
   double low[3], high[3];
   conic_read_options_init(&reading);
   reading.cutoff = options->cutoff;
+  reading.columns = options->columns;
   reading.keeps_faces = options->as == CONIC_AS_MESH;
+  conic_coloring_read(options->coloring, &reading);
   conic_status status = conic_model_read(context, path, &reading, &model);
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
-  *kind = model.kind;
+  memcpy(up, model.up, sizeof model.up);
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
                         model.points.count ? "no point is finite" : "it holds no points");
@@ -93,12 +123,17 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
 }
 
 static conic_status read_into_drawing(drawing_source *d, const char *path, const conic_source_options *options,
-                                      conic_model_kind *kind) {
+                                      double up[3]) {
   const conic_source_kind *special = conic_source_kind_of_file(path);
   conic_source *part;
   conic_splats splats;
   if (!special || !special->take_splats)
-    return read_model(d, path, options, kind);
+    return read_model(d, path, options, up);
+  conic_read_options reading;
+  conic_read_options_init(&reading);
+  conic_coloring_read(options->coloring, &reading);
+  if (reading.field && !reading.field_is_optional)
+    return conic_coloring_refuse(d->base.context, path, options);
   conic_status status = conic_source_open_kind(d->base.context, special, &path, 1, options, &part);
   if (status != CONIC_OK)
     return status;
@@ -123,6 +158,36 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
              : status;
 }
 
+/* Dots need axes that can change from picture to picture. */
+static conic_status copy_axes(drawing_source *d) {
+  size_t n_bytes = d->splats.count * sizeof(float);
+  d->n_dots = conic_splats_count_dots(&d->splats);
+  if (!d->n_dots)
+    return CONIC_OK;
+  d->facing = d->splats;
+  for (int i = 0; i < 6; i++) {
+    float **axes = i < 3 ? &d->facing.tangent_u[i] : &d->facing.tangent_v[i - 3], *own = *axes;
+    *axes = conic_memory_allocate(d->base.context, d->splats.count, sizeof(float));
+    if (*axes)
+      memcpy(*axes, own, n_bytes);
+  }
+  for (int axis = 0; axis < 3; axis++)
+    if (!d->facing.tangent_u[axis] || !d->facing.tangent_v[axis])
+      return CONIC_ERROR_MEMORY;
+  return CONIC_OK;
+}
+
+static conic_status choose_in_drawing(conic_source *source, const conic_camera *camera,
+                                      const conic_render_options *render, const conic_source_view *view) {
+  drawing_source *d = (drawing_source *)source;
+  (void)render;
+  (void)view;
+  source->choice.drawing = (conic_drawing){d->n_dots ? &d->facing : &d->splats, &d->triangles};
+  source->choice.is_all = 1;
+  return d->n_dots ? conic_splats_face(source->context, &d->splats, camera, d->facing.tangent_u, d->facing.tangent_v)
+                   : CONIC_OK;
+}
+
 static conic_status measure_drawing(drawing_source *d) {
   conic_source_scale *scale = &d->base.scale;
   double start = conic_seconds_now();
@@ -136,6 +201,8 @@ static conic_status measure_drawing(drawing_source *d) {
   scale->has_colors = d->splats.color[0] || d->triangles.color[0] || d->triangles.n_materials;
   conic_status status =
       d->splats.count ? conic_splats_length(d->base.context, &d->splats, &scale->splat_length) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = copy_axes(d);
   scale->estimate_seconds += conic_seconds_now() - start;
   return status;
 }
@@ -144,19 +211,22 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
                                  const conic_source_options *options) {
   drawing_source *d = (drawing_source *)source;
   conic_source_scale *scale = &source->scale;
-  size_t n_surveys = 0;
+  double up[3] = {0.0, 0.0, 0.0};
   conic_status status = CONIC_OK;
   for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
-    conic_model_kind kind = CONIC_MODEL_PLY;
-    status = read_into_drawing(d, paths[i], options, &kind);
-    n_surveys += kind == CONIC_MODEL_LAS;
+    double own[3] = {0.0, 0.0, 0.0};
+    status = read_into_drawing(d, paths[i], options, own);
+    for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
+      up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
   if (status == CONIC_OK)
     status = dress(d, options);
-  if (n_surveys == n_paths) { /* which have heights in z */
-    scale->up[1] = 0.0;
-    scale->up[2] = 1.0;
+  if (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0) {
+    memcpy(scale->up, up, sizeof up);
+    scale->up_basis = CONIC_UP_KIND;
   }
+  if (status == CONIC_OK)
+    status = conic_source_color(source, options, &d->splats, &d->triangles);
   return status == CONIC_OK ? measure_drawing(d) : status;
 }
 
@@ -187,12 +257,26 @@ conic_status conic_source_of_drawing(conic_context *context, conic_splats *splat
 
 static void close_drawing(conic_source *source) {
   drawing_source *d = (drawing_source *)source;
+  for (int axis = 0; axis < 3 && d->n_dots; axis++) {
+    conic_memory_release(source->context, d->facing.tangent_u[axis]);
+    conic_memory_release(source->context, d->facing.tangent_v[axis]);
+  }
   conic_splats_release(source->context, &d->splats);
   conic_triangles_release(source->context, &d->triangles);
 }
 
 static conic_status find_drawing_spacing(conic_source *source, double *spacing) {
   return conic_splats_spacing(source->context, &((drawing_source *)source)->splats, spacing);
+}
+
+static void tell_drawing_rest(const conic_source *source, conic_facts *facts) {
+  const drawing_source *d = (const drawing_source *)source;
+  const conic_repairs *repairs = &d->repairs;
+  if (d->n_dots)
+    CONIC_ADD_FACTS(facts, CONIC_COUNT("dots", d->n_dots));
+  CONIC_ADD_FACTS(facts, CONIC_OBJECT("skipped"), CONIC_COUNT("nan", repairs->nan), CONIC_COUNT("zero", repairs->zero),
+                  CONIC_COUNT("duplicate", repairs->duplicate), CONIC_COUNT("isolated", repairs->isolated),
+                  CONIC_COUNT("failed", repairs->failed), CONIC_COUNT("clip", repairs->clip), CONIC_END);
 }
 
 const conic_source_kind conic_source_kind_drawing = {
@@ -202,4 +286,6 @@ const conic_source_kind conic_source_kind_drawing = {
     .open = open_drawing,
     .close = close_drawing,
     .find_spacing = find_drawing_spacing,
+    .choose = choose_in_drawing,
+    .tell_rest = tell_drawing_rest,
 };

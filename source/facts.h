@@ -20,7 +20,7 @@
 conic_fact conic_fact_text(conic_fact_type type, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-enum { CONIC_MOST_FACTS = 96 };
+enum { CONIC_MOST_FACTS = 640 };
 
 struct conic_facts {
   conic_context *context;

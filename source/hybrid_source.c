@@ -32,9 +32,13 @@ static conic_status measure_hybrid(hybrid_source *h) {
 static conic_status build_hybrid(hybrid_source *h, const char *path, const conic_source_options *options) {
   conic_triangles mesh;
   conic_hybrid_options building;
-  conic_status status = conic_mesh_read(h->base.context, path, options->texture_path, &mesh);
-  if (status != CONIC_OK)
+  conic_status status = conic_mesh_read(h->base.context, path, options->texture_path, options->coloring, &mesh);
+  if (status == CONIC_OK)
+    status = conic_source_color(&h->base, options, NULL, &mesh);
+  if (status != CONIC_OK) {
+    conic_triangles_release(h->base.context, &mesh);
     return status;
+  }
   double start = conic_seconds_now();
   conic_hybrid_options_init(&building);
   building.cutoff = options->cutoff;
@@ -47,6 +51,8 @@ static conic_status open_hybrid(conic_source *source, const char *const *paths, 
                                 const conic_source_options *options) {
   hybrid_source *h = (hybrid_source *)source;
   (void)n_paths;
+  if (conic_hybrid_is_file(paths[0]) && conic_coloring_is_asked(options))
+    return conic_coloring_refuse(source->context, paths[0], options);
   conic_status status = conic_hybrid_is_file(paths[0]) ? conic_hybrid_read(source->context, paths[0], &h->hybrid)
                                                        : build_hybrid(h, paths[0], options);
   return status == CONIC_OK ? measure_hybrid(h) : status;

@@ -53,11 +53,11 @@ static void tell_defects(const conic_splats *points, conic_facts *facts) {
 }
 
 static void tell_fields(unsigned fields, conic_facts *facts) {
-  static const char *const names[] = {"axes", "normals", "colors", "opacities", "clip lines"}; /* as the bits go */
+  static const char *const names[] = {"axes", "normals", "colors", "opacities", "clip lines", "dots"}; /* as the bits go */
   char text[96] = "positions";
   size_t length = sizeof "positions" - 1;
   CONIC_ADD_FACTS(facts, CONIC_ARRAY("fields"));
-  for (int i = 0; i < 5; i++)
+  for (int i = 0; i < 6; i++)
     if (fields & 1u << i) {
       CONIC_ADD_FACTS(facts, conic_fact_text(CONIC_FACT_TEXT, NULL, "%s", names[i]));
       length += (size_t)snprintf(text + length, sizeof text - length, ", %s", names[i]);
@@ -81,6 +81,7 @@ conic_status conic_model_inspect(conic_context *context, const char *path, int i
     conic_facts_add_bounds(facts, low, high);
   if (is_checked)
     tell_defects(&model.points, facts);
+  status = conic_model_tell_fields(context, path, &model, is_checked, facts);
   conic_model_release(context, &model);
-  return CONIC_OK;
+  return status;
 }

@@ -42,12 +42,14 @@ static conic_status open_patches(conic_source *source, const char *const *paths,
   conic_source_options whole = *options;
   whole.as = CONIC_AS_POINTS;
   whole.is_whole = 1;
+  whole.finds_dots = 0; /* polynomials are laid through all points alike */
   conic_status status = conic_source_open(source->context, paths, n_paths, &whole, &p->points);
   if (status != CONIC_OK)
     return status;
   unsigned abilities = source->scale.abilities;
   source->scale = *conic_source_measure(p->points);
   source->scale.abilities = abilities;
+  source->coloring = p->points->coloring;
   double start = conic_seconds_now();
   status = lay_patches(p, options);
   source->scale.estimate_seconds += conic_seconds_now() - start;
@@ -90,6 +92,12 @@ static void tell_patches_primitives(const conic_source *source, conic_facts *fac
   CONIC_ADD_FACTS(facts, CONIC_COUNT("patches", selection->n_patches), CONIC_COUNT("samples", selection->n_samples));
 }
 
+static void tell_patches_rest(const conic_source *source, conic_facts *facts) {
+  const conic_source *points = ((const patches_source *)source)->points;
+  if (points->kind->tell_rest)
+    points->kind->tell_rest(points, facts);
+}
+
 const conic_source_kind conic_source_kind_patches = {
     .size = sizeof(patches_source),
     .company = CONIC_SOURCE_MANY,
@@ -101,4 +109,5 @@ const conic_source_kind conic_source_kind_patches = {
     .name_image = name_patches_image,
     .name_splat = name_patches_splat,
     .tell_primitives = tell_patches_primitives,
+    .tell_rest = tell_patches_rest,
 };

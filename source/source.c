@@ -106,6 +106,8 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
   const conic_source_kind *kind = find_kind(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself, and made of one mesh", paths[0]);
+  if (conic_coloring_is_asked(&own) && (kind == &conic_source_kind_octree || kind == &conic_source_kind_layers))
+    return conic_coloring_refuse(context, paths[0], &own);
   return conic_source_open_kind(context, kind, paths, n_paths, &own, source);
 }
 
@@ -199,7 +201,8 @@ conic_status conic_source_draw(conic_source *source, conic_renderer *renderer, c
                               : status;
   double start = conic_seconds_now();
   status = choose_settled(source, camera, &settled);
-  double ms = kind->choose ? 1e3 * (conic_seconds_now() - start) : 0.0;
+  int is_chosen = kind->choose && (!source->choice.is_all || source->choice.drawing.splats->dot);
+  double ms = is_chosen ? 1e3 * (conic_seconds_now() - start) : 0.0;
   if (status == CONIC_OK)
     status = conic_render_drawing(source->context, renderer, &source->choice.drawing, camera, &settled,
                                   source->view.samples, image, statistics);

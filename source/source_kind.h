@@ -58,6 +58,7 @@ struct conic_source {
   conic_source_choice choice;
   conic_source_view view; /* of the last picture */
   double tolerance;       /* by which splats made of meshes are off these; 0: none are */
+  conic_coloring coloring;
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
@@ -74,7 +75,18 @@ conic_status conic_source_create(conic_context *context, const conic_source_kind
 /* Where `status` is a failure, closes what was made so far. Hands it on. */
 conic_status conic_source_finish(conic_status status, conic_source **source);
 
-/* conic_source_inspect of a file that is read as a model. */
+/* Whether colours are to be made of something else than the file's. */
+int conic_coloring_is_asked(const conic_source_options *options);
+/* Of a file that keeps no fields. Errors: INPUT. */
+conic_status conic_coloring_refuse(conic_context *context, const char *path, const conic_source_options *options);
+/* Colours what a source was read as, as its options say; where heights need it, finds which way is up. Errors: as
+ * conic_drawing_color. */
+conic_status conic_source_color(conic_source *source, const conic_source_options *options, conic_splats *splats,
+                                conic_triangles *triangles);
+
+/* conic_source_inspect of a file that is read as a model; and of that the values that its points have by name. */
+conic_status conic_model_tell_fields(conic_context *context, const char *path, const conic_model *model, int is_checked,
+                                     conic_facts *facts);
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
 
 #endif

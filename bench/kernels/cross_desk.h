@@ -4,6 +4,7 @@
 #define CONIC_CROSS_DESK_H
 
 #include "bench/kernels/cross.h"
+#include "raster/tiles/lights.h"
 
 enum { N_SPLATS = 2501, N_KERNELS = 4, GREATEST_LIST = 1 << 15, MOST_TILES = 16 };
 
@@ -40,6 +41,7 @@ typedef struct splat_desk {
   const fixture *f;
   conic_view view;
   conic_finish finish;
+  conic_finish_lights lights;
   conic_chunk chunk;
   conic_projected projected;
   uint32_t *list, *words, *selected, *selected_words;
@@ -89,6 +91,23 @@ static inline void fill(fixture *f, uint64_t *state, double decades, double shar
   }
 }
 
+/* A light of each frame in several colours, under a sky. */
+static inline conic_lighting colored_lights(int number) {
+  conic_lighting lighting = {.is_given = 1, .n_lights = 1 + number % CONIC_MAX_LIGHTS, .up = {0.1, -1.0, 0.2}};
+  for (int i = 0; i < lighting.n_lights; i++) {
+    lighting.lights[i].frame = (conic_light_frame)((number + i) % 3);
+    for (int axis = 0; axis < 3; axis++) {
+      lighting.lights[i].color[axis] = (float)(1 + (i * 5 + axis * 3) % 7) / 9.0f;
+      lighting.lights[i].direction[axis] = (double)((i * 3 + axis * 5 + number) % 11) - 4.6;
+    }
+  }
+  for (int axis = 0; axis < 3 && number % 2; axis++) {
+    lighting.sky[axis] = 0.07f * (float)(axis + 1);
+    lighting.ground[axis] = 0.05f / (float)(axis + 1);
+  }
+  return lighting;
+}
+
 /* Options for each way through the kernels: every method with every kernel, the rest as it comes. */
 static inline void choose(fixture *f, int number) {
   conic_render_options_init(&f->options);
@@ -96,19 +115,23 @@ static inline void choose(fixture *f, int number) {
   f->options.kernel.type = (conic_kernel_type)(number / CONIC_N_METHODS % N_KERNELS);
   f->options.shading = (conic_shading)(number % 2 ? CONIC_SHADE_PHONG : number % 3);
   f->options.has_light = number % 4 == 1;
+  f->options.light[2] = 1.0;
+  if (number % 3 == 1)
+    f->options.lighting = colored_lights(number);
   f->options.has_background = number % 8 == 6;
   f->options.cull_back = number % 5 == 2;
   f->options.prefilter = number % 7 == 3 ? 0.0f : 1.0f;
   f->options.epsilon = number % 11 == 4 ? 0.0 : -1.0;
 }
 
-static inline conic_finish finish_of(const fixture *f) {
-  conic_finish finish = {.options = &f->options, .light = {0.6f, 0.64f, 0.48f}, .exposure = 1.25f};
+static inline void open_finish(splat_desk *d) {
+  const conic_render_options *options = &d->f->options;
+  d->finish = (conic_finish){.options = options, .lights = &d->lights, .exposure = 1.25f};
   for (int i = 0; i < 3; i++)
-    finish.world_from_cam[i][i] = 1.0f;
-  for (int i = 0; f->options.has_background && i < 4; i++)
-    finish.background[i] = i < 3 ? 0.25f : 1.0f;
-  return finish;
+    d->finish.world_from_cam[i][i] = 1.0f;
+  for (int i = 0; options->has_background && i < 4; i++)
+    d->finish.background[i] = i < 3 ? 0.25f : 1.0f;
+  CHECK_OK(conic_finish_lights_init(d->f->context, &d->f->camera, options, &d->lights));
 }
 
 static inline void open_records(splat_desk *d, size_t n) {
@@ -170,7 +193,7 @@ static inline splat_desk *open_desk(const fixture *f, unsigned planes) {
   splat_desk *d = cross_calloc(sizeof *d);
   d->f = f;
   CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &d->view));
-  d->finish = finish_of(f);
+  open_finish(d);
   open_records(d, f->splats.count);
   open_band(d, f->splats.count, planes);
   open_turned(d, f->splats.count);

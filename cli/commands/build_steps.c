@@ -1,18 +1,34 @@
 #include "cli/commands/build_steps.h"
 
+#include <string.h>
+
 #include "cli/outputs.h"
 
-int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending,
-                    int may_replace) {
+int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending) {
   int exit_code = cli_check_ending(build->output, ending);
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(build->session, &build->output, 1);
-  return exit_code == CLI_DONE ? cli_check_inputs_stay(build->session, inputs, n_inputs, &build->output, !may_replace)
-                               : exit_code;
+  return exit_code == CLI_DONE
+             ? cli_check_inputs_stay(build->session, inputs, n_inputs, &build->output, !build->is_in_place)
+             : exit_code;
+}
+
+int cli_build_take_paths(cli_build *build, const char *input, const char *ending) {
+  const char *command = build->session->command;
+  build->input = input;
+  if (build->is_in_place && build->output)
+    return cli_usage("%s: --in-place writes over the input, and -o elsewhere; give one of both", command);
+  if (build->is_in_place && strcmp(input, "-") == 0)
+    return cli_usage("%s: --in-place needs a file, and not standard input", command);
+  if (build->is_in_place)
+    build->output = build->session->replaced_path = input;
+  if (!build->output)
+    return cli_usage("%s: no output given (-o OUT.%s)", command, ending);
+  return CLI_DONE;
 }
 
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
-                    const char *ending, int may_replace) {
+                    const char *ending) {
   const char *positional[argc], *command = build->session->command;
   int n_positional;
   int exit_code = cli_parse(build->session, options, n_options, argc, argv, positional, &n_positional);
@@ -21,10 +37,16 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
   if (n_positional != 1)
     return cli_usage("%s: %s; see conic help %s", command, n_positional ? "one input at a time" : "no input given",
                      command);
-  if (!build->output)
-    return cli_usage("%s: no output given (-o OUT.%s)", command, ending);
-  build->input = positional[0];
-  return cli_build_check(build, &build->input, 1, ending, may_replace);
+  exit_code = cli_build_take_paths(build, positional[0], ending);
+  return exit_code == CLI_DONE ? cli_build_check(build, &build->input, 1, ending) : exit_code;
+}
+
+void cli_build_hint_faces(const cli_build *build, const conic_model *model) {
+  if (model->n_triangles)
+    cli_warn(build->session,
+             "%s: the vertices become splats, and its %zu faces are left out; conic render --as mesh and conic hybrid "
+             "draw faces",
+             build->input, model->n_triangles);
 }
 
 static int count_stages(const cli_build *build) {
@@ -76,6 +98,7 @@ void cli_build_report_seconds(cli_json *json, const cli_build *build, const char
     const cli_stage *stage = &build->stages[i];
     cli_json_number(json, stage->key ? stage->key : stage->name, stage->seconds > 0.0 ? stage->seconds : 0.0);
   }
+  cli_json_number(json, "other", cli_other_seconds(build->stages, count_stages(build), build->total_seconds));
   cli_json_number(json, "total", build->total_seconds);
   cli_json_close(json);
   cli_json_number(json, rate_key, rate);

@@ -10,6 +10,8 @@
 typedef struct cli_build {
   cli_session *session;
   const char *input, *output;
+  const char *columns; /* of an input that is text, or null */
+  int is_in_place;     /* the output is the input */
   cli_stage stages[6]; /* in the order in which they are told; their number is that of the names */
   double total_seconds;
 } cli_build;
@@ -23,14 +25,23 @@ typedef struct cli_build_steps {
 } cli_build_steps;
 
 /* Reads the arguments of a command with one input, and an output that option -o has put into build->output, and sees
- * to it that they can stand: the output has that ending, and is not the input unless it `may_replace` that. Returns as
+ * to it that they can stand: the output has that ending, and is not the input unless that is to be replaced. Returns as
  * cli_parse. */
 int cli_build_parse(cli_build *build, const cli_option *options, int n_options, int argc, char **argv,
-                    const char *ending, int may_replace);
+                    const char *ending);
+
+/* The option of commands that can replace their input. */
+#define CLI_IN_PLACE(build)                                                                                            \
+  { "in-place", CLI_FLAG, &(build).is_in_place, NULL, "write over the input, in place of -o, once all is written" }
+
+/* Sets the input, and with --in-place the output. Returns CLI_DONE, or CLI_USAGE after a message. */
+int cli_build_take_paths(cli_build *build, const char *input, const char *ending);
 
 /* What of that concerns the output, for any number of inputs. Returns CLI_DONE or, after a message, the exit code. */
-int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending,
-                    int may_replace);
+int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending);
+
+/* Warns where the input is a mesh, of which the output will only hold what stands for the vertices. */
+void cli_build_hint_faces(const cli_build *build, const conic_model *model);
 
 /* Opens the session, makes the file, says so, and writes --json; nothing where `parsed`, which cli_build_parse
  * returned, is not CLI_DONE. Returns the exit code. */

@@ -81,6 +81,8 @@ static int write_statistics(const diff_job *job) {
     cli_json_number(json, "differing_pixels", NAN);
     cli_json_number(json, "largest_hole", NAN);
   }
+  if (difference->has_color)
+    cli_json_text(json, "color_channels", difference->lacks_alpha ? "RGB" : "RGBA");
   write_planes(json, difference);
   return cli_json_finish(file);
 }
@@ -94,6 +96,11 @@ static void print_lone_planes(const diff_job *job, int which) {
     if (lone >> i & 1)
       printf(" %s", conic_plane_describe((conic_plane)i)->name);
   putchar('\n');
+}
+
+/* What of a plane was compared. */
+static const char *name_of_compared(const conic_difference *difference, int plane) {
+  return plane == CONIC_PLANE_RGBA && difference->lacks_alpha ? "rgb" : conic_plane_describe((conic_plane)plane)->name;
 }
 
 static void print_result(const diff_job *job) {
@@ -117,7 +124,7 @@ static void print_result(const diff_job *job) {
            difference->p999);
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (difference->planes[i].compared)
-      printf("%-17s max_abs %-12.6g rmse %-12.6g p99.9 %.6g\n", conic_plane_describe((conic_plane)i)->name,
+      printf("%-17s max_abs %-12.6g rmse %-12.6g p99.9 %.6g\n", name_of_compared(difference, i),
              difference->planes[i].max_abs, difference->planes[i].rmse, difference->planes[i].p999);
   print_lone_planes(job, 0);
   print_lone_planes(job, 1);

@@ -1,5 +1,6 @@
 /* conic hybrid: a mesh in, clusters of triangles and of surfels out. */
 #include "cli/command.h"
+#include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/message.h"
 #include "source/mesh_input.h"
@@ -9,6 +10,7 @@ static const char *const sampling_words[] = {"blue", "box", NULL};
 
 typedef struct hybrid_job {
   cli_build base;
+  cli_coloring coloring;
   const char *texture;
   conic_hybrid_options options;
 
@@ -24,15 +26,22 @@ static int make_hybrid(void *cookie) {
   cli_stage *stages = job->base.stages;
   conic_triangles mesh;
   double start = cli_seconds();
-  conic_status status = conic_mesh_read(job->base.session->context, job->base.input, job->texture, &mesh);
+  conic_status status =
+      conic_mesh_read(job->base.session->context, job->base.input, job->texture, &job->coloring.options, &mesh);
+  if (status == CONIC_OK)
+    status = cli_coloring_apply(job->base.session, &job->coloring, (const double[3]){0.0, 1.0, 0.0}, NULL, &mesh);
   start = cli_build_end_stage(&stages[READ], start);
-  if (status != CONIC_OK)
+  if (status != CONIC_OK) {
+    conic_triangles_release(job->base.session->context, &mesh);
     return cli_exit_of(status);
+  }
   status = conic_hybrid_build(job->base.session->context, &mesh, &job->options, &job->hybrid, &job->report);
   start = cli_build_end_stage(&stages[WORK], start);
   stages[CLUSTER].seconds = job->report.cluster_seconds;
   stages[SAMPLE].seconds = job->report.sample_seconds;
   stages[SIMPLIFY].seconds = job->report.simplify_seconds;
+  for (int i = CLUSTER; i <= SIMPLIFY; i++)
+    stages[WORK].parts += stages[i].seconds;
   if (status == CONIC_OK)
     status = conic_hybrid_describe(job->hybrid, &job->info);
   if (status == CONIC_OK && !conic_is_in_reach(job->info.minimum, job->info.maximum))
@@ -75,6 +84,7 @@ static void write_oddities(cli_json *json, const conic_hybrid_report *r) {
 static void report_hybrid(cli_json *json, const void *cookie) {
   const hybrid_job *job = cookie;
   write_counts(json, job);
+  cli_color_report(json, &job->coloring.done);
   cli_build_report_seconds(json, &job->base, "triangles_per_s",
                            (double)job->report.n_faces / job->base.stages[WORK].seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
@@ -110,9 +120,10 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
   hybrid_job job = {
       .base = {
           session,
-          .stages = {{"read"}, {"cluster"}, {"sample"}, {"simplify"}, {"all of the work", .key = "work"}, {"write"}}}};
+          .stages = {{"read"}, {"cluster"}, {"sample"}, {"simplify"}, {"rest of the work", .key = "work"}, {"write"}}}};
   int sampling = 0;
   conic_hybrid_options_init(&job.options);
+  cli_coloring_init(&job.coloring);
   double cutoff = (double)job.options.cutoff;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.chy", "the file to write"},
@@ -134,10 +145,13 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
        0.25, 5},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,
        "without the simpler levels that --error chooses from"},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "chy");
   job.options.cutoff = (float)cutoff;
   job.options.sampling = (conic_sampling)sampling;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_coloring_check(session, &job.coloring);
   return cli_build_run(&job, &steps, exit_code);
 }
 

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "cli/command.h"
+#include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "conic/layers.h"
 #include "core/base/memory.h"
@@ -15,6 +16,7 @@ typedef struct layer_job {
   int n_inputs;
   conic_layers_options options;
   conic_estimate_options estimate;
+  cli_coloring coloring;
   int cloud_size;
   double memory_mib, cutoff;
   cli_length quantum;
@@ -30,7 +32,7 @@ typedef struct layer_job {
 static const double estimate_bytes_a_point = 250.0;
 
 /* Of several inputs some may have colours; where the first has, what has none is white, as in pictures. */
-static conic_status append_batch(layer_job *job, const conic_splats *batch) {
+static conic_status append_colored(layer_job *job, const conic_splats *batch) {
   conic_context *context = job->base.session->context;
   if (!job->has_points)
     job->has_colors = batch->color[0] != NULL;
@@ -50,6 +52,25 @@ static conic_status append_batch(layer_job *job, const conic_splats *batch) {
     colored.color[channel] = white;
   conic_status status = conic_layers_builder_append(job->builder, &colored);
   conic_memory_release(context, white);
+  return status;
+}
+
+/* A batch's arrays are the reader's: colours go with a copy. */
+static conic_status append_batch(layer_job *job, const conic_splats *batch) {
+  conic_context *context = job->base.session->context;
+  conic_splats own;
+  if (!job->coloring.options.by)
+    return append_colored(job, batch);
+  conic_status status = conic_splats_allocate(context, 0, conic_splats_fields(batch), &own);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(own.origin, batch->origin, sizeof own.origin);
+  status = conic_splats_append(context, &own, batch);
+  if (status == CONIC_OK)
+    status = conic_drawing_color(context, &job->coloring.options, &own, NULL, &job->coloring.done);
+  if (status == CONIC_OK)
+    status = append_colored(job, &own);
+  conic_splats_release(context, &own);
   return status;
 }
 
@@ -76,6 +97,7 @@ static conic_status read_whole_file(layer_job *job, const conic_read_options *op
   conic_status status = conic_model_read(context, job->base.input, options, &model);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &model);
   status = conic_model_to_splats(context, &job->estimate, &model, &repairs);
   if (status == CONIC_OK)
     conic_repairs_log(job->base.session->context, job->base.input, &repairs);
@@ -103,6 +125,9 @@ static conic_status read_inputs(layer_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->options.cutoff;
+  cli_coloring_read(&job->coloring, &options);
+  status = cli_coloring_find_range(job->base.session, &job->coloring, job->inputs, job->n_inputs, &options);
+  options.columns = job->base.columns;
   for (int i = 0; i < job->n_inputs && status == CONIC_OK; i++) {
     struct stat found;
     job->base.input = job->inputs[i];
@@ -128,6 +153,7 @@ static void report_layers(cli_json *json, const void *cookie) {
   cli_json_number(json, "bits_per_sample", 8.0 * (double)s->n_bytes / (double)s->n_samples);
   cli_json_number(json, "spacing", s->spacing);
   cli_json_number(json, "quantum", s->quantum);
+  cli_color_report(json, &job->coloring.done);
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)s->n_in / job->base.total_seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &repairs);
@@ -178,7 +204,10 @@ static int check_layer_arguments(layer_job *job) {
   job->options.quantum = job->quantum.value;
   job->options.quantum_in_spacings = job->quantum.is_in_spacings;
   job->options.cutoff = job->estimate.cutoff = (float)job->cutoff;
-  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc", 0);
+  int answer = cli_coloring_check(job->base.session, &job->coloring);
+  if (answer != CLI_DONE)
+    return answer;
+  return cli_build_check(&job->base, job->inputs, job->n_inputs, "lpc");
 }
 
 static int run_layer(cli_session *session, int argc, char **argv) {
@@ -191,6 +220,7 @@ static int run_layer(cli_session *session, int argc, char **argv) {
   const char *positional[argc];
   conic_estimate_options_init(&job.estimate);
   conic_layers_options_init(&job.options);
+  cli_coloring_init(&job.coloring);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.lpc", "the file to write"},
       {"cloud-size", CLI_INT, &job.cloud_size, "M", "samples that a cloud has about, 64 to 32768 [2048]", 64, 32768},
@@ -203,6 +233,8 @@ static int run_layer(cli_session *session, int argc, char **argv) {
        0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that raw points' normals are estimated from, 6 to 64 [20]", 6, 64},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &job.n_inputs);

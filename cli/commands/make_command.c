@@ -3,8 +3,8 @@
 
 #include "cli/command.h"
 #include "cli/commands/build_steps.h"
-#include "cli/suggest.h"
 #include "core/base/message.h"
+#include "core/base/nearest_word.h"
 
 /* Splats that are in memory at a time. */
 #define BATCH ((size_t)1 << 20)
@@ -42,7 +42,7 @@ static int find_scene(const char *name, conic_scene_type *type) {
       *type = (conic_scene_type)i;
       return CLI_DONE;
     }
-    nearest = cli_nearer_word(name, nearest, candidate);
+    nearest = conic_nearer_word(name, nearest, candidate);
   }
   if (nearest)
     return cli_usage("make: unknown scene %s; did you mean %s?", name, nearest);
@@ -61,7 +61,7 @@ static int check_arguments(const char *const *scenes, int n_scenes, make_job *jo
   int exit_code = find_scene(scenes[0], &job->scene.type);
   if (exit_code == CLI_DONE && !job->base.output)
     exit_code = cli_usage("make: where to? It needs -o OUT.ply");
-  return exit_code == CLI_DONE ? cli_build_check(&job->base, NULL, 0, "ply", 1) : exit_code;
+  return exit_code == CLI_DONE ? cli_build_check(&job->base, NULL, 0, "ply") : exit_code;
 }
 
 static int parse_scene(int argc, char **argv, make_job *job) {

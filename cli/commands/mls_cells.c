@@ -3,15 +3,18 @@
 typedef struct cells_cleaning {
   cli_session *session;
   const conic_splats *points;
-  const char *input, *output;
+  const char *input, *columns, *output;
   conic_splats_writer *writer;
   double work_end; /* when the last point was projected */
 } cells_cleaning;
 
 static conic_status feed(void *cookie, conic_batch_receiver *receive, void *to) {
   cells_cleaning *job = cookie;
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.columns = job->columns;
   return job->points ? receive(to, job->points)
-                     : conic_model_stream(job->session->context, job->input, NULL, receive, to);
+                     : conic_model_stream(job->session->context, job->input, &options, receive, to);
 }
 
 static conic_status begin_cells(void *cookie, const conic_surface_report *report, unsigned fields) {
@@ -28,8 +31,9 @@ static conic_status append_cleaned(void *cookie, const conic_splats *batch) {
 }
 
 conic_status cli_mls_clean(cli_session *session, const conic_clean_options *options, const conic_splats *points,
-                           const char *input, const char *output, conic_surface_report *report, double *work_seconds) {
-  cells_cleaning job = {session, points, input, output, NULL, 0.0};
+                           const char *input, const char *columns, const char *output, conic_surface_report *report,
+                           double *work_seconds) {
+  cells_cleaning job = {session, points, input, columns, output, NULL, 0.0};
   const conic_points_sink sink = {begin_cells, append_cleaned, &job};
   double start = cli_seconds();
   conic_status status = conic_surface_clean_cells(session->context, options, feed, &job, &sink, report);

@@ -4,9 +4,10 @@
 
 #include "cli/session.h"
 
-/* Projects the points of `points`, or where that is null those of the file `input`, and writes them; *work_seconds is
- * what it took until they were written. With no point left to write nothing is. */
+/* Projects the points of `points`, or where that is null those of the file `input` with its `columns`, and writes them;
+ * *work_seconds is what it took until they were written. With no point left to write nothing is. */
 conic_status cli_mls_clean(cli_session *session, const conic_clean_options *options, const conic_splats *points,
-                           const char *input, const char *output, conic_surface_report *report, double *work_seconds);
+                           const char *input, const char *columns, const char *output, conic_surface_report *report,
+                           double *work_seconds);
 
 #endif

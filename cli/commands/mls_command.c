@@ -54,10 +54,14 @@ static conic_status find_unit(mls_job *job) {
 static conic_status read_points(mls_job *job) {
   conic_context *context = job->base.session->context;
   double start = cli_seconds();
-  conic_status status = conic_model_read(context, job->base.input, NULL, &job->model);
+  conic_read_options options;
+  conic_read_options_init(&options);
+  options.columns = job->base.columns;
+  conic_status status = conic_model_read(context, job->base.input, &options, &job->model);
   start = cli_build_end_stage(&job->base.stages[READ], start);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &job->model);
   conic_splats *points = &job->model.points;
   double low[3], high[3];
   job->n_in = points->count;
@@ -115,8 +119,9 @@ static conic_status clean_cells(mls_job *job) {
   options.memory_bytes = (size_t)job->memory_mib << 20;
   options.scratch = strcmp(job->base.output, "-") == 0 ? job->base.input : job->base.output;
   double start = cli_seconds();
-  conic_status status = cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points,
-                                      job->base.input, job->base.output, &job->report, &job->base.stages[WORK].seconds);
+  conic_status status =
+      cli_mls_clean(job->base.session, &options, job->has_memory ? NULL : &job->model.points, job->base.input,
+                    job->base.columns, job->base.output, &job->report, &job->base.stages[WORK].seconds);
   job->base.stages[WRITE].seconds = cli_seconds() - start - job->base.stages[WORK].seconds;
   job->n_in = job->report.n_in;
   job->n_out = job->report.n_out;
@@ -287,8 +292,9 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (n_positional != 2)
     return cli_usage("mls %s: %s; see conic help mls", name,
                      n_positional > 2 ? "one input at a time" : "no input given");
-  if (!job->base.output)
-    return cli_usage("mls %s: no output given (-o OUT.ply)", name);
+  int exit_code = cli_build_take_paths(&job->base, positional[1], "ply");
+  if (exit_code != CLI_DONE)
+    return exit_code;
   if (job->action == MLS_THIN && !job->has_count && !(job->max_error.value > 0.0))
     return cli_usage("mls thin: needs --count N or --max-error E");
   if (job->action == MLS_DENSIFY && !(job->spacing.value > 0.0))
@@ -300,9 +306,7 @@ static int check_job(mls_job *job, const char *const *positional, int n_position
   if (job->has_memory && (!is_by_cells(job) || job->h.is_in_spacings || strcmp(positional[1], "-") == 0))
     return cli_usage("mls %s: --memory is of project, from a file, with --h in world units and without --cluster",
                      name);
-  job->base.input = positional[1];
-  /* The output may be the input: it appears when all is read. */
-  int exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply", 1);
+  exit_code = cli_build_check(&job->base, &job->base.input, 1, "ply");
   return exit_code == CLI_DONE ? cli_isa_check(job->base.session, (conic_isa)job->isa) : exit_code;
 }
 
@@ -314,6 +318,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
   conic_surface_options_init(&job.options);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"type", CLI_CHOICE, &job.type, "T", "mls: polynomials over planes; apss: algebraic spheres [mls]",
        .choices = type_names},
       {"plane", CLI_CHOICE, &job.plane, "P",
@@ -341,6 +346,7 @@ static int run_mls(cli_session *session, int argc, char **argv) {
        "project: work cell by cell in so much memory, the rest beside the output", 1, 1e9, .is_given = &job.has_memory},
       {"isa", CLI_CHOICE, &job.isa, "ISA", "auto, scalar, sse2, avx2, avx512, neon; changes no bit [auto]",
        .choices = isa_names},
+      CLI_COLUMNS(&job.base.columns),
   };
   int exit_code =
       cli_parse(session, options, sizeof options / sizeof options[0], argc, argv, positional, &n_positional);

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/message.h"
 #include "core/splats/repairs_log.h"
@@ -10,6 +11,7 @@
 typedef struct octree_job {
   cli_build base;
   conic_estimate_options estimate;
+  cli_coloring coloring;
   conic_octree_options options;
   double cutoff;
 
@@ -28,11 +30,14 @@ static conic_status build_from_model(octree_job *job) {
   conic_model model;
   conic_read_options_init(&read_options);
   read_options.cutoff = job->options.cutoff;
+  cli_coloring_read(&job->coloring, &read_options);
   double start = cli_seconds();
+  read_options.columns = job->base.columns;
   conic_status status = conic_model_read(context, job->base.input, &read_options, &model);
   start = cli_build_end_stage(&stages[READ], start);
   if (status != CONIC_OK)
     return status;
+  cli_build_hint_faces(&job->base, &model);
   job->n_in = model.points.count;
   const char *why = conic_why_out_of_reach(&model.points);
   if (why) {
@@ -41,6 +46,8 @@ static conic_status build_from_model(octree_job *job) {
     return CONIC_ERROR_INPUT;
   }
   status = conic_model_to_splats(context, &job->estimate, &model, &job->repairs);
+  if (status == CONIC_OK)
+    status = cli_coloring_apply(job->base.session, &job->coloring, model.up, &model.points, NULL);
   start = cli_build_end_stage(&stages[ESTIMATE], start);
   if (status == CONIC_OK)
     status = conic_octree_build(context, &model.points, &job->options, &job->octree);
@@ -69,6 +76,7 @@ static void report_octree(cli_json *json, const void *cookie) {
   cli_json_count(json, "levels", (uint64_t)job->info.n_levels);
   cli_json_count(json, "bytes", job->info.n_bytes);
   cli_json_number(json, "bytes_per_point", (double)job->info.n_bytes / (double)job->n_in);
+  cli_color_report(json, &job->coloring.done);
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &job->repairs);
@@ -93,6 +101,7 @@ static int run_octree(cli_session *session, int argc, char **argv) {
   octree_job job = {.base = {session, .stages = {{"read"}, {"estimate"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
   conic_octree_options_init(&job.options);
+  cli_coloring_init(&job.coloring);
   job.cutoff = (double)job.options.cutoff;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.cot", "the file to write"},
@@ -101,9 +110,13 @@ static int run_octree(cli_session *session, int argc, char **argv) {
        0.25, 5},
       {"k", CLI_INT, &job.estimate.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
+      CLI_COLUMNS(&job.base.columns),
   };
-  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot", 0);
+  int exit_code = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "cot");
   job.options.cutoff = job.estimate.cutoff = (float)job.cutoff;
+  if (exit_code == CLI_DONE)
+    exit_code = cli_coloring_check(session, &job.coloring);
   return cli_build_run(&job, &steps, exit_code);
 }
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/commands/build_coloring.h"
 #include "cli/commands/build_steps.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -11,8 +12,9 @@
 typedef struct prepare_job {
   cli_build base;
   conic_estimate_options estimate;
+  cli_coloring coloring;
   unsigned long long count, seed;
-  int has_count;
+  int has_count, is_plain;
 
   conic_model model;
   size_t n_in;
@@ -55,6 +57,7 @@ static conic_status thin_model(prepare_job *job) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
     plain.stays_at_mesh = 0;
+    plain.finds_dots = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -68,15 +71,21 @@ static int read_model(prepare_job *job) {
   conic_read_options options;
   conic_read_options_init(&options);
   options.cutoff = job->estimate.cutoff;
+  cli_coloring_read(&job->coloring, &options);
+  options.columns = job->base.columns;
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
+  cli_build_hint_faces(&job->base, &job->model);
   return cli_exit_of(status);
 }
 
 static int find_axes(prepare_job *job) {
+  job->estimate.finds_dots = !job->is_plain;
   conic_status status = thin_model(job);
   if (status == CONIC_OK)
     status = conic_model_to_splats(job->base.session->context, &job->estimate, &job->model, &job->repairs);
+  if (status == CONIC_OK)
+    status = cli_coloring_apply(job->base.session, &job->coloring, job->model.up, &job->model.points, NULL);
   if (status != CONIC_OK)
     return cli_exit_of(status);
   if (job->repairs.nan + job->repairs.failed >= job->model.points.count)
@@ -96,6 +105,8 @@ static void report_prepared(cli_json *json, const void *cookie) {
   cli_json_count(json, "points_in", job->n_in);
   cli_json_count(json, "points_out", job->model.points.count);
   cli_json_count(json, "clipped", job->model.points.n_clips);
+  cli_json_count(json, "dots", conic_splats_count_dots(&job->model.points));
+  cli_color_report(json, &job->coloring.done);
   cli_build_report_seconds(json, &job->base, "points_per_s", (double)job->n_in / job->base.stages[WORK].seconds);
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
   cli_json_skipped(json, &job->repairs);
@@ -137,24 +148,29 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   prepare_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
   job.estimate.stays_at_mesh = 1;
+  cli_coloring_init(&job.coloring);
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
+      CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
        64},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
        "creases sharper than ANGLE degrees become sharp, by clip lines [none]", 0, 90},
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
        4294967294.0, .is_given = &job.has_count},
+      CLI_BUILD_COLOR_OPTIONS(&job.coloring),
       {"seed", CLI_COUNT, &job.seed, "S", "which choice; a smaller count is a part of a larger one [0]"},
+      CLI_COLUMNS(&job.base.columns),
+      {"plain", CLI_FLAG, &job.is_plain, NULL,
+       "no dots: every point becomes an ellipse, where there is no surface, too"},
   };
-  /* The output may be the input: it is read whole before. */
-  return cli_build_run(&job, &steps,
-                       cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply", 1));
+  int parsed = cli_build_parse(&job.base, options, sizeof options / sizeof *options, argc, argv, "ply");
+  return cli_build_run(&job, &steps, parsed == CLI_DONE ? cli_coloring_check(session, &job.coloring) : parsed);
 }
 
 const cli_command cli_prepare = {
     .name = "prepare",
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
-    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S]",
+    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S] [--plain]",
     .run = run_prepare,
 };

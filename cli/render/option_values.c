@@ -51,26 +51,12 @@ int cli_parse_up(const char *text, void *value) {
   return cli_parse_vector(text, up) && (up[0] != 0.0 || up[1] != 0.0 || up[2] != 0.0);
 }
 
-int cli_parse_background(const char *text, void *value) {
-  conic_render_options *options = value;
-  double rgb[3];
-  if (strcmp(text, "none") == 0) {
-    options->has_background = 0;
-    return 1;
-  }
-  if (!cli_parse_vector(text, rgb))
-    return 0;
-  options->has_background = 1;
-  for (int i = 0; i < 3; i++)
-    options->background[i] = (float)rgb[i];
-  return 1;
-}
-
-int cli_parse_light(const char *text, void *value) {
-  conic_render_options *options = value;
-  options->has_light = 1;
-  return cli_parse_vector(text, options->light) &&
-         (options->light[0] != 0.0 || options->light[1] != 0.0 || options->light[2] != 0.0);
+int cli_parse_exposure(const char *text, void *value) {
+  cli_render_job *job = value;
+  job->is_exposure_automatic = strcmp(text, "auto") == 0;
+  job->options.exposure = 0.0;
+  return job->is_exposure_automatic || (cli_parse_number(text, &job->options.exposure) &&
+                                        job->options.exposure >= -100.0 && job->options.exposure <= 100.0);
 }
 
 static int find_plane(const char *name, size_t length) {

@@ -1,11 +1,11 @@
-#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/outputs.h"
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
 
+static const char *const exr_words[] = {"float", "half", NULL};
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 
 static int parse_output(const char *text, void *value) {
@@ -16,23 +16,12 @@ static int parse_output(const char *text, void *value) {
   return 1;
 }
 
-static int parse_turntable(const char *text, void *value) {
-  cli_render_job *job = value;
-  char *end;
-  long n = strtol(text, &end, 10);
-  if (*end || end == text || n < 1 || n > 9999)
-    return 0;
-  job->is_turntable = 1;
-  job->n_frames = (int)n;
-  return 1;
-}
-
 /* Refused now, and not after the work. */
-static int check_output(const char *path) {
+static int check_output(const cli_render_job *job, const char *path) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-  if (strcmp(path, "-") == 0)
-    return cli_usage("render: a picture cannot go to standard output");
-  if (!dot || !dot[1])
+  if (strcmp(path, "-") == 0 && isatty(STDOUT_FILENO))
+    return cli_usage("render: a picture is not for a terminal; redirect standard output, or name a file");
+  if (strcmp(path, "-") != 0 && !job->writing.format && (!dot || !dot[1]))
     return cli_usage("%s: the name needs an ending, such as .exr", path);
   return CLI_DONE;
 }
@@ -59,22 +48,25 @@ static int check_streaming(const cli_render_job *job, int is_given) {
 }
 
 /* What render's own options mean. */
-static int check_outputs(const cli_session *session, const cli_render_job *job, int is_streaming_given) {
-  const char *paths[CLI_MAX_OUTPUTS + 3];
+static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
+  const char *paths[CLI_MAX_OUTPUTS + 4];
   int answer = CLI_DONE;
   if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
-    answer = check_output(paths[i] = job->outputs[i]);
+    answer = check_output(job, paths[i] = job->outputs[i]);
   paths[job->n_outputs] = job->deep_path;
   paths[job->n_outputs + 1] = job->overdraw_path;
   paths[job->n_outputs + 2] = job->clusters_path;
+  paths[job->n_outputs + 3] = job->legend_path;
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
   if (answer == CLI_DONE && job->overdraw_path)
-    answer = check_output(job->overdraw_path);
+    answer = check_output(job, job->overdraw_path);
   if (answer == CLI_DONE && job->clusters_path)
-    answer = check_output(job->clusters_path);
+    answer = check_output(job, job->clusters_path);
+  if (answer == CLI_DONE && job->legend_path)
+    answer = check_output(job, job->legend_path);
   if (answer != CLI_DONE)
     return answer;
   if (cli_lod_is_wanted(job) && job->deep_path && !(job->abilities & CONIC_SOURCE_CLUSTERS))
@@ -82,26 +74,40 @@ static int check_outputs(const cli_session *session, const cli_render_job *job, 
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_streaming_given);
-  if (answer != CLI_DONE)
-    return answer;
-  if (job->camera_path && job->is_turntable)
-    return cli_usage("render: a turntable needs a framed camera, not --camera");
-  answer = cli_check_outputs(session, paths, job->n_outputs + 3);
-  return answer == CLI_DONE ? cli_scene_inputs_stay(session, job, paths, job->n_outputs + 3) : answer;
+  if (answer == CLI_DONE)
+    answer = cli_planes_check(session, job);
+  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 4) : answer;
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
-  job->may_stream = 1;
+  job->may_stream = job->is_for_looking = 1;
+  conic_image_options_init(&job->writing);
+  const char *compression_words[CONIC_N_COMPRESSIONS + 1] = {NULL};
+  for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
+    compression_words[i] = conic_compression_name((conic_compression)i);
+  int compression = 0;
   int memory_mib = 512, occlusion = CONIC_OCCLUSION_AUTO, is_streaming_given = 0;
   const cli_option own[] = {
-      {"o", CLI_PARSED, job, "OUT", "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; may be repeated",
-       .parse = parse_output},
+      {"o", CLI_PARSED, job, "OUT",
+       "where the picture goes: .exr, .png, .tif, .jpg, .pfm …; - is standard output; may be repeated",
+       .parse = parse_output, .may_repeat = 1},
+      {"format", CLI_TEXT, &job->writing.format, "NAME",
+       "the kind of what goes to standard output or to a name without an ending: png, exr, pfm … [png]"},
+      {"exr", CLI_CHOICE, &job->writing.is_half, "TYPE",
+       "numbers of an .exr: float, or half for rgba, N and albedo [float]", .choices = exr_words},
+      {"compression", CLI_CHOICE, &compression, "NAME",
+       "of an .exr: zip, none, rle, zips, piz; pxr24 loses bits of floats [zip]", .choices = compression_words},
       {"deep", CLI_TEXT, &job->deep_path, "OUT.exr",
-       "every splat and triangle of every pixel, as a deep image: id, depth, weight"},
+       "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
-      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …", .parse = parse_turntable},
+      {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
+      {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
+      {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
+       .parse = cli_parse_turntable},
+      {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",
+       .parse = cli_parse_frames},
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},
@@ -118,10 +124,14 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
       {"repeat", CLI_INT, &job->repeat, "N", "renders N times and reports the median [1]", 1, 100000},
   };
   int answer = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, job);
+  job->writing.compression = (conic_compression)compression;
+  job->asked_planes = job->is_aov_given ? job->planes : 0;
   job->access.memory_bytes = (uint64_t)memory_mib << 20;
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
   job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0;
+  job->unwritten_planes = job->deep_path ? ~job->planes & 1u << CONIC_PLANE_RGBA : 0;
+  job->planes |= job->unwritten_planes;
   if (job->overdraw_path)
     job->planes |= 1u << CONIC_PLANE_COUNT;
   if (job->clusters_path)

@@ -11,7 +11,8 @@ static void color_of(uint32_t number, float color[3]) {
     color[channel] = 0.08f + 0.92f * (float)(bits >> 8 * channel & 0xFF) / 255.0f;
 }
 
-conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image) {
+conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
+                                const conic_image *image) {
   conic_image map;
   const uint32_t *cluster = image->planes[CONIC_PLANE_CLUSTER];
   const float *from = image->planes[CONIC_PLANE_RGBA];
@@ -29,7 +30,7 @@ conic_status cli_clusters_write(cli_session *session, const char *path, const co
       to[4 * i + (size_t)channel] = color[channel] * light;
     to[4 * i + 3] = 1.0f;
   }
-  status = conic_image_write(session->context, path, &map);
+  status = conic_image_write_as(session->context, path, &map, &job->writing);
   conic_image_release(session->context, &map);
   return status;
 }

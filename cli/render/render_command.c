@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/render/render_job.h"
-#include "cli/tell.h"
+#include "cli/render/backdrop.h"
+#include "cli/render/frames.h"
 #include "core/base/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -60,6 +60,7 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   name_attribute(image, "conicNear", NULL, s->near_z);
   name_attribute(image, "conicCutoff", NULL, (double)job->options.kernel.cutoff);
   name_attribute(image, "conicPrefilter", NULL, (double)job->options.prefilter);
+  name_attribute(image, "conicExposure", NULL, job->options.exposure);
   name_attribute(image, "conicSamples", NULL, (double)job->view.samples);
   name_attribute(image, "conicFx", NULL, camera->fx);
   name_attribute(image, "conicFy", NULL, camera->fy);
@@ -71,26 +72,15 @@ static void describe(const cli_render_job *job, const conic_camera *camera, coni
   matrix->type = CONIC_ATTRIBUTE_MATRIX;
   memcpy(matrix->values, camera->cam_from_world, sizeof camera->cam_from_world);
   matrix->values[15] = 1.0;
-}
-
-/* "dir/name.exr" becomes "dir/name.0001.exr" in a turntable. */
-static char *frame_path(const cli_render_job *job, const char *path, int i_frame) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-  size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path), room = strlen(path) + 16;
-  char *name = malloc(room);
-  if (name && job->is_turntable)
-    snprintf(name, room, "%.*s.%04d%s", (int)stem, path, i_frame + 1, path + stem);
-  else if (name)
-    snprintf(name, room, "%s", path);
-  return name;
+  conic_image_describe_camera(image, camera);
 }
 
 static conic_status write_frame(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   double start = cli_seconds();
   conic_status status = CONIC_OK;
   for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++) {
-    char *path = frame_path(job, job->outputs[i], i_frame);
-    status = path ? conic_image_write(session->context, path, image) : CONIC_ERROR_MEMORY;
+    char *path = cli_frame_name(job, job->outputs[i], i_frame);
+    status = path ? cli_backdrop_write(session, job, path, image) : CONIC_ERROR_MEMORY;
     free(path);
   }
   job->write_ms += 1e3 * (cli_seconds() - start);
@@ -104,9 +94,9 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   if (!job->overdraw_path)
     return CONIC_OK;
   conic_status status = conic_image_overdraw(session->context, image, &map);
-  char *path = frame_path(job, job->overdraw_path, i_frame);
+  char *path = cli_frame_name(job, job->overdraw_path, i_frame);
   if (status == CONIC_OK) {
-    status = path ? conic_image_write(session->context, path, &map) : CONIC_ERROR_MEMORY;
+    status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
     conic_image_release(session->context, &map);
   }
   free(path);
@@ -119,8 +109,8 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
   double start = cli_seconds();
   if (!job->clusters_path)
     return CONIC_OK;
-  char *path = frame_path(job, job->clusters_path, i_frame);
-  conic_status status = path ? cli_clusters_write(session, path, image) : CONIC_ERROR_MEMORY;
+  char *path = cli_frame_name(job, job->clusters_path, i_frame);
+  conic_status status = path ? cli_clusters_write(session, job, path, image) : CONIC_ERROR_MEMORY;
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
   return status;
@@ -134,7 +124,7 @@ static conic_status write_deep(cli_session *session, cli_render_job *job, const 
   double start = cli_seconds();
   if (!job->deep_path)
     return CONIC_OK;
-  char *path = frame_path(job, job->deep_path, i_frame);
+  char *path = cli_frame_name(job, job->deep_path, i_frame);
   conic_status status =
       path ? conic_contributions_create_drawing(session->context, drawing, camera, &job->options, &contributions)
            : CONIC_ERROR_MEMORY;
@@ -162,10 +152,25 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
+/* The finest that a hybrid has of one kind may not be as fine as it was asked to be. */
+static void warn_of_error(cli_session *session, cli_render_job *job) {
+  double wanted = job->view.error_px, reached = conic_source_chosen(job->source)->error_px;
+  const char *const kinds[] = {"--only triangles ", "--only surfels "};
+  if (!(wanted > 0.0) || reached <= wanted || job->is_error_warned)
+    return;
+  job->is_error_warned = 1;
+  conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
+            job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
+  double start = cli_seconds();
   conic_status status = cli_scene_camera(job, i_frame, &camera);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    status = cli_choose_exposure(session, job, &camera);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
@@ -173,10 +178,15 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
                                    : cli_render_picture(job, &camera, image, &repeats[i]);
   if (status != CONIC_OK)
     return status;
+  for (int i = 0; i < job->repeat; i++)
+    job->frames_ms += repeats[i].ms.frame;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
+  warn_of_error(session, job);
   describe(job, &camera, image);
-  status = write_frame(session, job, image, i_frame);
+  status = cli_legend_show(session, job, image);
+  if (status == CONIC_OK)
+    status = write_frame(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
@@ -184,29 +194,12 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   return status == CONIC_OK ? write_deep(session, job, &camera, image, i_frame) : status;
 }
 
-static void tell(cli_session *session, const cli_render_job *job) {
-  const conic_render_statistics *s = &job->statistics;
-  const conic_render_milliseconds *ms = &s->ms;
-  const cli_stage of_frame[] = {{"choose", ms->lod > 0.0 ? 1e-3 * ms->lod : -1.0},
-                                {"set up", 1e-3 * ms->setup},
-                                {"bin", 1e-3 * ms->bin},
-                                {"visibility", 1e-3 * ms->visibility},
-                                {"accumulate", 1e-3 * ms->accumulate},
-                                {"resolve", 1e-3 * ms->resolve}};
-  const conic_source_scale *scale = conic_source_measure(job->source);
-  const cli_stage stages[] = {
-      {"read", scale->read_seconds}, {"estimate", scale->estimate_seconds}, {"write", 1e-3 * job->write_ms}};
-  conic_context *context = session->context;
-  if (s->triangles_in)
-    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
-              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
-              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
-  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
-            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
-            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
-  cli_tell_stages(session, of_frame, 6, job->n_frames * job->repeat > 1 ? "a frame" : "for the frame",
-                  1e-3 * ms->frame);
-  cli_tell_run(session, stages, 3, 1e-3 * job->total_ms);
+/* Only where they are reported: it takes a while. */
+static void hash_image(const cli_session *session, cli_render_job *job, const conic_image *image) {
+  double start = cli_seconds();
+  for (int i = 0; i < CONIC_N_PLANES && session->json_path; i++)
+    job->hashes[i] = conic_image_hash(image, (conic_plane)i);
+  job->hash_ms = 1e3 * (cli_seconds() - start);
 }
 
 static int render_scene(cli_session *session, cli_render_job *job) {
@@ -215,14 +208,15 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   memset(&image, 0, sizeof image);
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  for (int i = 0; i < job->n_frames && status == CONIC_OK; i++) {
+  for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
     if (job->is_turntable)
-      cli_session_part(session, "frame", i + 1, job->n_frames);
-    status = render_frame(session, job, i, &image, repeats);
+      cli_session_part(session, "frame", i + 1, n);
+    status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
   }
-  job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
   if (status == CONIC_OK) {
-    tell(session, job);
+    hash_image(session, job, &image);
+    job->total_ms = 1e3 * (cli_seconds() - job->start_seconds);
+    cli_render_tell(session, job);
     exit_code = cli_render_report(session, job, &image);
   } else
     exit_code = cli_exit_of(status);
@@ -232,14 +226,12 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 }
 
 /* What cannot be written is said before anything is read. */
-static conic_status check_formats(const cli_session *session, const cli_render_job *job) {
-  const char *const maps[] = {job->overdraw_path, job->clusters_path};
-  conic_status status = CONIC_OK;
-  for (int i = 0; i < job->n_outputs && status == CONIC_OK; i++)
-    status = conic_image_check_output(session->context, job->outputs[i], job->planes);
-  for (int i = 0; i < 2 && status == CONIC_OK; i++)
+static conic_status check_formats(cli_session *session, const cli_render_job *job) {
+  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
+  conic_status status = cli_planes_check_formats(session, job);
+  for (int i = 0; i < 3 && status == CONIC_OK; i++)
     if (maps[i])
-      status = conic_image_check_output(session->context, maps[i], 1u << CONIC_PLANE_RGBA);
+      status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;
 }
 
@@ -249,13 +241,15 @@ static int run(cli_session *session, int argc, char **argv) {
   int exit_code = cli_render_parse(session, argc, argv, &job);
   enum { MANY = 16 };
   job.start_seconds = start;
-  session->draws_many_frames = (double)job.repeat * job.n_frames >= MANY;
-  if (exit_code == CLI_DONE)
+  if (exit_code == CLI_DONE) {
+    session->draws_many_frames = (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
+  }
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
+    job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
     exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
@@ -265,8 +259,8 @@ static int run(cli_session *session, int argc, char **argv) {
   return exit_code < 0 ? CLI_DONE : exit_code;
 }
 
-const cli_command cli_render = {
-    "render", "draws splats, points or meshes into pictures",
-    "conic render IN… -o OUT [options]\n"
-    "       IN: PLY, OBJ, LAS, XYZ, PTS, .cot, .chy, .lpc or its http:// URL; - is standard input",
-    run};
+const cli_command cli_render = {"render", "draws splats, points or meshes into pictures",
+                                "conic render IN… -o OUT [options]\n"
+                                "       IN: " CLI_READABLE " or its http:// URL;\n"
+                                "       - is standard input",
+                                run};

@@ -8,6 +8,17 @@
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
+/* A gradient from top to bottom, in linear colours (cli/render/backdrop.h). */
+typedef struct cli_backdrop {
+  int is_given;
+  float top[3], bottom[3];
+} cli_backdrop;
+
+/* Of a turntable, the frames that are drawn: numbers from 1, as in the names of their files. */
+typedef struct cli_frames {
+  int first, last, step;
+} cli_frames;
+
 typedef struct cli_render_job {
   /* What was asked for. */
   const char **inputs;
@@ -17,18 +28,30 @@ typedef struct cli_render_job {
   const char *deep_path;        /* --deep; null: none */
   const char *overdraw_path;    /* --overdraw; null: none */
   const char *clusters_path;    /* --clusters; null: none */
+  const char *legend_path;      /* --legend-out; null: none */
+  int has_legend;               /* --legend: in the picture */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
   conic_framing framing;
   int is_up_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
-  int n_frames; /* of a turntable; 1 without */
+  int is_background_given;
+  cli_backdrop backdrop;                       /* --background with two colours */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
+  int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
-  int is_warned; /* that a picture is empty */
+  cli_frames frames;
+  int is_warned;       /* that a picture is empty */
+  int is_error_warned; /* that --error is not kept */
   int repeat;
-  unsigned planes;              /* bits 1 << conic_plane */
+  unsigned planes; /* bits 1 << conic_plane */
+  int is_aov_given;
+  unsigned asked_planes;        /* of these, what --aov names */
+  unsigned unwritten_planes;    /* drawn for what else is written */
+  conic_image_options writing;  /* how pictures are written */
   int is_patch;                 /* --method patch: options.method draws its samples */
+  int is_exposure_automatic;    /* until it is found */
   conic_render_options options; /* but for the two lengths, which the scene has to be known for: */
   cli_length epsilon, near_z;   /* below 0: automatic */
   cli_device device;            /* what draws: */
@@ -41,14 +64,18 @@ typedef struct cli_render_job {
   conic_source_options opening;
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
-  int may_stream;     /* the command draws without having to know what */
-  unsigned abilities; /* what the source can do, bits of conic_source_ability; known before it is open */
+  conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
+  int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
+  int may_stream;                  /* the command draws without having to know what */
+  unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;
   conic_source *source;
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
-  double first_frame_ms, write_ms, total_ms;
+  double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
+  double begun_seconds;            /* when reading began */
+  uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -85,11 +112,28 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
 
-/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
-conic_status cli_clusters_write(cli_session *session, const char *path, const conic_image *image);
+/* Wrong usage where a plane that was asked for goes into no file. */
+int cli_planes_check(const cli_session *session, const cli_render_job *job);
+/* Whether the outputs can be written, as far as their names tell. */
+conic_status cli_planes_check_formats(cli_session *session, const cli_render_job *job);
+/* Writes the image as PATH, or as a file a plane, where that is what the kind of file holds: "out.pfm", "out.Z.pfm" …
+ */
+conic_status cli_planes_write(cli_session *session, const cli_render_job *job, const char *path,
+                              const conic_image *image);
 
-/* Writes the statistics of the finished job and the hashes of its last image to the session's --json file, if any.
- * Returns the exit code. */
+/* --exposure auto: finds it where it is still to be found, for this frame and those that follow. */
+conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, const conic_camera *camera);
+
+/* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
+conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
+                                const conic_image *image);
+
+/* --legend, --legend-out: what the colours mean, over the image and by itself. */
+conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);
+
+/* Says what was drawn, and what it took. */
+void cli_render_tell(cli_session *session, const cli_render_job *job);
+/* Writes the statistics of the finished job to the session's --json file, if any. Returns the exit code. */
 int cli_render_report(cli_session *session, const cli_render_job *job, const conic_image *image);
 
 #endif

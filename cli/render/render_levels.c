@@ -3,7 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cli/render/render_job.h"
+#include "cli/render/backdrop.h"
 
 /* The deadline counts from the start of the program's work, not of this picture. */
 static double seconds_left(const cli_render_job *job) {
@@ -16,7 +16,11 @@ conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera,
     double left = seconds_left(job);
     job->view.seconds = left > 1e-3 ? left : 1e-3;
   }
-  return conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  conic_status status =
+      conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
+  if (status == CONIC_OK)
+    cli_backdrop_show(job, image);
+  return status;
 }
 
 static conic_status write_progress(cli_session *session, const cli_render_job *job, int i_picture,
@@ -25,7 +29,7 @@ static conic_status write_progress(cli_session *session, const cli_render_job *j
   int length = snprintf(path, sizeof path, "%s/%04d.exr", job->progressive_path, i_picture);
   if (length < 0 || (size_t)length >= sizeof path)
     return CONIC_ERROR_IO;
-  return conic_image_write(session->context, path, image);
+  return conic_image_write_as(session->context, path, image, &job->writing);
 }
 
 static conic_status make_folder(const char *path) {

@@ -1,5 +1,55 @@
-#include "cli/render/render_job.h"
+#include "cli/render/backdrop.h"
+#include <string.h>
+
+#include "cli/color_options.h"
+#include "cli/render/frames.h"
+#include "cli/render/lights.h"
 #include "cli/source_facts.h"
+#include "cli/tell.h"
+#include "core/base/message.h"
+
+enum { N_STAGES = 7, N_FRAME_STAGES = 6 };
+
+/* What all of the run consists of. */
+static void list_stages(const cli_render_job *job, cli_stage stages[N_STAGES]) {
+  const conic_source_scale *scale = conic_source_measure(job->source);
+  const cli_stage list[N_STAGES] = {{"start", job->begun_seconds - job->start_seconds},
+                                    {"read", scale->read_seconds},
+                                    {"estimate", scale->estimate_seconds},
+                                    {"camera", 1e-3 * job->camera_ms},
+                                    {"draw", 1e-3 * job->frames_ms},
+                                    {"write", 1e-3 * job->write_ms},
+                                    {"hashing", 1e-3 * job->hash_ms}};
+  memcpy(stages, list, sizeof list);
+}
+
+/* What a frame consists of. */
+static void list_frame_stages(const conic_render_milliseconds *ms, cli_stage stages[N_FRAME_STAGES]) {
+  const cli_stage list[N_FRAME_STAGES] = {
+      {"choose", 1e-3 * ms->lod, "lod"},     {"set up", 1e-3 * ms->setup, "setup"}, {"bin", 1e-3 * ms->bin},
+      {"visibility", 1e-3 * ms->visibility}, {"accumulate", 1e-3 * ms->accumulate}, {"resolve", 1e-3 * ms->resolve}};
+  memcpy(stages, list, sizeof list);
+}
+
+void cli_render_tell(cli_session *session, const cli_render_job *job) {
+  const conic_render_statistics *s = &job->statistics;
+  cli_stage stages[N_STAGES], of_frame[N_FRAME_STAGES];
+  conic_context *context = session->context;
+  list_stages(job, stages);
+  list_frame_stages(&s->ms, of_frame);
+  int has_choice = s->ms.lod > 0.0;
+  if (s->triangles_in)
+    conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
+              (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
+              (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
+  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
+            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
+            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
+  cli_tell_stages(session, of_frame + !has_choice, N_FRAME_STAGES - !has_choice,
+                  cli_frames_count(job) * job->repeat > 1 ? "a frame" : "for the frame", 1e-3 * s->ms.frame);
+  cli_tell_run(session, stages, job->hash_ms > 0.0 && session->json_path ? N_STAGES : N_STAGES - 1,
+               1e-3 * job->total_ms);
+}
 
 static double per_second_in_millions(double count, double ms) {
   return ms > 0.0 ? count / ms * 1e-3 : 0.0;
@@ -39,6 +89,8 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
     if (s->splats_by_method[i])
       cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
   cli_json_close(json);
+  if (job->view.error_px > 0.0)
+    cli_json_number(json, "error_px_asked", job->view.error_px);
   return report_source(json, job);
 }
 
@@ -49,25 +101,31 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "threads", (uint64_t)s->threads);
   cli_json_count(json, "tile", (uint64_t)s->tile);
   cli_json_count(json, "samples", (uint64_t)job->view.samples);
+  cli_json_number(json, "exposure", job->options.exposure);
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
-  cli_json_count(json, "frames", (uint64_t)job->n_frames);
+  cli_lights_report(json, job);
+  cli_backdrop_report(json, job);
+  cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));
+  cli_color_report(json, conic_source_coloring(job->source));
+}
+
+static void report_stages(cli_json *json, const cli_stage *stages, int n) {
+  for (int i = 0; i < n; i++)
+    cli_json_number(json, stages[i].key ? stages[i].key : stages[i].name, 1e3 * stages[i].seconds);
 }
 
 static void report_times(cli_json *json, const cli_render_job *job) {
-  const conic_source_scale *scale = conic_source_measure(job->source);
   const conic_render_statistics *s = &job->statistics;
+  cli_stage stages[N_STAGES], of_frame[N_FRAME_STAGES];
+  list_stages(job, stages);
+  list_frame_stages(&s->ms, of_frame);
   cli_json_object(json, "ms");
-  cli_json_number(json, "read", 1e3 * scale->read_seconds);
-  cli_json_number(json, "estimate", 1e3 * scale->estimate_seconds);
-  cli_json_number(json, "lod", s->ms.lod);
-  cli_json_number(json, "setup", s->ms.setup);
-  cli_json_number(json, "bin", s->ms.bin);
-  cli_json_number(json, "visibility", s->ms.visibility);
-  cli_json_number(json, "accumulate", s->ms.accumulate);
-  cli_json_number(json, "resolve", s->ms.resolve);
-  cli_json_number(json, "write", job->write_ms);
+  report_stages(json, stages, N_STAGES);
+  cli_json_number(json, "other", 1e3 * cli_other_seconds(stages, N_STAGES, 1e-3 * job->total_ms));
+  report_stages(json, of_frame, N_FRAME_STAGES);
+  cli_json_number(json, "frame_other", 1e3 * cli_other_seconds(of_frame, N_FRAME_STAGES, 1e-3 * s->ms.frame));
   cli_json_number(json, "frame", s->ms.frame);
   cli_json_number(json, "total", job->total_ms);
   cli_json_close(json);
@@ -80,11 +138,11 @@ static void report_times(cli_json *json, const cli_render_job *job) {
   cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
 }
 
-static void report_hashes(cli_json *json, const conic_image *image) {
+static void report_hashes(cli_json *json, const cli_render_job *job, const conic_image *image) {
   cli_json_object(json, "hash");
   for (int i = 0; i < CONIC_N_PLANES; i++)
     if (image->planes[i])
-      cli_json_hash(json, conic_plane_describe((conic_plane)i)->name, conic_image_hash(image, (conic_plane)i));
+      cli_json_hash(json, conic_plane_describe((conic_plane)i)->name, job->hashes[i]);
   cli_json_close(json);
 }
 
@@ -96,7 +154,7 @@ int cli_render_report(cli_session *session, const cli_render_job *job, const con
     return exit_code;
   conic_status status = report_counts(json, job);
   report_settings(json, job);
-  report_hashes(json, image);
+  report_hashes(json, job, image);
   report_times(json, job);
   exit_code = cli_json_finish(file);
   return status == CONIC_OK ? exit_code : cli_exit_of(status);

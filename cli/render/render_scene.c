@@ -3,7 +3,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/render/render_job.h"
+#include "cli/render/frames.h"
+#include "cli/render/lights.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -48,6 +49,22 @@ static conic_status resolve_lengths(cli_session *session, cli_render_job *job) {
   return status;
 }
 
+/* Finds out which way is up, and says so where that was a guess. */
+static conic_status stand_upright(cli_session *session, cli_render_job *job) {
+  static const char *const reasons[] = {[CONIC_UP_KIND] = NULL,
+                                        [CONIC_UP_FLAT] = "as it lies flat",
+                                        [CONIC_UP_OPEN] = "as its surface is open below",
+                                        [CONIC_UP_BASE] = "as it stands on a flat base",
+                                        [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
+  if (job->is_plain || job->is_up_given || (job->camera_path && !job->is_turntable))
+    return CONIC_OK;
+  conic_status status = conic_source_stand(job->source);
+  const char *reason = reasons[conic_source_measure(job->source)->up_basis];
+  if (status == CONIC_OK && reason)
+    cli_note(session, "up: z, %s; --up says otherwise", reason);
+  return status;
+}
+
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   conic_status status =
       conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
@@ -55,6 +72,12 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
     status = resolve_lengths(session, job);
   if (status == CONIC_OK)
     conic_source_settle(job->source, &job->options);
+  double start = cli_seconds();
+  if (status == CONIC_OK)
+    status = stand_upright(session, job);
+  job->camera_ms += 1e3 * (cli_seconds() - start);
+  if (status == CONIC_OK)
+    cli_lights_settle(job);
   return status;
 }
 
@@ -67,10 +90,13 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   conic_framing framing = job->framing;
   if (job->camera_path) {
     *camera = job->camera;
+    cli_frame_orbit(job, i_frame, camera);
     return CONIC_OK;
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  return conic_source_frame(job->source, &framing, camera);
+  if (job->is_plain)
+    return conic_source_frame(job->source, &framing, camera);
+  return conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera);
 }

@@ -2,10 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/color_options.h"
+#include "cli/render/backdrop.h"
+#include "cli/render/lights.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
+static const char *const quality_words[] = {"draft", "good", "final", NULL};
 static const char *const only_words[] = {"triangles", "surfels", NULL};
 
 /* The words of choices that the library names, in the order of its numbers. */
@@ -32,6 +36,8 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->view);
+  conic_coloring_options_init(&job->coloring);
+  job->coloring.by = NULL;
   job->opening.patches = &job->patches;
   job->opening.access = &job->access;
   job->epsilon.value = job->near_z.value = -1.0;
@@ -56,10 +62,29 @@ static int parse_all(cli_session *session, const cli_option *own, int n_own, con
   return answer;
 }
 
+/* Whether what is drawn is to be looked at: not to be measured or taken apart, nor too large to have several samples.
+ */
+static int is_picture(const cli_scene_words *raw, const cli_render_job *job) {
+  int size = raw->size[0] > raw->size[1] ? raw->size[0] : raw->size[1];
+  return job->is_for_looking && job->repeat == 1 && !job->deep_path && size <= 65535 / 2;
+}
+
+/* What the quality stands for, where it is not said otherwise. */
+static void choose_quality(const cli_scene_words *raw, cli_render_job *job, int *method) {
+  static const int samples[] = {1, 2, 4};
+  int is_wanted = raw->is_quality_given || !job->is_plain;
+  if (is_wanted && !raw->is_method_given)
+    *method = raw->quality == CLI_QUALITY_DRAFT ? CONIC_METHOD_CONIC : CONIC_METHOD_AUTO;
+  if (is_wanted && !raw->is_samples_given && (raw->is_quality_given || is_picture(raw, job)))
+    job->view.samples = samples[raw->quality];
+}
+
 int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int argc, char **argv,
                     cli_render_job *job) {
-  cli_scene_words raw = {
-      .passes = 3, .cutoff = (double)job->options.kernel.cutoff, .prefilter = (double)job->options.prefilter};
+  cli_scene_words raw = {.quality = CLI_QUALITY_GOOD,
+                         .passes = 3,
+                         .cutoff = (double)job->options.kernel.cutoff,
+                         .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
   int method = (int)o->method, shading = (int)o->shading;
@@ -83,6 +108,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
       {"budget", CLI_COUNT, &job->budget, "N",
@@ -91,8 +117,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .choices = only_words},
       {"method", CLI_CHOICE, &method, "NAME",
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
-       "surface [conic]",
-       .choices = words.methods},
+       "surface [auto]",
+       .choices = words.methods, .is_given = &raw.is_method_given},
+      {"quality", CLI_CHOICE, &raw.quality, "HOW",
+       "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
+       "[good]",
+       .choices = quality_words, .is_given = &raw.is_quality_given},
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
        .parse = cli_parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
@@ -101,26 +131,36 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
-      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [1]", 1,
-       CONIC_MAX_SAMPLES},
+      {"samples", CLI_INT, &job->view.samples, "N", "N x N samples a pixel, averaged: soft silhouettes [2]", 1,
+       CONIC_MAX_SAMPLES, .is_given = &raw.is_samples_given},
       {"cull", CLI_CHOICE, &o->cull_back, "WHAT", "none, or back: what faces away is left out [none]",
        .choices = cull_words},
       {"near", CLI_PARSED, &job->near_z, "Z", "nothing nearer is drawn [1e-4 of the scene's diagonal]",
        .parse = cli_parse_near},
       {"shade", CLI_CHOICE, &shading, "HOW", "none (albedo), lambert or phong [phong]", .choices = words.shadings},
-      {"light", CLI_PARSED, o, "X,Y,Z", "direction towards the light, in the world [a headlight]",
-       .parse = cli_parse_light},
-      {"background", CLI_PARSED, o, "R,G,B", "linear colour behind, or none: transparent [none]",
+      {"light", CLI_PARSED, job, "LIGHT",
+       "X,Y,Z, towards a light that stands in the scene; camera:X,Y,Z, one that moves with the camera (right, up, "
+       "towards you); head, at your eye; each with :R,G,B behind it or without; studio; none. Up to 8 [studio]",
+       .parse = cli_parse_light, .may_repeat = 1},
+      {"sky", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "light from all around; with two colours, of the sky on what faces up, and of the ground [the studio's]",
+       .parse = cli_parse_sky},
+      {"background", CLI_PARSED, job, "R,G,B[:R,G,B]",
+       "linear colour behind, or two from top to bottom, or none: transparent [dark greys in PNG and JPEG, else none]",
        .parse = cli_parse_background},
-      {"exposure", CLI_NUMBER, &o->exposure, "EV", "stops: the picture is multiplied by 2^EV [0]", -100, 100},
+      {"exposure", CLI_PARSED, job, "EV",
+       "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
+       .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes},
+       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes,
+       .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
       {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
        .parse = cli_parse_length, .is_given = &raw.is_patch_given, .dashes = "--"},
       {"k", CLI_INT, &job->opening.n_neighbours, "K",
        "neighbours that a raw point's size is estimated from, 6 to 64 [20]", 6, 64},
+      CLI_COLUMNS(&job->opening.columns),
       {"tile", CLI_INT, &o->tile, "N", "tile edge in pixels, 8, 16, 32 or 64; changes no bit [64]", 8, 64},
       {"device", CLI_TEXT, &job->device.name, "NAME",
        "what draws: cpu, opencl (the first device) or opencl:P.D; changes no bit [cpu]"},
@@ -134,6 +174,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   int answer = parse_all(session, own, n_own, table, (int)(sizeof table / sizeof table[0]), argc, argv, job);
   if (answer != CLI_DONE)
     return answer;
+  choose_quality(&raw, job, &method);
   job->is_patch = method == CONIC_N_METHODS;
   o->method = job->is_patch ? CONIC_METHOD_CONIC : (conic_method)method;
   o->shading = (conic_shading)shading;
@@ -143,6 +184,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
+  job->opening.projects_degrees = !job->is_plain;
+  job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;
   job->patches.surface.h = raw.h.value;
   job->patches.surface.isa = o->isa;

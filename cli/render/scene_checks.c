@@ -1,8 +1,26 @@
 /* Which options of a scene go together. */
+#include <string.h>
 #include <unistd.h>
 
+#include "cli/color_options.h"
 #include "cli/outputs.h"
 #include "cli/render/scene_options.h"
+
+/* Colours that are made of something need all of it at once. */
+static int check_colors(const cli_session *session, cli_render_job *job, int as) {
+  int answer = cli_color_check(session, &job->coloring, !job->is_plain);
+  if (!job->coloring.by)
+    return answer;
+  job->opening.coloring = &job->coloring;
+  job->opening.is_whole = cli_color_is_asked(&job->coloring);
+  if (job->is_up_given)
+    memcpy(job->coloring.up, job->framing.up, sizeof job->coloring.up);
+  if (answer == CLI_DONE && job->opening.is_whole && cli_lod_is_wanted(job) && as != CONIC_AS_HYBRID)
+    return cli_usage("%s: --color-by looks at all that there is: not with --error or --budget; conic octree and conic "
+                     "layer take it, too, and keep the colours",
+                     session->command);
+  return answer;
+}
 
 /* What goes with choosing less than everything, and with hybrid models. */
 static int check_choice(const cli_session *session, const cli_render_job *job, int as) {
@@ -35,7 +53,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: no input; see conic help %s", command, command);
   if (job->camera_path && words->is_size_given)
     return cli_usage("%s: --size is the camera file's; give one of both", command);
-  if (job->camera_path && (words->is_framing_given || job->is_up_given))
+  if (job->camera_path && (words->is_framing_given || (job->is_up_given && !job->is_turntable)))
     return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
                      command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
@@ -44,10 +62,17 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
   if (!job->is_patch && words->is_patch_given)
     return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
+  if (job->backdrop.is_given && !job->is_for_looking)
+    return cli_usage("%s: --background takes two colours in conic render; here it takes one", command);
+  if (job->is_exposure_automatic && !job->is_for_looking)
+    return cli_usage("%s: --exposure auto is of conic render, which says in --json what it chose", command);
   if (words->passes != 1 && words->passes != 3)
     return cli_usage("%s: --passes takes 3 or 1", command);
   if (job->options.tile & (job->options.tile - 1))
     return cli_usage("%s: --tile takes 8, 16, 32 or 64", command);
+  int colors = check_colors(session, job, words->as);
+  if (colors != CLI_DONE)
+    return colors;
   job->opening.as = job->is_patch && words->as == CONIC_AS_POINTS ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
   job->opening.is_whole = !cli_lod_is_wanted(job) && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);

@@ -5,9 +5,13 @@
 #include "cli/command.h"
 #include "cli/render/render_job.h"
 
+enum cli_quality { CLI_QUALITY_DRAFT = 0, CLI_QUALITY_GOOD = 1, CLI_QUALITY_FINAL = 2 };
+
 /* Options that mean something only when all have been read. */
 typedef struct cli_scene_words {
   int size[2], is_size_given, is_framing_given;
+  int quality; /* a cli_quality */
+  int is_quality_given, is_method_given, is_samples_given;
   int isa;
   double cutoff, prefilter;
   int passes, is_patch_given;
@@ -23,9 +27,8 @@ int cli_parse_epsilon(const char *text, void *value);
 int cli_parse_near(const char *text, void *value);
 /* x, -y, … or X,Y,Z into a double[3], */
 int cli_parse_up(const char *text, void *value);
-/* R,G,B or none, and X,Y,Z, into the background and the light of conic_render_options, */
-int cli_parse_background(const char *text, void *value);
-int cli_parse_light(const char *text, void *value);
+/* a number of stops, or auto, into a job's exposure, */
+int cli_parse_exposure(const char *text, void *value);
 /* rgba,Z,N … or all into bits of planes. */
 int cli_parse_planes(const char *text, void *value);
 

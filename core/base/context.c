@@ -66,6 +66,7 @@ void conic_context_destroy(conic_context *context) {
   if (!context)
     return;
   conic_pool_destroy(context, context->pool);
+  conic_memory_release(context, context->inputs);
   context->options.release(context->options.allocator_cookie, context);
 }
 

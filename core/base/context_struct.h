@@ -2,15 +2,27 @@
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
+#include <stdint.h>
+
 #include "conic/context.h"
 
 #define CONIC_MAX_THREADS 1024
 
 typedef struct conic_pool conic_pool;
 
+/* What the system calls a file, whatever its names. */
+typedef struct conic_file_identity {
+  int is_there;
+  uint64_t device, number;
+} conic_file_identity;
+
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
+  int guards_inputs;           /* core/files/guard.h; the next are its own */
+  conic_file_identity *inputs; /* which were read */
+  size_t n_inputs, inputs_room;
+  conic_file_identity replaceable;
 };
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */

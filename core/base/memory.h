@@ -22,8 +22,9 @@ conic_status conic_memory_grow(conic_context *context, void *array, size_t used,
 conic_status conic_memory_reserve(conic_context *context, void *array, size_t used, size_t wanted, size_t *room,
                                   size_t size);
 
-/* Where the context has large_pages: asks the system for them, wherever one lies wholly within a block that is to be
- * used from end to end. Where the system has none, nothing happens. Thread-safe. */
+/* Asks the system for large pages, wherever one lies wholly within a block that is to be used from end to end; the
+ * second only where the context has large_pages. Where the system has none, nothing happens. Thread-safe. */
+void conic_memory_advise_large_pages(void *pointer, size_t bytes);
 void conic_memory_prefer_large_pages(const conic_context *context, void *pointer, size_t bytes);
 
 /* Releases what allocate gave; null is allowed. */

@@ -12,11 +12,14 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/guard.h"
 
 struct conic_output {
   conic_context *context;
   FILE *stream;
-  char *path, *temporary_path; /* temporary_path is null for standard output and for what is no regular file */
+  char *path;           /* for messages */
+  char *target;         /* what the path leads to */
+  char *temporary_path; /* null for standard output and for what is no regular file */
 };
 
 static char *copy_text(conic_context *context, const char *text) {
@@ -30,29 +33,66 @@ static char *copy_text(conic_context *context, const char *text) {
 static void release_output(conic_output *output) {
   conic_context *context = output->context;
   conic_memory_release(context, output->path);
+  conic_memory_release(context, output->target);
   conic_memory_release(context, output->temporary_path);
   conic_memory_release(context, output);
 }
 
+static const char *name_in_folder(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+int conic_file_follow(const char *path, char *target, size_t room) {
+  char link[4096];
+  int n = snprintf(target, room, "%s", path);
+  for (int steps = 0; n >= 0 && (size_t)n < room && steps < 40; steps++) {
+    ssize_t length = readlink(target, link, sizeof link);
+    if (length < 0 || length == (ssize_t)sizeof link)
+      return 1; /* no link */
+    size_t folder = link[0] == '/' ? 0 : (size_t)(name_in_folder(target) - target);
+    n = (int)(folder + (size_t)length);
+    if ((size_t)n < room) {
+      memcpy(target + folder, link, (size_t)length);
+      target[n] = '\0';
+    }
+  }
+  return 0;
+}
+
+/* A name "name.ext" of two parts: "name", of as many bytes as leave room for what a temporary name adds, and ".ext". */
+typedef struct name_parts {
+  const char *stem, *ending;
+  int n_stem;
+} name_parts;
+
+enum { LONGEST_NAME = 255, ADDED_BYTES = 24 };
+
+static name_parts split_name(const char *name) {
+  const char *dot = strrchr(name, '.');
+  name_parts parts = {name, dot && dot != name ? dot : name + strlen(name), 0};
+  size_t n = (size_t)(parts.ending - name), n_ending = strlen(parts.ending);
+  size_t room = n_ending + ADDED_BYTES < LONGEST_NAME ? LONGEST_NAME - ADDED_BYTES - n_ending : 0;
+  parts.n_stem = (int)(n < room ? n : room);
+  return parts;
+}
+
 /* PATH "dir/name.ext" is written as "dir/.name.PID-N.ext": hidden, beside it, with its ending. */
 static char *temporary_name(conic_context *context, const char *path, int attempt) {
-  const char *slash = strrchr(path, '/');
-  const char *name = slash ? slash + 1 : path;
-  const char *dot = strrchr(name, '.');
+  const char *name = name_in_folder(path);
+  const name_parts parts = split_name(name);
   size_t n = strlen(path) + 48;
   char *temporary = conic_memory_allocate(context, n, 1);
-  if (!temporary)
-    return NULL;
-  int stem = (int)(dot && dot != name ? dot - name : (long)strlen(name));
-  snprintf(temporary, n, "%.*s.%.*s.%ld-%d%s", (int)(name - path), path, stem, name, (long)getpid(), attempt,
-           name + stem);
+  if (temporary)
+    snprintf(temporary, n, "%.*s.%.*s.%ld-%d%s", (int)(name - path), path, parts.n_stem, parts.stem, (long)getpid(),
+             attempt, parts.ending);
   return temporary;
 }
 
 static conic_status open_temporary(conic_output *output) {
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
-    output->temporary_path = temporary_name(output->context, output->path, attempt);
+    output->temporary_path = temporary_name(output->context, output->target, attempt);
     if (!output->temporary_path)
       return CONIC_ERROR_MEMORY;
     int descriptor = open(output->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -70,27 +110,52 @@ static conic_status open_temporary(conic_output *output) {
   return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path, strerror(errno));
 }
 
-conic_status conic_output_open(conic_context *context, const char *path, conic_output **output) {
+/* A file that is there, or a device or a pipe, which is written as it is. */
+static conic_status open_existing(conic_output *output, const struct stat *existing) {
+  conic_status status = conic_guard_check(output->context, output->path, existing);
+  if (status != CONIC_OK)
+    return status;
+  if (S_ISDIR(existing->st_mode))
+    return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: it is a directory", output->path);
+  if (S_ISREG(existing->st_mode)) {
+    status = open_temporary(output);
+    if (status == CONIC_OK && fchmod(fileno(output->stream), existing->st_mode & 0777) != 0)
+      errno = 0; /* there are disks without modes */
+    return status;
+  }
+  output->stream = fopen(output->path, "wb");
+  return output->stream
+             ? CONIC_OK
+             : conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path, strerror(errno));
+}
+
+static conic_status open_target(conic_output *output) {
   struct stat existing;
-  conic_status status = CONIC_OK;
+  char target[4096];
+  if (strcmp(output->path, "-") == 0) {
+    output->stream = stdout;
+    return CONIC_OK;
+  }
+  int is_there = stat(output->path, &existing) == 0;
+  if (is_there && !S_ISREG(existing.st_mode))
+    return open_existing(output, &existing);
+  if (!conic_file_follow(output->path, target, sizeof target))
+    return conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: the name is too long, or links to itself",
+                      output->path);
+  output->target = copy_text(output->context, target);
+  if (!output->target)
+    return CONIC_ERROR_MEMORY;
+  return is_there ? open_existing(output, &existing) : open_temporary(output);
+}
+
+conic_status conic_output_open(conic_context *context, const char *path, conic_output **output) {
   *output = NULL;
   conic_output *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
   if (!made)
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->path = copy_text(context, path);
-  if (!made->path)
-    status = CONIC_ERROR_MEMORY;
-  else if (strcmp(path, "-") == 0)
-    made->stream = stdout;
-  else if (stat(path, &existing) == 0 && S_ISDIR(existing.st_mode))
-    status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: it is a directory", path);
-  else if (stat(path, &existing) == 0 && !S_ISREG(existing.st_mode)) { /* a device or a pipe: written as it is */
-    made->stream = fopen(path, "wb");
-    if (!made->stream)
-      status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: %s", path, strerror(errno));
-  } else
-    status = open_temporary(made);
+  conic_status status = made->path ? open_target(made) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK) {
     release_output(made);
     return status;
@@ -108,7 +173,7 @@ conic_status conic_output_commit(conic_output *output) {
   int is_wrong = ferror(output->stream) || fflush(output->stream) != 0;
   if (output->stream != stdout && fclose(output->stream) != 0)
     is_wrong = 1;
-  if (!is_wrong && output->temporary_path && rename(output->temporary_path, output->path) != 0)
+  if (!is_wrong && output->temporary_path && rename(output->temporary_path, output->target) != 0)
     is_wrong = 1;
   if (is_wrong) {
     status = conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path,
@@ -157,8 +222,8 @@ static void remove_if_old(int folder, const char *name) {
 }
 
 void conic_output_sweep(conic_context *context, const char *path) {
-  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-  size_t n_stem = dot && dot != name ? (size_t)(dot - name) : strlen(name);
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  const name_parts parts = split_name(name);
   char *folder = conic_memory_allocate(context, (size_t)(name - path) + 2, 1);
   if (!folder)
     return;
@@ -166,7 +231,7 @@ void conic_output_sweep(conic_context *context, const char *path) {
   folder[slash ? name - path : 1] = '\0';
   DIR *listing = opendir(folder);
   for (struct dirent *entry; listing && (entry = readdir(listing));)
-    if (is_left_over(entry->d_name, name, n_stem, name + n_stem))
+    if (is_left_over(entry->d_name, parts.stem, (size_t)parts.n_stem, parts.ending))
       remove_if_old(dirfd(listing), entry->d_name);
   if (listing)
     closedir(listing);

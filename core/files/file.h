@@ -1,4 +1,5 @@
-/* Output files that appear under their name only when they are whole: written beside it, then renamed. */
+/* Output files that appear under their name only when they are whole: written beside it, then renamed. A symbolic link
+ * is followed, and what is replaced keeps its mode. */
 #ifndef CONIC_FILE_H
 #define CONIC_FILE_H
 
@@ -8,7 +9,8 @@
 
 typedef struct conic_output conic_output;
 
-/* Opens PATH for writing ("-" is standard output). On success the caller owns *output. Errors: MEMORY, IO. */
+/* Opens PATH for writing ("-" is standard output). On success the caller owns *output. Errors: ARGUMENT (it is an
+ * input: core/files/guard.h), MEMORY, IO. */
 conic_status conic_output_open(conic_context *context, const char *path, conic_output **output);
 
 /* Where to write; never null. */
@@ -27,6 +29,9 @@ void conic_output_abandon(conic_output *output);
  * processes that are no more, untouched for a minute, since others may write to the same disk from elsewhere. For
  * outputs that are too large to be left lying about. */
 void conic_output_sweep(conic_context *context, const char *path);
+
+/* What PATH is in the end, past symbolic links, be it there or not; 0 where the room is too small or links go round. */
+int conic_file_follow(const char *path, char *target, size_t room);
 
 /* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
  * lead to. */

@@ -10,6 +10,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/guard.h"
 
 /* Progress is reported this often: a few times a second on a fast disk. */
 static const uint64_t report_bytes = 64u << 20;
@@ -20,6 +21,9 @@ static conic_status check_kind(conic_input *input) {
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", input->name, strerror(errno));
   if (S_ISDIR(found.st_mode))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", input->name);
+  conic_status status = conic_guard_note(input->context, &found);
+  if (status != CONIC_OK)
+    return status;
   if (S_ISREG(found.st_mode)) { /* standard input may be a file that was read in part */
     off_t start = lseek(input->descriptor, 0, SEEK_CUR);
     input->has_size = start >= 0 && found.st_size >= start;
@@ -106,6 +110,48 @@ conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skip
   return CONIC_OK;
 }
 
+/* Whether text of two bytes a character begins here: with its mark, or with four letters, digits or blanks of ASCII. */
+static int is_utf16(const unsigned char *c, size_t n) {
+  if (n >= 2 && ((c[0] == 0xFF && c[1] == 0xFE) || (c[0] == 0xFE && c[1] == 0xFF)))
+    return 1;
+  for (size_t first = 0; first < 2 && n >= 8; first++) {
+    int is_text = 1;
+    for (size_t i = 0; i < 8; i += 2)
+      is_text &= c[i + 1 - first] == 0 && (c[i + first] < 0x7F && (c[i + first] >= 0x20 || c[i + first] == '\t'));
+    if (is_text)
+      return 1;
+  }
+  return 0;
+}
+
+conic_status conic_input_skip_mark(conic_input *input) {
+  conic_status status = conic_input_fill(input, 8);
+  size_t n = conic_input_available(input);
+  const unsigned char *bytes = conic_input_bytes(input);
+  if (status != CONIC_OK)
+    return status;
+  if (is_utf16(bytes, n))
+    return conic_fail(input->context, CONIC_ERROR_INPUT,
+                      "%s: this is UTF-16 text: save it as UTF-8 (iconv -f UTF-16 -t UTF-8 FILE > out) (at byte 0)",
+                      input->name);
+  if (n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0)
+    input->next += 3;
+  return CONIC_OK;
+}
+
+conic_status conic_input_line(conic_input *input, const char **text, size_t *length) {
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE + 1);
+  size_t n = conic_input_available(input);
+  if (status != CONIC_OK)
+    return status;
+  *text = (const char *)conic_input_bytes(input);
+  const char *end = memchr(*text, '\n', n);
+  *length = end ? (size_t)(end - *text) : n;
+  return *length > CONIC_INPUT_LONGEST_LINE
+             ? conic_input_wrong(input, "a line of more than %d bytes", CONIC_INPUT_LONGEST_LINE)
+             : CONIC_OK;
+}
+
 /* The length of a \ and line end, 0 where the text at `c` is something else. */
 static size_t continuation(const conic_input *input, const char *c, const char *end) {
   if (!input->continues_lines || *c != '\\')
@@ -115,8 +161,8 @@ static size_t continuation(const conic_input *input, const char *c, const char *
   return end - c >= 3 && c[1] == '\r' && c[2] == '\n' ? 3 : 0;
 }
 
-static int is_blank(const conic_input *input, char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || (c == ',' && input->has_commas);
+static int is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
 /* To the next byte that is neither blank nor continuation. */
@@ -126,7 +172,7 @@ static conic_status skip_blanks(conic_input *input) {
     if (status != CONIC_OK)
       return status;
     const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
-    while (c < end && is_blank(input, *c))
+    while (c < end && is_blank(*c))
       c++;
     input->next = (size_t)(c - (const char *)input->window);
     size_t continued = c < end ? continuation(input, c, end) : 0;
@@ -144,7 +190,7 @@ conic_status conic_input_word(conic_input *input, const char **word, size_t *len
     return status;
   const char *c = (const char *)conic_input_bytes(input), *end = (const char *)input->window + input->filled;
   *word = c;
-  while (c < end && *c != '\n' && !is_blank(input, *c) && !continuation(input, c, end))
+  while (c < end && *c != '\n' && !is_blank(*c) && !continuation(input, c, end))
     c++;
   *length = (size_t)(c - *word);
   if (*length > CONIC_INPUT_LONGEST_WORD)

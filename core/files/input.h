@@ -8,7 +8,7 @@
 #include "conic/context.h"
 
 /* No more bytes than this can be asked for at once. */
-enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096 };
+enum { CONIC_INPUT_WINDOW = 256 * 1024, CONIC_INPUT_LONGEST_WORD = 4096, CONIC_INPUT_LONGEST_LINE = 65536 };
 
 typedef struct conic_input {
   conic_context *context;
@@ -23,7 +23,6 @@ typedef struct conic_input {
   uint64_t line;           /* of the next byte, from 1; counted by the functions for text only */
   int is_at_end;           /* nothing follows the window's bytes */
   int continues_lines;     /* text: a line that ends with \ goes on in the next */
-  int has_commas;          /* text: commas part words as blanks do */
 } conic_input;
 
 /* Opens PATH ("-" is standard input) for reading; `path` must outlive *input. On success the caller ends it with
@@ -54,8 +53,15 @@ uint64_t conic_input_remaining_bytes(const conic_input *input);
 /* Passes over `count` bytes, or to the end where there are fewer; *skipped says how many. Errors: as fill. */
 conic_status conic_input_skip(conic_input *input, uint64_t count, uint64_t *skipped);
 
+/* Of text at its start: passes over the byte-order mark of UTF-8. Errors: as fill, and INPUT (UTF-16). */
+conic_status conic_input_skip_mark(conic_input *input);
+
+/* The rest of the line without its end, which is not passed over: conic_input_next_line does that. Valid until the next
+ * call. Errors: as fill, and INPUT (longer than CONIC_INPUT_LONGEST_LINE). */
+conic_status conic_input_line(conic_input *input, const char **text, size_t *length);
+
 /* The next word of the line and past it; *length 0 where the line (or file) ends. Valid until the next call. Words are
- * parted by blanks, carriage returns and, with has_commas, commas. Errors: as fill, and INPUT (longer than
+ * parted by blanks and carriage returns. Errors: as fill, and INPUT (longer than
  * CONIC_INPUT_LONGEST_WORD). */
 conic_status conic_input_word(conic_input *input, const char **word, size_t *length);
 

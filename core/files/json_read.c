@@ -46,7 +46,9 @@ conic_status conic_json_open(conic_context *context, const char *path, conic_jso
   if (status != CONIC_OK)
     return status;
   json->name = input.name;
-  status = read_all(json, &input);
+  status = conic_input_skip_mark(&input);
+  if (status == CONIC_OK)
+    status = read_all(json, &input);
   conic_input_close(&input);
   if (status != CONIC_OK)
     conic_json_close(json);

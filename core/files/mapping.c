@@ -10,6 +10,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/files/guard.h"
 
 /* What cannot be mapped is read to its end. */
 static conic_status read_all(conic_context *context, const char *name, int descriptor, conic_mapping *mapping) {
@@ -37,6 +38,9 @@ static conic_status map(conic_context *context, const char *name, int descriptor
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", name, strerror(errno));
   if (S_ISDIR(found.st_mode))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is a directory", name);
+  conic_status status = conic_guard_note(context, &found);
+  if (status != CONIC_OK)
+    return status;
   if (!S_ISREG(found.st_mode) || found.st_size == 0)
     return read_all(context, name, descriptor, mapping);
   void *bytes = mmap(NULL, (size_t)found.st_size, PROT_READ, MAP_PRIVATE, descriptor, 0);

@@ -6,7 +6,9 @@
 #include "core/base/message.h"
 #include "core/base/real.h"
 #include "core/files/file_fields.h"
+#include "core/formats/las_fields.h"
 #include "core/formats/ply_source.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
 #include "core/splats/builder.h"
 
@@ -22,27 +24,24 @@ enum {
   AT_N_POINTS_32 = 107,
   AT_SCALE = 131,
   AT_OFFSET = 155,
+  AT_WAVEFORMS = 227,    /* since 1.3: where they begin */
+  AT_LATE_RECORDS = 235, /* since 1.4: where records begin that follow the points */
   AT_N_POINTS_64 = 247,
 };
 
-enum {
-  LEAST_HEADER_BYTES = 227,
-  HEADER_BYTES_1_3 = 235,
-  HEADER_BYTES_1_4 = 375,
-  RECORD_HEADER_BYTES = 54,
-  BLOCK = 256
-};
+enum { LEAST_HEADER_BYTES = 227, HEADER_BYTES_1_4 = 375, RECORD_HEADER_BYTES = 54, BLOCK = 256 };
 
-/* The fewest bytes of a point, and where its colour stands in them; 0: it has none. Formats 4, 5, 9 and 10 have
- * waveforms. */
+/* The fewest bytes of a point, and where its colour stands in them; 0: it has none. What formats 4, 5, 9 and 10 say of
+ * waveforms comes last. */
 static const struct {
   int n_bytes, color;
-} formats[] = {{20, 0}, {28, 0}, {26, 20}, {34, 28}, {0, 0}, {0, 0}, {30, 0}, {36, 30}, {38, 30}};
+} formats[] = {{20, 0}, {28, 0}, {26, 20}, {34, 28}, {57, 0}, {63, 28}, {30, 0}, {36, 30}, {38, 30}, {59, 0}, {67, 30}};
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 typedef struct las_reader {
   conic_input *input;
+  int is_again; /* the file has been read before, and its faults have been told */
   unsigned char header[HEADER_BYTES_1_4];
   size_t point_bytes;
   uint64_t n_points, points_offset;
@@ -51,6 +50,8 @@ typedef struct las_reader {
   double first[3]; /* the first point's integers */
   conic_builder builder;
   double block[3][BLOCK];
+  conic_las_fields fields;
+  int field; /* of these, which one the points' scalars are; −1: none */
 } las_reader;
 
 static conic_status wrong_las(const las_reader *reader, const char *what, uint64_t at) {
@@ -62,7 +63,12 @@ static uint64_t unsigned_at(const las_reader *reader, int at, size_t n_bytes) {
   return conic_file_get(reader->header + at, n_bytes);
 }
 
-/* Copies what there is of the public header, of the size that its version has. */
+static void warn(const las_reader *reader, const char *what) {
+  if (!reader->is_again)
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %s", reader->input->name, what);
+}
+
+/* Copies what there is of the public header. Some writers leave out what their version has added; it counts as 0. */
 static conic_status read_las_header(las_reader *reader) {
   conic_status status = conic_input_fill(reader->input, HEADER_BYTES_1_4);
   size_t available = conic_input_available(reader->input);
@@ -77,24 +83,33 @@ static conic_status read_las_header(las_reader *reader) {
     return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
                       "%s: version %u.%u of LAS; 1.0 to 1.4 are read (at byte %d)", reader->input->name, major, minor,
                       AT_MAJOR);
-  uint64_t least = minor == 4 ? HEADER_BYTES_1_4 : minor == 3 ? HEADER_BYTES_1_3 : LEAST_HEADER_BYTES;
-  if (unsigned_at(reader, AT_HEADER_BYTES, 2) < least)
-    return wrong_las(reader, "the header is shorter than that of its version", AT_HEADER_BYTES);
-  if (available < least)
-    return wrong_las(reader, "the file ends within the header", available);
+  uint64_t n_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2);
+  if (n_bytes < LEAST_HEADER_BYTES)
+    return wrong_las(reader, "the header is shorter than any version's", AT_HEADER_BYTES);
+  if (n_bytes < HEADER_BYTES_1_4)
+    memset(reader->header + n_bytes, 0, HEADER_BYTES_1_4 - (size_t)n_bytes);
   return CONIC_OK;
+}
+
+#define UNPACK "unpack them first (laszip -i FILE -o out.las, or: pdal translate FILE out.las)"
+
+/* The first record of a COPC says so. */
+static int is_copc(const las_reader *reader) {
+  return conic_input_available(reader->input) >= HEADER_BYTES_1_4 + 6 &&
+         memcmp(conic_input_bytes(reader->input) + HEADER_BYTES_1_4 + 2, "copc", 4) == 0;
 }
 
 static conic_status check_format(las_reader *reader) {
   unsigned format = reader->header[AT_FORMAT];
   reader->point_bytes = (size_t)unsigned_at(reader, AT_POINT_BYTES, 2);
   if (format & 0xC0u)
-    return wrong_las(reader, "the points are compressed (LAZ), which is not read: decompress the file first",
+    return wrong_las(reader,
+                     is_copc(reader) ? "this is a COPC, whose points are compressed: " UNPACK
+                                     : "the points are compressed (LAZ): " UNPACK,
                      AT_FORMAT);
-  if (format >= N_FORMATS || !formats[format].n_bytes)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: point format %u; 0 to 3 and 6 to 8 are read (at byte %d)", reader->input->name, format,
-                      AT_FORMAT);
+  if (format >= N_FORMATS)
+    return conic_fail(reader->input->context, CONIC_ERROR_INPUT, "%s: point format %u; 0 to 10 are read (at byte %d)",
+                      reader->input->name, format, AT_FORMAT);
   if (reader->point_bytes < (size_t)formats[format].n_bytes)
     return wrong_las(reader, "a point is shorter than its format", AT_POINT_BYTES);
   reader->color = formats[format].color;
@@ -117,44 +132,71 @@ static conic_status read_scale(las_reader *reader) {
   return CONIC_OK;
 }
 
+/* How many points there are, by the file's size. The header is right where more may follow the points; where neither
+ * waveforms nor records do, whole points that follow have not been counted, as by a writer that was stopped. */
+static void count_points(las_reader *reader, uint64_t remaining) {
+  uint64_t declared = reader->n_points, n_bytes = remaining - reader->points_offset;
+  uint64_t present = n_bytes / reader->point_bytes;
+  int is_all_points = n_bytes % reader->point_bytes == 0 && !unsigned_at(reader, AT_WAVEFORMS, 8) &&
+                      !unsigned_at(reader, AT_LATE_RECORDS, 8);
+  if (declared > present || is_all_points)
+    reader->n_points = present;
+  if (reader->n_points != declared && !reader->is_again)
+    conic_log(reader->input->context, CONIC_LOG_WARNING,
+              "%s: the header counts %llu points; the %llu that are there are "
+              "read",
+              reader->input->name, (unsigned long long)declared, (unsigned long long)reader->n_points);
+}
+
 /* Every size that the header states, against each other and the file. Since 1.4 the number of points has 64 bits; the
  * older field still stands for it where a writer has left the new one 0. */
 static conic_status check_sizes(las_reader *reader) {
   uint64_t header_bytes = unsigned_at(reader, AT_HEADER_BYTES, 2), n_records = unsigned_at(reader, AT_N_RECORDS, 4);
   uint64_t remaining = conic_input_remaining_bytes(reader->input);
-  int count_at = AT_N_POINTS_32;
+  int has_64 = reader->header[AT_MINOR] == 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0;
+  int count_at = has_64 ? AT_N_POINTS_64 : AT_N_POINTS_32;
   reader->points_offset = unsigned_at(reader, AT_POINTS, 4);
-  reader->n_points = unsigned_at(reader, AT_N_POINTS_32, 4);
-  if (reader->header[AT_MINOR] == 4 && unsigned_at(reader, AT_N_POINTS_64, 8) > 0) {
-    reader->n_points = unsigned_at(reader, AT_N_POINTS_64, 8);
-    count_at = AT_N_POINTS_64;
-  }
+  reader->n_points = unsigned_at(reader, count_at, has_64 ? 8 : 4);
   if (reader->points_offset < header_bytes)
     return wrong_las(reader, "the points begin within the header", AT_POINTS);
-  if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
-    return wrong_las(reader, "more variable-length records than fit before the points", AT_N_RECORDS);
   if (reader->points_offset > remaining)
     return wrong_las(reader, "the points begin past the end of the file", AT_POINTS);
+  if (n_records > (reader->points_offset - header_bytes) / RECORD_HEADER_BYTES)
+    warn(reader, "more variable-length records are declared than fit before the points; they are passed over");
+  if (reader->input->has_size)
+    count_points(reader, remaining);
   if (reader->n_points > CONIC_MAX_POINTS)
     return wrong_las(reader, "too many points", (uint64_t)count_at);
-  if (reader->n_points > (remaining - reader->points_offset) / reader->point_bytes)
-    return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                      "%s: the file is too short for the %llu points that it declares (at byte %d)",
-                      reader->input->name, (unsigned long long)reader->n_points, count_at);
+  if (reader->input->has_size && reader->n_points == 0 && unsigned_at(reader, count_at, has_64 ? 8 : 4) > 0)
+    return wrong_las(reader, "the file ends within the first point", reader->points_offset);
   return CONIC_OK;
 }
 
-static conic_status truncated(const las_reader *reader) {
-  return conic_fail(reader->input->context, CONIC_ERROR_INPUT,
-                    "%s: the file ends within point %llu of %llu (at byte %llu)", reader->input->name,
-                    (unsigned long long)conic_builder_points(&reader->builder), (unsigned long long)reader->n_points,
-                    (unsigned long long)conic_input_offset(reader->input));
+static conic_status skip_to(las_reader *reader, uint64_t offset) {
+  uint64_t left = offset - conic_input_offset(reader->input), skipped;
+  conic_status status = conic_input_skip(reader->input, left, &skipped);
+  return status == CONIC_OK && skipped < left
+             ? wrong_las(reader, "the file ends before its points", offset - left + skipped)
+             : status;
 }
 
-static conic_status skip_to_points(las_reader *reader) {
-  uint64_t skipped;
-  conic_status status = conic_input_skip(reader->input, reader->points_offset, &skipped);
-  return status == CONIC_OK && skipped < reader->points_offset ? truncated(reader) : status;
+/* Past the header and its records, which name fields. */
+static conic_status skip_to_points(las_reader *reader, const conic_read_options *options) {
+  unsigned format = reader->header[AT_FORMAT];
+  uint64_t n_records = unsigned_at(reader, AT_N_RECORDS, 4);
+  conic_las_fields *fields = &reader->fields;
+  conic_las_fields_of_format(format, fields);
+  conic_status status = skip_to(reader, unsigned_at(reader, AT_HEADER_BYTES, 2));
+  if (status == CONIC_OK)
+    status = conic_las_fields_read(reader->input, n_records, reader->points_offset, (size_t)formats[format].n_bytes,
+                                   reader->point_bytes, fields);
+  if (status == CONIC_OK)
+    status = skip_to(reader, reader->points_offset);
+  for (size_t i = 0; status == CONIC_OK && i < fields->n; i++)
+    status = conic_fields_add(&reader->builder, fields->list[i].name, strlen(fields->list[i].name),
+                              conic_las_field_type(&fields->list[i]));
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
+                            : status;
 }
 
 /* Three integers of each of n points, as doubles, into the reader's block. */
@@ -182,6 +224,11 @@ static void store_records(las_reader *reader, size_t n) {
   for (int channel = 0; channel < 3 && reader->color; channel++)
     for (size_t i = 0; i < n; i++)
       points->color[channel][points->count + i] = (float)reader->block[channel][i];
+  if (reader->field >= 0)
+    conic_las_field_convert(&reader->fields.list[reader->field], conic_input_bytes(reader->input), reader->point_bytes,
+                            n, reader->block[0]);
+  for (size_t i = 0; i < n && reader->field >= 0; i++)
+    points->scalar[points->count + i] = (float)reader->block[0][i];
   points->count += n;
 }
 
@@ -197,8 +244,10 @@ static conic_status read_points(las_reader *reader) {
     size_t n = conic_input_available(input) / reader->point_bytes;
     if (status != CONIC_OK)
       break;
-    if (n == 0)
-      return truncated(reader);
+    if (n == 0) { /* behind a pipe nobody could tell before */
+      warn(reader, "the file ends before all of its points");
+      break;
+    }
     n = n < BLOCK ? n : BLOCK;
     n = n < left ? n : (size_t)left;
     status = conic_builder_reserve_points(&reader->builder, points->count + n);
@@ -211,8 +260,9 @@ static conic_status read_points(las_reader *reader) {
   return status == CONIC_OK ? conic_builder_deliver(&reader->builder, 1) : status;
 }
 
-conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
-  las_reader reader = {.input = input};
+conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
+  las_reader reader = {.input = input, .is_again = delivery && delivery->is_again};
   conic_status status = read_las_header(&reader);
   if (status == CONIC_OK)
     status = check_format(&reader);
@@ -224,7 +274,7 @@ conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, 
     status =
         conic_builder_begin(input->context, model, reader.color ? CONIC_SPLATS_COLORS : 0u, delivery, &reader.builder);
   if (status == CONIC_OK)
-    status = skip_to_points(&reader);
+    status = skip_to_points(&reader, options);
   if (status == CONIC_OK)
     status = read_points(&reader);
   if (status == CONIC_OK && !delivery)

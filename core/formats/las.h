@@ -1,9 +1,10 @@
-/* The LAS reader: versions 1.0 to 1.4, uncompressed, point formats 0 to 3 and 6 to 8.
+/* The LAS reader: versions 1.0 to 1.4, uncompressed, point formats 0 to 10.
  *
  * Positions are the file's integers times its scale; what the first point and the offset give in double is the origin,
  * so that map coordinates lose nothing. Colours are meant to have 16 bits, yet many programs store 8-bit codes: the
- * largest value of the whole file tells (core/formats/raw_colors.h). Everything else of a point, variable-length
- * records and whatever follows the points is passed over. */
+ * values of the whole file tell (core/formats/raw_colors.h). Of everything else that a point has one field can be read
+ * (core/formats/las_fields.h); other variable-length records and whatever follows the points are passed over. Counts of
+ * points and records that are off are told, and what is there is read. */
 #ifndef CONIC_LAS_H
 #define CONIC_LAS_H
 
@@ -13,6 +14,7 @@
 
 /* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
-conic_status conic_las_read(conic_input *input, const conic_delivery *delivery, conic_model *model);
+conic_status conic_las_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
 
 #endif

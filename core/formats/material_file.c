@@ -87,7 +87,9 @@ conic_status conic_material_file_read(conic_context *context, const char *path, 
   conic_status status = conic_input_open(context, path, &reader.input);
   if (status != CONIC_OK)
     return status;
-  status = conic_input_read_statements(&reader.input, statements, sizeof statements / sizeof *statements, &reader);
+  status = conic_input_skip_mark(&reader.input);
+  if (status == CONIC_OK)
+    status = conic_input_read_statements(&reader.input, statements, sizeof statements / sizeof *statements, &reader);
   conic_input_close(&reader.input);
   return status;
 }

@@ -2,14 +2,19 @@
 
 #include <string.h>
 
+#include "core/assimp/assimp_kinds.h"
+#include "core/assimp/assimp_read.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/files/file.h"
 #include "core/files/input.h"
+#include "core/formats/file_kinds.h"
 #include "core/formats/las.h"
 #include "core/formats/obj.h"
+#include "core/formats/pcd.h"
 #include "core/formats/ply_read.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/xyz.h"
 #include "core/splats/faces.h"
 
@@ -19,7 +24,11 @@ void conic_read_options_init_sized(conic_read_options *options, size_t size) {
 }
 
 const char *conic_model_kind_name(conic_model_kind kind) {
-  static const char *const names[] = {"ply", "obj", "xyz", "las"};
+  static const char *const names[] = {
+      [CONIC_MODEL_PLY] = "ply", [CONIC_MODEL_OBJ] = "obj", [CONIC_MODEL_XYZ] = "xyz", [CONIC_MODEL_LAS] = "las",
+      [CONIC_MODEL_PCD] = "pcd", [CONIC_MODEL_STL] = "stl", [CONIC_MODEL_OFF] = "off", [CONIC_MODEL_GLTF] = "gltf",
+      [CONIC_MODEL_GLB] = "glb", [CONIC_MODEL_3MF] = "3mf", [CONIC_MODEL_DAE] = "dae", [CONIC_MODEL_FBX] = "fbx",
+      [CONIC_MODEL_3DS] = "3ds", [CONIC_MODEL_X3D] = "x3d", [CONIC_MODEL_DXF] = "dxf", [CONIC_MODEL_AMF] = "amf"};
   return (int)kind >= 0 && (size_t)kind < sizeof names / sizeof *names ? names[kind] : NULL;
 }
 
@@ -27,24 +36,9 @@ void conic_model_release(conic_context *context, conic_model *model) {
   conic_splats_release(context, &model->points);
   conic_memory_release(context, model->triangles);
   conic_faces_destroy(context, model->faces);
+  conic_memory_release(context, model->fields);
   memset(model, 0, sizeof *model);
 }
-
-typedef struct signature {
-  const char *kind;
-  const char *bytes;
-  size_t n_bytes;
-} signature;
-
-/* Files that are easily taken for models, or given by mistake. */
-static const signature other_kinds[] = {
-    {"a point-octree", "CONICOT\n", 8}, {"a layered point cloud", "CONICLP\n", 8},
-    {"a hybrid model", "CONICHY\n", 8}, {"an OpenEXR image", "\x76\x2f\x31\x01", 4},
-    {"a PNG image", "\x89PNG", 4},      {"a JPEG image", "\xff\xd8\xff", 3},
-    {"a binary glTF file", "glTF", 4},  {"a gzip archive", "\x1f\x8b", 2},
-    {"a ZIP archive", "PK\x03\x04", 4}, {"a Zstandard archive", "\x28\xb5\x2f\xfd", 4},
-    {"an STL file", "solid ", 6},
-};
 
 static int is_ply(const char *bytes, size_t n) {
   return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
@@ -66,14 +60,19 @@ static int is_obj(const char *bytes, size_t n) {
   return 0;
 }
 
-static conic_status refuse_model(const conic_input *input, const char *bytes, size_t n) {
-  if (n == 0)
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
-  for (size_t i = 0; i < sizeof other_kinds / sizeof *other_kinds; i++)
-    if (n >= other_kinds[i].n_bytes && memcmp(bytes, other_kinds[i].bytes, other_kinds[i].n_bytes) == 0)
-      return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: this is %s, no PLY, OBJ, XYZ or LAS file (at byte 0)",
-                        input->name, other_kinds[i].kind);
-  return CONIC_OK;
+static conic_status refuse(const conic_input *input, const conic_foreign_kind *kind) {
+  return kind ? conic_fail(input->context, CONIC_ERROR_INPUT, "%s: this is %s: %s; %s (at byte 0)", input->name,
+                           kind->name, kind->remedy, conic_readable_kinds)
+              : conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no model that is known; %s (at byte 0)", input->name,
+                           conic_readable_kinds);
+}
+
+static int is_text_name(const char *path) {
+  static const char *const endings[] = {"xyz", "pts", "csv", "txt", "asc", "xyzrgb", "neu"};
+  size_t i = 0;
+  while (i < sizeof endings / sizeof *endings && !conic_file_has_ending(path, endings[i]))
+    i++;
+  return i < sizeof endings / sizeof *endings;
 }
 
 /* By content; then by the ending; then by content that is less certain. */
@@ -81,30 +80,42 @@ static conic_status find_kind(const conic_input *input, const char *path, conic_
   const char *bytes = (const char *)conic_input_bytes(input);
   size_t n = conic_input_available(input);
   int is_xyz_name = conic_file_has_ending(path, "xyz") || conic_file_has_ending(path, "pts");
-  conic_status status = refuse_model(input, bytes, n);
-  if (status != CONIC_OK)
-    return status;
+  const conic_foreign_kind *foreign = conic_foreign_kind_find(path, bytes, n, 1);
+  if (conic_assimp_find_content(path, bytes, n, conic_input_remaining_bytes(input), kind))
+    return CONIC_OK;
+  if (n == 0)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the file is empty (at byte 0)", input->name);
+  if (foreign)
+    return refuse(input, foreign);
   if (is_ply(bytes, n))
     *kind = CONIC_MODEL_PLY;
   else if (n >= 4 && memcmp(bytes, "LASF", 4) == 0)
     *kind = CONIC_MODEL_LAS;
+  else if (conic_pcd_is_likely(bytes, n) || conic_file_has_ending(path, "pcd"))
+    *kind = CONIC_MODEL_PCD;
   else if (conic_file_has_ending(path, "ply"))
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: not a PLY file: it does not begin with 'ply' (at byte 0)",
                       input->name);
   else if (conic_file_has_ending(path, "las") || conic_file_has_ending(path, "laz"))
     return conic_fail(input->context, CONIC_ERROR_INPUT,
                       "%s: not a LAS file: it does not begin with 'LASF' (at byte 0)", input->name);
+  else if (conic_assimp_find_ending(path, kind))
+    return CONIC_OK;
   else if (conic_file_has_ending(path, "obj") || (!is_xyz_name && is_obj(bytes, n)))
     *kind = CONIC_MODEL_OBJ;
-  else if (is_xyz_name || conic_xyz_is_likely(bytes, n))
+  else if ((foreign = conic_foreign_kind_find(path, bytes, n, 0)))
+    return refuse(input, foreign);
+  else if (!memchr(bytes, 0, n) && (is_text_name(path) || conic_xyz_is_likely(bytes, n)))
     *kind = CONIC_MODEL_XYZ;
   else
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: no PLY, OBJ, XYZ or LAS file (at byte 0)", input->name);
+    return refuse(input, NULL);
   return CONIC_OK;
 }
 
 conic_status conic_model_find_kind(conic_input *input, const char *path, conic_model_kind *kind) {
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  conic_status status = conic_input_skip_mark(input);
+  if (status == CONIC_OK)
+    status = conic_input_fill(input, CONIC_INPUT_LONGEST_LINE);
   return status == CONIC_OK ? find_kind(input, path, kind) : status;
 }
 
@@ -119,14 +130,20 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     status = conic_obj_read(input, options, model);
     break;
   case CONIC_MODEL_XYZ:
-    status = conic_xyz_read(input, delivery, model);
+    status = conic_xyz_read(input, options, delivery, model);
     break;
   case CONIC_MODEL_LAS:
-    status = conic_las_read(input, delivery, model);
+    status = conic_las_read(input, options, delivery, model);
+    model->up[2] = 1.0;
     break;
+  case CONIC_MODEL_PCD:
+    status = conic_pcd_read(input, delivery, model);
+    break;
+  default:
+    status = conic_assimp_read(input, kind, options, model);
   }
   model->kind = kind;
-  return status;
+  return status == CONIC_OK ? conic_fields_check(input->context, input->name, options, model) : status;
 }
 
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,

@@ -1,6 +1,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/assimp/assimp_kinds.h"
 #include "core/base/memory.h"
 #include "core/formats/model_read.h"
 #include "core/formats/raw_colors.h"
@@ -15,13 +16,13 @@ typedef struct streaming {
   conic_model_kind kind;
   conic_batch_receiver *receive;
   void *cookie;
-  float largest;
+  conic_raw_range range;
   conic_raw_scale scale;
 } streaming;
 
-static conic_status find_largest(void *cookie, const conic_splats *batch) {
+static conic_status see_colors(void *cookie, const conic_splats *batch) {
   streaming *s = cookie;
-  s->largest = conic_raw_colors_largest(batch, s->largest);
+  conic_raw_colors_see(batch, &s->range);
   return CONIC_OK;
 }
 
@@ -39,7 +40,7 @@ static conic_status decode_batch(void *cookie, const conic_splats *batch) {
 
 /* Reads on from where the input stands, handing batches to `receive`. */
 static conic_status pass(streaming *s, conic_input *input, conic_batch_receiver *receive, void *cookie) {
-  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH};
+  conic_delivery delivery = {.receive = receive, .cookie = cookie, .batch = BATCH, .is_again = receive == decode_batch};
   conic_model model;
   conic_status status = conic_model_read_kind(input, s->kind, s->options, &delivery, &model);
   conic_model_release(s->context, &model);
@@ -58,9 +59,9 @@ static conic_status read_whole_stream(streaming *s, conic_input *input) {
 /* A first pass finds what the colours are fractions of, a second hands over. */
 static conic_status pass_twice(streaming *s, conic_input *input, const char *path) {
   conic_input again;
-  conic_status status = pass(s, input, find_largest, s);
+  conic_status status = pass(s, input, see_colors, s);
   if (status == CONIC_OK)
-    status = conic_raw_colors_scale(s->context, s->largest, s->kind == CONIC_MODEL_XYZ, &s->scale);
+    status = conic_raw_colors_scale(s->context, &s->range, s->kind != CONIC_MODEL_LAS, &s->scale);
   if (status == CONIC_OK)
     status = conic_input_open(s->context, path, &again);
   if (status != CONIC_OK)
@@ -86,7 +87,7 @@ conic_status conic_model_stream(conic_context *context, const char *path, const 
   status = conic_model_find_kind(&input, path, &s.kind);
   if (status == CONIC_OK && s.kind == CONIC_MODEL_PLY)
     status = pass(&s, &input, receive, cookie);
-  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || is_pipe))
+  else if (status == CONIC_OK && (s.kind == CONIC_MODEL_OBJ || conic_assimp_reads(s.kind) || is_pipe))
     status = read_whole_stream(&s, &input);
   else if (status == CONIC_OK)
     status = pass_twice(&s, &input, path);

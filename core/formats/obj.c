@@ -1,6 +1,5 @@
 #include "core/formats/obj.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/base/color.h"
@@ -10,10 +9,6 @@
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
-
-/* Where the first vertex lies farther out than this, positions are kept from it as their origin, since a file in map
- * coordinates has digits that a float has not. */
-static const double far_out = 65536.0;
 
 /* A corner of a face that names a normal. Which normal it is may be read later. */
 typedef struct obj_corner {
@@ -38,7 +33,6 @@ typedef struct obj_reader {
   obj_corner *corners;
   size_t n_corners, corner_capacity;
   conic_faces *faces; /* the model's, where the reader keeps what faces have besides vertices */
-  int is_origin_set;
 } obj_reader;
 
 /* A corner's vertex, texture coordinate and normal; CONIC_NO_CORNER where it has none. */
@@ -63,18 +57,6 @@ static conic_status read_numbers(const obj_reader *reader, double *numbers, int 
   }
 }
 
-static void store_position(obj_reader *reader, const double position[3]) {
-  conic_splats *points = &reader->builder.model->points;
-  double x = position[0], y = position[1], z = position[2];
-  if (!reader->is_origin_set && x - x == 0.0 && y - y == 0.0 && z - z == 0.0) {
-    if (fabs(x) > far_out || fabs(y) > far_out || fabs(z) > far_out)
-      memcpy(points->origin, position, sizeof points->origin);
-    reader->is_origin_set = 1;
-  }
-  for (int axis = 0; axis < 3; axis++)
-    points->position[axis][points->count] = (float)(position[axis] - points->origin[axis]);
-}
-
 /* v x y z, then nothing, a weight (of no use here), r g b, or r g b a. Colours are sRGB-encoded, 0 to 1. */
 static conic_status read_vertex(void *data) {
   obj_reader *reader = data;
@@ -94,7 +76,7 @@ static conic_status read_vertex(void *data) {
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
   if (status != CONIC_OK)
     return status;
-  store_position(reader, values);
+  conic_builder_store_position(&reader->builder, values);
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
     points->color[channel][points->count] = n >= 6 ? (float)conic_srgb_decode(values[3 + channel]) : 1.0f;
   points->count++;

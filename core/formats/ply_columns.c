@@ -6,6 +6,7 @@
 #include "core/base/gaussian.h"
 #include "core/base/message.h"
 #include "core/base/vectors.h"
+#include "core/formats/point_fields.h"
 #include "core/splats/ellipse.h"
 
 /* What properties are called, those of consecutive columns in their order. Where a file has several names of one
@@ -22,6 +23,7 @@ static const struct {
                {CONIC_PLY_RED, {"diffuse_red", "diffuse_green", "diffuse_blue"}},
                {CONIC_PLY_RED, {"r", "g", "b"}},
                {CONIC_PLY_OPACITY, {"opacity"}},
+               {CONIC_PLY_DOT, {"dot"}},
                {CONIC_PLY_SCALE, {"scale_0", "scale_1", "scale_2"}},
                {CONIC_PLY_ROTATION, {"rot_0", "rot_1", "rot_2", "rot_3"}},
                {CONIC_PLY_HARMONIC, {"f_dc_0", "f_dc_1", "f_dc_2"}}};
@@ -110,6 +112,8 @@ static void choose_form(conic_ply_layout *layout) {
     layout->form = CONIC_PLY_AXES;
   if (layout->form != CONIC_PLY_AXES)
     drop_columns(layout, CONIC_PLY_TANGENT_U, 6);
+  if (layout->form != CONIC_PLY_AXES && layout->form != CONIC_PLY_CIRCLES)
+    drop_columns(layout, CONIC_PLY_DOT, 1);
   if (layout->form != CONIC_PLY_NORMALS && layout->form != CONIC_PLY_CIRCLES)
     drop_columns(layout, CONIC_PLY_NORMAL, 3);
   if (layout->form != CONIC_PLY_CIRCLES)
@@ -134,10 +138,16 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
                                    const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
                                    conic_ply_layout *layout) {
   memset(layout, 0, sizeof *layout);
+  layout->field_column = -1;
   find_columns(header, vertices, layout);
-  if (!has_columns(layout, CONIC_PLY_X, 3))
-    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: the vertices lack x, y or z (line %llu)", input->name,
+  if (!has_columns(layout, CONIC_PLY_X, 3)) {
+    int is_packed = conic_ply_find_property(header, vertices, "packed_position") >= 0;
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: %s (line %llu)", input->name,
+                      is_packed
+                          ? "the vertices are packed, as SuperSplat packs Gaussians: save them as a plain PLY there"
+                          : "the vertices lack x, y or z",
                       (unsigned long long)vertices->line);
+  }
   choose_form(layout);
   find_clip_lists(header, vertices, layout);
   if (keeps_coordinates)
@@ -154,6 +164,36 @@ conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *h
     layout->fields |= CONIC_SPLATS_COLORS;
   if (has_columns(layout, CONIC_PLY_OPACITY, 1))
     layout->fields |= CONIC_SPLATS_OPACITIES;
+  if (has_columns(layout, CONIC_PLY_DOT, 1))
+    layout->fields |= CONIC_SPLATS_DOTS;
+  return CONIC_OK;
+}
+
+static int column_of(const conic_ply_layout *layout, int i_property) {
+  int column = 0;
+  while (column < CONIC_PLY_FIELD && layout->property[column] != i_property)
+    column++;
+  return column;
+}
+
+conic_status conic_ply_layout_choose_field(conic_input *input, const conic_ply_header *header,
+                                           const conic_ply_element *vertices, const conic_read_options *options,
+                                           conic_builder *builder, conic_ply_layout *layout) {
+  const conic_ply_property *properties = header->properties + vertices->first_property;
+  conic_status status = CONIC_OK;
+  int chosen;
+  for (size_t i = 0; i < vertices->n_properties && status == CONIC_OK; i++)
+    if (!properties[i].is_list)
+      status = conic_fields_add(builder, properties[i].name, strlen(properties[i].name),
+                                conic_ply_type_name(properties[i].type));
+  if (status == CONIC_OK)
+    status = conic_fields_choose(builder, input->name, options, &chosen);
+  if (status != CONIC_OK || chosen < 0)
+    return status;
+  int i_property = conic_ply_find_property(header, vertices, builder->model->fields[chosen].name);
+  layout->field_column = column_of(layout, i_property);
+  if (layout->field_column == CONIC_PLY_FIELD)
+    set_column(header, vertices, CONIC_PLY_FIELD, i_property, layout);
   return CONIC_OK;
 }
 
@@ -257,4 +297,8 @@ void conic_ply_layout_convert(conic_ply_layout *layout, const conic_ply_block bl
     store_colors(layout, block[first_color + axis], n, layout->type[first_color + axis], points->color[axis] + first);
   if (points->opacity)
     store_opacities(layout, block[CONIC_PLY_OPACITY], n, points->opacity + first);
+  for (size_t i = 0; points->dot && i < n; i++)
+    points->dot[first + i] = block[CONIC_PLY_DOT][i] != 0.0 ? 1.0f : 0.0f;
+  if (layout->field_column >= 0)
+    store_column(block[layout->field_column], n, 0.0, points->scalar + first);
 }

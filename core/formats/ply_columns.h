@@ -4,6 +4,7 @@
 
 #include "conic/splats.h"
 #include "core/formats/ply_header.h"
+#include "core/splats/builder.h"
 
 /* What a vertex property can mean. Three-component ones are consecutive. */
 typedef enum conic_ply_column {
@@ -18,7 +19,9 @@ typedef enum conic_ply_column {
   CONIC_PLY_ROTATION = 20,
   CONIC_PLY_HARMONIC = 24,
   CONIC_PLY_COORDINATE = 27, /* of a texture: two */
-  CONIC_PLY_N_COLUMNS = 29
+  CONIC_PLY_DOT = 29,
+  CONIC_PLY_FIELD = 30, /* that is asked for */
+  CONIC_PLY_N_COLUMNS = 31
 } conic_ply_column;
 
 /* Rows that are converted at a time, column by column. */
@@ -45,6 +48,7 @@ typedef struct conic_ply_layout {
   int n_scales;        /* of GAUSSIANS: 2 or 3 */
   int has_harmonics, has_origin_positions;
   int is_origin_set;
+  int field_column;     /* where the field is read, its own or that of a property which means more; -1: none */
   int clip_property[2]; /* the lists of clip lines, by conic_clip_operator; -1: none */
   float cutoff;
   float srgb[256]; /* linear values of 8-bit codes */
@@ -55,6 +59,12 @@ typedef struct conic_ply_layout {
 conic_status conic_ply_layout_find(conic_input *input, const conic_ply_header *header,
                                    const conic_ply_element *vertices, float cutoff, int keeps_coordinates,
                                    conic_ply_layout *layout);
+
+/* Lists the vertices' properties as fields, and finds the one that is asked for. Errors: INPUT (it is not there),
+ * MEMORY. */
+conic_status conic_ply_layout_choose_field(conic_input *input, const conic_ply_header *header,
+                                           const conic_ply_element *vertices, const conic_read_options *options,
+                                           conic_builder *builder, conic_ply_layout *layout);
 
 /* Converts the first `n` rows of `block` into `points` from `first` on; sets the origin from the first finite position
  * where positions need one. */

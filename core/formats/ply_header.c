@@ -35,6 +35,10 @@ size_t conic_ply_type_bytes(conic_ply_type type) {
   return types[type].n_bytes;
 }
 
+const char *conic_ply_type_name(conic_ply_type type) {
+  return types[type].names[conic_ply_type_is_integer(type)];
+}
+
 int conic_ply_type_is_integer(conic_ply_type type) {
   return type < CONIC_PLY_FLOAT;
 }

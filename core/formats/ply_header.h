@@ -57,6 +57,8 @@ const conic_ply_element *conic_ply_find_element(const conic_ply_header *header, 
 int conic_ply_find_property(const conic_ply_header *header, const conic_ply_element *element, const char *name);
 
 size_t conic_ply_type_bytes(conic_ply_type type);
+/* "uint8", "float" … */
+const char *conic_ply_type_name(conic_ply_type type);
 int conic_ply_type_is_integer(conic_ply_type type);
 
 /* The least and largest value of an integer type. */

@@ -15,8 +15,8 @@
 /* Rows that are laid out at a time, and the most values and bytes of one. */
 enum {
   BLOCK = 256,
-  MAX_VALUES = 24,
-  MAX_BINARY_BYTES = 3 * 8 + 19 * 4 + 2,
+  MAX_VALUES = 25,
+  MAX_BINARY_BYTES = 3 * 8 + 19 * 4 + 3,
   MAX_TEXT_BYTES = MAX_VALUES * CONIC_NUMBER_ROOM
 };
 
@@ -135,6 +135,8 @@ static void print_header(const conic_splats_writer *writer) {
     print_properties(to, writer->has_byte_colors ? "uchar" : "float", "red green blue");
   if (writer->fields & CONIC_SPLATS_OPACITIES)
     print_properties(to, "float", "opacity");
+  if (writer->fields & CONIC_SPLATS_DOTS)
+    print_properties(to, "uchar", "dot");
   if (writer->fields & CONIC_SPLATS_CLIPS)
     fprintf(to, "property list uchar float clip_and\nproperty list uchar float clip_or\n");
   fprintf(to, "end_header\n");
@@ -244,6 +246,8 @@ static void put_row(conic_splats_writer *writer, row_cursor *row, const conic_sp
   }
   if (writer->fields & CONIC_SPLATS_OPACITIES)
     put_float(row, batch->opacity[i]);
+  if (writer->fields & CONIC_SPLATS_DOTS)
+    put_byte(row, batch->dot[i] != 0.0f);
   if (writer->fields & CONIC_SPLATS_CLIPS)
     put_clip(writer, row, batch, i);
   if (row->encoding == CONIC_PLY_ASCII)

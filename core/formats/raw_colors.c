@@ -3,11 +3,17 @@
 #include "core/base/color.h"
 #include "core/base/memory.h"
 
-float conic_raw_colors_largest(const conic_splats *points, float largest) {
+static int is_upper_half(float value) {
+  return value >= 0.0f && value <= 65280.0f && value == (float)((int)value & 0xff00);
+}
+
+void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range) {
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
-    for (size_t i = 0; i < points->count; i++)
-      largest = points->color[channel][i] > largest ? points->color[channel][i] : largest;
-  return largest;
+    for (size_t i = 0; i < points->count; i++) {
+      float value = points->color[channel][i];
+      range->largest = value > range->largest ? value : range->largest;
+      range->has_low_bits |= !is_upper_half(value);
+    }
 }
 
 static void drop_colors(conic_context *context, conic_splats *points) {
@@ -17,12 +23,21 @@ static void drop_colors(conic_context *context, conic_splats *points) {
   }
 }
 
-conic_status conic_raw_colors_scale(conic_context *context, float largest, int may_be_fractions,
+/* What white is. A picture of 16 bits whose brightest value is a sixteenth of white would be black to the eye: such
+ * values are a camera's 12 bits. */
+static int find_whole(const conic_raw_range *range, int may_be_fractions) {
+  float largest = range->largest;
+  if (largest <= 255.0f)
+    return may_be_fractions && largest <= 1.0f ? 1 : 255;
+  return !range->has_low_bits ? 65280 : largest <= 4095.0f ? 4095 : 65535;
+}
+
+conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, int may_be_fractions,
                                     conic_raw_scale *scale) {
   *scale = (conic_raw_scale){0, NULL};
-  if (!(largest > 0.0f))
+  if (!(range->largest > 0.0f))
     return CONIC_OK;
-  int whole = may_be_fractions && largest <= 1.0f ? 1 : largest <= 255.0f ? 255 : 65535;
+  int whole = find_whole(range, may_be_fractions);
   float *table = conic_memory_allocate(context, (size_t)whole + 1, sizeof *table);
   if (!table)
     return CONIC_ERROR_MEMORY;
@@ -43,10 +58,11 @@ void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t 
 
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions) {
   conic_raw_scale scale;
+  conic_raw_range range = {0.0f, 0};
   if (!points->color[0])
     return CONIC_OK;
-  conic_status status =
-      conic_raw_colors_scale(context, conic_raw_colors_largest(points, 0.0f), may_be_fractions, &scale);
+  conic_raw_colors_see(points, &range);
+  conic_status status = conic_raw_colors_scale(context, &range, may_be_fractions, &scale);
   if (status != CONIC_OK)
     return status;
   if (!scale.table)

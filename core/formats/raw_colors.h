@@ -5,25 +5,31 @@
 
 #include "conic/splats.h"
 
-/* The largest value, if it is above `largest`; else that. */
-float conic_raw_colors_largest(const conic_splats *points, float largest);
+/* What tells the scale: the largest value, and whether any is no multiple of 256. Zeroed: none was seen. */
+typedef struct conic_raw_range {
+  float largest;
+  int has_low_bits;
+} conic_raw_range;
 
-/* How to decode values of which that is the largest: what they are fractions of, and the linear value of every whole
- * one up to it, which is null where the colours mean nothing. The caller releases `table`. Errors: MEMORY. */
+void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range);
+
+/* How to decode values of that range: what they are fractions of, and the linear value of every whole one up to it,
+ * which is null where the colours mean nothing. The caller releases `table`. Errors: MEMORY. */
 typedef struct conic_raw_scale {
   int whole;
   float *table;
 } conic_raw_scale;
 
-conic_status conic_raw_colors_scale(conic_context *context, float largest, int may_be_fractions,
+conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, int may_be_fractions,
                                     conic_raw_scale *scale);
 
 /* Decodes n values in place. */
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
 /* Decodes sRGB values in place, by the largest of them: up to 1 are fractions (where `may_be_fractions`), up to 255
- * codes of 8 bits, beyond that codes of 16. Where the largest is 0 nobody has filled them in, and they are dropped: the
- * points are white. Errors: MEMORY. */
+ * codes of 8 bits, up to 4095 of 12, beyond that of 16. Codes of 16 bits that are all multiples of 256 are codes of 8
+ * bits in the upper half, of which 255 × 256 is white. Where the largest is 0 nobody has filled them in, and they are
+ * dropped: the points are white. Errors: MEMORY. */
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);
 
 #endif

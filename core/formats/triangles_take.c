@@ -8,7 +8,7 @@
 #include "core/formats/material_file.h"
 #include "core/splats/faces.h"
 
-/* Moves the model's vertices, their colours and normals, and its faces. */
+/* Moves the model's vertices, their colours, normals and scalars, and its faces. */
 static void take_arrays(conic_model *model, conic_triangles *triangles) {
   conic_splats *points = &model->points;
   triangles->count = model->n_triangles;
@@ -18,7 +18,9 @@ static void take_arrays(conic_model *model, conic_triangles *triangles) {
   memcpy(triangles->position, points->position, sizeof triangles->position);
   memcpy(triangles->color, points->color, sizeof triangles->color);
   memcpy(triangles->normal, points->normal, sizeof triangles->normal);
+  triangles->scalar = points->scalar;
   triangles->n_normals = triangles->normal[0] ? points->count : 0;
+  points->scalar = NULL;
   memset(points->position, 0, sizeof points->position);
   memset(points->color, 0, sizeof points->color);
   memset(points->normal, 0, sizeof points->normal);
@@ -140,6 +142,21 @@ static conic_status take_pictures(conic_context *context, conic_faces *faces, co
   return status;
 }
 
+/* One more, white, is for triangles without any. */
+static conic_status take_made(conic_context *context, conic_faces *faces, conic_triangles *triangles) {
+  size_t n = faces->n_made;
+  if (n == 0)
+    return CONIC_OK;
+  conic_status status = allocate_materials(context, n + 1, triangles);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(triangles->materials, faces->made, n * sizeof *faces->made);
+  faces->n_made = 0;
+  triangles->material = faces->material;
+  faces->material = NULL;
+  return CONIC_OK;
+}
+
 conic_status conic_triangles_take(conic_context *context, conic_model *model, conic_triangles *triangles) {
   conic_faces *faces = model->faces;
   conic_status status = CONIC_OK;
@@ -155,6 +172,8 @@ conic_status conic_triangles_take(conic_context *context, conic_model *model, co
       status = take_named_materials(context, faces, triangles);
     if (status == CONIC_OK)
       status = take_pictures(context, faces, triangles);
+    if (status == CONIC_OK)
+      status = take_made(context, faces, triangles);
   }
   conic_faces_destroy(context, faces);
   model->faces = NULL;

@@ -1,211 +1,183 @@
 #include "core/formats/xyz.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "core/files/number.h"
+#include "core/base/message.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
-#include "core/splats/builder.h"
-
-enum { MAX_VALUES = 9, BLOCK = 256 };
+#include "core/formats/xyz_heading.h"
 
 typedef struct xyz_reader {
   conic_input *input;
   conic_builder builder;
-  int has_count; /* the file says how many points there are */
-  uint64_t n_declared, count_line;
-  int n_values;      /* a line; 0: none has been read */
-  int color, normal; /* the first of three values; 0: there are none */
+  conic_xyz_heading heading;
   int is_origin_set;
-  double block[BLOCK][MAX_VALUES];
+  int field;                /* the column that scalars come from; −1: none */
+  uint64_t n_odd, odd_line; /* lines that have other values than the header says, and the first of them */
 } xyz_reader;
 
-static int is_comment(const char *word, size_t length) {
-  return length == 0 || word[0] == '#' || (length >= 2 && word[0] == '/' && word[1] == '/');
+static void find_origin(xyz_reader *reader, const double *p) {
+  if (reader->is_origin_set || !(p[0] - p[0] == 0.0 && p[1] - p[1] == 0.0 && p[2] - p[2] == 0.0))
+    return;
+  memcpy(reader->builder.model->points.origin, p, 3 * sizeof *p);
+  reader->is_origin_set = 1;
 }
 
-/* The values of a line, none where it is empty or a comment; one more than there is room for is wrong. */
-static conic_status read_values(xyz_reader *reader, double *values, int *n) {
-  for (*n = 0;; ++*n) {
-    const char *word;
-    size_t length;
-    double value;
-    conic_status status = conic_input_word(reader->input, &word, &length);
-    if (status != CONIC_OK)
-      return status;
-    if (length == 0 || (*n == 0 && is_comment(word, length)))
-      return CONIC_OK;
-    if (conic_number_parse(word, length, &value) != length)
-      return conic_input_wrong(reader->input, "a value is not a number");
-    if (*n == MAX_VALUES)
-      return conic_input_wrong(reader->input, "a line has more than 9 values");
-    values[*n] = value;
-  }
-}
-
-/* The first line's lone value. A point takes at least 6 bytes, "0 0 0" and a line's end, which the last may lack. */
-static conic_status take_count(xyz_reader *reader, double value) {
-  uint64_t remaining = conic_input_remaining_bytes(reader->input);
-  if (!(value >= 0.0 && value <= (double)CONIC_MAX_POINTS) || value != (double)(uint64_t)value)
-    return conic_input_wrong(reader->input, "the number of points is no whole number in range");
-  reader->has_count = 1;
-  reader->n_declared = (uint64_t)value;
-  reader->count_line = reader->input->line;
-  if (remaining < UINT64_MAX && reader->n_declared > (remaining + 1) / 6)
-    return conic_input_wrong(reader->input, "the file is too short for the %llu points that it declares",
-                             (unsigned long long)reader->n_declared);
-  return CONIC_OK;
-}
-
-static conic_status check_row(xyz_reader *reader, int n) {
-  if (reader->n_values && n != reader->n_values)
-    return conic_input_wrong(reader->input, "a line has %d values, those before it have %d", n, reader->n_values);
-  if (n < 3 || n == 5 || n == 8)
-    return conic_input_wrong(reader->input, "a line has %d values; 3, 4, 6, 7 or 9 are understood", n);
-  reader->n_values = n;
-  return CONIC_OK;
-}
-
-/* Up to BLOCK points into the reader's block. */
-static conic_status read_block(xyz_reader *reader, size_t *n_rows, int *is_done) {
-  conic_status status = CONIC_OK;
-  for (*n_rows = 0; *n_rows < BLOCK && !*is_done && status == CONIC_OK;) {
-    int n;
-    status = read_values(reader, reader->block[*n_rows], &n);
-    if (status == CONIC_OK && n == 1 && !reader->n_values && !reader->has_count)
-      status = take_count(reader, reader->block[*n_rows][0]);
-    else if (status == CONIC_OK && n > 0) {
-      status = check_row(reader, n);
-      ++*n_rows;
-    }
-    if (status == CONIC_OK)
-      status = conic_input_next_line(reader->input, is_done);
-  }
-  return status;
-}
-
-static int looks_like_normals(const xyz_reader *reader, int first, size_t n_rows) {
-  int n_unit = 0, n_other = 0;
-  for (size_t i = 0; i < n_rows; i++) {
-    const double *v = reader->block[i] + first;
-    double length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    if (v[0] < 0.0 || v[1] < 0.0 || v[2] < 0.0)
-      return 1;
-    n_unit += length2 > 0.95 * 0.95 && length2 < 1.05 * 1.05;
-    n_other += length2 >= 1.05 * 1.05 || (length2 > 0.0 && length2 <= 0.95 * 0.95);
-  }
-  return n_unit > 0 && n_other == 0;
-}
-
-static conic_status choose_columns(xyz_reader *reader, size_t n_rows) {
-  conic_status status = CONIC_OK;
-  if (reader->n_values == 7)
-    reader->color = 4;
-  else if (reader->n_values == 6 && looks_like_normals(reader, 3, n_rows))
-    reader->normal = 3;
-  else if (reader->n_values == 6)
-    reader->color = 3;
-  else if (reader->n_values == 9) {
-    int is_first = looks_like_normals(reader, 3, n_rows) && !looks_like_normals(reader, 6, n_rows);
-    reader->normal = is_first ? 3 : 6;
-    reader->color = is_first ? 6 : 3;
-  }
-  if (reader->color)
-    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
-  if (status == CONIC_OK && reader->normal)
-    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
-  return status;
-}
-
-static void find_origin(xyz_reader *reader, size_t n_rows) {
-  for (size_t i = 0; i < n_rows && !reader->is_origin_set; i++) {
-    const double *p = reader->block[i];
-    if (!(p[0] - p[0] == 0.0 && p[1] - p[1] == 0.0 && p[2] - p[2] == 0.0))
-      continue;
-    memcpy(reader->builder.model->points.origin, p, 3 * sizeof *p);
-    reader->is_origin_set = 1;
-  }
-}
-
-static void store_row(const xyz_reader *reader, const double *values, size_t i, conic_splats *points) {
-  for (int axis = 0; axis < 3; axis++) {
-    points->position[axis][i] = (float)(values[axis] - points->origin[axis]);
-    if (reader->color)
-      points->color[axis][i] = (float)values[reader->color + axis];
-    if (reader->normal)
-      points->normal[axis][i] = (float)values[reader->normal + axis];
-  }
-}
-
-static conic_status append_block(xyz_reader *reader, size_t n_rows) {
+static conic_status append_point(xyz_reader *reader, const double values[CONIC_TEXT_N_MEANINGS], double scalar) {
   conic_splats *points = &reader->builder.model->points;
-  conic_status status = CONIC_OK;
-  if (conic_builder_points(&reader->builder) + n_rows > CONIC_MAX_POINTS)
+  if (conic_builder_points(&reader->builder) >= CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
-  if (conic_builder_points(&reader->builder) == 0)
-    status = choose_columns(reader, n_rows);
-  if (status == CONIC_OK)
-    status = conic_builder_reserve_points(&reader->builder, points->count + n_rows);
+  conic_status status = conic_builder_reserve_points(&reader->builder, points->count + 1);
   if (status != CONIC_OK)
     return status;
-  find_origin(reader, n_rows);
-  for (size_t i = 0; i < n_rows; i++)
-    store_row(reader, reader->block[i], points->count + i, points);
-  points->count += n_rows;
+  find_origin(reader, values);
+  for (int axis = 0; axis < 3; axis++) {
+    points->position[axis][points->count] = (float)(values[axis] - points->origin[axis]);
+    if (points->color[axis])
+      points->color[axis][points->count] = (float)values[CONIC_TEXT_RED + axis];
+    if (points->normal[axis])
+      points->normal[axis][points->count] = (float)values[CONIC_TEXT_NORMAL + axis];
+  }
+  if (points->scalar)
+    points->scalar[points->count] = (float)scalar;
+  points->count++;
   return conic_builder_deliver(&reader->builder, 0);
 }
 
-static conic_status check_count(const xyz_reader *reader) {
-  uint64_t count = conic_builder_points(&reader->builder);
-  if (reader->has_count && count != reader->n_declared)
-    return conic_input_wrong(reader->input, "%llu points, where line %llu declares %llu", (unsigned long long)count,
-                             (unsigned long long)reader->count_line, (unsigned long long)reader->n_declared);
-  if (count == 0 && !reader->has_count)
-    return conic_input_wrong(reader->input, "the file ends without a point");
+/* A file may hold several clouds, each after its number of points. */
+static int is_next_count(const xyz_reader *reader, size_t n) {
+  return n == 1 && reader->heading.has_count && conic_builder_points(&reader->builder) == reader->heading.n_declared;
+}
+
+static conic_status take_odd_line(xyz_reader *reader, size_t n) {
+  size_t n_columns = reader->heading.columns.n;
+  if (reader->heading.names != CONIC_XYZ_IN_HEADER)
+    return conic_input_wrong(reader->input, "a line has %zu values, those before it have %zu", n, n_columns);
+  if (reader->n_odd++ == 0)
+    reader->odd_line = reader->input->line;
   return CONIC_OK;
 }
 
-conic_status conic_xyz_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
-  xyz_reader reader = {.input = input};
-  int is_done = 0;
-  input->has_commas = 1;
-  conic_status status = conic_builder_begin(input->context, model, 0, delivery, &reader.builder);
-  while (status == CONIC_OK && !is_done) {
-    size_t n_rows;
-    status = read_block(&reader, &n_rows, &is_done);
-    if (status == CONIC_OK && n_rows > 0)
-      status = append_block(&reader, n_rows);
+/* Columns that somebody has named and that mean nothing may hold anything. */
+static conic_status read_row(xyz_reader *reader, conic_text_word line) {
+  const conic_text_columns *columns = &reader->heading.columns;
+  conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
+  double values[CONIC_TEXT_N_MEANINGS] = {0.0}, scalar = NAN;
+  size_t n = conic_xyz_split(&reader->heading, line, words);
+  if (is_next_count(reader, n))
+    return conic_xyz_take_count(reader->input, words[0], &reader->heading);
+  if (n != columns->n)
+    return take_odd_line(reader, n);
+  for (size_t i = 0; i < n; i++) {
+    int meaning = columns->meaning[i];
+    double value;
+    int may_be_anything = meaning < 0 && reader->heading.names != CONIC_XYZ_UNNAMED;
+    if (may_be_anything && (int)i != reader->field)
+      continue;
+    if (!conic_text_number(&reader->heading.dialect, words[i], &value)) {
+      if (may_be_anything)
+        continue;
+      return conic_input_wrong(reader->input, "a value is not a number");
+    }
+    if (meaning >= 0)
+      values[meaning] = value;
+    if ((int)i == reader->field)
+      scalar = value;
   }
+  return append_point(reader, values, scalar);
+}
+
+/* Every column is a field, and one without a name goes by its number, from 1. */
+static conic_status choose_field(xyz_reader *reader, const conic_read_options *options) {
+  const conic_text_columns *columns = &reader->heading.columns;
+  conic_status status = CONIC_OK;
+  for (size_t i = 0; i < columns->n && status == CONIC_OK; i++) {
+    char number[24];
+    const char *name = columns->name[i];
+    snprintf(number, sizeof number, "%zu", i + 1);
+    if (strcmp(name, "-") == 0)
+      name = number;
+    status = conic_fields_add(&reader->builder, name, strlen(name), "text");
+  }
+  return status == CONIC_OK ? conic_fields_choose(&reader->builder, reader->input->name, options, &reader->field)
+                            : status;
+}
+
+static conic_status read_rows(xyz_reader *reader) {
+  conic_status status = CONIC_OK;
+  if (reader->heading.columns.has_colors)
+    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
+  if (status == CONIC_OK && reader->heading.columns.has_normals)
+    status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
+  for (int is_done = 0; status == CONIC_OK && !is_done;) {
+    conic_text_word line;
+    status = conic_input_line(reader->input, &line.text, &line.length);
+    if (status == CONIC_OK && !conic_xyz_is_comment(line))
+      status = read_row(reader, line);
+    if (status == CONIC_OK)
+      status = conic_input_next_line(reader->input, &is_done);
+  }
+  return status;
+}
+
+static conic_status check_counts(const xyz_reader *reader, int is_again) {
+  const conic_xyz_heading *heading = &reader->heading;
+  conic_context *context = reader->input->context;
+  uint64_t count = conic_builder_points(&reader->builder);
+  if (count == 0 && !(heading->has_count && heading->n_declared == 0))
+    return conic_input_wrong(reader->input, "the file ends without a point");
+  if (reader->n_odd > count)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: most lines have other values than the header's %zu (line %llu)",
+                      reader->input->name, heading->columns.n, (unsigned long long)reader->odd_line);
+  if (reader->n_odd && !is_again)
+    conic_log(context, CONIC_LOG_WARNING,
+              "%s: passed over: %llu lines with other values than the header's %zu "
+              "(the first is line %llu)",
+              reader->input->name, (unsigned long long)reader->n_odd, heading->columns.n,
+              (unsigned long long)reader->odd_line);
+  if (heading->has_count && count != heading->n_declared && !is_again)
+    conic_log(context, CONIC_LOG_WARNING, "%s: line %llu declares %llu points; the %llu that are there are read",
+              reader->input->name, (unsigned long long)heading->count_line, (unsigned long long)heading->n_declared,
+              (unsigned long long)count);
+  return CONIC_OK;
+}
+
+conic_status conic_xyz_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
+  xyz_reader reader = {.input = input};
+  int has_points, is_again = delivery && delivery->is_again;
+  conic_status status = conic_builder_begin(input->context, model, 0, delivery, &reader.builder);
   if (status == CONIC_OK)
-    status = check_count(&reader);
+    status = conic_xyz_heading_read(input, options->columns, &reader.heading, &has_points);
+  if (status == CONIC_OK && has_points && !is_again)
+    conic_xyz_tell_columns(input, &reader.heading);
+  if (status == CONIC_OK && has_points)
+    status = choose_field(&reader, options);
+  if (status == CONIC_OK && has_points)
+    status = read_rows(&reader);
+  if (status == CONIC_OK)
+    status = check_counts(&reader, is_again);
   if (status == CONIC_OK && !delivery)
     status = conic_raw_colors_decode(input->context, &model->points, 1);
   return status == CONIC_OK ? conic_builder_deliver(&reader.builder, 1) : status;
 }
 
-static int is_separator(char c) {
-  return c == ' ' || c == '\t' || c == ',' || c == '\r';
-}
-
 int conic_xyz_is_likely(const char *bytes, size_t n) {
-  const char *c = bytes, *end = bytes + n;
-  int n_values = 0;
-  while (c < end) {
-    double value;
+  conic_xyz_heading heading;
+  int has_names = 0;
+  for (const char *c = bytes, *end = bytes + n; c < end;) {
     const char *line_end = memchr(c, '\n', (size_t)(end - c));
-    line_end = line_end ? line_end : end;
-    while (c < line_end && is_separator(*c))
-      c++;
-    if (c == line_end && n_values > 0)
-      return 1;
-    if (n_values == 0 && is_comment(c, (size_t)(line_end - c))) {
-      c = line_end + (line_end < end);
-      continue;
+    conic_text_word line = {c, (size_t)((line_end ? line_end : end) - c)};
+    if (!conic_xyz_is_comment(line)) {
+      if (has_names || conic_text_is_numbers(line))
+        return conic_text_is_numbers(line);
+      if (!conic_xyz_names_columns(line, &heading))
+        return 0;
+      has_names = 1;
     }
-    size_t length = conic_number_parse(c, (size_t)(line_end - c), &value);
-    if (length == 0 || (c + length < line_end && !is_separator(c[length])))
-      return 0;
-    c += length;
-    n_values++;
+    c = line_end ? line_end + 1 : end;
   }
-  return n_values > 0;
+  return 0;
 }

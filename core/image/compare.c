@@ -18,7 +18,8 @@ typedef struct plane_sums {
 static plane_sums compare_plane(const conic_image *a, const conic_image *b, conic_plane plane, unsigned char *differs) {
   const conic_plane_description *description = conic_plane_describe(plane);
   size_t n_channels = (size_t)description->n_channels, width = (size_t)a->width;
-  plane_sums sums = {.n_samples = (double)(conic_image_pixels(a) * n_channels)};
+  size_t n_compared = conic_compared_channels(a, b, (int)plane);
+  plane_sums sums = {.n_samples = (double)(conic_image_pixels(a) * n_compared)};
   for (size_t y = 0; y < (size_t)a->height; y++) {
     size_t first = y * width * n_channels;
     const unsigned char *a_row = (const unsigned char *)a->planes[plane] + first * 4;
@@ -28,7 +29,7 @@ static plane_sums compare_plane(const conic_image *a, const conic_image *b, coni
       continue;
     for (size_t i = 0; i < width * n_channels; i++) {
       uint32_t a_bits = conic_bits_at(a_row, i), b_bits = conic_bits_at(b_row, i);
-      if (a_bits == b_bits)
+      if (a_bits == b_bits || i % n_channels >= n_compared)
         continue;
       double difference = conic_sample_difference(a_bits, b_bits, description->is_uint);
       differs[y * width + i / n_channels] = 1;
@@ -72,6 +73,14 @@ static void compare_planes(const conic_image *a, const conic_image *b, conic_dif
     difference->differing_pixels += differs[i];
 }
 
+static int has_same_alpha(const conic_image *a, const conic_image *b) {
+  const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
+  size_t i = 0, n = conic_image_pixels(a);
+  while (i < n && conic_same_bits(a_rgba[4 * i + 3], b_rgba[4 * i + 3]))
+    i++;
+  return i == n;
+}
+
 static double psnr_of(double mean_square) {
   if (mean_square == 0.0)
     return (double)INFINITY;
@@ -108,7 +117,10 @@ conic_status conic_image_compare(conic_context *context, const conic_image *a, c
     return CONIC_ERROR_MEMORY;
   compare_planes(a, b, difference, differs);
   conic_memory_release(context, differs);
-  difference->identical = conic_image_planes(a) == conic_image_planes(b) && difference->differing_pixels == 0;
+  difference->lacks_alpha =
+      a->planes[CONIC_PLANE_RGBA] && b->planes[CONIC_PLANE_RGBA] && conic_compared_channels(a, b, CONIC_PLANE_RGBA) < 4;
+  difference->identical = conic_image_planes(a) == conic_image_planes(b) && difference->differing_pixels == 0 &&
+                          (a->lacks_alpha == b->lacks_alpha || has_same_alpha(a, b));
   conic_status status = compare_colors(context, a, b, difference);
   if (status == CONIC_OK)
     status = conic_largest_hole(context, a, b, &difference->largest_hole);

@@ -28,6 +28,12 @@ static inline double conic_sample_difference(uint32_t a_bits, uint32_t b_bits, i
   return difference >= 0.0 ? difference : (double)INFINITY;
 }
 
+/* Of a plane's channels, the first ones, which both images have. */
+static inline size_t conic_compared_channels(const conic_image *a, const conic_image *b, int plane) {
+  int is_without_alpha = plane == CONIC_PLANE_RGBA && (a->lacks_alpha || b->lacks_alpha);
+  return (size_t)conic_plane_describe((conic_plane)plane)->n_channels - (size_t)is_without_alpha;
+}
+
 /* A colour as a screen shows it, 0 to 1; NaN is -1, which no colour is. */
 static inline double conic_screen_value(float linear) {
   if (!(linear > 0.0f))

@@ -21,7 +21,7 @@ static float pixel_difference(const conic_image *a, const conic_image *b, unsign
       continue;
     const conic_plane_description *description = conic_plane_describe((conic_plane)plane);
     const unsigned char *a_pixel = pixel_of(a, plane, i), *b_pixel = pixel_of(b, plane, i);
-    for (size_t c = 0; c < (size_t)description->n_channels; c++) {
+    for (size_t c = 0; c < conic_compared_channels(a, b, plane); c++) {
       uint32_t a_bits = conic_bits_at(a_pixel, c), b_bits = conic_bits_at(b_pixel, c);
       double difference = a_bits == b_bits ? 0.0 : conic_sample_difference(a_bits, b_bits, description->is_uint);
       largest = difference > largest ? difference : largest;

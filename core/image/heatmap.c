@@ -34,9 +34,9 @@ static void paint(float position, float pixel[4]) {
 }
 
 /* The largest channel's difference; NaN where a channel's is none. Equal bits differ by nothing. */
-static double pixel_difference(const float *a, const float *b) {
+static double pixel_difference(const float *a, const float *b, size_t n_channels) {
   double largest = 0.0;
-  for (int c = 0; c < 4; c++) {
+  for (size_t c = 0; c < n_channels; c++) {
     if (conic_same_bits(a[c], b[c]))
       continue;
     double difference = fabs((double)a[c] - (double)b[c]);
@@ -64,10 +64,11 @@ conic_status conic_image_heatmap(conic_context *context, const conic_image *a, c
   conic_status status = begin_heatmap(context, a, b, heatmap);
   if (status != CONIC_OK)
     return status;
+  size_t n_channels = conic_compared_channels(a, b, CONIC_PLANE_RGBA);
   const float *a_rgba = a->planes[CONIC_PLANE_RGBA], *b_rgba = b->planes[CONIC_PLANE_RGBA];
   float *pixel = heatmap->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < conic_image_pixels(a); i++, pixel += 4) {
-    double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i);
+    double difference = pixel_difference(a_rgba + 4 * i, b_rgba + 4 * i, n_channels);
     if (difference > 0.0)
       paint(scale_position(difference, DARKEST_EXPONENT), pixel);
     pixel[3] = 1.0f;

@@ -1,8 +1,8 @@
 /* OpenEXR files through OpenEXRCore. Where that is not built in, conic_exr_write is UNSUPPORTED and conic_exr_read
  * leaves the file to OpenImageIO, which knows rgba only.
  *
- * Written: one part of scanlines, ZIP, the channels of conic_plane_describe in alphabetical order, FLOAT and UINT, and
- * the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */
+ * Written: one part of scanlines, the channels of conic_plane_describe in alphabetical order, FLOAT (or HALF) and UINT,
+ * and the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */
 #ifndef CONIC_IMAGE_EXR_H
 #define CONIC_IMAGE_EXR_H
 
@@ -12,7 +12,8 @@
 conic_status conic_exr_check(conic_context *context, const char *path);
 
 /* Errors: ARGUMENT (an attribute that the format refuses), UNSUPPORTED, MEMORY, IO. */
-conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image);
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
+                             const conic_image_options *options);
 
 /* Errors: INPUT, UNSUPPORTED (deep or subsampled), MEMORY. */
 conic_status conic_exr_read(conic_context *context, const char *path, conic_image *image);

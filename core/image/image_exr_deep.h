@@ -1,29 +1,43 @@
-/* Deep EXR files: any number of samples a pixel, each with a depth, a number and a weight. */
+/* Deep EXR files: any number of samples a pixel, each with a colour, a depth, a number and a weight. */
 #ifndef CONIC_IMAGE_EXR_DEEP_H
 #define CONIC_IMAGE_EXR_DEEP_H
 
 #include "conic/image.h"
 
+typedef struct conic_deep_sample {
+  float rgba[4]; /* premultiplied */
+  float depth, weight;
+  uint32_t id;
+} conic_deep_sample;
+
 /* A line of a deep picture: pixel x has counts[x] samples; those of the line lie one after the other. */
 typedef struct conic_deep_line {
   const uint32_t *counts;
   size_t n_samples;
-  const float *depths;
-  const uint32_t *ids;
-  const float *weights;
+  const conic_deep_sample *samples;
 } conic_deep_line;
+
+/* A line as it stands in the file. It begins as zeros, and its memory serves line after line. */
+typedef struct conic_deep_packed {
+  unsigned char *ends, *samples, *scratch;
+  size_t n_ends, n_samples, n_unpacked; /* bytes */
+  size_t ends_room, samples_room, scratch_room;
+} conic_deep_packed;
 
 typedef struct conic_deep_writer conic_deep_writer;
 
-/* Begins a deep scanline EXR without compression, channels Z, id and weight; no pixel has more than `most_samples`.
- * `header` gives the attributes and may be null; `path` stays the caller's and must outlive the writer. On success the
- * caller owns *writer, and ends it with finish or abandon. Errors: ARGUMENT (an attribute that the format refuses),
- * UNSUPPORTED (a build without OpenEXR), MEMORY, IO.
+/* Begins a deep scanline EXR, channels R, G, B, A, Z, id and weight, compressed (ZIPS) where the build has zlib; no
+ * pixel has more than `most_samples`. `header` gives the attributes and may be null; `path` stays the caller's and must
+ * outlive the writer. On success the caller owns *writer, and ends it with finish or abandon. Errors: ARGUMENT (an
+ * attribute that the format refuses), UNSUPPORTED (a build without OpenEXR), MEMORY, IO.
  */
 conic_status conic_deep_open(conic_context *context, const char *path, int width, int height, uint32_t most_samples,
                              const conic_image *header, conic_deep_writer **writer);
-/* Appends the next line from the top. Errors: MEMORY, IO. */
-conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_line *line);
+/* Packs a line, on any thread. Errors: UNSUPPORTED (more samples than a file can hold), MEMORY. */
+conic_status conic_deep_pack(conic_context *context, const conic_deep_line *line, int width, conic_deep_packed *packed);
+void conic_deep_packed_release(conic_context *context, conic_deep_packed *packed);
+/* Appends the next line from the top. Errors: IO. */
+conic_status conic_deep_append(conic_deep_writer *writer, const conic_deep_packed *packed);
 /* Completes the file and releases the writer, on failure too. Errors: IO. */
 conic_status conic_deep_finish(conic_deep_writer *writer);
 /* Drops the file and releases the writer; null is allowed. */

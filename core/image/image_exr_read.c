@@ -184,6 +184,38 @@ static void complete_rgba(const exr_reader *reader, int has_alpha) {
   }
 }
 
+static void take_floats(conic_attribute *to, conic_attribute_type type, const void *floats, size_t n_bytes) {
+  float values[16] = {0};
+  memcpy(values, floats, n_bytes);
+  to->type = type;
+  for (size_t i = 0; i < n_bytes / sizeof *values; i++)
+    to->values[i] = (double)values[i];
+}
+
+/* Whether it is of a type that conic writes. */
+static int take_attribute(const exr_attribute_t *from, conic_attribute *to) {
+  if (from->type == EXR_ATTR_STRING && from->string->str && strlen(from->string->str) < sizeof to->text) {
+    to->type = CONIC_ATTRIBUTE_TEXT;
+    memcpy(to->text, from->string->str, strlen(from->string->str) + 1);
+  } else if (from->type == EXR_ATTR_DOUBLE) {
+    to->type = CONIC_ATTRIBUTE_DOUBLE;
+    to->values[0] = from->d;
+  } else if (from->type == EXR_ATTR_M44D) {
+    to->type = CONIC_ATTRIBUTE_MATRIX;
+    memcpy(to->values, from->m44d->m, sizeof to->values);
+  } else if (from->type == EXR_ATTR_FLOAT)
+    take_floats(to, CONIC_ATTRIBUTE_FLOAT, &from->f, sizeof from->f);
+  else if (from->type == EXR_ATTR_V2F)
+    take_floats(to, CONIC_ATTRIBUTE_FLOAT_PAIR, from->v2f, sizeof *from->v2f);
+  else if (from->type == EXR_ATTR_M44F)
+    take_floats(to, CONIC_ATTRIBUTE_FLOAT_MATRIX, from->m44f, sizeof *from->m44f);
+  else if (from->type == EXR_ATTR_CHROMATICITIES)
+    take_floats(to, CONIC_ATTRIBUTE_CHROMATICITIES, from->chromaticities, sizeof *from->chromaticities);
+  else
+    return 0;
+  return 1;
+}
+
 /* Keeps the attributes of the types that conic writes, as far as there is room. */
 static void read_attributes(exr_reader *reader) {
   int32_t n = 0;
@@ -194,18 +226,7 @@ static void read_attributes(exr_reader *reader) {
     const exr_attribute_t *from;
     conic_attribute *to = &image->attributes[image->n_attributes];
     if (exr_get_attribute_by_index(reader->file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) != EXR_ERR_SUCCESS ||
-        strlen(from->name) >= sizeof to->name)
-      continue;
-    if (from->type == EXR_ATTR_STRING && from->string->str && strlen(from->string->str) < sizeof to->text) {
-      to->type = CONIC_ATTRIBUTE_TEXT;
-      memcpy(to->text, from->string->str, strlen(from->string->str) + 1);
-    } else if (from->type == EXR_ATTR_DOUBLE) {
-      to->type = CONIC_ATTRIBUTE_DOUBLE;
-      to->values[0] = from->d;
-    } else if (from->type == EXR_ATTR_M44D) {
-      to->type = CONIC_ATTRIBUTE_MATRIX;
-      memcpy(to->values, from->m44d->m, sizeof to->values);
-    } else
+        strlen(from->name) >= sizeof to->name || !take_attribute(from, to))
       continue;
     memcpy(to->name, from->name, strlen(from->name) + 1);
     image->n_attributes++;
@@ -240,6 +261,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
     conic_image_release(context, reader->image);
     return status;
   }
+  reader->image->lacks_alpha = planes & 1u << CONIC_PLANE_RGBA && !has_alpha;
   complete_rgba(reader, has_alpha);
   read_attributes(reader);
   return CONIC_OK;

@@ -100,6 +100,24 @@ conic_status conic_exr_fail(conic_exr_stream *stream, exr_result_t result, const
   return conic_fail(stream->context, otherwise, "%s: cannot %s: %s", stream->path, doing, message);
 }
 
+static exr_result_t add_floats(exr_context_t file, const conic_attribute *attribute) {
+  float values[16];
+  for (int i = 0; i < 16; i++)
+    values[i] = (float)attribute->values[i];
+  if (attribute->type == CONIC_ATTRIBUTE_FLOAT)
+    return exr_attr_set_float(file, 0, attribute->name, values[0]);
+  if (attribute->type == CONIC_ATTRIBUTE_FLOAT_PAIR)
+    return exr_attr_set_v2f(file, 0, attribute->name, &(exr_attr_v2f_t){.x = values[0], .y = values[1]});
+  if (attribute->type == CONIC_ATTRIBUTE_CHROMATICITIES) {
+    exr_attr_chromaticities_t chromaticities;
+    memcpy(&chromaticities, values, sizeof chromaticities);
+    return exr_attr_set_chromaticities(file, 0, attribute->name, &chromaticities);
+  }
+  exr_attr_m44f_t matrix;
+  memcpy(matrix.m, values, sizeof matrix.m);
+  return exr_attr_set_m44f(file, 0, attribute->name, &matrix);
+}
+
 static exr_result_t add_attribute(exr_context_t file, const conic_attribute *attribute) {
   exr_attr_m44d_t matrix;
   switch (attribute->type) {
@@ -110,6 +128,11 @@ static exr_result_t add_attribute(exr_context_t file, const conic_attribute *att
   case CONIC_ATTRIBUTE_MATRIX:
     memcpy(matrix.m, attribute->values, sizeof matrix.m);
     return exr_attr_set_m44d(file, 0, attribute->name, &matrix);
+  case CONIC_ATTRIBUTE_FLOAT:
+  case CONIC_ATTRIBUTE_FLOAT_PAIR:
+  case CONIC_ATTRIBUTE_FLOAT_MATRIX:
+  case CONIC_ATTRIBUTE_CHROMATICITIES:
+    return add_floats(file, attribute);
   }
   return EXR_ERR_INVALID_ARGUMENT;
 }

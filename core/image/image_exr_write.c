@@ -4,6 +4,7 @@
 
 #if CONIC_HAVE_OPENEXR
 
+#include <errno.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -23,17 +24,33 @@ typedef struct exr_chunk {
 
 typedef struct exr_writer {
   const conic_image *image;
+  const conic_image_options *options;
   exr_context_t file;
   exr_chunk *chunks;
 } exr_writer;
 
-static exr_result_t add_channels(exr_context_t file, const conic_image *image) {
+static exr_compression_t compression_of(const conic_image_options *options) {
+  static const exr_compression_t compressions[CONIC_N_COMPRESSIONS] = {EXR_COMPRESSION_ZIP, EXR_COMPRESSION_NONE,
+                                                                       EXR_COMPRESSION_RLE, EXR_COMPRESSION_ZIPS,
+                                                                       EXR_COMPRESSION_PIZ, EXR_COMPRESSION_PXR24};
+  return compressions[options->compression];
+}
+
+/* Places, depths and sums need floats; colours and directions look the same in half. */
+static exr_pixel_type_t type_of(int i_plane, const conic_image_options *options) {
+  int is_looked_at = i_plane == CONIC_PLANE_RGBA || i_plane == CONIC_PLANE_NORMAL || i_plane == CONIC_PLANE_ALBEDO;
+  if (conic_plane_describe((conic_plane)i_plane)->is_uint)
+    return EXR_PIXEL_UINT;
+  return is_looked_at && options->is_half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+}
+
+static exr_result_t add_channels(exr_context_t file, const exr_writer *writer) {
+  const conic_image *image = writer->image;
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     for (int c = 0; image->planes[i] && c < plane->n_channels; c++) {
       exr_result_t result =
-          exr_add_channel(file, 0, plane->channels[c], plane->is_uint ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
-                          EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+          exr_add_channel(file, 0, plane->channels[c], type_of(i, writer->options), EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
       if (result != EXR_ERR_SUCCESS)
         return result;
     }
@@ -41,17 +58,19 @@ static exr_result_t add_channels(exr_context_t file, const conic_image *image) {
   return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t write_header(exr_context_t file, const conic_image *image) {
+static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
+  const conic_image *image = writer->image;
+  exr_compression_t compression = compression_of(writer->options);
   int part;
   exr_result_t result = conic_exr_prepare_attributes(file, image);
   if (result == EXR_ERR_SUCCESS)
     result = exr_add_part(file, NULL, EXR_STORAGE_SCANLINE, &part);
   if (result == EXR_ERR_SUCCESS)
-    result = exr_initialize_required_attr_simple(file, 0, image->width, image->height, EXR_COMPRESSION_ZIP);
-  if (result == EXR_ERR_SUCCESS)
+    result = exr_initialize_required_attr_simple(file, 0, image->width, image->height, compression);
+  if (result == EXR_ERR_SUCCESS && (compression == EXR_COMPRESSION_ZIP || compression == EXR_COMPRESSION_ZIPS))
     result = exr_set_zip_compression_level(file, 0, ZIP_LEVEL);
   if (result == EXR_ERR_SUCCESS)
-    result = add_channels(file, image);
+    result = add_channels(file, writer);
   if (result == EXR_ERR_SUCCESS)
     result = conic_exr_add_attributes(file, image);
   if (result == EXR_ERR_SUCCESS)
@@ -67,7 +86,7 @@ static void point_channels(exr_encode_pipeline_t *pipeline, const conic_image *i
     channel->user_pixel_stride = conic_plane_describe((conic_plane)from.plane)->n_channels * 4;
     channel->user_line_stride = channel->user_pixel_stride * image->width;
     channel->user_bytes_per_element = 4;
-    channel->user_data_type = channel->data_type;
+    channel->user_data_type = (uint16_t)(channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT);
     channel->encode_from_ptr = first + (size_t)pipeline->chunk.start_y * (size_t)channel->user_line_stride;
   }
 }
@@ -117,10 +136,11 @@ static exr_result_t write_chunks(conic_context *context, exr_writer *writer, siz
   return result;
 }
 
-static conic_status write_stream(conic_context *context, const char *path, FILE *file, const conic_image *image) {
+static conic_status write_stream(conic_context *context, const char *path, FILE *file, const conic_image *image,
+                                 const conic_image_options *options) {
   conic_exr_stream stream;
   exr_context_initializer_t settings;
-  exr_writer writer = {.image = image};
+  exr_writer writer = {.image = image, .options = options};
   size_t n_chunks = 2 * (size_t)conic_context_threads(context);
   conic_exr_stream_init(&stream, context, path, file, &settings);
   writer.chunks = conic_memory_allocate_zeroed(context, n_chunks, sizeof *writer.chunks);
@@ -128,7 +148,7 @@ static conic_status write_stream(conic_context *context, const char *path, FILE 
     return CONIC_ERROR_MEMORY;
   exr_result_t result = exr_start_write(&writer.file, path, EXR_WRITE_FILE_DIRECTLY, &settings);
   if (result == EXR_ERR_SUCCESS)
-    result = write_header(writer.file, image);
+    result = write_header(writer.file, &writer);
   if (result == EXR_ERR_SUCCESS)
     result = write_chunks(context, &writer, n_chunks);
   exr_result_t finish = exr_finish(&writer.file);
@@ -138,12 +158,35 @@ static conic_status write_stream(conic_context *context, const char *path, FILE 
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 
-conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image) {
+/* Into what cannot be gone back in, as a pipe: an EXR's beginning says where its parts are. */
+static conic_status write_by_way(conic_context *context, const char *path, FILE *to, const conic_image *image,
+                                 const conic_image_options *options) {
+  char bytes[1 << 14];
+  FILE *spool = tmpfile();
+  if (!spool)
+    return conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: no temporary file: %s", path, strerror(errno));
+  conic_status status = write_stream(context, path, spool, image, options);
+  rewind(spool);
+  for (size_t n; status == CONIC_OK && (n = fread(bytes, 1, sizeof bytes, spool)) > 0;)
+    if (fwrite(bytes, 1, n, to) != n)
+      break; /* the stream remembers, and commit says so */
+  if (ferror(spool))
+    status = conic_fail(context, CONIC_ERROR_IO, "%s: cannot write: the temporary file cannot be read", path);
+  fclose(spool);
+  return status;
+}
+
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
+                             const conic_image_options *options) {
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
-  return conic_output_end(output, write_stream(context, path, conic_output_stream(output), image));
+  FILE *stream = conic_output_stream(output);
+  int is_plain = stream != stdout && ftello(stream) == 0;
+  status = is_plain ? write_stream(context, path, stream, image, options)
+                    : write_by_way(context, path, stream, image, options);
+  return conic_output_end(output, status);
 }
 
 conic_status conic_exr_check(conic_context *context, const char *path) {
@@ -158,8 +201,9 @@ conic_status conic_exr_check(conic_context *context, const char *path) {
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: this build is without OpenEXR", path);
 }
 
-conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image) {
-  (void)image;
+conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
+                             const conic_image_options *options) {
+  (void)image, (void)options;
   return conic_exr_check(context, path);
 }
 

@@ -2,14 +2,28 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 
 #include "conic/image.h"
 #include "core/base/message.h"
-#include "core/files/file.h"
+#include "core/base/options.h"
+#include "core/files/guard.h"
 #include "core/image/image_common.h"
 #include "core/image/image_exr.h"
 #include "core/image/image_foreign.h"
 #include "core/image/image_pfm.h"
+#include "core/image/image_png.h"
+
+void conic_image_options_init_sized(conic_image_options *options, size_t size) {
+  static const conic_image_options own = {.size = sizeof own};
+  conic_options_give(options, size, &own);
+}
+
+const char *conic_compression_name(conic_compression compression) {
+  static const char *const names[CONIC_N_COMPRESSIONS] = {"zip", "none", "rle", "zips", "piz", "pxr24"};
+  return (int)compression >= 0 && compression < CONIC_N_COMPRESSIONS ? names[compression] : NULL;
+}
 
 /* The part of PATH's name after its last dot; empty where there is none. */
 static const char *ending_of(const char *path) {
@@ -27,38 +41,72 @@ static conic_status check_image(conic_context *context, const char *path, const 
   return CONIC_OK;
 }
 
-static conic_status check_name(conic_context *context, const char *path) {
+/* Which kind of file PATH means. */
+static conic_status find_format(conic_context *context, const char *path, const conic_image_options *options,
+                                const char **format) {
   if (!path || !*path)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name to write to");
-  if (strcmp(path, "-") == 0)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: cannot be written to standard output");
-  if (!*ending_of(path))
+  *format = ending_of(path);
+  if (!**format && options->format)
+    *format = options->format;
+  else if (strcmp(path, "-") == 0)
+    *format = "png";
+  if (!**format)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the name needs an ending, such as .exr", path);
   return CONIC_OK;
 }
 
-conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes) {
-  conic_status status = check_name(context, path);
-  if (status != CONIC_OK)
-    return status;
-  if (conic_file_has_ending(path, "exr"))
-    return conic_exr_check(context, path);
-  if (conic_file_has_ending(path, "pfm"))
-    return conic_pfm_check(context, path, planes);
-  return conic_foreign_check(context, path, planes);
+static conic_status take_options(conic_context *context, const conic_image_options *options, conic_image_options *own) {
+  conic_image_options_init(own);
+  if ((options && !conic_options_take(own, options)) || !conic_compression_name(own->compression))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: the options were not initialised");
+  return CONIC_OK;
 }
 
-conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image) {
-  conic_status status = check_name(context, path);
+conic_status conic_image_check_output_as(conic_context *context, const char *path, unsigned planes,
+                                         const conic_image_options *options) {
+  conic_image_options own;
+  const char *format = NULL;
+  conic_status status = take_options(context, options, &own);
+  if (status == CONIC_OK)
+    status = find_format(context, path, &own, &format);
+  if (status != CONIC_OK)
+    return status;
+  if (strcasecmp(format, "exr") == 0)
+    return conic_exr_check(context, path);
+  if (strcasecmp(format, "pfm") == 0)
+    return conic_pfm_check(context, path, planes);
+  if (strcasecmp(format, "png") == 0)
+    return conic_png_check(context, path, planes);
+  return conic_foreign_check(context, path, format, planes);
+}
+
+conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes) {
+  return conic_image_check_output_as(context, path, planes, NULL);
+}
+
+conic_status conic_image_write_as(conic_context *context, const char *path, const conic_image *image,
+                                  const conic_image_options *options) {
+  conic_image_options own;
+  const char *format = NULL;
+  conic_status status = take_options(context, options, &own);
+  if (status == CONIC_OK)
+    status = find_format(context, path, &own, &format);
   if (status == CONIC_OK)
     status = check_image(context, path, image);
   if (status != CONIC_OK)
     return status;
-  if (conic_file_has_ending(path, "exr"))
-    return conic_exr_write(context, path, image);
-  if (conic_file_has_ending(path, "pfm"))
+  if (strcasecmp(format, "exr") == 0)
+    return conic_exr_write(context, path, image, &own);
+  if (strcasecmp(format, "pfm") == 0)
     return conic_pfm_write(context, path, image);
-  return conic_foreign_write(context, path, image);
+  if (strcasecmp(format, "png") == 0)
+    return conic_png_write(context, path, image);
+  return conic_foreign_write(context, path, format, image);
+}
+
+conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image) {
+  return conic_image_write_as(context, path, image, NULL);
 }
 
 conic_status conic_image_read(conic_context *context, const char *path, conic_image *image) {
@@ -69,10 +117,14 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   FILE *file = fopen(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+  struct stat found;
+  conic_status status = fstat(fileno(file), &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
   errno = 0;
   size_t n = fread(start, 1, sizeof start, file);
   int error = ferror(file) ? errno : 0;
   fclose(file);
+  if (status != CONIC_OK)
+    return status;
   if (error)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(error));
   if (n == 0)
@@ -81,5 +133,7 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
     return conic_exr_read(context, path, image);
   if (start[0] == 'P' && (start[1] == 'F' || start[1] == 'f'))
     return conic_pfm_read(context, path, image);
+  if (n == 4 && memcmp(start, "\x89PNG", 4) == 0)
+    return conic_png_read(context, path, image);
   return conic_foreign_read(context, path, image);
 }

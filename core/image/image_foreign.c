@@ -32,14 +32,14 @@ static int take_bytes(void *cookie, const void *bytes, size_t n_bytes) {
 }
 
 static conic_status write_samples(conic_context *context, const conic_bridge *bridge, const char *path,
-                                  const conic_bridge_picture *picture, const void *samples) {
+                                  const char *format, const conic_bridge_picture *picture, const void *samples) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
   conic_output *output;
   conic_status status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);
-  conic_bridge_result result = bridge->write(path, picture, samples, take_bytes, stream, message);
+  conic_bridge_result result = bridge->write(format, picture, samples, take_bytes, stream, message);
   if (result == CONIC_BRIDGE_OK || ferror(stream))
     return conic_output_commit(output); /* which also says what is wrong with the stream */
   conic_output_abandon(output);
@@ -48,14 +48,14 @@ static conic_status write_samples(conic_context *context, const conic_bridge *br
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
 }
 
-/* The format that PATH's ending means, if it holds one of these planes. */
-static conic_status find_writer(conic_context *context, const char *path, unsigned planes, const conic_bridge **bridge,
-                                conic_bridge_writer *writer) {
+/* The format that the ending means, if it holds one of these planes. */
+static conic_status find_writer(conic_context *context, const char *path, const char *ending, unsigned planes,
+                                const conic_bridge **bridge, conic_bridge_writer *writer) {
   char message[CONIC_BRIDGE_MESSAGE] = "";
   *bridge = conic_bridge_load(message);
   if (!*bridge)
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: %s", path, message);
-  conic_bridge_result result = (*bridge)->find_writer(path, writer, message);
+  conic_bridge_result result = (*bridge)->find_writer(ending, writer, message);
   if (result == CONIC_BRIDGE_MEMORY)
     return conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
   if (result != CONIC_BRIDGE_OK)
@@ -66,16 +66,17 @@ static conic_status find_writer(conic_context *context, const char *path, unsign
   return CONIC_OK;
 }
 
-conic_status conic_foreign_check(conic_context *context, const char *path, unsigned planes) {
+conic_status conic_foreign_check(conic_context *context, const char *path, const char *ending, unsigned planes) {
   const conic_bridge *bridge;
   conic_bridge_writer writer;
-  return find_writer(context, path, planes, &bridge, &writer);
+  return find_writer(context, path, ending, planes, &bridge, &writer);
 }
 
-conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image) {
+conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending,
+                                 const conic_image *image) {
   const conic_bridge *bridge;
   conic_bridge_writer writer = {.has_alpha = 0};
-  conic_status status = find_writer(context, path, conic_image_planes(image), &bridge, &writer);
+  conic_status status = find_writer(context, path, ending, conic_image_planes(image), &bridge, &writer);
   if (status != CONIC_OK)
     return status;
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
@@ -87,7 +88,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
   if (!samples)
     return CONIC_ERROR_MEMORY;
   conic_samples_from_rgba(context, rgba, image->width, image->height, layout, samples);
-  status = write_samples(context, bridge, path, &picture, samples);
+  status = write_samples(context, bridge, path, writer.format, &picture, samples);
   conic_memory_release(context, samples);
   return status;
 }
@@ -158,6 +159,7 @@ conic_status conic_foreign_read(conic_context *context, const char *path, conic_
     status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
   if (status == CONIC_OK) {
     conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
+    image->lacks_alpha = !conic_samples_have_alpha(layout);
     conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
                           image->planes[CONIC_PLANE_RGBA]);
   }

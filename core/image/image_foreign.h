@@ -1,4 +1,4 @@
-/* The formats of other libraries (PNG, TIFF, JPEG, HDR …) through OpenImageIO, which moves finished samples only: how
+/* The formats of other libraries (TIFF, JPEG, HDR …) through OpenImageIO, which moves finished samples only: how
  * linear colour becomes codes is decided here, so that the codes are the same whatever the library's version.
  *
  * Written: rgba. 8 bits, sRGB-encoded, for all but: tif 16 bits, sRGB-encoded; hdr (and other floating-point formats)
@@ -10,12 +10,13 @@
 
 #include "conic/image.h"
 
-/* Whether some of these planes (bits) can be written in the format that PATH's ending means. Errors: ARGUMENT,
- * UNSUPPORTED, MEMORY. */
-conic_status conic_foreign_check(conic_context *context, const char *path, unsigned planes);
+/* Whether some of these planes (bits) can be written in the format that an ending means. Errors: ARGUMENT, UNSUPPORTED,
+ * MEMORY. */
+conic_status conic_foreign_check(conic_context *context, const char *path, const char *ending, unsigned planes);
 
 /* Errors: ARGUMENT (no rgba, an ending that nobody knows), UNSUPPORTED, MEMORY, IO. */
-conic_status conic_foreign_write(conic_context *context, const char *path, const conic_image *image);
+conic_status conic_foreign_write(conic_context *context, const char *path, const char *ending,
+                                 const conic_image *image);
 
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image);

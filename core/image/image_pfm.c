@@ -10,17 +10,32 @@
 #include "core/files/file.h"
 #include "core/image/image_common.h"
 
-/* Writes the first n_written of n_channels floats a pixel, bottom row first. */
-static conic_status write_rows(conic_context *context, FILE *stream, const conic_image *image, const float *plane,
-                               int n_channels, int n_written) {
-  size_t width = (size_t)image->width, n_row = width * (size_t)n_written;
+/* The largest of the whole numbers up to which floats hold every one. */
+enum { MOST_NUMBER = 1 << 24 };
+
+/* The samples of a pixel that go into the file: without alpha, and numbers as floats, -1 where nothing is. */
+static void take_pixel(const void *plane, const conic_plane_description *description, size_t i_pixel, float *to) {
+  size_t n = (size_t)description->n_channels, first = i_pixel * n;
+  for (size_t c = 0; c < n && c < 3; c++) {
+    if (!description->is_uint)
+      to[c] = ((const float *)plane)[first + c];
+    else if (((const uint32_t *)plane)[first + c] == CONIC_NO_ID)
+      to[c] = -1.0f;
+    else
+      to[c] = (float)((const uint32_t *)plane)[first + c];
+  }
+}
+
+/* Writes the plane, the bottom row first. */
+static conic_status write_rows(conic_context *context, FILE *stream, const conic_image *image, conic_plane plane) {
+  const conic_plane_description *description = conic_plane_describe(plane);
+  size_t width = (size_t)image->width, n_written = description->n_channels == 1 ? 1 : 3, n_row = width * n_written;
   float *row = conic_memory_allocate(context, n_row, sizeof *row);
   if (!row)
     return CONIC_ERROR_MEMORY;
   for (int y = image->height - 1; y >= 0; y--) {
-    const float *source = plane + (size_t)y * width * (size_t)n_channels;
     for (size_t x = 0; x < width; x++)
-      memcpy(row + x * (size_t)n_written, source + x * (size_t)n_channels, (size_t)n_written * sizeof *row);
+      take_pixel(image->planes[plane], description, (size_t)y * width + x, row + x * n_written);
     if (fwrite(row, sizeof *row, n_row, stream) != n_row)
       break; /* the stream remembers, and commit says so */
   }
@@ -28,17 +43,28 @@ static conic_status write_rows(conic_context *context, FILE *stream, const conic
   return CONIC_OK;
 }
 
-/* The plane of these that goes into the file. */
+/* The plane of these that goes into the file; CONIC_N_PLANES: none can. */
 static conic_plane choose_plane(unsigned planes) {
-  if (planes & 1u << CONIC_PLANE_RGBA)
-    return CONIC_PLANE_RGBA;
-  return planes & 1u << CONIC_PLANE_Z ? CONIC_PLANE_Z : CONIC_PLANE_WEIGHT;
+  for (int i = 0; i < CONIC_N_PLANES; i++)
+    if (planes == 1u << i || (i == CONIC_PLANE_RGBA && planes & 1u))
+      return (conic_plane)i;
+  return CONIC_N_PLANES;
 }
 
 conic_status conic_pfm_check(conic_context *context, const char *path, unsigned planes) {
-  conic_plane plane = choose_plane(planes);
-  if (plane != CONIC_PLANE_RGBA && planes != 1u << plane)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a PFM holds rgba, or a lone Z or weight", path);
+  if (choose_plane(planes) == CONIC_N_PLANES)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a PFM holds rgba, or a lone other plane", path);
+  return CONIC_OK;
+}
+
+static conic_status check_numbers(conic_context *context, const char *path, const conic_image *image,
+                                  conic_plane plane) {
+  const uint32_t *numbers = image->planes[plane];
+  for (size_t i = 0; conic_plane_describe(plane)->is_uint && i < conic_image_pixels(image); i++)
+    if (numbers[i] > MOST_NUMBER && numbers[i] != CONIC_NO_ID)
+      return conic_fail(context, CONIC_ERROR_UNSUPPORTED,
+                        "%s: cannot write: floats hold numbers up to %d, and there is %lu; an EXR holds it", path,
+                        MOST_NUMBER, (unsigned long)numbers[i]);
   return CONIC_OK;
 }
 
@@ -47,13 +73,15 @@ conic_status conic_pfm_write(conic_context *context, const char *path, const con
   conic_output *output;
   conic_status status = conic_pfm_check(context, path, conic_image_planes(image));
   if (status == CONIC_OK)
+    status = check_numbers(context, path, image, plane);
+  if (status == CONIC_OK)
     status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);
-  fprintf(stream, "%s\n%d %d\n-1.0\n", plane == CONIC_PLANE_RGBA ? "PF" : "Pf", image->width, image->height);
-  int n_channels = conic_plane_describe(plane)->n_channels;
-  status = write_rows(context, stream, image, image->planes[plane], n_channels, n_channels == 4 ? 3 : 1);
+  int is_grey = conic_plane_describe(plane)->n_channels == 1;
+  fprintf(stream, "%s\n%d %d\n-1.0\n", is_grey ? "Pf" : "PF", image->width, image->height);
+  status = write_rows(context, stream, image, plane);
   return conic_output_end(output, status);
 }
 
@@ -165,6 +193,7 @@ static conic_status read_pfm(conic_context *context, const char *path, FILE *fil
   conic_status status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
   if (status != CONIC_OK)
     return status;
+  image->lacks_alpha = 1;
   status = read_rows(context, path, file, is_grey, sign > 0, image);
   if (status != CONIC_OK)
     conic_image_release(context, image);

@@ -94,7 +94,7 @@ static float decode_sample(const conversion *work, size_t i, int is_color) {
 static void decode_row(void *data, size_t y, int i_thread) {
   const conversion *work = data;
   size_t n = (size_t)work->layout.n_channels;
-  int is_grey = n < 3, has_alpha = n == 2 || n >= 4;
+  int is_grey = n < 3, has_alpha = conic_samples_have_alpha(work->layout);
   (void)i_thread;
   for (size_t x = 0; x < work->width; x++) {
     float *pixel = work->rgba + (y * work->width + x) * 4;

@@ -12,6 +12,10 @@ typedef struct conic_samples_layout {
   int is_straight;  /* the colour is not multiplied by alpha */
 } conic_samples_layout;
 
+static inline int conic_samples_have_alpha(conic_samples_layout layout) {
+  return layout.n_channels == 2 || layout.n_channels >= 4;
+}
+
 /* Fills width × height × n_channels samples; the layout has 3 or 4 channels. Without alpha the colour is what the
  * picture shows over black. Codes are the nearest on the encoded scale, clamped; NaN gives 0, and so does the colour
  * where alpha is 0. */

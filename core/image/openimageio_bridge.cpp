@@ -86,9 +86,9 @@ bool read_samples(OIIO::ImageInput &input, const OIIO::TypeDesc &type, void *sam
   return true;
 }
 
-conic_bridge_result find_writer(const char *path, conic_bridge_writer *writer, char *message) {
+conic_bridge_result find_writer(const char *ending, conic_bridge_writer *writer, char *message) {
   return guarded(message, [&] {
-    auto output = OIIO::ImageOutput::create(path);
+    auto output = OIIO::ImageOutput::create(ending);
     if (!output) {
       OIIO::geterror(); // or it would be reported by whoever asks next
       return fail(message, "no format is known by this ending");
@@ -103,16 +103,16 @@ conic_bridge_result find_writer(const char *path, conic_bridge_writer *writer, c
   });
 }
 
-conic_bridge_result write(const char *path, const conic_bridge_picture *picture, const void *samples,
+conic_bridge_result write(const char *format, const conic_bridge_picture *picture, const void *samples,
                           int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie, char *message) {
   return guarded(message, [&] {
     OIIO::Filesystem::IOVecOutput memory;
-    auto output = OIIO::ImageOutput::create(path);
+    auto output = OIIO::ImageOutput::create(format);
     if (!output)
       return fail(message, OIIO::geterror());
     if (!output->supports("ioproxy") || !output->set_ioproxy(&memory))
       return fail(message, "OpenImageIO cannot write this format to a stream");
-    if (!output->open(path, spec_of(*picture, output->format_name())) ||
+    if (!output->open(format, spec_of(*picture, output->format_name())) ||
         !output->write_image(type_of(picture->sample_bytes), samples) || !output->close())
       return fail(message, output->geterror());
     output.reset(); // some formats write their last bytes here

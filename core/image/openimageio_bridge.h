@@ -1,7 +1,7 @@
 /* The bridge to OpenImageIO: plain C, no C++ type and no exception comes through.
  *
  * It is a module of its own, conic-openimageio.so, that is loaded when the first file needs it: OpenImageIO brings some
- * 250 libraries along, and whoever draws into an EXR should not wait for them. */
+ * 250 libraries along, and whoever draws into an EXR or a PNG should not wait for them. */
 #ifndef CONIC_OPENIMAGEIO_BRIDGE_H
 #define CONIC_OPENIMAGEIO_BRIDGE_H
 
@@ -22,7 +22,7 @@ typedef struct conic_bridge_writer {
   int has_alpha;
 } conic_bridge_writer;
 
-enum { CONIC_BRIDGE_MESSAGE = 256 };
+enum { CONIC_BRIDGE_MESSAGE = 256 }; /* CONIC_MODULE_MESSAGE */
 
 /* What happened. */
 typedef enum conic_bridge_result {
@@ -33,16 +33,16 @@ typedef enum conic_bridge_result {
 
 /* What the module gives, as its one symbol, conic_openimageio_bridge. */
 typedef struct conic_bridge {
-  /* conic_version() of the build that the module belongs to; no other may use it. */
-  const char *version;
+  const char *version; /* as of every module (core/base/module.h) */
 
-  /* Who writes files whose name ends as PATH's. */
-  conic_bridge_result (*find_writer)(const char *path, conic_bridge_writer *writer, char message[CONIC_BRIDGE_MESSAGE]);
+  /* Who writes files with this ending. */
+  conic_bridge_result (*find_writer)(const char *ending, conic_bridge_writer *writer,
+                                     char message[CONIC_BRIDGE_MESSAGE]);
 
-  /* Encodes `samples` (row by row, channels side by side, colour sRGB-encoded unless they are floats) as a file of
-   * PATH's ending, and hands its bytes to `take`, which returns 0 to stop. Formats that only write to a file of their
+  /* Encodes `samples` (row by row, channels side by side, colour sRGB-encoded unless they are floats) as a file of a
+   * writer's format, and hands its bytes to `take`, which returns 0 to stop. Formats that only write to a file of their
    * own fail. */
-  conic_bridge_result (*write)(const char *path, const conic_bridge_picture *picture, const void *samples,
+  conic_bridge_result (*write)(const char *format, const conic_bridge_picture *picture, const void *samples,
                                int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie,
                                char message[CONIC_BRIDGE_MESSAGE]);
 

@@ -1,9 +1,13 @@
 #include "core/splats/builder.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/splats/splats_gather.h"
+
+/* From here on a point is far out. */
+static const double far_out = 65536.0;
 
 conic_status conic_builder_begin(conic_context *context, conic_model *model, unsigned fields,
                                  const conic_delivery *delivery, conic_builder *builder) {
@@ -43,6 +47,18 @@ conic_status conic_builder_reserve_points(conic_builder *builder, size_t count) 
   if (count <= builder->point_capacity)
     return CONIC_OK;
   return conic_builder_reserve_points_exactly(builder, count > capacity ? count : capacity);
+}
+
+void conic_builder_store_position(conic_builder *builder, const double position[3]) {
+  conic_splats *points = &builder->model->points;
+  double x = position[0], y = position[1], z = position[2];
+  if (!builder->is_origin_set && x - x == 0.0 && y - y == 0.0 && z - z == 0.0) {
+    if (fabs(x) > far_out || fabs(y) > far_out || fabs(z) > far_out)
+      memcpy(points->origin, position, sizeof points->origin);
+    builder->is_origin_set = 1;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    points->position[axis][points->count] = (float)(position[axis] - points->origin[axis]);
 }
 
 conic_status conic_builder_add_field(conic_builder *builder, conic_splats_field field) {

@@ -4,12 +4,13 @@
 
 #include "conic/model.h"
 
-/* Where a file's points go that are not kept: see conic_model_stream. XYZ and LAS deliver colours as they stand in the
- * file. */
+/* Where a file's points go that are not kept: see conic_model_stream. XYZ, LAS and PCD deliver colours as they stand in
+ * the file. */
 typedef struct conic_delivery {
   conic_batch_receiver *receive;
   void *cookie;
   size_t batch; /* points that are handed over at a time */
+  int is_again; /* the file has been read before: what can be told of it has been */
 } conic_delivery;
 
 typedef struct conic_builder {
@@ -17,7 +18,8 @@ typedef struct conic_builder {
   const conic_delivery *delivery; /* null: the points are kept */
   uint64_t n_delivered;           /* no longer in the model */
   conic_model *model;             /* points.count says how many points have been filled in */
-  size_t point_capacity, triangle_capacity, clip_capacity;
+  size_t point_capacity, triangle_capacity, clip_capacity, field_capacity;
+  int is_origin_set;
 } conic_builder;
 
 /* The most points a model can have: indices are 32 bits and the largest stands for none. */
@@ -42,6 +44,10 @@ conic_status conic_builder_reserve_points(conic_builder *builder, size_t count);
 
 /* Room for exactly `count` points, or more where there is more. Errors: MEMORY. */
 conic_status conic_builder_reserve_points_exactly(conic_builder *builder, size_t count);
+
+/* Puts the next point there, which the caller counts. Where the first finite one lies far out, as in map coordinates,
+ * which have digits that a float has not, it becomes the origin. */
+void conic_builder_store_position(conic_builder *builder, const double position[3]);
 
 /* Gives the points another optional array (clip lines are none), filled with white, 1 or zero for those that there are.
  * Errors: MEMORY. */

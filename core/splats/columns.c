@@ -6,7 +6,7 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 
-enum { TRIANGLES_COLUMNS = 11 };
+enum { TRIANGLES_COLUMNS = 12 };
 
 /* NOLINTNEXTLINE(readability-non-const-parameter): who has the list may set it */
 static int list_components(conic_column *columns, float **components, int n, size_t *stride, size_t count,
@@ -22,7 +22,9 @@ void conic_splats_list_columns(conic_splats *s, conic_column columns[CONIC_SPLAT
   columns += list_components(columns, s->tangent_v, 3, &s->strides.tangent_v, s->count, CONIC_SPLATS_TANGENTS);
   columns += list_components(columns, s->normal, 3, &s->strides.normal, s->count, CONIC_SPLATS_NORMALS);
   columns += list_components(columns, s->color, 3, &s->strides.color, s->count, CONIC_SPLATS_COLORS);
-  list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  columns += list_components(columns, &s->opacity, 1, &s->strides.opacity, s->count, CONIC_SPLATS_OPACITIES);
+  columns += list_components(columns, &s->dot, 1, &s->strides.dot, s->count, CONIC_SPLATS_DOTS);
+  list_components(columns, &s->scalar, 1, &s->strides.scalar, s->count, CONIC_SPLATS_SCALARS);
 }
 
 static void list_triangles_columns(conic_triangles *t, conic_column columns[TRIANGLES_COLUMNS]) {
@@ -31,7 +33,8 @@ static void list_triangles_columns(conic_triangles *t, conic_column columns[TRIA
   columns += list_components(columns, t->color, 3, &t->strides.color, t->n_vertices, 0);
   columns +=
       list_components(columns, t->normal, 3, &t->strides.normal, t->normal_corners ? t->n_normals : t->n_vertices, 0);
-  list_components(columns, t->texture_coordinate, 2, &t->strides.texture_coordinate, n_coordinates, 0);
+  columns += list_components(columns, t->texture_coordinate, 2, &t->strides.texture_coordinate, n_coordinates, 0);
+  list_components(columns, &t->scalar, 1, &t->strides.scalar, t->n_vertices, 0);
 }
 
 /* Components of an array are there together, and so are both axes. */

@@ -3,6 +3,7 @@
 #include "core/splats/estimate.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
+#include "core/splats/degrees.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 #include "core/splats/clip.h"
 #include "core/splats/features.h"
 #include "core/splats/normals.h"
+#include "core/splats/scatter.h"
 
 void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
   static const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};
@@ -102,11 +104,10 @@ static int mark_slots(const conic_estimate *estimate, conic_neighbourhood *neigh
 /* Neighbours of the wanted slots, and of their neighbours, whose spacings are asked for too. */
 static conic_status find_neighbours(conic_context *context, conic_neighbourhood *neighbourhood) {
   conic_status status = conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_WANTED, 0.1, 0.4);
-  enum { NEAR_WANTED = 8 };
   if (status != CONIC_OK)
     return status;
-  conic_neighbourhood_spread(neighbourhood, CONIC_SLOT_WANTED, NEAR_WANTED);
-  return conic_neighbourhood_list(context, neighbourhood, NEAR_WANTED, 0.4, 0.45);
+  conic_neighbourhood_spread(neighbourhood, CONIC_SLOT_WANTED, CONIC_SLOT_NEAR);
+  return conic_neighbourhood_list(context, neighbourhood, CONIC_SLOT_NEAR, 0.4, 0.45);
 }
 
 static conic_status estimate_in(conic_context *context, conic_estimate *estimate, conic_neighbourhood *neighbourhood,
@@ -117,6 +118,8 @@ static conic_status estimate_in(conic_context *context, conic_estimate *estimate
     status = conic_normals_guess(context, neighbourhood, 0.45, 0.5);
   if (status == CONIC_OK && is_any_guessed)
     status = conic_normals_orient(context, neighbourhood);
+  if (status == CONIC_OK && estimate->dot)
+    status = conic_scatter_find(context, neighbourhood, 0.55, 0.6);
   if (status == CONIC_OK)
     status = conic_estimate_spacings(context, neighbourhood, spacings);
   return status == CONIC_OK ? conic_estimate_from_neighbours(context, estimate, neighbourhood, spacings) : status;
@@ -161,11 +164,19 @@ static size_t count_zero(const conic_estimate *estimate) {
   return n;
 }
 
+static size_t count_dots(const conic_estimate *estimate) {
+  size_t n = 0;
+  for (size_t i = 0; estimate->dot && i < estimate->model->points.count; i++)
+    n += estimate->dot[i] != 0.0f;
+  return n;
+}
+
 static void count_repairs(const conic_estimate *estimate, conic_repairs *repairs) {
   repairs->nan = count_states(estimate, CONIC_POINT_NOWHERE);
   repairs->isolated = count_states(estimate, CONIC_POINT_ISOLATED);
   repairs->failed = count_states(estimate, CONIC_POINT_FAILED);
   repairs->zero = count_zero(estimate);
+  repairs->dots = count_dots(estimate);
 }
 
 static int has_new_axes(const void *cookie, uint32_t splat) {
@@ -177,6 +188,17 @@ static size_t drop_clips(const conic_estimate *estimate, conic_splats *points) {
   size_t n_wrong = conic_splats_repair_clips(points), n = points->n_clips;
   conic_clip_filter(points, has_new_axes, estimate);
   return n_wrong + n - points->n_clips;
+}
+
+/* Likewise which splats are dots, where any is one. */
+static void hand_over_dots(conic_estimate *estimate, conic_model *model) {
+  float *own = model->points.dot;
+  for (size_t i = 0; own && estimate->dot && i < model->points.count; i++)
+    own[i] = estimate->states[i] == CONIC_POINT_KEPT ? own[i] : estimate->dot[i];
+  if (!own && count_dots(estimate)) {
+    model->points.dot = estimate->dot;
+    estimate->dot = NULL;
+  }
 }
 
 /* Gives the model its axes. Cannot fail: a set with axes gets the new ones among its own, another one takes the arrays.
@@ -198,6 +220,7 @@ static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
         *made = NULL;
       }
     }
+  hand_over_dots(estimate, model);
   /* A colour that is none becomes what absence means: white. */
   for (size_t i = 0; i < model->points.count; i++)
     if (has_bad_color(&model->points, i))
@@ -205,9 +228,13 @@ static void hand_over_axes(conic_estimate *estimate, conic_model *model) {
         model->points.color[channel][i] = 1.0f;
 }
 
-static conic_status allocate_estimate(conic_context *context, conic_estimate *estimate) {
+static conic_status allocate_estimate(conic_context *context, int finds_dots, conic_estimate *estimate) {
   size_t count = estimate->model->points.count;
   int is_good = 1;
+  if (finds_dots) {
+    estimate->dot = conic_memory_allocate_zeroed(context, count, sizeof(float));
+    is_good = estimate->dot != NULL;
+  }
   for (int axis = 0; axis < 3; axis++) {
     estimate->tangent_u[axis] = conic_memory_allocate(context, count, sizeof(float));
     estimate->tangent_v[axis] = conic_memory_allocate(context, count, sizeof(float));
@@ -220,7 +247,7 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
                                    conic_estimate *estimate, conic_repairs *repairs) {
   conic_status status = conic_slots_for(context, estimate->model->points.count, classify_points, estimate, 0.0, 0.0);
   if (status == CONIC_OK)
-    status = allocate_estimate(context, estimate);
+    status = allocate_estimate(context, options->finds_dots, estimate);
   if (status == CONIC_OK && estimate->model->n_triangles)
     status = conic_estimate_from_faces(context, estimate);
   if (status == CONIC_OK && count_states(estimate, CONIC_POINT_RAW))
@@ -230,8 +257,8 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
 
 static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
-  conic_repairs counted = {0, 0, 0, 0, 0, 0};
-  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, INFINITY};
+  conic_repairs counted = {0};
+  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL, INFINITY};
   if (options->stays_at_mesh || options->feature_angle_deg > 0.0)
     estimate.tolerance = conic_mesh_tolerance(&model->points);
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
@@ -249,20 +276,28 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
     conic_memory_release(context, estimate.tangent_u[axis]);
     conic_memory_release(context, estimate.tangent_v[axis]);
   }
+  conic_memory_release(context, estimate.dot);
   conic_memory_release(context, estimate.states);
   return status;
 }
 
-/* Points: their splats are made as ever, in a copy, and then sharpened. */
+static int is_dot(const void *cookie, uint32_t splat) {
+  return ((const float *)cookie)[splat] != 0.0f;
+}
+
+/* Points: their splats are made as ever, in a copy, and then sharpened; dots have no edges. */
 static conic_status estimate_sharp_points(conic_context *context, const conic_estimate_options *options, double cosine,
                                           conic_model *model, conic_repairs *repairs) {
   conic_model copy = {.kind = model->kind, .triangles = model->triangles, .n_triangles = model->n_triangles};
   memcpy(copy.points.origin, model->points.origin, sizeof copy.points.origin);
+  memcpy(copy.up, model->up, sizeof copy.up);
   conic_status status = conic_splats_append(context, &copy.points, &model->points);
   if (status == CONIC_OK)
     status = estimate_plain(context, options, &copy, repairs);
   if (status == CONIC_OK && copy.points.n_clips == 0)
     status = conic_features_in_points(context, cosine, options, &copy.points);
+  if (status == CONIC_OK && copy.points.dot)
+    conic_clip_filter(&copy.points, is_dot, copy.points.dot);
   conic_splats_release(context, status == CONIC_OK ? &model->points : &copy.points);
   if (status == CONIC_OK)
     model->points = copy.points;
@@ -284,6 +319,10 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   conic_status status = conic_splats_check_own(context, "estimate", &model->points);
   if (status != CONIC_OK)
     return status;
+  if (model->n_triangles == 0 && !model->points.tangent_u[0] && conic_points_are_degrees(&model->points))
+    conic_log(context, CONIC_LOG_WARNING,
+              "x and y are degrees of longitude and latitude, beside heights in metres: what becomes of them is a "
+              "needle; reproject them, as pdal does by filters.reprojection");
   double angle = options->feature_angle_deg, cosine = angle > 0.0 ? conic_cos(conic_radians(angle)) : -1.0;
   int is_mesh = model->n_triangles && !model->points.tangent_u[0];
   if (angle > 0.0 && model->points.count && !is_mesh)

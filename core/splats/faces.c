@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "conic/triangles.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 
@@ -28,6 +29,9 @@ void conic_faces_destroy(conic_context *context, conic_faces *faces) {
   conic_memory_release(context, faces->material_names.bytes);
   conic_memory_release(context, faces->libraries.bytes);
   conic_memory_release(context, faces->pictures.bytes);
+  for (size_t i = 0; i < faces->n_made; i++)
+    conic_texture_destroy(faces->made[i].texture);
+  conic_memory_release(context, faces->made);
   conic_memory_release(context, faces);
 }
 
@@ -91,6 +95,14 @@ conic_status conic_faces_use_material(conic_context *context, conic_faces *faces
       return status;
   }
   faces->current_material = (uint32_t)i;
+  return CONIC_OK;
+}
+
+conic_status conic_faces_add_material(conic_context *context, conic_faces *faces, const conic_material *material) {
+  if (conic_memory_reserve(context, &faces->made, faces->n_made, faces->n_made + 1, &faces->made_room,
+                           sizeof *faces->made) != CONIC_OK)
+    return CONIC_ERROR_MEMORY;
+  faces->made[faces->n_made++] = *material;
   return CONIC_OK;
 }
 

@@ -30,9 +30,11 @@ typedef struct conic_faces {
   int has_vertex_coordinates; /* a texture coordinate a vertex, for corners that have none of their own: */
   size_t first_vertex_coordinate;
   uint32_t current_material;
-  conic_texts material_names; /* the first is empty: no material */
-  conic_texts libraries;      /* material files, as paths */
-  conic_texts pictures;       /* where no names are: material i is the texture of path i, one after all is none */
+  conic_texts material_names;  /* the first is empty: no material */
+  conic_texts libraries;       /* material files, as paths */
+  conic_texts pictures;        /* where no names are: material i is the texture of path i, one after all is none */
+  struct conic_material *made; /* where no names are: the materials themselves, one after all is white */
+  size_t n_made, made_room;
 } conic_faces;
 
 /* Errors: MEMORY. */
@@ -52,6 +54,10 @@ void conic_faces_begin_vertices(conic_faces *faces);
 
 /* Makes the material of that name the one of the triangles that follow. Errors: MEMORY, INPUT (too many). */
 conic_status conic_faces_use_material(conic_context *context, conic_faces *faces, const char *name, size_t length);
+
+/* Appends a material to `made`, which owns its texture from then on. Errors: MEMORY. */
+conic_status conic_faces_add_material(conic_context *context, conic_faces *faces,
+                                      const struct conic_material *material);
 
 /* Appends a text of `length` bytes. Errors: MEMORY. */
 conic_status conic_texts_add(conic_context *context, conic_texts *texts, const char *text, size_t length);

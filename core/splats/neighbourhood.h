@@ -11,9 +11,11 @@ enum { CONIC_MAX_NEIGHBOURS = 64 };
 
 /* What is asked of a slot, as bits. */
 enum {
-  CONIC_SLOT_WANTED = 1,  /* its ellipse is to be estimated */
-  CONIC_SLOT_LISTED = 2,  /* its neighbours are known */
-  CONIC_SLOT_GUESSED = 4, /* its normal comes from the neighbours' positions */
+  CONIC_SLOT_WANTED = 1,     /* its ellipse is to be estimated */
+  CONIC_SLOT_LISTED = 2,     /* its neighbours are known */
+  CONIC_SLOT_GUESSED = 4,    /* its normal comes from the neighbours' positions */
+  CONIC_SLOT_NEAR = 8,       /* a neighbour of one that is wanted */
+  CONIC_SLOT_SCATTERED = 16, /* there is no surface about it */
 };
 
 typedef struct conic_neighbourhood {

@@ -6,35 +6,15 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/covariance.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
-  const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
-  double origin[3], mean[3] = {0.0, 0.0, 0.0}, covariance[6] = {0.0}, values[3], vectors[3][3];
-  size_t n = neighbourhood->n_neighbours;
-  conic_neighbourhood_position(neighbourhood, slot, origin);
-  /* About the slot itself first, where the numbers are small; it adds nothing to the sums but to their number. */
-  for (size_t i = 0; i < n; i++) {
-    double d[3];
-    conic_neighbourhood_position(neighbourhood, list[i], d);
-    for (int axis = 0; axis < 3; axis++) {
-      d[axis] -= origin[axis];
-      mean[axis] += d[axis];
-    }
-    covariance[0] += d[0] * d[0];
-    covariance[1] += d[0] * d[1];
-    covariance[2] += d[0] * d[2];
-    covariance[3] += d[1] * d[1];
-    covariance[4] += d[1] * d[2];
-    covariance[5] += d[2] * d[2];
-  }
-  double share = 1.0 / (double)(n + 1);
-  covariance[0] -= mean[0] * mean[0] * share;
-  covariance[1] -= mean[0] * mean[1] * share;
-  covariance[2] -= mean[0] * mean[2] * share;
-  covariance[3] -= mean[1] * mean[1] * share;
-  covariance[4] -= mean[1] * mean[2] * share;
-  covariance[5] -= mean[2] * mean[2] * share;
-  conic_eigen3(covariance, values, vectors);
+  conic_covariance covariance = conic_covariance_about(neighbourhood, slot);
+  double matrix[6], values[3], vectors[3][3];
+  conic_covariance_add(&covariance, neighbourhood, conic_neighbourhood_of(neighbourhood, slot),
+                       neighbourhood->n_neighbours);
+  conic_covariance_matrix(&covariance, matrix);
+  conic_eigen3(matrix, values, vectors);
   for (int axis = 0; axis < 3; axis++)
     neighbourhood->normals[slot][axis] = (float)vectors[2][axis];
 }

@@ -2,9 +2,12 @@
  * neighbours. Such cells leave no gap, however unevenly a scanner has sampled; cut off at a radius, they close nothing
  * that was not seen. */
 #include <math.h>
+#include <string.h>
 
+#include "core/base/vectors.h"
 #include "core/splats/ellipse.h"
 #include "core/splats/estimate.h"
+#include "core/splats/scatter.h"
 #include "core/splats/voronoi_cell.h"
 
 /* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
@@ -178,6 +181,19 @@ static conic_point_state outline(const tangent_origin *p, size_t slot, const dou
   return CONIC_POINT_SPREAD;
 }
 
+/* Where there is no surface: a small round outline; its normal is the file's, else outwards. */
+static void make_dot(conic_estimate *estimate, tangent_origin *p, size_t point, size_t slot, int has_normal,
+                     conic_ellipse *ellipse) {
+  *ellipse = circle(conic_scatter_reach(p->neighbourhood, slot));
+  estimate->dot[point] = 1.0f;
+  double outside[3];
+  if (has_normal)
+    return;
+  conic_scatter_outside(p->neighbourhood, slot, outside);
+  if (conic_dot(outside, outside) > 0.0)
+    memcpy(p->normal, outside, sizeof outside);
+}
+
 typedef struct spread_work {
   conic_estimate *estimate;
   const conic_neighbourhood *neighbourhood;
@@ -191,11 +207,17 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
   double own[3], u[3], v[3];
   float tangent_u[3], tangent_v[3];
   conic_ellipse ellipse;
-  if (given[0] && conic_unit_vector(given, point, own))
-    for (int axis = 0; axis < 3; axis++)
-      p.normal[axis] = own[axis];
+  int has_normal = given[0] && conic_unit_vector(given, point, own);
+  for (int axis = 0; axis < 3 && has_normal; axis++)
+    p.normal[axis] = own[axis];
   conic_tangent_basis(p.normal, u, v);
   conic_point_state state = outline(&p, slot, work->spacings, u, v, &ellipse);
+  if (estimate->dot && state == CONIC_POINT_ISOLATED)
+    estimate->dot[point] = 1.0f;
+  else if (estimate->dot && work->neighbourhood->flags[slot] & CONIC_SLOT_SCATTERED) {
+    make_dot(estimate, &p, point, slot, has_normal, &ellipse);
+    conic_tangent_basis(p.normal, u, v);
+  }
   if (!conic_ellipse_axes(&ellipse, u, v, estimate->cutoff, tangent_u, tangent_v))
     state = CONIC_POINT_FAILED;
   for (int axis = 0; axis < 3; axis++) {

@@ -13,7 +13,8 @@ void conic_repairs_log(conic_context *context, const char *path, const conic_rep
                  {repairs->zero, "given a normal or size, having none that is one"},
                  {repairs->duplicate, "at the place of another"},
                  {repairs->isolated, "far from all others, kept small"},
-                 {repairs->clip, "clip lines dropped"}};
+                 {repairs->clip, "clip lines dropped"},
+                 {repairs->dots, "on no surface, drawn as dots"}};
   char text[768];
   int length = 0;
   for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)

@@ -1,5 +1,6 @@
 #include "conic/splats.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -8,8 +9,11 @@
 #include "core/splats/columns.h"
 #include "core/splats/splats_gather.h"
 
-/* What an absent array means: white and opaque; zero axes and normals, which are repaired later. */
+/* What an absent array means: white and opaque; zero axes and normals, which are repaired later; no dot and no scalar.
+ */
 static float absent_value(const conic_column *column) {
+  if (column->field == CONIC_SPLATS_SCALARS)
+    return NAN;
   return column->field & (CONIC_SPLATS_COLORS | CONIC_SPLATS_OPACITIES) ? 1.0f : 0.0f;
 }
 
@@ -43,7 +47,8 @@ unsigned conic_splats_fields(const conic_splats *splats) {
          (splats->normal[0] ? (unsigned)CONIC_SPLATS_NORMALS : 0u) |
          (splats->color[0] ? (unsigned)CONIC_SPLATS_COLORS : 0u) |
          (splats->opacity ? (unsigned)CONIC_SPLATS_OPACITIES : 0u) |
-         (splats->clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u);
+         (splats->clips ? (unsigned)CONIC_SPLATS_CLIPS : 0u) | (splats->dot ? (unsigned)CONIC_SPLATS_DOTS : 0u) |
+         (splats->scalar ? (unsigned)CONIC_SPLATS_SCALARS : 0u);
 }
 
 void conic_splats_release(conic_context *context, conic_splats *splats) {

@@ -57,6 +57,7 @@ static void keep_clips(conic_splats *splats, uint64_t seed, uint64_t below) {
 }
 
 conic_status conic_splats_thin(conic_context *context, conic_splats *splats, size_t count, uint64_t seed) {
+  conic_column columns[CONIC_SPLATS_COLUMNS];
   conic_status status = conic_splats_check_own(context, "thin", splats);
   if (status != CONIC_OK)
     return status;
@@ -70,14 +71,9 @@ conic_status conic_splats_thin(conic_context *context, conic_splats *splats, siz
     ranks[i] = rank_of(seed, i);
   uint64_t below = select_rank(ranks, n, count);
   conic_memory_release(context, ranks);
-  for (int axis = 0; axis < 3; axis++) {
-    keep_points(splats->position[axis], n, seed, below);
-    keep_points(splats->tangent_u[axis], n, seed, below);
-    keep_points(splats->tangent_v[axis], n, seed, below);
-    keep_points(splats->normal[axis], n, seed, below);
-    keep_points(splats->color[axis], n, seed, below);
-  }
-  keep_points(splats->opacity, n, seed, below);
+  conic_splats_list_columns(splats, columns);
+  for (int i = 0; i < CONIC_SPLATS_COLUMNS; i++)
+    keep_points(*columns[i].floats, n, seed, below);
   keep_clips(splats, seed, below);
   splats->count = count;
   return CONIC_OK;

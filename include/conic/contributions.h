@@ -108,9 +108,10 @@ CONIC_API conic_status conic_contributions_at(conic_contributions *contributions
 CONIC_API conic_status conic_contributions_triangles_at(conic_contributions *contributions, int x, int y,
                                                         const conic_triangle_contribution **list, size_t *n);
 
-/* Writes the visible splats of every pixel, in the order of the set, and after them the visible triangle, as a deep
- * scanline EXR: channels Z (the depth), id (UINT; triangle j is the number of splats + j) and weight. `header` gives
- * the attributes; its planes are not looked at; may be null. The file appears under its name only when it is whole.
+/* Writes the visible splats of every pixel, and the visible triangle, as a deep scanline EXR, from front to back:
+ * channels R, G, B, A (premultiplied), Z (the depth), id (UINT; triangle j is the number of splats + j) and weight.
+ * Laid over each other, a pixel's samples are the one of `header`, if that has rgba of this size, else its albedo; with
+ * alpha 1. `header` also gives the attributes; it may be null. The file appears under its name only when it is whole.
  * Reports progress as "deep". Errors: UNSUPPORTED (a build without OpenEXR), MEMORY, IO, CANCELLED. */
 CONIC_API conic_status conic_contributions_write(conic_contributions *contributions, const char *path,
                                                  const conic_image *header);

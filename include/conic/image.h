@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "conic/camera.h"
 #include "conic/context.h"
 
 #ifdef __cplusplus
@@ -49,7 +50,11 @@ CONIC_API const conic_plane_description *conic_plane_describe(conic_plane plane)
 typedef enum conic_attribute_type {
   CONIC_ATTRIBUTE_TEXT = 0,
   CONIC_ATTRIBUTE_DOUBLE = 1,
-  CONIC_ATTRIBUTE_MATRIX = 2 /* 4 × 4, rows */
+  CONIC_ATTRIBUTE_MATRIX = 2,        /* 4 × 4, rows */
+  CONIC_ATTRIBUTE_FLOAT = 3,         /* this and the next are written as floats */
+  CONIC_ATTRIBUTE_FLOAT_PAIR = 4,    /* 2 values */
+  CONIC_ATTRIBUTE_FLOAT_MATRIX = 5,  /* 4 × 4, rows */
+  CONIC_ATTRIBUTE_CHROMATICITIES = 6 /* 8 values: x and y of red, green, blue and white */
 } conic_attribute_type;
 
 typedef struct conic_attribute {
@@ -66,7 +71,8 @@ typedef struct conic_image {
   void *planes[CONIC_MAX_PLANES]; /* float or uint32_t by conic_plane_describe; null: not there */
   int n_attributes;
   conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
-  uint64_t reserved[8];
+  uint64_t lacks_alpha; /* A of rgba, which is 1, is not in the file that the image was read from */
+  uint64_t reserved[7];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.
@@ -81,15 +87,53 @@ CONIC_API void conic_image_release(conic_context *context, conic_image *image);
 /* 64-bit FNV-1a over the plane's little-endian bytes, row by row; 0 where the plane is not there. */
 CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane);
 
-/* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; a lone Z
- * or weight as grey), and what OpenImageIO knows (png, tif, jpg …: rgba, sRGB-encoded for integer formats,
- * unpremultiplied where the format wants that). The file appears under its name only when it is whole. Errors: ARGUMENT
- * (no plane the format can hold, unknown ending, "-": there is no writing to standard output), UNSUPPORTED (not in this
- * build), MEMORY, IO. */
+/* Adds what programs that take an EXR expect to find of its camera: worldToCamera and worldToNDC as OpenEXR defines
+ * them (points are rows, to the left of the matrix; x right, y up, z forward; NDC (0, 0) to (1, 1) from the upper
+ * left), screenWindowCenter, screenWindowWidth, pixelAspectRatio, and the chromaticities of Rec. 709. An attribute for
+ * which there is no room is left out. */
+CONIC_API void conic_image_describe_camera(conic_image *image, const conic_camera *camera);
+
+/* How an EXR is compressed: all but the last keep every bit. */
+typedef enum conic_compression {
+  CONIC_COMPRESSION_ZIP = 0, /* 16 rows at a time */
+  CONIC_COMPRESSION_NONE = 1,
+  CONIC_COMPRESSION_RLE = 2,
+  CONIC_COMPRESSION_ZIPS = 3, /* row by row */
+  CONIC_COMPRESSION_PIZ = 4,
+  CONIC_COMPRESSION_PXR24 = 5 /* floats lose 8 bits */
+} conic_compression;
+
+#define CONIC_N_COMPRESSIONS 6
+
+/* "zip", "none", "rle" …; null for a number that is none. */
+CONIC_API const char *conic_compression_name(conic_compression compression);
+
+/* How an image is written. */
+typedef struct conic_image_options {
+  size_t size;                   /* sizeof(conic_image_options), set by the init function */
+  const char *format;            /* "png", "exr" …: of what goes to "-" or has no ending; null: png, and none */
+  int is_half;                   /* of an EXR: rgba, N and albedo in half floats */
+  conic_compression compression; /* of an EXR */
+} conic_image_options;
+
+/* Floats, zip. */
+CONIC_API void conic_image_options_init_sized(conic_image_options *options, size_t size);
+#define conic_image_options_init(options) conic_image_options_init_sized(options, sizeof *(options))
+
+/* Writes the image by its name's ending: exr (all planes, float and uint32, attributes), pfm (rgb, built in; or a lone
+ * other plane, numbers too as long as floats hold them), png, and what OpenImageIO knows (tif, jpg …): rgba,
+ * sRGB-encoded for integer formats, unpremultiplied where the format wants that. "-" is standard output. The file
+ * appears under its name only when it is whole. Null options are the defaults. Errors: ARGUMENT (no plane the format
+ * can hold, unknown ending), UNSUPPORTED (not in this build; numbers that no float holds), MEMORY, IO. */
+CONIC_API conic_status conic_image_write_as(conic_context *context, const char *path, const conic_image *image,
+                                            const conic_image_options *options);
+/* The same by the default options. */
 CONIC_API conic_status conic_image_write(conic_context *context, const char *path, const conic_image *image);
 
-/* Whether conic_image_write could write an image with these planes (bits) under that name, as far as the name tells: to
- * be asked before the work. Errors: ARGUMENT, UNSUPPORTED, MEMORY, with the message of the writing. */
+/* Whether conic_image_write_as could write an image with these planes (bits) under that name, as far as the name tells:
+ * to be asked before the work. Errors: ARGUMENT, UNSUPPORTED, MEMORY, with the message of the writing. */
+CONIC_API conic_status conic_image_check_output_as(conic_context *context, const char *path, unsigned planes,
+                                                   const conic_image_options *options);
 CONIC_API conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes);
 
 /* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns
@@ -104,7 +148,7 @@ typedef struct conic_plane_difference {
 } conic_plane_difference;
 
 typedef struct conic_difference {
-  int identical;           /* same size, same planes, same bits */
+  int identical;           /* same size, same planes, same bits, a missing A being 1 */
   int same_size;           /* where 0, nothing below is set */
   double max_abs, rmse;    /* over all common planes but id and count; NaN against a number counts as infinite */
   double p999;             /* 99.9 % of the pixels differ by no more in any of those planes */
@@ -115,7 +159,8 @@ typedef struct conic_difference {
   size_t differing_pixels; /* pixels where any common plane differs */
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_MAX_PLANES];
-  uint64_t reserved[8];
+  uint64_t lacks_alpha; /* of rgba only R, G and B are compared: at least one of the images has no A */
+  uint64_t reserved[7];
 } conic_difference;
 
 /* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */
@@ -131,6 +176,11 @@ CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_i
 /* The same of ꟻLIP: black at 0, then linearly over blue, red and yellow to white at 1. Errors: as there. */
 CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                                 conic_image *heatmap);
+
+/* The exposure in stops that makes a picture with an rgba plane as bright as is good: the greatest multiple of 1/8, from
+ * -16 to 16, with which at most one in twenty of the covered pixels (A at least 1/2) has a luminance above 2^(-3/8). 0
+ * where nothing is covered, or all is black. */
+CONIC_API double conic_image_exposure(const conic_image *image);
 
 /* A false-colour picture of how many splats were blended in each pixel (count plane needed): black for none, blue for
  * one, red for 4, yellow for 16, white for 64 and more, by the logarithm between. On success the caller owns *map.

@@ -16,12 +16,33 @@ extern "C" {
 typedef enum conic_model_kind {
   CONIC_MODEL_PLY = 0,
   CONIC_MODEL_OBJ = 1,
-  CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS */
-  CONIC_MODEL_LAS = 3
+  CONIC_MODEL_XYZ = 2, /* text, a point a line: XYZ, PTS, CSV */
+  CONIC_MODEL_LAS = 3,
+  CONIC_MODEL_PCD = 4,
+
+  /* Those of Assimp, where it is there */
+  CONIC_MODEL_STL = 16,
+  CONIC_MODEL_OFF = 17,
+  CONIC_MODEL_GLTF = 18,
+  CONIC_MODEL_GLB = 19, /* binary glTF */
+  CONIC_MODEL_3MF = 20,
+  CONIC_MODEL_DAE = 21, /* COLLADA */
+  CONIC_MODEL_FBX = 22,
+  CONIC_MODEL_3DS = 23,
+  CONIC_MODEL_X3D = 24,
+  CONIC_MODEL_DXF = 25,
+  CONIC_MODEL_AMF = 26
 } conic_model_kind;
 
 /* "ply", "obj" …; null for a number that is no kind. */
 CONIC_API const char *conic_model_kind_name(conic_model_kind kind);
+
+/* A value that the points of a file have by name: what conic_read_options.field may ask for. */
+typedef struct conic_model_field {
+  char name[40];    /* longer ones are cut */
+  const char *type; /* as numbers are stored: "uint8" … "int32", "float", "double"; static */
+  uint64_t reserved[2];
+} conic_model_field;
 
 typedef struct conic_model {
   conic_splats points;       /* vertices, raw points or splats */
@@ -29,7 +50,10 @@ typedef struct conic_model {
   uint32_t (*triangles)[3];  /* vertex indices, each below points.count; polygons and strips are triangulated */
   conic_model_kind kind;     /* of the file that was read */
   struct conic_faces *faces; /* with keeps_faces, what else its faces have: for conic_triangles_take (triangles.h) */
-  uint64_t reserved[8];
+  double up[3];              /* the direction that the file, or its kind, says is up; zero where neither does */
+  conic_model_field *fields; /* what else the points have by name, in the file's order */
+  size_t n_fields;
+  uint64_t reserved[3];
 } conic_model;
 
 typedef struct conic_read_options {
@@ -40,18 +64,29 @@ typedef struct conic_read_options {
 
   /* Keep what only triangles have: normals and texture coordinates of corners, materials. */
   int keeps_faces;
+
+  /* What the columns of text are, "x,y,z,intensity,-,r,g,b" (docs/reference/formats.md); null: its header says so, or
+   * else their number. */
+  const char *columns;
+
+  /* The scalar of every point that is wanted besides, by the name that the file gives it, for conic_splats.scalar;
+   * null: none. Upper and lower case, "_", "-" and blanks do not matter, nor does "scalar_" before it. */
+  const char *field;
+  int field_is_optional; /* a file that has it not is read without */
 } conic_read_options;
 
-/* Cutoff 1.5, points alone. */
+/* Cutoff 1.5, points alone, columns as the file has them. */
 CONIC_API void conic_read_options_init_sized(conic_read_options *options, size_t size);
 #define conic_read_options_init(options) conic_read_options_init_sized(options, sizeof *(options))
 
-/* Reads a model: PLY, OBJ, XYZ and PTS, LAS (docs/reference/formats.md); "-" is standard input. The format is told by
- * the content first, then by the name's ending. Integer colours of a PLY and all colours of the others are decoded from
- * sRGB, float colours of a PLY are taken as linear. Positions that a float cannot hold (double or 32-bit integer in a
- * PLY, map coordinates in an OBJ, all of XYZ and LAS) are kept from the first finite one as the origin; else the origin
- * is zero. On success the caller owns *model and releases it; on failure it is empty and the log says file, line or
- * byte offset, and what is wrong there. Null `options` are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED. */
+/* Reads a model: PLY, OBJ, LAS, PCD, text with a point a line, and what Assimp reads (docs/reference/formats.md); "-"
+ * is standard input. The format is told by the content first, then by the name's ending. Integer colours of a PLY and
+ * all colours of the others are decoded from sRGB, float colours of a PLY are taken as linear. Positions that a float
+ * cannot hold (double or 32-bit integer in a PLY, map coordinates in an OBJ, all of text and LAS) are kept from the
+ * first finite one as the origin; else the origin is zero. On success the caller owns *model and releases it; on
+ * failure it is empty and the log says file, line or byte offset, and what is wrong there. Null `options` are the
+ * defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED, UNSUPPORTED (Assimp's, where it is not there), IO (no process
+ * for it). */
 CONIC_API conic_status conic_model_read(conic_context *context, const char *path, const conic_read_options *options,
                                         conic_model *model);
 
@@ -60,9 +95,9 @@ CONIC_API conic_status conic_model_read(conic_context *context, const char *path
 typedef conic_status conic_batch_receiver(void *cookie, const conic_splats *batch);
 
 /* Reads the points of a file as conic_model_read does, faces aside, and hands them over in their order, a batch at a
- * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ,
- * and XYZ and LAS where the file is a pipe, for how colours are meant is known only at its end. All batches have the
- * same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
+ * time, so that memory does not grow with their number. What cannot be read so is read whole, and is one batch: OBJ
+ * and Assimp's, and text, LAS and PCD where the file is a pipe, for how colours are meant is known only at its end. All
+ * batches have the same optional arrays and origin. Errors: as conic_model_read, and the receiver's. */
 CONIC_API conic_status conic_model_stream(conic_context *context, const char *path, const conic_read_options *options,
                                           conic_batch_receiver *receive, void *cookie);
 
@@ -77,7 +112,8 @@ typedef struct conic_repairs {
   size_t isolated;  /* far from everything else: kept small */
   size_t failed;    /* no ellipse could be found: skipped */
   size_t clip;      /* clip lines that are none, or whose splat got new axes: dropped */
-  uint64_t reserved[8];
+  size_t dots;      /* not put right, but told: whose neighbours make no surface, with finds_dots */
+  uint64_t reserved[7];
 } conic_repairs;
 
 typedef struct conic_estimate_options {
@@ -89,13 +125,16 @@ typedef struct conic_estimate_options {
    * mesh's vertices on creases become several splats each, which stand after all others; clip lines are made. */
   double feature_angle_deg;
 
+  /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
+  int finds_dots;
+
   /* Splats of a mesh stay at it, to less than anybody would see: where a vertex's would not, the vertex becomes a splat
    * for each of its triangles. Vertices of no triangle, if they are less than a tenth, are leftovers and get no splat.
    * With creases all of this is so anyway. */
   int stays_at_mesh;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases, a splat a vertex. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots, a splat a vertex. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

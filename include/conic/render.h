@@ -64,6 +64,31 @@ typedef enum conic_shading {
 /* "none", "lambert" …; null for a number that is no shading. */
 CONIC_API const char *conic_shading_name(conic_shading shading);
 
+/* Where a light stands. */
+typedef enum conic_light_frame {
+  CONIC_LIGHT_WORLD = 0,  /* fixed in the scene: its direction is in world coordinates */
+  CONIC_LIGHT_CAMERA = 1, /* moves with the camera: x to the right, y up in the picture, z towards the viewer */
+  CONIC_LIGHT_HEAD = 2    /* at the viewer's eye, without a direction */
+} conic_light_frame;
+
+typedef struct conic_light {
+  conic_light_frame frame;
+  float color[3];      /* linear RGB, 0 to 1e6; 1, 1, 1 is as bright as the one white light */
+  double direction[3]; /* towards the light, any length but zero */
+} conic_light;
+
+#define CONIC_MAX_LIGHTS 8
+
+/* Several lights, and light from all around. */
+typedef struct conic_lighting {
+  int is_given; /* 0: one white light, as has_light and light say, and 0.05 from all around */
+  int n_lights; /* 0 to CONIC_MAX_LIGHTS */
+  conic_light lights[CONIC_MAX_LIGHTS];
+  float sky[3], ground[3]; /* linear RGB, 0 to 1e6: what falls on that which faces up, and that which faces down … */
+  double up[3];            /* … in the world, any length but zero; unused where the two are equal */
+  uint64_t reserved[4];
+} conic_lighting;
+
 typedef struct conic_render_options {
   size_t size; /* sizeof(conic_render_options), set by the init function */
   conic_method method;
@@ -82,6 +107,7 @@ typedef struct conic_render_options {
   double exposure;     /* in stops: the colour is multiplied by 2^exposure */
   int tile;            /* tile edge in pixels: 8, 16, 32 or 64; changes no bit of the image */
   conic_isa isa;
+  conic_lighting lighting; /* in the place of has_light and light */
 } conic_render_options;
 
 /* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no

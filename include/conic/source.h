@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "conic/camera.h"
+#include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
@@ -52,9 +53,16 @@ typedef struct conic_source_options {
   const conic_layers_access *access; /* of layered clouds; null: the defaults */
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
+  int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
+  int finds_dots; /* raw points about which there is no surface become dots, which face each picture's camera */
+
+  /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
+   * of a .cot or .lpc, with is_whole. */
+  const conic_coloring_options *coloring;
+  const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
 } conic_source_options;
 
-/* Splats, cutoff 1.5, 20 neighbours. */
+/* Splats, cutoff 1.5, 20 neighbours, no dots. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 
@@ -79,6 +87,16 @@ CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybr
 /* Null is allowed. */
 CONIC_API void conic_source_close(conic_source *source);
 
+/* How it is known which way is up. */
+typedef enum conic_up_basis {
+  CONIC_UP_HABIT = 0, /* nothing tells: +y, and +z for points in text and .pcd */
+  CONIC_UP_KIND = 1,  /* the kind of file says it */
+  CONIC_UP_FLAT = 2,  /* it lies flat: +z */
+  CONIC_UP_OPEN = 3,  /* its surface is open below: +z */
+  CONIC_UP_BASE = 4,  /* it stands on a flat base: +z */
+  CONIC_UP_FACING = 5 /* it is a drawing in the plane of x and z, which is looked at from its front: +z */
+} conic_up_basis;
+
 /* What a picture depends on as a whole. */
 typedef struct conic_source_scale {
   unsigned abilities;             /* bits of conic_source_ability */
@@ -91,10 +109,14 @@ typedef struct conic_source_scale {
   int n_levels;                   /* that can be drawn one after the other; 0: all comes at once */
   int has_colors;
   double read_seconds, estimate_seconds; /* what opening it took */
+  conic_up_basis up_basis;               /* of `up`: KIND, or HABIT until conic_source_stand has looked */
 } conic_source_scale;
 
 /* The source's own; stays until it is closed. */
 CONIC_API const conic_source_scale *conic_source_measure(const conic_source *source);
+
+/* What the colours were made of; null: they are as the files have them. The source's own. */
+CONIC_API const conic_coloring *conic_source_coloring(const conic_source *source);
 
 /* The median sample spacing, looked for where it is not known. Errors: ARGUMENT (a hybrid has none), MEMORY, CANCELLED.
  */
@@ -104,6 +126,16 @@ CONIC_API conic_status conic_source_spacing(conic_source *source, double *spacin
  * reaches farther out than 1e20). */
 CONIC_API conic_status conic_source_frame(const conic_source *source, const conic_framing *framing,
                                           conic_camera *camera);
+
+/* Where no kind of file says which way is up, looks at the shape, and sets the scale's `up` and its basis. Errors: as
+ * conic_source_choose. */
+CONIC_API conic_status conic_source_stand(conic_source *source);
+
+/* A camera that its outline just fits: conic_drawing_frame of the source, of a hierarchy as far as a pixel shows it.
+ * What was chosen before is chosen anew by the next picture. Of what streams, conic_source_frame's camera. Null
+ * `framing` as there. Errors: as conic_source_frame, conic_source_choose and conic_drawing_frame. */
+CONIC_API conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
+                                        conic_camera *camera);
 
 /* Fills in what the options leave open: near_z and splat_length where they are 0, an epsilon below 0 where the source
  * has its own. Choosing and drawing do so by themselves. */

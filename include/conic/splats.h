@@ -1,14 +1,16 @@
 /* The splat set: points, and the ellipses that make splats of them.
  *
  * A splat is an ellipse in space with a kernel on it: centre p, tangent axes t_u and t_v (world units, orthogonal,
- * one standard deviation long for the Gaussian kernel); its normal is t_u × t_v. Structure of arrays: every pointer
- * is to `count` floats, which lie side by side or a stride apart. */
+ * one standard deviation long for the Gaussian kernel); its normal is t_u × t_v. A dot is a splat whose axes are turned
+ * for each camera so that it looks round (conic_splats_face). Structure of arrays: every pointer is to `count` floats,
+ * which lie side by side or a stride apart. */
 #ifndef CONIC_SPLATS_H
 #define CONIC_SPLATS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
+#include "conic/camera.h"
 #include "conic/context.h"
 
 #ifdef __cplusplus
@@ -35,7 +37,7 @@ typedef struct conic_clip {
  * array of count × 3 floats at p, the components are p, p + 1, p + 2 and the stride is 3 × sizeof(float); in an array
  * of structs it is the struct's size. Multiples of sizeof(float). */
 typedef struct conic_splats_strides {
-  size_t position, tangent_u, tangent_v, normal, color, opacity;
+  size_t position, tangent_u, tangent_v, normal, color, opacity, dot, scalar;
 } conic_splats_strides;
 
 /* May be filled by hand with pointers to the caller's own arrays (then never pass it to conic_splats_release), or
@@ -72,7 +74,15 @@ typedef struct conic_splats {
   conic_clip *clips;
 
   conic_splats_strides strides;
-  uint64_t reserved[8];
+
+  /* Which splats are dots: other than 0 where one is; optional (null: none). Of a dot, the axes as kept give the size
+   * and the normal. The renderer does not look at this: see conic_splats_face. */
+  float *dot;
+
+  /* One more value a splat, such as a scan's intensity, of which colours can be made (conic/coloring.h); optional, and
+   * of no matter to the picture. NaN where a splat has none. */
+  float *scalar;
+  uint64_t reserved[4];
 } conic_splats;
 
 /* The optional arrays of a set, as bits. */
@@ -81,7 +91,9 @@ typedef enum conic_splats_field {
   CONIC_SPLATS_NORMALS = 2,
   CONIC_SPLATS_COLORS = 4,
   CONIC_SPLATS_OPACITIES = 8,
-  CONIC_SPLATS_CLIPS = 16
+  CONIC_SPLATS_CLIPS = 16,
+  CONIC_SPLATS_DOTS = 32,
+  CONIC_SPLATS_SCALARS = 64
 } conic_splats_field;
 
 /* Allocates a set of `count` splats with the optional arrays of `fields` (bits of conic_splats_field), contents
@@ -94,9 +106,19 @@ CONIC_API conic_status conic_splats_allocate(conic_context *context, size_t coun
 CONIC_API unsigned conic_splats_fields(const conic_splats *splats);
 
 /* Appends `more` to `splats`, rebased to its origin. Arrays that only one of the two has are filled for the other
- * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; no clip
- * lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
+ * with what absence means (white, opacity 1; zero normals and axes, which conic_model_to_splats repairs; NaN scalars;
+ * no clip lines). `more` is left as it was; on failure `splats` is too. Errors: MEMORY. */
 CONIC_API conic_status conic_splats_append(conic_context *context, conic_splats *splats, const conic_splats *more);
+
+/* How many of the splats are dots. */
+CONIC_API size_t conic_splats_count_dots(const conic_splats *splats);
+
+/* Writes the axes by which the dots look round to a camera, `count` floats in each array; those of other splats are
+ * left as they are. A dot is seen as a disc whose radius is the longer of its axes, about its own normal (of both signs
+ * the one that faces the camera) as far as that leans at most 60° away. The axes in the set stay as they are, so that
+ * they serve the next camera. Errors: ARGUMENT (no tangent axes; two arrays of three components that are not there). */
+CONIC_API conic_status conic_splats_face(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                         float *const tangent_u[3], float *const tangent_v[3]);
 
 /* Takes away the clip lines that are none, and those whose record is out of order, names no splat of the set or has no
  * or too many lines: what is left is what the renderer draws. Returns how many records were changed or dropped. */

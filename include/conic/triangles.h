@@ -27,7 +27,7 @@ typedef struct conic_material {
 
 /* As conic_splats_strides, of the arrays of floats. */
 typedef struct conic_triangles_strides {
-  size_t position, color, normal, texture_coordinate;
+  size_t position, color, normal, texture_coordinate, scalar;
 } conic_triangles_strides;
 
 /* A set of triangles: positions that are shared by index, and attributes with indices of their own where corners that
@@ -64,7 +64,8 @@ typedef struct conic_triangles {
   uint32_t *cluster; /* [count]: what a triangle belongs to; optional, and of no matter to the picture */
 
   conic_triangles_strides strides;
-  uint64_t reserved[8];
+  float *scalar; /* [n_vertices]: as in conic_splats; optional */
+  uint64_t reserved[6];
 } conic_triangles;
 
 /* The optional arrays of a set, as bits. */
@@ -72,7 +73,8 @@ typedef enum conic_triangles_field {
   CONIC_TRIANGLES_COLORS = 1,
   CONIC_TRIANGLES_NORMALS = 2,             /* one a vertex, unless n_normals is set by the caller */
   CONIC_TRIANGLES_TEXTURE_COORDINATES = 4, /* likewise */
-  CONIC_TRIANGLES_CLUSTERS = 8
+  CONIC_TRIANGLES_CLUSTERS = 8,
+  CONIC_TRIANGLES_SCALARS = 16
 } conic_triangles_field;
 
 /* Allocates a set with the optional arrays of `fields` (bits of conic_triangles_field), normals and texture coordinates
@@ -126,6 +128,13 @@ typedef struct conic_drawing {
 /* The box of both, and how many centres and corners of it are finite; the near distance that near_z = 0 stands for. */
 CONIC_API size_t conic_drawing_bounds(const conic_drawing *drawing, double minimum[3], double maximum[3]);
 CONIC_API double conic_drawing_near(const conic_drawing *drawing);
+
+/* A camera from which the outline of what is drawn fills 90 % of the picture's width or height, whichever it fills
+ * first, and lies in its middle (at zoom 1). Splats reach as far as `cutoff` standard deviations. Of a turntable of
+ * n_turns pictures, of which this is one, the camera stands equally far off and no picture's outline is larger. Where
+ * nothing is finite, conic_camera_frame's camera. Errors: ARGUMENT, INPUT (broken triangles), MEMORY. */
+CONIC_API conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
+                                           const conic_framing *framing, int n_turns, conic_camera *camera);
 
 /* conic_render_samples (1 sample: conic_render) for splats and triangles together. In the plane `id`, triangle j is
  * the number of splats + j. Triangles with a vertex that is not finite are skipped and counted. With splats alone the

@@ -15,10 +15,10 @@ extern "C" {
 /* "0.1.0"; static. */
 CONIC_API const char *conic_version(void);
 
-/* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO, so
- * is the module that leads to it. */
+/* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO
+ * and Assimp, so is the module that leads to it. */
 typedef struct conic_feature {
-  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL" */
+  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib" */
   int available;
 } conic_feature;
 

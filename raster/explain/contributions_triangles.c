@@ -10,23 +10,37 @@ static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
   ray[1] = (float)(((double)y + 0.5 - view->cy) / view->fy);
 }
 
-static void describe_triangle(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
-                              conic_triangle_contribution *to) {
+/* What the viewer sees of a triangle at a pixel. */
+static void see(const conic_contributions *c, const conic_triangle_record *record, int x, int y,
+                conic_triangle_sight *sight) {
   const conic_view *view = &c->view;
-  conic_triangle_sight sight;
-  float ray[2];
+  float ray[2], world_from_cam[3][3];
   set_ray(view, x, y, ray);
-  float world_from_cam[3][3];
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       world_from_cam[i][j] = view->rotation_float[j][i];
+  conic_triangle_see(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, sight);
+  conic_triangle_lay_texture(sight);
+}
+
+void conic_contribution_triangle_color(const conic_contributions *c, const conic_near_triangle *triangle, int x, int y,
+                                       float color[3]) {
+  conic_triangle_sight sight;
+  see(c, triangle->record, x, y, &sight);
+  memcpy(color, sight.color, sizeof sight.color);
+}
+
+static void describe_triangle(const conic_contributions *c, const conic_triangle_record *record, int x, int y, float iz,
+                              conic_triangle_contribution *to) {
+  conic_triangle_sight sight;
+  float ray[2];
+  set_ray(&c->view, x, y, ray);
   to->triangle = record->index;
   to->verdict = CONIC_CONTRIBUTION_HIDDEN;
   to->inverse_depth = iz;
   to->depth = 1.0f / iz;
   to->hides = conic_triangle_hides(c->triangles.epsilon, iz, ray[0], ray[1]);
-  conic_triangle_see(&c->triangles, record, (const float(*)[3])world_from_cam, x, y, ray, &sight);
-  conic_triangle_lay_texture(&sight);
+  see(c, record, x, y, &sight);
   memcpy(to->color, sight.color, sizeof to->color);
   memcpy(to->normal, sight.normal, sizeof to->normal);
 }
@@ -95,7 +109,7 @@ static void near_in_tile(const conic_triangle_frame *frame, size_t i_tile, int x
       for (int x = first; x < last; x++) {
         float iz;
         if (conic_triangle_sample(record, &edges, x, y, &iz) && line[x].iz < iz)
-          line[x] = (conic_near_triangle){.triangle = record->index, .iz = iz};
+          line[x] = (conic_near_triangle){.record = record, .triangle = record->index, .iz = iz};
       }
     }
   }

@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
-#include "core/image/image_exr_deep.h"
+#include "raster/explain/deep_pixel.h"
 #include "raster/explain/pixel_contributions.h"
 
 /* A line that a thread works out; what it holds serves line after line. */
@@ -15,14 +15,15 @@ typedef struct line {
   conic_near_triangle *triangles; /* a pixel; iz = 0 where none is visible */
   uint32_t *counts;
   size_t *next; /* a pixel: where its next sample goes */
-  float *depths, *weights;
-  uint32_t *ids;
+  conic_deep_sample *samples;
   size_t n_samples, room;
-  int has_failed;
+  conic_deep_packed packed;
+  conic_status status;
 } line;
 
 typedef struct lines {
   const conic_contributions *contributions;
+  const float *rgba; /* the picture's, which the samples make; null: they make the mean of their colours */
   line *lines;
   int is_counting; /* only the counts are asked for */
 } lines;
@@ -85,10 +86,11 @@ static void keep_triangles(const conic_contributions *c, line *l) {
     const conic_near_triangle *triangle = &l->triangles[x];
     if (!(triangle->iz > 0.0f))
       continue;
-    size_t at = l->next[x]++;
-    l->depths[at] = 1.0f / triangle->iz;
-    l->ids[at] = c->triangles.first_id + triangle->triangle;
-    l->weights[at] = 1.0f;
+    conic_deep_sample *sample = &l->samples[l->next[x]++];
+    conic_contribution_triangle_color(c, triangle, x, l->y, sample->rgba);
+    sample->depth = 1.0f / triangle->iz;
+    sample->id = c->triangles.first_id + triangle->triangle;
+    sample->weight = 1.0f;
   }
 }
 
@@ -102,26 +104,27 @@ static void keep_sample(const conic_contributions *c, line *l, uint32_t i_footpr
   if (!is_visible(c, l, i_footprint, x, fragment))
     return;
   conic_contribution contribution = conic_contribution_of(c, i_footprint, x, l->y, fragment);
-  size_t at = l->next[x]++;
-  l->depths[at] = contribution.depth;
-  l->ids[at] = contribution.splat;
-  l->weights[at] = contribution.weight;
+  conic_deep_sample *sample = &l->samples[l->next[x]++];
+  memcpy(sample->rgba, c->projected.surfaces[i_footprint].color, 3 * sizeof(float));
+  sample->depth = contribution.depth;
+  sample->id = contribution.splat;
+  sample->weight = contribution.weight;
 }
 
-static int make_room_for_line(conic_context *context, line *l) {
-  if (l->n_samples <= l->room)
-    return 1;
-  conic_memory_release(context, l->depths);
-  conic_memory_release(context, l->weights);
-  conic_memory_release(context, l->ids);
-  l->room = l->n_samples + l->n_samples / 4;
-  l->depths = conic_memory_allocate(context, l->room, sizeof *l->depths);
-  l->weights = conic_memory_allocate(context, l->room, sizeof *l->weights);
-  l->ids = conic_memory_allocate(context, l->room, sizeof *l->ids);
-  if (l->depths && l->weights && l->ids)
-    return 1;
-  l->room = 0;
-  return 0;
+static conic_status make_room_for_line(conic_context *context, line *l) {
+  return l->n_samples <= l->room
+             ? CONIC_OK
+             : conic_memory_reserve(context, &l->samples, 0, l->n_samples, &l->room, sizeof *l->samples);
+}
+
+/* The samples of the line's pixels, which are all there, as they go into the file. */
+static conic_status pack_line(const lines *all, line *l) {
+  const conic_contributions *c = all->contributions;
+  size_t width = (size_t)c->view.width, first = 0;
+  for (size_t x = 0; x < width && l->n_samples > 0; first += l->counts[x++])
+    conic_deep_pixel(l->samples + first, l->counts[x], all->rgba ? all->rgba + 4 * ((size_t)l->y * width + x) : NULL);
+  const conic_deep_line whole = {l->counts, l->n_samples, l->samples};
+  return conic_deep_pack(c->context, &whole, c->view.width, &l->packed);
 }
 
 static void work_out(void *data, size_t i_item, int i_thread) {
@@ -144,11 +147,12 @@ static void work_out(void *data, size_t i_item, int i_thread) {
   }
   if (all->is_counting)
     return;
-  l->has_failed = !make_room_for_line(c->context, l);
-  if (l->has_failed)
+  l->status = make_room_for_line(c->context, l);
+  if (l->status != CONIC_OK)
     return;
   walk(c, l, keep_sample);
   keep_triangles(c, l);
+  l->status = pack_line(all, l);
 }
 
 static conic_status allocate_line(conic_context *context, size_t width, line *l) {
@@ -161,14 +165,10 @@ static conic_status allocate_line(conic_context *context, size_t width, line *l)
 }
 
 static void release_line(conic_context *context, line *l) {
-  void *all[] = {l->threshold, l->nearest, l->triangles, l->counts, l->next, l->depths, l->weights, l->ids};
+  void *all[] = {l->threshold, l->nearest, l->triangles, l->counts, l->next, l->samples};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_memory_release(context, all[i]);
-}
-
-static conic_status append_sample(conic_deep_writer *writer, const line *l) {
-  conic_deep_line whole = {l->counts, l->n_samples, l->depths, l->ids, l->weights};
-  return l->has_failed ? CONIC_ERROR_MEMORY : conic_deep_append(writer, &whole);
+  conic_deep_packed_release(context, &l->packed);
 }
 
 /* Works out every line, `n_lines` at a time; appends them to the writer, or without one finds the largest count. */
@@ -184,7 +184,9 @@ static conic_status do_lines(lines *all, size_t n_lines, conic_deep_writer *writ
     for (size_t i = 0; i < n && status == CONIC_OK; i++) {
       for (int x = 0; x < c->view.width; x++)
         *most = all->lines[i].counts[x] > *most ? all->lines[i].counts[x] : *most;
-      status = writer ? append_sample(writer, &all->lines[i]) : CONIC_OK;
+      if (writer)
+        status =
+            all->lines[i].status == CONIC_OK ? conic_deep_append(writer, &all->lines[i].packed) : all->lines[i].status;
     }
     double done = (double)(y + (int)n) / (double)c->view.height;
     if (status == CONIC_OK)
@@ -198,6 +200,8 @@ conic_status conic_contributions_write(conic_contributions *c, const char *path,
   uint32_t most = 0;
   conic_deep_writer *writer = NULL;
   lines all = {.contributions = c};
+  if (header && header->width == c->view.width && header->height == c->view.height)
+    all.rgba = header->planes[CONIC_PLANE_RGBA];
   all.lines = conic_memory_allocate_zeroed(c->context, n_lines, sizeof *all.lines);
   conic_status status = all.lines ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < n_lines && status == CONIC_OK; i++)

@@ -31,12 +31,17 @@ conic_status conic_contribution_triangles(conic_contributions *contributions, in
 
 /* The nearest triangle at a pixel; with iz = 0 there is none. */
 typedef struct conic_near_triangle {
+  const conic_triangle_record *record;
   uint32_t triangle;
   float iz, hides;
 } conic_near_triangle;
 
 /* Finds those of a line of the picture, one a pixel. */
 void conic_contribution_triangle_line(const conic_contributions *contributions, int y, conic_near_triangle *line);
+
+/* The colour of a triangle at a pixel of its line. */
+void conic_contribution_triangle_color(const conic_contributions *contributions, const conic_near_triangle *triangle,
+                                       int x, int y, float color[3]);
 
 /* The footprint at a pixel, which it covers: everything but the verdict. */
 conic_contribution conic_contribution_of(const conic_contributions *contributions, uint32_t i_footprint, int x, int y,

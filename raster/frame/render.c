@@ -14,6 +14,7 @@
 #include "raster/frame/tile.h"
 #include "raster/project/clip_lines.h"
 #include "raster/tiles/bins.h"
+#include "raster/tiles/lights.h"
 #include "raster/view/method.h"
 #include "raster/view/part.h"
 #include "raster/view/ticks.h"
@@ -34,6 +35,7 @@ typedef struct frame {
   conic_projected projected;
   conic_bins bins;
   conic_finish finish;
+  conic_finish_lights lights;
   conic_isa isa;
   conic_raster_kernels kernels;
   conic_image *image;
@@ -302,22 +304,16 @@ double conic_default_near(const conic_splats *splats) {
 
 static conic_status prepare_finish(frame *f, const conic_camera *camera, const conic_render_options *options) {
   conic_finish *finish = &f->finish;
-  double length_squared = 0.0;
   finish->options = options;
-  for (int i = 0; i < 3; i++) {
-    length_squared += options->light[i] * options->light[i];
+  finish->lights = &f->lights;
+  for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       finish->world_from_cam[i][j] = (float)camera->cam_from_world[j][i];
-  }
-  if (options->has_light && !(length_squared > 1e-200 && length_squared < 1e200))
-    return conic_fail(f->renderer->context, CONIC_ERROR_ARGUMENT, "the light has no direction");
-  for (int i = 0; options->has_light && i < 3; i++)
-    finish->light[i] = (float)(options->light[i] / sqrt(length_squared));
   finish->exposure = conic_exposure_factor(options->exposure);
   for (int i = 0; options->has_background && i < 3; i++)
     finish->background[i] = options->background[i] * finish->exposure;
   finish->background[3] = options->has_background ? 1.0f : 0.0f;
-  return CONIC_OK;
+  return conic_finish_lights_init(f->renderer->context, camera, options, &f->lights);
 }
 
 static conic_status draw_frame(frame *f, conic_render_milliseconds *ms) {

@@ -32,15 +32,20 @@ static size_t fine_at(const reduction *r, size_t corner, size_t k) {
   return corner + k / r->samples * (size_t)r->fine->width + k % r->samples;
 }
 
-static void take_mean(const reduction *r, conic_plane plane, size_t corner, size_t at) {
-  size_t n_channels = (size_t)conic_plane_describe(plane)->n_channels, n = r->samples * r->samples;
-  const float *fine = r->fine->planes[plane];
+/* Of a row of the image's pixels. */
+static inline void take_means(const reduction *r, conic_plane plane, size_t n_channels, size_t corner, size_t at) {
+  size_t width = (size_t)r->image->width, samples = r->samples, row_floats = n_channels * (size_t)r->fine->width;
+  const float *fine = (const float *)r->fine->planes[plane] + n_channels * corner;
   float *to = (float *)r->image->planes[plane] + n_channels * at;
-  for (size_t c = 0; c < n_channels; c++) {
-    double sum = 0.0; /* of floats, so exact where all are the same */
-    for (size_t k = 0; k < n; k++)
-      sum += (double)fine[n_channels * fine_at(r, corner, k) + c];
-    to[c] = (float)(sum / (double)n);
+  double n = (double)(samples * samples);
+  for (size_t x = 0; x < width; x++, fine += n_channels * samples, to += n_channels) {
+    double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* of floats, so exact where all are the same */
+    for (size_t y = 0; y < samples; y++)
+      for (size_t k = 0; k < samples; k++)
+        for (size_t c = 0; c < n_channels; c++)
+          sum[c] += (double)fine[y * row_floats + k * n_channels + c];
+    for (size_t c = 0; c < n_channels; c++)
+      to[c] = (float)(sum[c] / n);
   }
 }
 
@@ -95,14 +100,15 @@ static void reduce_row(void *data, size_t i_row, int i_thread) {
   void *const *planes = r->image->planes;
   size_t width = (size_t)r->image->width;
   (void)i_thread;
+  size_t first_corner = i_row * (size_t)r->fine->width * r->samples, first = (r->first_row + i_row) * width;
+  if (planes[CONIC_PLANE_RGBA])
+    take_means(r, CONIC_PLANE_RGBA, 4, first_corner, first);
+  if (planes[CONIC_PLANE_ALBEDO])
+    take_means(r, CONIC_PLANE_ALBEDO, 3, first_corner, first);
+  if (planes[CONIC_PLANE_WEIGHT])
+    take_means(r, CONIC_PLANE_WEIGHT, 1, first_corner, first);
   for (size_t x = 0; x < width; x++) {
-    size_t corner = (i_row * (size_t)r->fine->width + x) * r->samples, at = (r->first_row + i_row) * width + x;
-    if (planes[CONIC_PLANE_RGBA])
-      take_mean(r, CONIC_PLANE_RGBA, corner, at);
-    if (planes[CONIC_PLANE_ALBEDO])
-      take_mean(r, CONIC_PLANE_ALBEDO, corner, at);
-    if (planes[CONIC_PLANE_WEIGHT])
-      take_mean(r, CONIC_PLANE_WEIGHT, corner, at);
+    size_t corner = first_corner + x * r->samples, at = first + x;
     if (planes[CONIC_PLANE_NORMAL])
       take_normal(r, corner, at);
     if (planes[CONIC_PLANE_COUNT])
@@ -184,25 +190,41 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   return conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s);
 }
 
+/* The planes of the fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared,
+ * for at this size that is a large part of a frame. */
+static conic_status allocate_fine(conic_context *context, int width, int height, unsigned planes, conic_image *fine) {
+  memset(fine, 0, sizeof *fine);
+  fine->width = width;
+  fine->height = height;
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    size_t pixel_bytes = 4 * (size_t)conic_plane_describe((conic_plane)i)->n_channels;
+    if (!(planes >> i & 1))
+      continue;
+    fine->planes[i] = conic_memory_allocate(context, conic_image_pixels(fine), pixel_bytes);
+    if (!fine->planes[i]) {
+      conic_image_release(context, fine);
+      return CONIC_ERROR_MEMORY;
+    }
+    conic_memory_advise_large_pages(fine->planes[i], conic_image_pixels(fine) * pixel_bytes);
+  }
+  return CONIC_OK;
+}
+
+/* Of `fine`, the first rows. */
 static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_whole_drawing *drawing,
-                              const conic_camera *camera, const conic_render_options *options, reduction *r,
-                              conic_render_statistics *sum) {
+                              const conic_camera *camera, const conic_render_options *options, conic_image *fine,
+                              reduction *r, conic_render_statistics *sum) {
   conic_render_statistics band;
-  conic_image fine;
-  conic_status status =
-      conic_image_allocate(context, camera->width, camera->height, conic_image_planes(r->image), &fine);
+  fine->height = camera->height;
+  conic_status status = conic_render_whole(renderer, drawing, camera, options, fine, &band);
   if (status != CONIC_OK)
     return status;
-  status = conic_render_whole(renderer, drawing, camera, options, &fine, &band);
-  if (status == CONIC_OK) {
-    double start = conic_seconds_now();
-    r->fine = &fine;
-    conic_parallel_for(context, (size_t)fine.height / r->samples, reduce_row, r);
-    add_statistics(&band, sum);
-    sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
-  }
-  conic_image_release(context, &fine);
-  return status;
+  double start = conic_seconds_now();
+  r->fine = fine;
+  conic_parallel_for(context, (size_t)fine->height / r->samples, reduce_row, r);
+  add_statistics(&band, sum);
+  sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
+  return CONIC_OK;
 }
 
 /* Rows of the picture in a band. */
@@ -220,13 +242,19 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
   reduction r = {.image = image, .samples = (size_t)samples};
   conic_status status = conic_whole_drawing_scale(context, drawing, &same);
   memset(&sum, 0, sizeof sum);
+  conic_image fine_image;
   int rows = band_rows(camera, samples);
+  if (status == CONIC_OK)
+    status = allocate_fine(context, samples * camera->width, samples * rows, conic_image_planes(image), &fine_image);
+  if (status != CONIC_OK)
+    return status;
   for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
     int n_rows = camera->height - y < rows ? camera->height - y : rows;
     conic_camera fine = fine_camera(camera, samples, y, n_rows);
     r.first_row = (size_t)y;
-    status = draw_band(renderer, context, drawing, &fine, &same, &r, &sum);
+    status = draw_band(renderer, context, drawing, &fine, &same, &fine_image, &r, &sum);
   }
+  conic_image_release(context, &fine_image);
   if (status == CONIC_OK && rows < camera->height) {
     conic_camera whole = fine_camera(camera, samples, 0, camera->height);
     status = count_whole(context, drawing, &whole, &same, &sum);

@@ -10,11 +10,26 @@
 #define CONIC_DIFFUSE 0.75f
 #define CONIC_SPECULAR 0.15f
 
+/* A light as pixels take it: at the viewer's eye, or in one direction (unit, in the world). */
+typedef struct conic_finish_light {
+  int32_t is_head;
+  float towards[3], diffuse[3], specular[3];
+} conic_finish_light;
+
+/* A frame's lights (raster/tiles/lights.h). From all around comes ambient, and slope × how far the normal points up
+ * where they have a sky. */
+typedef struct conic_finish_lights {
+  int32_t n_lights, has_sky;
+  int32_t is_grey; /* all colours are */
+  float ambient[3], slope[3], up[3];
+  conic_finish_light lights[CONIC_MAX_LIGHTS];
+} conic_finish_lights;
+
 /* How a frame's pixels are finished. */
 typedef struct conic_finish {
   const conic_render_options *options;
+  const conic_finish_lights *lights;
   float world_from_cam[3][3]; /* for the direction to the viewer */
-  float light[3];             /* unit, towards the light; unused with a headlight */
   float exposure;             /* factor */
   float background[4];        /* of an uncovered pixel: rgba, exposed */
 } conic_finish;

@@ -17,6 +17,23 @@ static float gloss(float x) {
   return x;
 }
 
+/* What one light adds to the light that falls on a surface, and to what is reflected like a gloss. */
+static void add_light(const conic_finish_light *light, conic_shading shading, const float normal[3],
+                      const float mean_normal[3], const float viewer[3], float lit[3], float glossy[3]) {
+  const float *towards = light->is_head ? viewer : light->towards;
+  float facing = at_least_zero(dot(mean_normal, towards)), along = dot(normal, towards);
+  for (int i = 0; i < 3; i++)
+    lit[i] += light->diffuse[i] * facing;
+  if (shading != CONIC_SHADE_PHONG || !(along > 0.0f))
+    return;
+  float reflected[3], agreement = dot(mean_normal, mean_normal);
+  for (int i = 0; i < 3; i++)
+    reflected[i] = 2.0f * along * normal[i] - towards[i];
+  float shine = gloss(at_least_zero(dot(reflected, viewer)));
+  for (int i = 0; i < 3; i++)
+    glossy[i] += light->specular[i] * shine * agreement;
+}
+
 /* Where normals disagree, their mean is short. The light is averaged by the mean itself, not by its direction: at a
  * silhouette, splats of the front and of the back blend, both seen almost edge-on and both flipped to the viewer; what
  * is left of their sum points straight at the viewer, and normalised would draw a bright rim. */
@@ -28,17 +45,17 @@ void conic_shade(const conic_finish *finish, const float albedo[3], const float 
       shaded[i] = albedo[i];
     return;
   }
-  const float *light = options->has_light ? finish->light : viewer;
-  float towards_light = dot(normal, light), glossy = 0.0f;
-  float lit = CONIC_AMBIENT + CONIC_DIFFUSE * at_least_zero(dot(mean_normal, light));
-  if (options->shading == CONIC_SHADE_PHONG && towards_light > 0.0f) {
-    float reflected[3];
+  const conic_finish_lights *lights = finish->lights;
+  float lit[3] = {lights->ambient[0], lights->ambient[1], lights->ambient[2]}, glossy[3] = {0.0f, 0.0f, 0.0f};
+  if (lights->has_sky) {
+    float upward = dot(mean_normal, lights->up);
     for (int i = 0; i < 3; i++)
-      reflected[i] = 2.0f * towards_light * normal[i] - light[i];
-    glossy = CONIC_SPECULAR * gloss(at_least_zero(dot(reflected, viewer))) * dot(mean_normal, mean_normal);
+      lit[i] += lights->slope[i] * upward;
   }
+  for (int i = 0; i < lights->n_lights; i++)
+    add_light(&lights->lights[i], options->shading, normal, mean_normal, viewer, lit, glossy);
   for (int i = 0; i < 3; i++)
-    shaded[i] = albedo[i] * lit + glossy;
+    shaded[i] = albedo[i] * lit[i] + glossy[i];
 }
 
 /* The unit direction from what is seen at the pixel to the viewer, in world coordinates. */

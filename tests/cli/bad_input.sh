@@ -24,6 +24,7 @@ fail() {
 run() { # EXIT_CODE, ARGUMENTS …
   local wanted=$1 got
   shift
+  [[ $1 != render && $1 != explain && $1 != verify ]] || set -- "$1" --plain "${@:2}"
   "$conic" "$@" > out 2> err < /dev/null
   got=$?
   [[ $got -eq $wanted ]] || fail "conic $*: exit code $got instead of $wanted: $(head -c 300 err)"
@@ -267,10 +268,12 @@ run 0 render large.ply -o other.pfm --size 300x200 --azimuth 50
 run 0 --version
 grep -q '^In this build:.*OpenEXR' out || echo "skipped: EXR is not in this build"
 has_oiio=$(grep -c '^In this build:.*OpenImageIO' out)
+has_png=$(grep -c '^In this build:.*\(libpng\|OpenImageIO\)' out)
 has_exr=$(grep -c '^In this build:.*\(OpenEXR\|OpenImageIO\)' out)
 is_writable() { # COMMAND LINE
   case $1 in
-    *.png* | *.tif*) [[ $has_oiio -gt 0 ]] ;;
+    *.png*) [[ $has_png -gt 0 ]] ;;
+    *.tif*) [[ $has_oiio -gt 0 ]] ;;
     *.exr*) [[ $has_exr -gt 0 ]] ;;
   esac
 }

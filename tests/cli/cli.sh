@@ -40,7 +40,10 @@ for command in make prepare render diff verify info explain chart bench; do
   run 0 $command --help
   cmp -s out help_command || fail "conic $command --help is not conic help $command"
 done
+run 0 -V
+cp out version
 run 0 --version
+cmp -s out version || fail "conic -V is not conic --version"
 grep -qE '^conic [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no version"
 grep -q 'BSD-3-Clause' out || fail "no license"
 grep -q '^In this build:' out || fail "no features"
@@ -72,11 +75,11 @@ for arguments in "render|-o|outputs/a.pfm|" "info|" "prepare|a.ply|-o|" "render|
   run_wrong 2 "an argument is empty\|\"\" is not understood" "${words[@]}" ""
 done
 # What cannot be written is said before anything is read
-run_wrong 2 'standard output' render absent.ply -o -
+run_wrong 2 'standard output' render absent.ply -o - -o -
 run_wrong 2 'needs an ending' render absent.ply -o outputs/a
 run_wrong 2 'camera' render absent.ply -o outputs/a.pfm --camera absent.json --zoom 2
 run_wrong 2 'planes: rgba' render absent.ply -o outputs/a.pfm --aov depth
-run_wrong 2 'a lone Z' render absent.ply -o outputs/a.pfm --aov Z,N
+run_wrong 2 'no output holds the plane Z' render absent.ply -o outputs/a.png --aov rgba,Z
 run_wrong 2 'are of patches' render absent.ply -o outputs/a.pfm --degree 2
 run_wrong 4 'outputs/none/a.pfm: cannot write' render absent.ply -o outputs/none/a.pfm
 run_wrong 4 'outputs/none/a.json: cannot write' verify absent.ply --json outputs/none/a.json
@@ -167,8 +170,16 @@ for scene in a b c; do
 done
 run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6
 [[ $(cat err) == 'conic: warning: a.ply: the picture is empty: all is out of sight' ]] || fail "nothing is said of an empty picture"
-run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6 --quiet
-[[ ! -s err ]] || fail "a quiet run speaks of an empty picture"
+for quiet in --quiet -q; do
+  run 0 render a.ply -o empty.pfm --size 64x48 --near 1e6 $quiet --fov 30 --fov 31
+  [[ ! -s err ]] || fail "a run with $quiet speaks: $(cat err)"
+done
+# Of an option that is given twice the last value holds, and the one that is lost is named
+run 0 render a.ply -o twice.pfm --size 8x8 --size 64x48 --fov 40 --fov 40 -o again.pfm
+[[ $(cat err) == 'conic: warning: render: --size 64x48 holds, and not 8x8, which was given before it' ]] ||
+  fail "of an option that is given twice: $(cat err)"
+run 0 diff a.pfm twice.pfm
+run 0 diff a.pfm again.pfm
 run 0 octree a.ply -o a.cot
 run_wrong 3 'this is a point-octree' prepare a.cot -o outputs/a.ply
 run 0 diff b.pfm c.pfm
@@ -194,8 +205,19 @@ for command in 'make torus -n 2000 -o told.ply' 'prepare a.ply -o told.ply' 'oct
   grep -q 'write [0-9.]* m\?s' err || fail "conic $command --verbose: no stages: $(cat err)"
   grep -qv 'in all' err || fail "conic $command --verbose: nothing of what was done: $(cat err)"
   # shellcheck disable=SC2086
+  run 0 $command -v -v
+  grep -q '^conic: .* in all' err || fail "conic $command -v is not --verbose: $(cat err)"
+  # shellcheck disable=SC2086
   run 0 $command
   [[ ! -s err ]] || fail "conic $command: not silent: $(cat err)"
+done
+# What makes points of a mesh says so
+for command in 'prepare square.obj -o told.ply' 'octree square.obj -o told.cot' 'layer square.obj -o told.lpc'; do
+  [[ $command == layer* && $has_zstd -eq 0 ]] && continue
+  # shellcheck disable=SC2086
+  run 0 $command
+  grep -q '^conic: warning: square.obj: .* 2 faces are left out; conic render --as mesh' err ||
+    fail "conic $command loses faces in silence: $(cat err)"
 done
 printf '0 0 0\n1 0 0\n0 1 0\n1 1 0\n1 1 0\nnan 0 0\n' > odd.xyz
 for command in 'prepare -o told.ply' 'octree -o told.cot' 'render --size 64x48 -o told.pfm'; do
@@ -217,33 +239,5 @@ grep -q '"extent": "a point' out || fail "info does not say why in JSON"
 
 # A table that has no line has no head
 run_wrong 3 'absent.ply' bench absent.ply
-
-# The progress bar of a turntable names the frame
-if [[ -n $(type -P script) ]] && script -qec true /dev/null > /dev/null 2>&1 < /dev/null; then
-  script -qec "'$conic' render a.ply -o turned.pfm --turntable 20 --size 256x192 --samples 8 --threads 1" /dev/null \
-    > out 2> err < /dev/null
-  grep -q 'frame [0-9]*/20' out || fail "no frame in the progress bar: $(head -c 300 out)"
-else
-  echo "skipped: there is no script(1) to make a terminal"
-fi
-
-# A run that is stopped leaves nothing behind; nor when the signal comes twice at once, as from a terminal or from timeout
-for signals in 1 2; do
-  "$conic" make sphere -n 2G -o outputs/a.ply > out 2> err &
-  process=$!
-  for ((i = 0; i < 600; i++)); do # until it writes: only then are signals caught
-    [[ -z $(ls -A outputs) ]] || break
-    sleep 0.1
-  done
-  kill -TERM $process
-  if [[ $signals -eq 2 ]]; then
-    sleep 0.01
-    kill -TERM $process 2> /dev/null
-  fi
-  wait $process
-  got=$?
-  [[ $got -eq 4 ]] || fail "a run that is stopped by $signals signals: exit code $got"
-  no_files_but
-done
 
 [[ $failures -eq 0 ]]

@@ -53,6 +53,8 @@ for key in identical max_abs rmse p999 psnr ssim flip over_code differing_pixels
 done
 has '"identical": false'
 has '"max_abs": 0.5,'
+has '"rmse": 0.35355339059327' # of R, G and B: the root of 3 · 0.25 / 6
+has '"color_channels": "RGB"'
 has '"flip": 0\.[0-9]'
 has '"over_code": 1,'
 has '"p999": 0.5,'

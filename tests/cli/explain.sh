@@ -93,11 +93,18 @@ run 0 render one.chy --size 40x30 --error 1 --deep t.exr --turntable 2
 run 2 render one.chy --size 40x30 --deep t.exr --samples 2
 if command -v oiiotool > /dev/null; then
   oiiotool --info -v --stats d.exr > out 2> err || fail "oiiotool cannot read it: $(cat err)"
-  has '80 x   60, 3 channel, deep float/uint/float openexr'
-  has 'channel list: Z (float), id (uint), weight (float)'
+  has '80 x   60, 7 channel, deep float/float/float/float/float/uint/float openexr'
+  has 'channel list: R (float), G (float), B (float), A (float), Z (float), id (uint), weight (float)'
+  if "$conic" --version | grep -q '^In this build:.*zlib'; then
+    has 'compression: "zips"'
+  fi
   has 'conicMethod: "conic"'
   most=$(sed -nE 's/.*openexr:maxSamplesPerPixel: ([0-9]+).*/\1/p' out)
   has "Max deep samples in any pixel : $most"
+  # Flattened, it is the flat picture, which need not be written
+  run 0 render knot.ply --size 80x60 -o flat.exr --aov rgba
+  oiiotool d.exr --flatten --ch R,G,B,A -o flattened.exr
+  run 0 diff flat.exr flattened.exr --max-abs 1e-5
 else
   echo "skipped: another program's eyes, as there is no oiiotool"
 fi

@@ -30,10 +30,11 @@ for i in 0 1 2 3 4 5; do
   put $((227 + 20 * i + 8)) "\\x$(printf '%02x' $((i * 40)))\\x01"
 done
 printf '0 0 0\n1 2 3\n-5 4 7\n' > a.txt
+printf 'FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n0 0 0\n1 2 3\n' > a.pcd
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > a.obj
 "$conic" make sphere -n 100 -o a.ply || fail "make"
 
-for name in las:6 txt:3 obj:3 ply:100; do
+for name in las:6 pcd:2 txt:3 obj:3 ply:100; do
   file=a.${name%:*}
   kind=${file#a.}
   [[ $kind != txt ]] || kind=xyz
@@ -46,7 +47,7 @@ for name in las:6 txt:3 obj:3 ply:100; do
 done
 
 draw() { # OUTPUT, ARGUMENTS …
-  "$conic" render "${@:2}" --size 40x40 -o "$1" || fail "render ${*:2}"
+  "$conic" render --plain "${@:2}" --size 40x40 -o "$1" || fail "render ${*:2}"
 }
 same() {
   "$conic" diff "$1" "$2" > out || fail "$1 and $2 differ: $(cat out)"
@@ -68,5 +69,26 @@ different las.pfm las_y.pfm
 same two.pfm two_z.pfm
 same mixed.pfm mixed_y.pfm
 same text.pfm text_y.pfm
+
+# Columns in another order than a program would guess: every command that reads points takes their names.
+printf 'tree %s\n' '7;-5;4;%' '3;1;2;%' '0;0;0;%' '5;5;1;%' '6;2;2;%' '1;3;8;%' '2;7;4;%' '4;4;4;%' > b.csv
+sed 's/^tree \(.*\);\(.*\);\(.*\);%$/\2 \3 \1/' b.csv > b.xyz
+sed -i 's/ /;/' b.csv
+"$conic" info b.csv 2> err && fail "columns that nobody knows are read"
+grep -q -e '--columns' err || fail "nothing is said of --columns: $(cat err)"
+draw b_csv.pfm b.csv --columns -,z,x,y
+draw b_xyz.pfm b.xyz
+same b_csv.pfm b_xyz.pfm
+for command in 'prepare:ply' 'octree:cot' 'mls thin --count 4:ply'; do
+  for file in 'b.csv --columns -,z,x,y' b.xyz; do
+    # shellcheck disable=SC2086
+    "$conic" ${command%:*} $file -o "${file:0:5}.${command#*:}" || fail "${command%:*} $file"
+  done
+  cmp b.csv.${command#*:} b.xyz.${command#*:} || fail "${command%:*} takes columns for others"
+done
+for wrong in x,y x,y,z,r x,y,z,x; do
+  "$conic" prepare b.csv --columns $wrong -o c.ply 2> err
+  [[ $? -eq 2 ]] || fail "--columns $wrong is not refused as wrong usage: $(cat err)"
+done
 
 [[ $failures -eq 0 ]]

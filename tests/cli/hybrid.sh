@@ -50,6 +50,14 @@ for error in 0.25 1 4; do
   last=$n
 done
 
+# An error that the kind cannot keep is owned up to
+run 0 render hill.chy -o s.pfm $picture --only surfels --error 0.001 --json surfels.json
+grep -q '^conic: warning: hill.chy: --only surfels cannot keep --error 0.001: ' err || fail "a broken --error goes unsaid"
+[[ $(value error_px_asked surfels.json) == 0.001 ]] || fail "--error is not in the statistics"
+perl -e 'exit !($ARGV[0] > 0.001)' "$(value error_px surfels.json)" || fail "the error that was reached is not there"
+run 0 render hill.chy -o s.pfm $picture --only surfels --error 1000
+[[ ! -s err ]] || fail "of an --error that is kept: $(cat err)"
+
 # Never more than the budget, and better with more of it.
 last=1000000
 for budget in 300 1000 4000 1M; do

@@ -54,7 +54,8 @@ declare -A wanted=(
   [mls-thin]="$builder error hausdorff to_thinned.max from_thinned.max"
   [mls-densify]=$builder
   [render]="$render methods.conic"
-  [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px"
+  [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
+  [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
   [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
     triangle_fragments mtriangles_per_s"
   [render-patches]="$render methods.conic primitives.patches primitives.samples"
@@ -80,6 +81,7 @@ printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' '.5 .5 .5' '4 0 0' '4 0 1' > ten
 printf 'f %s\n' '1 5 2' '2 5 3' '3 5 4' '4 5 1' '2 3 7 6' >> tent.obj
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > triangle.obj
 printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
+printf '%s\n' '0 0 0' '1 0 0' '0 1 0' '1 1 0' '1 1 0' 'nan 0 0' > odd.xyz
 
 write make make make knot -n 50k -o knot.ply
 write prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
@@ -97,6 +99,15 @@ write render-hybrid render_hybrid render tent.chy -o tent.exr
 write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
 write render-auto render render knot.ply -o auto.exr --method auto --zoom 20 --size 256x256
 write render-other render render thin.ply -o other.exr --size 256x256 --method disc --samples 2 --epsilon 2x
+write render-odd render render odd.xyz -o odd.exr --size 64x64
+grep -q '"nan": 1,' runs/render-odd.json || fail "render does not count what it leaves out"
+grep -q '"duplicate": 1,' runs/render-odd.json || fail "render does not count what lies where others are"
+write render-odd-patches render_patches render odd.xyz -o odd.exr --size 64x64 --method patch
+grep -q '"nan": 1,' runs/render-odd-patches.json || fail "render does not count what it lays no patches about"
+write render-colored render render knot.ply -o height.exr --color-by height --size 64x64
+write prepare-colored prepare prepare knot.ply -o colored.ply --color-by x
+write octree-colored octree octree colored.ply -o colored.cot --color-by height
+write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 write verify verify verify thinner.ply --size 160x120
@@ -125,6 +136,7 @@ unseen="device.name device.platform device.version device.driver device.is_cpu d
   device.rounds_correctly device.compute_units device.memory_bytes"
 if [[ $has_zstd -eq 1 ]]; then
   write layer layer layer knot.ply -o knot.lpc
+  write layer-colored layer layer knot.ply -o colored.lpc --color-by x
   write render-layers render_layers render knot.lpc -o layers.exr --error 4 --size 512x512
   write render-progressive render_layers render knot.lpc -o layers.exr --error 4 --size 64x64 --progressive pictures
   write info-layers info_layers info knot.lpc --check

@@ -99,6 +99,20 @@ class Check:
             if self.accepts(definition, wrong):
                 self.fail(f"{name}: a fault in {key} goes unseen")
 
+    def adds_up(self, name, value):
+        """That the times of a run are all of it."""
+        def holds(times, whole, parts):
+            if abs(sum(times[part] for part in parts) - times[whole]) > 1e-6 * times[whole]:
+                self.fail(f"{name}: the times do not add up to {whole}: {times}")
+
+        if "seconds" in value and isinstance(value["seconds"], dict):
+            inside = {"cluster", "sample", "simplify"}  # of the work
+            holds(value["seconds"], "total", set(value["seconds"]) - inside - {"total"})
+        if "draw" in value.get("ms", {}):
+            of_frame = {"lod", "setup", "bin", "visibility", "accumulate", "resolve", "frame_other"}
+            holds(value["ms"], "frame", of_frame)
+            holds(value["ms"], "total", set(value["ms"]) - of_frame - {"frame", "total"})
+
     def wants(self, name, definition, value, keys):
         """The keys that scripts rely on are there, and the schema says that they are."""
         for path in keys:
@@ -128,6 +142,7 @@ def main(schema_path, folder):
         value = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
         keys = wanted.pop(name, "").split()
         if check.holds(name, definition, value):
+            check.adds_up(name, value)
             check.refuses(name, definition, value)
             check.wants(name, definition, value, keys)
     for name in wanted:

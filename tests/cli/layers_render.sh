@@ -152,7 +152,7 @@ run 3 render $site/knot.ply -o x.pfm
 grep -q "^conic: error: $site/knot.ply: " err || fail "a message without its file: $(cat err)"
 
 # A server that dies midway.
-"$conic" render $site/slow/knot.lpc -o x.pfm $picture --timeout 1 2> err &
+"$conic" render --plain $site/slow/knot.lpc -o x.pfm $picture --timeout 1 2> err &
 render_pid=$!
 sleep 1.5
 stop_nginx $nginx_pid

@@ -2,7 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 #include "tests/support/check.h"
 
 const cli_command *cli_find_command(const char *name) {
@@ -73,6 +73,7 @@ static void check_understood(void) {
   CHECK(parse(&got, "--even 4") == CLI_DONE && got.parsed == 4);
   CHECK(parse(&got, "--threads 7 --json - --quiet --verbose") == CLI_DONE && got.session.threads == 7 &&
         strcmp(got.session.json_path, "-") == 0 && got.session.is_quiet && got.session.is_verbose);
+  CHECK(parse(&got, "-q -v") == CLI_DONE && got.session.is_quiet && got.session.is_verbose);
 }
 
 static void check_counts(void) {
@@ -121,12 +122,12 @@ static void check_nearest(void) {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     const char *nearest = NULL;
     for (size_t name = 0; name < sizeof names / sizeof names[0]; name++)
-      nearest = cli_nearer_word(cases[i].word, nearest, names[name]);
+      nearest = conic_nearer_word(cases[i].word, nearest, names[name]);
     CHECK(!nearest == !cases[i].nearest && (!nearest || strcmp(nearest, cases[i].nearest) == 0));
   }
-  CHECK(cli_word_distance("kitten", "sitting") == 3);
-  CHECK(cli_word_distance("ab", "ba") == 1);
-  CHECK(cli_word_distance("", "abc") == 3);
+  CHECK(conic_word_distance("kitten", "sitting") == 3);
+  CHECK(conic_word_distance("ab", "ba") == 1);
+  CHECK(conic_word_distance("", "abc") == 3);
 }
 
 static void check_outputs(void) {

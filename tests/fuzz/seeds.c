@@ -20,6 +20,8 @@ int main(int argc, char **argv) {
   }
   conic_context *context = files_context();
   seed_set *set = seeds_make(context);
+  seeds_all_assimp(set);
+  seeds_all_records(set);
   for (int i = 0; i < set->n; i++)
     write_seed(argv[1], &set->seeds[i]);
   seeds_release(set);

@@ -266,7 +266,8 @@ static void check_small_device(fixture *f, conic_opencl *opencl, uint64_t *state
   f->options.near_z = 1e-3;
   f->options.splat_length = 0.01;
   fixture_render(f);
-  conic_finish finish = {.options = &f->options, .exposure = 1.0f};
+  const conic_finish_lights lights = {0};
+  conic_finish finish = {.options = &f->options, .lights = &lights, .exposure = 1.0f};
   CHECK_OK(conic_view_init(f->context, &f->splats, &f->camera, &f->options, 1e-3, 0.01, &view));
   CHECK_OK(conic_image_allocate(f->context, f->camera.width, f->camera.height, ALL_PLANES, &image));
   memset(&statistics, 0, sizeof statistics);

@@ -139,6 +139,17 @@ static void test_options(fixture *f) {
   f->options.kernel.b = 2.5f;
   check_agreement(f, "confetti, lit from behind", 0.02);
   f->options = plain;
+  f->options.lighting = (conic_lighting){
+      .is_given = 1,
+      .n_lights = 3,
+      .lights = {{.frame = CONIC_LIGHT_CAMERA, .color = {0.7f, 0.5f, 0.4f}, .direction = {-2.0, 1.0, 1.5}},
+                 {.frame = CONIC_LIGHT_WORLD, .color = {0.1f, 0.2f, 0.4f}, .direction = {1.0, -3.0, 0.5}},
+                 {.frame = CONIC_LIGHT_HEAD, .color = {0.2f, 0.2f, 0.1f}}},
+      .sky = {0.2f, 0.3f, 0.4f},
+      .ground = {0.1f, 0.05f, 0.0f},
+      .up = {0.3, -1.0, 0.2}};
+  check_agreement(f, "three lights under a sky", 0.005);
+  f->options = plain;
 }
 
 /* Discs almost across the line of sight: over them depth changes by no more than it is rounded, which once made the ray

@@ -19,7 +19,7 @@ if ! "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
 fi
 
 draw() { # NAME, options …
-  "$conic" render "$scan" --up z --size 400x300 --aov all -o "$1.exr" --json "$1.json" "${@:2}"
+  "$conic" render --plain "$scan" --up z --size 400x300 --aov all -o "$1.exr" --json "$1.json" "${@:2}"
   grep -A8 '"hash"' "$1.json" > "$1.hash"
 }
 draw first --threads 1 --tile 64

@@ -4,6 +4,9 @@
 
 #include "tests/support/fixture.h"
 #include "tests/support/image_fixture.h"
+#if CONIC_HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 /* Steps over the attributes of an EXR's header; `most` becomes maxSamplesPerPixel. Returns where the table of the
  * lines' places begins. */
@@ -30,8 +33,81 @@ typedef struct deep_counts {
   size_t n_mixed; /* pixels of both */
 } deep_counts;
 
-/* One line of the file against the picture: the weights of each pixel add up to its weight plane, the first of the
- * heaviest has its depth, what is named by its id is there, and a triangle comes last and with weight 1. */
+typedef struct deep_sample {
+  float rgba[4], depth, weight;
+  uint32_t id;
+} deep_sample;
+
+/* What ZIPS has made of n bytes, undone; the caller frees. */
+static inline unsigned char *deep_unpack(const unsigned char *packed, size_t n_packed, size_t n) {
+  unsigned char *bytes = malloc(n + 1), *arranged = malloc(n + 1);
+  if (!bytes || !arranged)
+    exit(1);
+  if (n_packed == n)
+    memcpy(bytes, packed, n);
+#if CONIC_HAVE_ZLIB
+  else {
+    uLongf n_found = (uLongf)n;
+    CHECK(uncompress(arranged, &n_found, packed, (uLong)n_packed) == Z_OK && n_found == n);
+    for (size_t i = 1; i < n; i++)
+      arranged[i] = (unsigned char)(arranged[i] + arranged[i - 1] - 128);
+    for (size_t i = 0; i < n; i++)
+      bytes[i] = arranged[i / 2 + (i % 2 ? (n + 1) / 2 : 0)];
+  }
+#endif
+  free(arranged);
+  return bytes;
+}
+
+static inline int deep_compare_ids(const void *a, const void *b) {
+  const deep_sample *first = a, *second = b;
+  return (first->id > second->id) - (first->id < second->id);
+}
+
+/* From front to back, and over each other the picture: a sample covers what those before it have left. */
+static inline void deep_check_flat(const fixture *f, const deep_sample *samples, size_t n, int x, int y) {
+  double over[4] = {0.0, 0.0, 0.0, 0.0};
+  for (size_t i = 0; i < n; i++) {
+    const double left = 1.0 - over[3];
+    CHECK(i == 0 || samples[i].depth >= samples[i - 1].depth);
+    CHECK(samples[i].rgba[3] > 0.0f && samples[i].rgba[3] <= 1.0f);
+    for (int c = 0; c < 4; c++)
+      over[c] += left * (double)samples[i].rgba[c];
+  }
+  CHECK(n == 0 || samples[n - 1].rgba[3] == 1.0f);
+  for (int c = 0; c < 4; c++)
+    CHECK_NEAR(over[c], (double)fixture_pixel(f, CONIC_PLANE_RGBA, x, y)[c], 2e-6);
+}
+
+/* In the order of their numbers the samples add up to the picture's other planes. */
+static inline void deep_check_sums(const fixture *f, size_t n_splats, deep_sample *samples, size_t n, int x, int y,
+                                   deep_counts *counts) {
+  float sum = 0.0f, heaviest = 0.0f, z = 0.0f;
+  uint32_t named = fixture_index(f, CONIC_PLANE_ID, x, y);
+  int is_named = named == CONIC_NO_ID;
+  if (n > 0)
+    qsort(samples, n, sizeof *samples, deep_compare_ids);
+  for (size_t i = 0; i < n; i++) {
+    const deep_sample *s = &samples[i];
+    sum += s->weight;
+    z = heaviest < s->weight ? s->depth : z;
+    heaviest = heaviest < s->weight ? s->weight : heaviest;
+    is_named |= s->id == named;
+    CHECK(i == 0 || s->id > samples[i - 1].id);
+    CHECK(s->id < n_splats || (s->weight == 1.0f && i == n - 1));
+    counts->n_splats += s->id < n_splats;
+    counts->n_triangles += s->id >= n_splats;
+    counts->n_mixed += s->id >= n_splats && i > 0;
+  }
+  CHECK(sum == *fixture_pixel(f, CONIC_PLANE_WEIGHT, x, y));
+  CHECK(z == *fixture_pixel(f, CONIC_PLANE_Z, x, y));
+  CHECK(n == fixture_index(f, CONIC_PLANE_COUNT, x, y));
+  CHECK(is_named);
+  counts->most = (int32_t)n > counts->most ? (int32_t)n : counts->most;
+}
+
+/* A line, in its file's own layout: y, the packed sizes of the table and the samples, the samples' size; then both. The
+ * channels stand in the order of their names: A, B, G, R, Z, id, weight. */
 static inline void deep_check_line(const fixture *f, size_t n_splats, const unsigned char *chunk, int y,
                                    deep_counts *counts) {
   int32_t line, begin = 0;
@@ -39,38 +115,29 @@ static inline void deep_check_line(const fixture *f, size_t n_splats, const unsi
   size_t width = (size_t)f->camera.width;
   memcpy(&line, chunk, 4);
   memcpy(sizes, chunk + 4, sizeof sizes);
-  CHECK(line == y && sizes[0] == 4 * width && sizes[1] == sizes[2] && sizes[1] % 12 == 0);
-  const unsigned char *ends = chunk + 28, *depths = ends + 4 * width, *ids = depths + sizes[1] / 3;
-  const unsigned char *weights = ids + sizes[1] / 3;
-  for (int x = 0; x < f->camera.width; x++) {
+  CHECK(line == y && sizes[0] <= 4 * width && sizes[1] <= sizes[2] && sizes[2] % 28 == 0);
+  unsigned char *ends = deep_unpack(chunk + 28, sizes[0], 4 * width);
+  unsigned char *values = deep_unpack(chunk + 28 + sizes[0], sizes[1], sizes[2]);
+  size_t n = sizes[2] / 28;
+  deep_sample *samples = calloc(n + 1, sizeof *samples);
+  for (size_t i = 0; samples && i < n; i++) {
+    void *const to[7] = {&samples[i].rgba[3], &samples[i].rgba[2], &samples[i].rgba[1], &samples[i].rgba[0],
+                         &samples[i].depth,   &samples[i].id,      &samples[i].weight};
+    for (size_t c = 0; c < 7; c++)
+      memcpy(to[c], values + 4 * (c * n + i), 4);
+  }
+  for (int x = 0; samples && x < f->camera.width; x++) {
     int32_t end;
-    float sum = 0.0f, heaviest = 0.0f, z = 0.0f, weight, depth;
-    uint32_t id = CONIC_NO_ID, last = CONIC_NO_ID, named = fixture_index(f, CONIC_PLANE_ID, x, y);
-    int is_named = named == CONIC_NO_ID;
     memcpy(&end, ends + 4 * x, 4);
-    for (int32_t i = begin; i < end; i++) {
-      memcpy(&weight, weights + 4 * i, 4);
-      memcpy(&depth, depths + 4 * i, 4);
-      memcpy(&id, ids + 4 * i, 4);
-      sum += weight;
-      z = heaviest < weight ? depth : z;
-      heaviest = heaviest < weight ? weight : heaviest;
-      is_named |= id == named;
-      CHECK(last == CONIC_NO_ID || last < id);
-      CHECK(id < n_splats || (weight == 1.0f && i == end - 1));
-      counts->n_splats += id < n_splats;
-      counts->n_triangles += id >= n_splats;
-      counts->n_mixed += id >= n_splats && i > begin;
-      last = id;
-    }
-    CHECK(sum == *fixture_pixel(f, CONIC_PLANE_WEIGHT, x, y));
-    CHECK(z == *fixture_pixel(f, CONIC_PLANE_Z, x, y));
-    CHECK((uint32_t)(end - begin) == fixture_index(f, CONIC_PLANE_COUNT, x, y));
-    CHECK(is_named);
-    counts->most = end - begin > counts->most ? end - begin : counts->most;
+    CHECK(begin <= end && (size_t)end <= n);
+    deep_check_flat(f, samples + begin, (size_t)(end - begin), x, y);
+    deep_check_sums(f, n_splats, samples + begin, (size_t)(end - begin), x, y, counts);
     begin = end;
   }
-  CHECK((uint64_t)begin * 12 == sizes[1]);
+  CHECK((size_t)begin == n);
+  free(ends);
+  free(values);
+  free(samples);
 }
 
 /* Writes the deep image of what the fixture's picture was drawn of, by two numbers of threads, and compares it with the

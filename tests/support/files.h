@@ -9,12 +9,17 @@
 #include "tests/support/check.h"
 
 static char files_folder[64];
-static char files_message[1024];
+static char files_message[1024], files_warning[1024]; /* the last ones */
+static int files_warnings;                            /* how many there were */
 
 static inline void files_log(void *cookie, conic_log_level level, const char *message) {
   (void)cookie;
   if (level == CONIC_LOG_ERROR)
     snprintf(files_message, sizeof files_message, "%s", message);
+  if (level == CONIC_LOG_WARNING) {
+    snprintf(files_warning, sizeof files_warning, "%s", message);
+    files_warnings++;
+  }
 }
 
 static inline conic_context *files_context(void) {

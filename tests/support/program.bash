@@ -12,8 +12,17 @@ fail() {
   failures=$((failures + 1))
 }
 
-# Runs conic; its output is then in `out` and `err`. run EXIT_CODE ARGUMENTS …
+# Runs conic; its output is then in `out` and `err`. Commands that draw do so --plain: what looks best may change, and
+# is tested by default_picture.sh. run EXIT_CODE ARGUMENTS …
 run() {
+  case ${2-} in
+    render | explain | verify) run_as_typed "$1" "$2" --plain "${@:3}" ;;
+    *) run_as_typed "$@" ;;
+  esac
+}
+
+# The same without a word more.
+run_as_typed() {
   local wanted=$1 got
   shift
   "$conic" "$@" > out 2> err < /dev/null

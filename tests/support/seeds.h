@@ -2,32 +2,35 @@
 #ifndef CONIC_SEEDS_H
 #define CONIC_SEEDS_H
 
+#include "core/assimp/assimp_bridge.h"
 #include "tests/support/files.h"
 #include "tests/support/las_file.h"
+#include "tests/support/mesh_file.h"
+#include "tests/support/png_file.h"
 
 typedef struct seed {
-  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, xyz, camera, pfm, exr, cot, lpc,
-                         chy */
+  const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, png,
+                         cot, lpc, chy */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
-  int is_text; /* what is left of it when it is cut may still be sound */
+  int may_be_cut; /* what is left of it may be sound */
 } seed;
 
-enum { SEEDS_ROOM = 64 };
+enum { SEEDS_ROOM = 96 };
 
 typedef struct seed_set {
   seed seeds[SEEDS_ROOM];
   int n;
 } seed_set;
 
-static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int is_text, const void *bytes,
+static inline seed *seeds_add(seed_set *set, const char *target, const char *ending, int may_be_cut, const void *bytes,
                               size_t n_bytes) {
   seed *added = &set->seeds[set->n++];
   if (set->n > SEEDS_ROOM)
     exit(1);
   added->target = target;
-  added->is_text = is_text;
+  added->may_be_cut = may_be_cut;
   snprintf(added->name, sizeof added->name, "%02d.%s", set->n, ending);
   added->n_bytes = n_bytes;
   added->bytes = malloc(n_bytes + 1);
@@ -151,6 +154,11 @@ static inline void seeds_all_text(seed_set *set) {
   seeds_text(set, "xyz", "xyz", "// X,Y,Z,R,G,B\n0,0,0,255,0,10\n1,2,3,0,1,2\n");
   seeds_text(set, "xyz", "pts", "3\n0 0 0 -100 255 0 10\n1 2 3 50 0 1 2\n5 6 7 0 1 2 3\n");
   seeds_text(set, "xyz", "xyz", "0 0 0 0 0 1\n1 2 nan 0 1 0\n");
+  seeds_text(set, "xyz", "csv", "\xEF\xBB\xBF\"X\";\"Y\";\"Z\";id\n\"1,5\";\"2\";\"3,25\";a\n4;5;6;\n");
+  seeds_text(set, "xyz", "csv", "id\tNx\tNy\tNz\tX\tY\tZ\na b\t0\t0\t1\t1,5\t2\t3\n\t0\t1\t0\t4\t5\t6\n");
+  seeds_text(set, "xyz", "asc", "//X Y Z R G B I\n2\n1 2 3 4 5 6 7\n1,2,3;4,5,6 7;\n1\n9 8 7 6 5 4 3\n");
+  seeds_text(set, "xyz", "xyz", "1 2 3 255 0 4 -7 0 0 1\n4 5 6 7 8 9 10 1 0 0\n");
+  seeds_text(set, "xyz", "csv", "X,Y,Z\n1,2,3\n1,2\n4,,6\n");
   seeds_text(set, "xyz", "xyz", "0 0 0 65535 256 1 0 0 1\n1 2 3 7 8 9 0 1 0\n");
   seeds_text(
       set, "camera", "json",
@@ -158,15 +166,37 @@ static inline void seeds_all_text(seed_set *set) {
       "{\"a\\u0041\": \"b\\n\"}],\n\"world_to_camera\": [[1,0,0,0],[0,1,0,0],[0,0,1,-3.5],[0,0,0,1]]}\n");
 }
 
+/* Three points in each of the ways of storing them. */
+static inline void seeds_all_pcd(seed_set *set) {
+  static const char header[] = "VERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z a\nSIZE 4 4 4 4 4 4 4 1\n"
+                               "TYPE F F F U F F F U\nCOUNT 1 1 1 1 1 1 1 2\nWIDTH 3\nHEIGHT 1\n"
+                               "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ";
+  enum { ROWS = 3 * 30 };
+  unsigned char bytes[1024];
+  size_t n = (size_t)snprintf((char *)bytes, sizeof bytes, "%sbinary\n", header);
+  for (int i = 0; i < ROWS; i++)
+    bytes[n + (size_t)i] = (unsigned char)(i % 30 % 4 == 3 ? 0x3f : 7 * i);
+  seeds_add(set, "pcd", "pcd", 1, bytes, n + ROWS);
+  /* four bytes as they are, and then 86 that repeat them */
+  n = (size_t)snprintf((char *)bytes, sizeof bytes, "%sbinary_compressed\n%c%c%c%c%c%c%c%c%cabcd%c%c%c", header, 8, 0,
+                       0, 0, ROWS, 0, 0, 0, 3, 0xE0, 77, 3);
+  seeds_add(set, "pcd", "pcd", 1, bytes, n);
+  seeds_text(set, "pcd", "pcd",
+             "# .PCD v0.7\nFIELDS z x y rgba label\nSIZE 8 4 4 4 2\nTYPE F F F F U\nWIDTH 2\nHEIGHT 2\nDATA ascii\n"
+             "1e7 2 3 4.2108e+06 7\n4 5 nan 4.808e+06 1\n\n0 0 0 0 0\n-1 +2 .5 1 2\n");
+  seeds_text(set, "pcd", "pcd",
+             "FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE I I F U U U\nPOINTS 1\nDATA ascii\n1 2 3 255 0 9\n");
+}
+
 static inline void seeds_all_las(seed_set *set) {
-  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}};
+  const int kinds[][2] = {{2, 0}, {2, 3}, {3, 2}, {4, 1}, {4, 6}, {4, 7}, {4, 8}, {3, 4}, {3, 5}, {4, 10}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     las_file file = las_begin(kinds[i][0], kinds[i][1], 3, i);
     las_set_scale(&file, 0.01, 589500.0, 231300.0, 0.0);
     las_set_point(&file, 1, 100, -200, 300);
-    if (kinds[i][1] == 3 || kinds[i][1] == 2 || kinds[i][1] > 6)
+    if (kinds[i][1] == 2 || kinds[i][1] == 3 || kinds[i][1] == 5 || kinds[i][1] > 6)
       las_set_color(&file, 2, 255, 128, i == 2 ? 65535 : 7);
-    seeds_add(set, "las", "las", 0, file.bytes, file.n_bytes);
+    seeds_add(set, "las", "las", 1, file.bytes, file.n_bytes);
     free(file.bytes);
   }
 }
@@ -306,6 +336,54 @@ static inline void seeds_layers(seed_set *set, conic_context *context, size_t n,
   seeds_add(set, "lpc", "lpc", 0, bytes, n_bytes);
 }
 
+/* Every kind of PNG that libpng turns into another; none where this build leaves them to another library. */
+static inline void seeds_all_png(seed_set *set) {
+  static const png_kind kinds[] = {{5, 4, PNG_COLOR_ALPHA, 8, 0, 0, 2},
+                                   {9, 9, PNG_COLOR, 16, 1, 1, 0},
+                                   {5, 4, PNG_BY_PALETTE, 2, 0, 1, 0},
+                                   {9, 3, PNG_GREY, 1, 1, 1, 1},
+                                   {3, 3, PNG_GREY_ALPHA, 16, 0, 0, 0}};
+  static png_file file;
+  int is_there = 0;
+  for (int i = 0; conic_feature_at(i); i++)
+    is_there |= strcmp(conic_feature_at(i)->name, "libpng") == 0 && conic_feature_at(i)->available;
+  for (size_t i = 0; is_there && i < sizeof kinds / sizeof *kinds; i++) {
+    png_make(&file, &kinds[i]);
+    seeds_add(set, "png", "png", 0, file.bytes, file.n_bytes);
+  }
+}
+
+/* For Assimp, whose readers are not ours to test byte by byte: these are for fuzzing alone. */
+static inline void seeds_all_assimp(seed_set *set) {
+  static mesh_file file;
+  for (int i = 0; i < MESH_N_KINDS; i++) {
+    file.n = 0;
+    mesh_kinds[i].make(&file);
+    seeds_add(set, "assimp", mesh_kinds[i].ending, mesh_kinds[i].is_text, file.bytes, file.n);
+  }
+}
+
+/* A material with texels, one with a path, and a part of three vertices with everything. */
+static inline void seeds_all_records(seed_set *set) {
+  static mesh_file file;
+  const conic_assimp_record records[] = {
+      {.type = CONIC_ASSIMP_OPENED, .n_bytes = 5},
+      {.type = CONIC_ASSIMP_MATERIAL, .picture = CONIC_ASSIMP_TEXELS, .width = 2, .height = 1, .n_bytes = 8},
+      {.type = CONIC_ASSIMP_MATERIAL, .color = {1, 0.5f, 0.25f}, .picture = CONIC_ASSIMP_PATH, .n_bytes = 8},
+      {.type = CONIC_ASSIMP_PART, .fields = 7, .i_material = 1, .n_vertices = 3, .n_triangles = 1},
+      {.type = CONIC_ASSIMP_END, .up = {0, 1, 0}}};
+  const size_t n_after[] = {5, 8, 8, 3 * (24 + 12 + 8 + 12), 0};
+  file.n = 0;
+  for (int i = 0; i < 5; i++) {
+    mesh_put(&file, &records[i], sizeof records[i]);
+    for (size_t k = 0; k < n_after[i]; k++)
+      mesh_number(&file, i == 3 ? (uint32_t)(k * 5) : 'a', 1);
+    for (uint32_t k = 0; i == 3 && k < 3; k++)
+      mesh_number(&file, k, 4);
+  }
+  seeds_add(set, "assimp_records", "bin", 0, file.bytes, file.n);
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -313,6 +391,8 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_ply(set);
   seeds_all_text(set);
   seeds_all_las(set);
+  seeds_all_pcd(set);
+  seeds_all_png(set);
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);

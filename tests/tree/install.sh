@@ -71,7 +71,7 @@ build_package() { # NAME, CMake settings …
 draw() { # PROGRAM
   "$1" "$1.pfm" || { echo "$1 failed"; exit 1; }
   not_black "$1.pfm" || { echo "$1 drew a black picture"; exit 1; }
-  [[ ! -e $module ]] || "$1" "$1.png" || { echo "$1 does not find $module"; exit 1; }
+  [[ ! -e $module ]] || "$1" "$1.tif" || { echo "$1 does not find $module"; exit 1; }
 }
 
 build_package by_package
@@ -107,20 +107,20 @@ if [[ -e $module ]]; then
   program=$work/linked
   ln -s "$work/prefix/bin/conic" "$program"
   has_module() { "$program" --version | grep -q '^In this build:.*OpenImageIO'; }
-  draw_png() { "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.png"; }
-  refuses_png() { # WHAT the message says
+  draw_tiff() { "$program" render --plain "$work/plane.ply" --size 16x16 -o "$work/plane.tif"; }
+  refuses_tiff() { # WHAT the message says
     local code=0
-    draw_png 2> "$work/message" || code=$?
-    [[ $code -eq 4 ]] && grep -q "plane.png: cannot write: .*$1" "$work/message" && return
+    draw_tiff 2> "$work/message" || code=$?
+    [[ $code -eq 4 ]] && grep -q "plane.tif: cannot write: .*$1" "$work/message" && return
     echo "code $code: $(cat "$work/message")"
     exit 1
   }
   has_module
-  draw_png
+  draw_tiff
   echo "no library" > "$module"
-  refuses_png conic-openimageio.so
+  refuses_tiff conic-openimageio.so
   rm "$module"
   ! has_module
-  refuses_png conic-openimageio.so
-  "$program" render "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
+  refuses_tiff conic-openimageio.so
+  "$program" render --plain "$work/plane.ply" --size 16x16 -o "$work/plane.pfm" # all else is as before
 fi

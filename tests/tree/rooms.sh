@@ -45,6 +45,8 @@ raster/a.c|fprintf(stderr, "text");
 core/a.cpp|printf("text");
 core/a.c|exit(1);
 END
+put core/a_bridge.c 'p = malloc(3); exit(1);'
+expect peace
 put core/a.c '/* sin(x), malloc(3)' 'free(p) */ x = conic_sin(y);' 'text = "exit(1)"; // abort()'
 expect peace
 put core/base/a.h '#include "core/files/b.h"'

@@ -80,8 +80,10 @@ static conic_status write_all(conic_context *context, const conic_splats *splats
   if (status == CONIC_OK)
     status = write_and_read(context, files_path("picture.pfm"), image);
   if (status == CONIC_OK)
+    status = write_and_read(context, files_path("picture.png"), image);
+  if (status == CONIC_OK)
     status = write_and_read(context, files_path("picture.exr"), image);
-  return status == CONIC_ERROR_UNSUPPORTED ? CONIC_OK : status; /* without OpenEXR there is none to be written */
+  return status == CONIC_ERROR_UNSUPPORTED ? CONIC_OK : status; /* without the libraries there are none to be written */
 }
 
 static conic_status choose(conic_octree *octree, const conic_camera *camera, conic_context *context) {

@@ -24,6 +24,9 @@ static size_t size_at(const void *options) {
 static void init_context(void *o, size_t size) {
   conic_context_options_init_sized(o, size);
 }
+static void init_image(void *o, size_t size) {
+  conic_image_options_init_sized(o, size);
+}
 static void init_framing(void *o, size_t size) {
   conic_framing_init_sized(o, size);
 }
@@ -87,24 +90,28 @@ static void init_view(void *o, size_t size) {
 static void init_patches(void *o, size_t size) {
   conic_patches_options_init_sized(o, size);
 }
+static void init_coloring(void *o, size_t size) {
+  conic_coloring_options_init_sized(o, size);
+}
 
 static const struct {
   void (*init)(void *options, size_t size);
   size_t size;
-} all[] = {{init_context, sizeof(conic_context_options)},     {init_framing, sizeof(conic_framing)},
-           {init_read, sizeof(conic_read_options)},           {init_write, sizeof(conic_write_options)},
-           {init_estimate, sizeof(conic_estimate_options)},   {init_scene, sizeof(conic_scene_options)},
-           {init_render, sizeof(conic_render_options)},       {init_octree, sizeof(conic_octree_options)},
-           {init_selection, sizeof(conic_selection_options)}, {init_hybrid, sizeof(conic_hybrid_options)},
-           {init_hybrid_view, sizeof(conic_hybrid_view)},     {init_layers, sizeof(conic_layers_options)},
-           {init_access, sizeof(conic_layers_access)},        {init_draw, sizeof(conic_layers_draw_options)},
-           {init_opencl, sizeof(conic_opencl_options)},       {init_surface, sizeof(conic_surface_options)},
-           {init_clean, sizeof(conic_clean_options)},         {init_thin, sizeof(conic_thin_options)},
-           {init_densify, sizeof(conic_densify_options)},     {init_patches, sizeof(conic_patches_options)},
-           {init_source, sizeof(conic_source_options)},       {init_view, sizeof(conic_source_view)}};
+} all[] = {{init_context, sizeof(conic_context_options)},   {init_image, sizeof(conic_image_options)},
+           {init_framing, sizeof(conic_framing)},           {init_read, sizeof(conic_read_options)},
+           {init_write, sizeof(conic_write_options)},       {init_estimate, sizeof(conic_estimate_options)},
+           {init_scene, sizeof(conic_scene_options)},       {init_render, sizeof(conic_render_options)},
+           {init_octree, sizeof(conic_octree_options)},     {init_selection, sizeof(conic_selection_options)},
+           {init_hybrid, sizeof(conic_hybrid_options)},     {init_hybrid_view, sizeof(conic_hybrid_view)},
+           {init_layers, sizeof(conic_layers_options)},     {init_access, sizeof(conic_layers_access)},
+           {init_draw, sizeof(conic_layers_draw_options)},  {init_opencl, sizeof(conic_opencl_options)},
+           {init_surface, sizeof(conic_surface_options)},   {init_clean, sizeof(conic_clean_options)},
+           {init_thin, sizeof(conic_thin_options)},         {init_densify, sizeof(conic_densify_options)},
+           {init_patches, sizeof(conic_patches_options)},   {init_source, sizeof(conic_source_options)},
+           {init_coloring, sizeof(conic_coloring_options)}, {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
-  unsigned char whole[1024], other[1024];
+  unsigned char whole[2048], other[2048];
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     size_t size = all[i].size, smaller = size - sizeof(size_t), larger = size + 40;
     memset(whole, CANARY, sizeof whole);
@@ -179,6 +186,7 @@ static void test_sizes_that_are_none(void) {
 static void test_other_structs_keep_their_size(void) {
   if (sizeof(void *) != 8)
     return;
+  CHECK(sizeof(conic_light) == 40 && sizeof(conic_lighting) == 408);
   static const struct {
     const char *name;
     size_t size, pinned;
@@ -195,7 +203,8 @@ static void test_other_structs_keep_their_size(void) {
       PINNED(conic_octree_info, 232),     PINNED(conic_octree_defects, 104),  PINNED(conic_patches_report, 216),
       PINNED(conic_surface_report, 384),  PINNED(conic_oracle_verdict, 616),  PINNED(conic_surface_distance, 64),
       PINNED(conic_opencl_device, 616),   PINNED(conic_surface_options, 128), PINNED(conic_clip, 32),
-      PINNED(conic_kernel, 20),           PINNED(conic_contribution, 32),     PINNED(conic_surface_point, 136)};
+      PINNED(conic_coloring, 168),        PINNED(conic_model_field, 64),      PINNED(conic_kernel, 20),
+      PINNED(conic_contribution, 32),     PINNED(conic_surface_point, 136)};
   for (size_t i = 0; i < sizeof structs / sizeof structs[0]; i++) {
     if (structs[i].size != structs[i].pinned)
       fprintf(stderr, "%s has %zu bytes, not %zu\n", structs[i].name, structs[i].size, structs[i].pinned);

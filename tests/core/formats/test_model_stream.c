@@ -99,6 +99,25 @@ static void test_las(conic_context *context, unsigned largest, size_t n) {
   free(file.bytes);
 }
 
+/* PCD: packed colours, and separate ones whose scale the last one tells. */
+static void test_pcd(conic_context *context, int is_packed, unsigned largest, size_t n) {
+  const char *path = files_path("stream.pcd");
+  FILE *file = fopen(path, "w");
+  if (!file)
+    exit(1);
+  fprintf(file, is_packed ? "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\n"
+                          : "FIELDS x y z r g b\nSIZE 8 8 8 2 2 2\nTYPE F F F U U U\n");
+  fprintf(file, "POINTS %zu\nDATA ascii\n", n);
+  for (size_t i = 0; i < n; i++)
+    if (is_packed)
+      fprintf(file, "%zu %zu 5 %zu\n", i, i % 7, i % 256);
+    else
+      fprintf(file, "%zu %zu 5 %u 1 0\n", i, i % 7, i + 1 == n ? largest : 3);
+  fclose(file);
+  check_same(context, path, n, n > 65536 ? 2 : 1);
+  CHECK(unlink(path) == 0);
+}
+
 static conic_status refuse(void *cookie, const conic_splats *batch) {
   ++*(int *)cookie;
   return batch->count ? CONIC_ERROR_IO : CONIC_OK;
@@ -106,8 +125,9 @@ static conic_status refuse(void *cookie, const conic_splats *batch) {
 
 static void test_failures(conic_context *context) {
   int n_calls = 0;
-  const char *path = files_write("short.xyz", "3\n0 0 0\n1 0 0\n");
-  files_check_failed("too few", conic_model_stream(context, path, NULL, refuse, &n_calls), "short.xyz", "(line ", NULL);
+  const char *path = files_write("short.xyz", "3\n0 0 0\n1 0\n");
+  files_check_failed("too few values", conic_model_stream(context, path, NULL, refuse, &n_calls), "short.xyz", "(line ",
+                     NULL);
   CHECK(n_calls == 0);
   CHECK(unlink(path) == 0);
   path = files_write("a.xyz", "0 0 0\n1 0 0\n");
@@ -127,7 +147,11 @@ int main(void) {
   test_xyz(context, 60000.0, 200);
   test_las(context, 255, MANY);
   test_las(context, 65535, 500);
+  test_las(context, 4095, 500);
   test_las(context, 0, 500);
+  test_pcd(context, 1, 0, 70000);
+  test_pcd(context, 0, 65535, 500);
+  test_pcd(context, 0, 255, 500);
   const char *path = files_write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   check_same(context, path, 3, 1);
   CHECK(unlink(path) == 0);

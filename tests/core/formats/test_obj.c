@@ -79,7 +79,7 @@ static void test_content_tells(void) {
   conic_model_release(context, &model);
   unlink(path);
   path = files_write("words.txt", "one two three\n");
-  files_check_failed("text", conic_model_read(context, path, NULL, &model), "no PLY, OBJ, XYZ or LAS", "byte 0",
+  files_check_failed("text", conic_model_read(context, path, NULL, &model), "names of columns", "line 1",
                      (const char *)NULL);
   unlink(path);
   path = files_write_bytes("image.obj", "\x89PNG....", 8);

@@ -29,6 +29,7 @@ static void test_wrong_headers(void) {
   check_fails(ASCII "element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", "lack x, y or z",
               "line 3");
   check_fails(ASCII "element vertex 4\nend_header\n", "lack x, y or z", "line 3");
+  check_fails(ASCII "element vertex 1\nproperty uint packed_position\nend_header\n0\n", "SuperSplat", "line 3");
   check_fails(ASCII "element vertex 4\nelement face 4\nend_header\n", "lack x, y or z", "line 3");
   check_fails(ASCII "element point 1\n" XYZ "end_header\n0 0 0\n", "no element 'vertex'", "line 7");
   check_fails(ASCII "element vertex 4294967295\n" XYZ "end_header\n0 0 0\n", "too many", "line 3");

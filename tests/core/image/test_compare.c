@@ -34,6 +34,31 @@ static void test_identical(conic_context *context) {
 
 /* Two flat pictures whose encoded values are 0.5 and 0.6: the mean square is 0.01, so 20 dB; and with no variance only
  * the first factor of SSIM is left, (2·0.5·0.6 + C1)/(0.5² + 0.6² + C1). */
+/* Where an image has no alpha, colours are all that both have. */
+static void test_without_alpha(conic_context *context) {
+  conic_image a = flat_image(context, 4, 4, 0.5f), b = flat_image(context, 4, 4, 0.25f);
+  CHECK_NEAR(compare(context, &a, &b).rmse, 0.25 * sqrt(0.75), 1e-12);
+  a.lacks_alpha = b.lacks_alpha = 1;
+  CHECK_NEAR(compare(context, &a, &b).rmse, 0.25, 1e-12);
+  ((float *)b.planes[CONIC_PLANE_RGBA])[3] = 0.0f;
+  b.lacks_alpha = 0;
+  conic_difference difference = compare(context, &a, &b);
+  CHECK(difference.lacks_alpha && difference.max_abs == 0.25 && difference.p999 == 0.25);
+  CHECK_NEAR(difference.rmse, 0.25, 1e-12);
+  memcpy(a.planes[CONIC_PLANE_RGBA], b.planes[CONIC_PLANE_RGBA], 64 * sizeof(float));
+  ((float *)a.planes[CONIC_PLANE_RGBA])[3] = 1.0f;
+  difference = compare(context, &a, &b); /* what only one has differs from the 1 that the other one stands for */
+  CHECK(!difference.identical && difference.differing_pixels == 0 && difference.max_abs == 0.0);
+  conic_image heatmap;
+  CHECK_OK(conic_image_heatmap(context, &a, &b, &heatmap));
+  CHECK(((float *)heatmap.planes[CONIC_PLANE_RGBA])[2] == 0.0f);
+  conic_image_release(context, &heatmap);
+  ((float *)b.planes[CONIC_PLANE_RGBA])[3] = 1.0f;
+  CHECK(compare(context, &a, &b).identical);
+  conic_image_release(context, &a);
+  conic_image_release(context, &b);
+}
+
 static void test_flat(conic_context *context, int width, int height) {
   conic_image a = flat_image(context, width, height, (float)conic_srgb_decode(0.5));
   conic_image b = flat_image(context, width, height, (float)conic_srgb_decode(0.6));
@@ -328,6 +353,7 @@ static void test_threads(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(3);
   test_identical(context);
+  test_without_alpha(context);
   test_flat(context, 16, 12);
   test_flat(context, 40, 10); /* too small for a window */
   test_flat(context, 1, 1);

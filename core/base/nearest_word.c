@@ -1,4 +1,4 @@
-#include "cli/suggest.h"
+#include "core/base/nearest_word.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -9,7 +9,7 @@ static int least(int a, int b) {
   return a < b ? a : b;
 }
 
-int cli_word_distance(const char *a, const char *b) {
+int conic_word_distance(const char *a, const char *b) {
   int cost[MAX_LETTERS + 1][MAX_LETTERS + 1]; /* of the first i letters of a against the first j of b */
   size_t n_a = strlen(a), n_b = strlen(b);
   if (n_a > MAX_LETTERS || n_b > MAX_LETTERS)
@@ -29,12 +29,12 @@ int cli_word_distance(const char *a, const char *b) {
   return cost[n_a][n_b];
 }
 
-const char *cli_nearer_word(const char *word, const char *best, const char *candidate) {
+const char *conic_nearer_word(const char *word, const char *best, const char *candidate) {
   int tolerated = (int)strlen(candidate) / 3 + 1;
-  int distance = cli_word_distance(word, candidate);
+  int distance = conic_word_distance(word, candidate);
   if (strlen(word) >= 3 && strncmp(word, candidate, strlen(word)) == 0)
     distance = 1; /* an abbreviation */
   if (distance > tolerated || distance >= (int)strlen(candidate) || distance >= (int)strlen(word))
     return best; /* too far, or not a letter in common */
-  return best && cli_word_distance(word, best) <= distance ? best : candidate;
+  return best && conic_word_distance(word, best) <= distance ? best : candidate;
 }

@@ -1,0 +1,58 @@
+#include "cli/color_options.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/nearest_word.h"
+
+int cli_parse_color_range(const char *text, void *value) {
+  conic_coloring_options *coloring = value;
+  char *end;
+  coloring->has_range = 1;
+  coloring->minimum = strtod(text, &end);
+  if (end == text || *end != ',')
+    return 0;
+  text = end + 1;
+  coloring->maximum = strtod(text, &end);
+  double extent = coloring->maximum - coloring->minimum;
+  return end != text && !*end && extent > 0.0 && extent - extent == 0.0;
+}
+
+static int check_ramp(const cli_session *session, const char *ramp) {
+  const char *nearest = NULL, *name;
+  for (int i = 0; (name = conic_ramp_name(i)); i++) {
+    if (strcmp(name, ramp) == 0)
+      return CLI_DONE;
+    nearest = conic_nearer_word(ramp, nearest, name);
+  }
+  return cli_usage("%s: there is no ramp '%s'%s%s%s", session->command, ramp, nearest ? "; did you mean '" : "",
+                   nearest ? nearest : "", nearest ? "'?" : "");
+}
+
+int cli_color_check(const cli_session *session, conic_coloring_options *coloring, int is_auto) {
+  if (coloring->by && !*coloring->by)
+    return cli_usage("%s: --color-by needs a word", session->command);
+  if (!coloring->by && is_auto)
+    coloring->by = "auto";
+  if (!coloring->by && (coloring->ramp || coloring->has_range))
+    return cli_usage("%s: --ramp and --color-range are about --color-by; give it, too", session->command);
+  return coloring->ramp ? check_ramp(session, coloring->ramp) : CLI_DONE;
+}
+
+int cli_color_is_asked(const conic_coloring_options *coloring) {
+  return coloring->by && strcmp(coloring->by, "rgb") != 0 && strcmp(coloring->by, "auto") != 0;
+}
+
+void cli_color_report(cli_json *json, const conic_coloring *coloring) {
+  if (!coloring || !coloring->field[0])
+    return;
+  cli_json_object(json, "coloring");
+  cli_json_text(json, "field", coloring->field);
+  if (coloring->ramp) {
+    cli_json_number(json, "minimum", coloring->minimum);
+    cli_json_number(json, "maximum", coloring->maximum);
+    cli_json_text(json, "ramp", coloring->ramp);
+    cli_json_text(json, "scale", coloring->is_root ? "root" : "linear");
+  }
+  cli_json_close(json);
+}

@@ -1,0 +1,38 @@
+/* Colours that a command makes and keeps in what it writes. */
+#ifndef CONIC_BUILD_COLORING_H
+#define CONIC_BUILD_COLORING_H
+
+#include "cli/color_options.h"
+#include "cli/render/scene_options.h"
+#include "conic/coloring.h"
+
+typedef struct cli_coloring {
+  conic_coloring_options options; /* `by` null: colours stay */
+  int is_up_given;
+  conic_coloring done;
+} cli_coloring;
+
+#define CLI_BUILD_COLOR_OPTIONS(coloring)                                                                              \
+  CLI_COLOR_OPTIONS(&(coloring)->options), {                                                                           \
+    "up", CLI_PARSED, (coloring)->options.up, "DIR",                                                                   \
+        "what --color-by height means: x, y, z, -x … or X,Y,Z [y; z for LAS]", .parse = cli_parse_up,                  \
+                                                                               .is_given = &(coloring)->is_up_given    \
+  }
+
+void cli_coloring_init(cli_coloring *coloring);
+
+/* Returns CLI_DONE, or CLI_USAGE after a message. */
+int cli_coloring_check(const cli_session *session, cli_coloring *coloring);
+
+/* What is to be read. */
+void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading);
+
+/* Colours splats or triangles, of which either may be null; `up` is what their file says, or zero. Errors: as conic_drawing_color. */
+conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
+                                conic_triangles *triangles);
+
+/* Of inputs that are coloured a batch at a time: reads them once to find the range. Errors: as conic_model_stream. */
+conic_status cli_coloring_find_range(cli_session *session, cli_coloring *coloring, const char *const *inputs,
+                                     int n_inputs, const conic_read_options *reading);
+
+#endif

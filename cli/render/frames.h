@@ -1,0 +1,26 @@
+/* The frames of a turntable: which are drawn, what their files are called, and where their cameras stand. */
+#ifndef CONIC_FRAMES_H
+#define CONIC_FRAMES_H
+
+#include "cli/render/render_job.h"
+
+/* Parsers of values: "36" into the job's number of frames, and "A:B:STEP", "A:B" or "A" into a cli_frames. */
+int cli_parse_turntable(const char *text, void *job);
+int cli_parse_frames(const char *text, void *frames);
+
+/* Sees to it that the frames that are asked for are there, and that none of their files is written over another one, or
+ * over an input, when each of `paths` (null entries are fine) gives one a frame. Returns CLI_DONE, or an exit code
+ * after a message. */
+int cli_frames_check(const cli_session *session, cli_render_job *job, const char *const *paths, int n_paths);
+
+/* How many are drawn. */
+int cli_frames_count(const cli_render_job *job);
+
+/* The name of a frame's file, from 0, which the caller frees; null without memory. In a turntable "name.exr" becomes
+ * "name.0001.exr", and "name_%03d.exr" becomes "name_001.exr". */
+char *cli_frame_name(const cli_render_job *job, const char *path, int i_frame);
+
+/* Turns a camera about the source's centre and what points up, as far as frame `i_frame` of the turntable. */
+void cli_frame_orbit(const cli_render_job *job, int i_frame, conic_camera *camera);
+
+#endif

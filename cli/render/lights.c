@@ -1,0 +1,144 @@
+#include "cli/render/lights.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Chosen by eye on scans, meshes and a terrain: a warm key light from the viewer's upper left gives the shape, a cool
+ * one from behind on the right draws the edge of the shaded side, a little from the front keeps what neither reaches
+ * readable, and from all around comes a sky over a darker ground. White does not burn out where they meet. */
+static const conic_light studio_lights[] = {
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.92f, 0.89f, 0.84f}, .direction = {-0.7, 0.8, 0.6}},
+    {.frame = CONIC_LIGHT_CAMERA, .color = {0.25f, 0.29f, 0.36f}, .direction = {0.9, 0.25, -0.2}},
+    {.frame = CONIC_LIGHT_HEAD, .color = {0.08f, 0.08f, 0.08f}},
+};
+static const float studio_sky[3] = {0.17f, 0.19f, 0.22f}, studio_ground[3] = {0.055f, 0.05f, 0.045f};
+static const float plain_sky = 0.05f;
+
+int cli_parse_color(const char *text, size_t length, float color[3]) {
+  char copy[128], grey[3 * sizeof copy];
+  double rgb[3];
+  if (length == 0 || length >= sizeof copy)
+    return 0;
+  snprintf(copy, sizeof copy, "%.*s", (int)length, text);
+  snprintf(grey, sizeof grey, "%s,%s,%s", copy, copy, copy);
+  if (!cli_parse_vector(strchr(copy, ',') ? copy : grey, rgb))
+    return 0;
+  for (int i = 0; i < 3; i++) {
+    if (!(rgb[i] >= 0.0 && rgb[i] <= 1e6))
+      return 0;
+    color[i] = (float)rgb[i];
+  }
+  return 1;
+}
+
+/* Room for one more; null: there are as many as there may be. */
+static conic_light *next_light(cli_render_job *job) {
+  conic_lighting *lighting = &job->options.lighting;
+  return lighting->n_lights < CONIC_MAX_LIGHTS ? &lighting->lights[lighting->n_lights++] : NULL;
+}
+
+static int add_studio(cli_render_job *job) {
+  enum { N = sizeof studio_lights / sizeof *studio_lights };
+  job->is_studio = 1;
+  for (int i = 0; i < N; i++) {
+    conic_light *light = next_light(job);
+    if (!light)
+      return 0;
+    *light = studio_lights[i];
+  }
+  return 1;
+}
+
+/* head, camera:X,Y,Z or X,Y,Z in so many letters. */
+static int parse_place(const char *text, size_t length, conic_light *light) {
+  static const char camera[] = "camera:", head[] = "head";
+  char copy[128];
+  if (length >= sizeof copy)
+    return 0;
+  snprintf(copy, sizeof copy, "%.*s", (int)length, text);
+  light->frame = strcmp(copy, head) == 0 ? CONIC_LIGHT_HEAD : CONIC_LIGHT_WORLD;
+  if (light->frame == CONIC_LIGHT_HEAD)
+    return 1;
+  const char *direction = copy;
+  if (strncmp(copy, camera, sizeof camera - 1) == 0) {
+    light->frame = CONIC_LIGHT_CAMERA;
+    direction += sizeof camera - 1;
+  }
+  const double *d = light->direction;
+  return cli_parse_vector(direction, light->direction) && (d[0] != 0.0 || d[1] != 0.0 || d[2] != 0.0);
+}
+
+int cli_parse_light(const char *text, void *value) {
+  cli_render_job *job = value;
+  job->is_light_given = 1;
+  if (strcmp(text, "none") == 0)
+    return 1;
+  if (strcmp(text, "studio") == 0)
+    return add_studio(job);
+  conic_light *light = next_light(job);
+  const char *colon = strchr(strncmp(text, "camera:", 7) == 0 ? text + 7 : text, ':');
+  if (!light || !parse_place(text, colon ? (size_t)(colon - text) : strlen(text), light))
+    return 0;
+  return cli_parse_color(colon ? colon + 1 : "1", colon ? strlen(colon + 1) : 1, light->color);
+}
+
+int cli_parse_sky(const char *text, void *value) {
+  cli_render_job *job = value;
+  conic_lighting *lighting = &job->options.lighting;
+  size_t length = strcspn(text, ":");
+  const char *ground = text[length] ? text + length + 1 : text;
+  job->is_sky_given = 1;
+  return cli_parse_color(text, length, lighting->sky) && cli_parse_color(ground, strlen(ground), lighting->ground);
+}
+
+/* The scene's; of a camera from a file, whose scene may lie anyhow, the picture's. */
+static void find_up(const cli_render_job *job, double up[3]) {
+  const double *scene = job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up;
+  for (int i = 0; i < 3; i++)
+    up[i] = job->camera_path ? -job->camera.cam_from_world[1][i] : scene[i];
+}
+
+void cli_lights_settle(cli_render_job *job) {
+  conic_lighting *lighting = &job->options.lighting;
+  if (!job->is_light_given)
+    (void)(job->is_plain ? cli_parse_light("head", job) : add_studio(job));
+  for (int i = 0; i < 3 && !job->is_sky_given; i++) {
+    lighting->sky[i] = job->is_studio ? studio_sky[i] : plain_sky;
+    lighting->ground[i] = job->is_studio ? studio_ground[i] : plain_sky;
+  }
+  lighting->is_given = 1;
+  find_up(job, lighting->up);
+}
+
+void cli_report_color(cli_json *json, const char *key, const float color[3]) {
+  char text[32];
+  cli_json_array(json, key);
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text, "%.7g", (double)color[i]);
+    cli_json_number(json, NULL, strtod(text, NULL));
+  }
+  cli_json_close(json);
+}
+
+void cli_lights_report(cli_json *json, const cli_render_job *job) {
+  static const char *const frames[] = {
+      [CONIC_LIGHT_WORLD] = "world", [CONIC_LIGHT_CAMERA] = "camera", [CONIC_LIGHT_HEAD] = "head"};
+  const conic_lighting *lighting = &job->options.lighting;
+  if (job->options.shading == CONIC_SHADE_NONE)
+    return;
+  cli_json_array(json, "lights");
+  for (int i = 0; i < lighting->n_lights; i++) {
+    const conic_light *light = &lighting->lights[i];
+    cli_json_object(json, NULL);
+    cli_json_text(json, "frame", frames[light->frame]);
+    cli_json_array(json, "direction");
+    for (int axis = 0; axis < 3 && light->frame != CONIC_LIGHT_HEAD; axis++)
+      cli_json_number(json, NULL, light->direction[axis]);
+    cli_json_close(json);
+    cli_report_color(json, "color", light->color);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  cli_report_color(json, "sky", lighting->sky);
+  cli_report_color(json, "ground", lighting->ground);
+}

@@ -1,0 +1,25 @@
+/* The lights of a picture: --light and --sky, and what they are where nobody said. */
+#ifndef CONIC_RENDER_LIGHTS_H
+#define CONIC_RENDER_LIGHTS_H
+
+#include "cli/render/render_job.h"
+
+/* R,G,B, or one number for a grey, each 0 to 1e6; 0 where it is none. `text` has `length` letters. */
+int cli_parse_color(const char *text, size_t length, float color[3]);
+
+/* The key `key` as an array, in the digits that a float holds. */
+void cli_report_color(cli_json *json, const char *key, const float color[3]);
+
+/* Parsers of values, into a cli_render_job. --light may be given again:
+ * X,Y,Z, camera:X,Y,Z or head, each with :COLOR behind it or without; studio; none. */
+int cli_parse_light(const char *text, void *job);
+/* COLOR, or COLOR:COLOR of the sky and the ground. */
+int cli_parse_sky(const char *text, void *job);
+
+/* What the options about light mean together, once the scene is open and it is known what points up. */
+void cli_lights_settle(cli_render_job *job);
+
+/* The key "lights" of the statistics, and "sky". */
+void cli_lights_report(cli_json *json, const cli_render_job *job);
+
+#endif

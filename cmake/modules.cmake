@@ -1,0 +1,28 @@
+# Modules, loaded when they are needed. They lie where core/base/module.c looks: in a folder beside libconic, in the
+# build as in an installation. conic_add_module(NAME LIBRARY SOURCE …) makes
+# conic-NAME.so.
+set(conic_modules "")
+set_source_files_properties(core/base/module.c PROPERTIES # which asks where it is: no question of POSIX's
+  COMPILE_DEFINITIONS "_GNU_SOURCE;CONIC_MODULES_FROM_PROGRAM=\"${libraries_from_programs}/conic\"")
+
+macro(conic_add_module name library)
+  add_library(conic_${name} MODULE ${ARGN})
+  set_target_properties(conic_${name} PROPERTIES PREFIX "" OUTPUT_NAME conic-${name} SUFFIX .so
+    LIBRARY_OUTPUT_DIRECTORY ${conic_library_folder}/conic LINK_DEPENDS ${CMAKE_BINARY_DIR}/exports.map)
+  target_link_libraries(conic_${name} PRIVATE conic_flags ${library})
+  # The C++ library's templates would otherwise be exported.
+  target_link_options(conic_${name} PRIVATE LINKER:--version-script=${CMAKE_BINARY_DIR}/exports.map)
+  install(TARGETS conic_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/conic)
+  list(APPEND conic_modules conic_${name})
+  string(TOUPPER ${name} upper_name)
+  target_compile_definitions(conic_objects PRIVATE CONIC_HAVE_${upper_name}=1)
+endmacro()
+
+if(TARGET OpenImageIO::OpenImageIO)
+  conic_add_module(openimageio OpenImageIO::OpenImageIO core/image/openimageio_bridge.cpp)
+  target_compile_options(conic_openimageio PRIVATE -Wno-shadow)
+endif()
+if(TARGET assimp::assimp)
+  conic_add_module(assimp assimp::assimp core/assimp/assimp_bridge.c core/assimp/assimp_files_bridge.c
+    core/assimp/assimp_materials_bridge.c core/assimp/assimp_settle_bridge.c)
+endif()

@@ -1,0 +1,103 @@
+#include "core/assimp/assimp_kinds.h"
+
+#include <string.h>
+
+#include "core/files/file.h"
+
+/* How a file of a kind begins, and what it has besides within the first bytes; null: nothing more. */
+typedef struct content {
+  conic_model_kind kind;
+  const char *start, *within;
+} content;
+
+static const content contents[] = {
+    {CONIC_MODEL_GLB, "glTF", NULL},       {CONIC_MODEL_FBX, "Kaydara FBX Binary", NULL},
+    {CONIC_MODEL_FBX, "; FBX", NULL},      {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model"},
+    {CONIC_MODEL_STL, "solid", "facet"},   {CONIC_MODEL_STL, "solid", "endsolid"},
+    {CONIC_MODEL_GLTF, "{", "\"asset\""},  {CONIC_MODEL_DAE, "<", "<COLLADA"},
+    {CONIC_MODEL_X3D, "<", "<X3D"},        {CONIC_MODEL_AMF, "<", "<amf"},
+    {CONIC_MODEL_DXF, "0\nSECTION", NULL}, {CONIC_MODEL_DXF, "0\r\nSECTION", NULL},
+};
+
+int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
+  size_t length = strlen(text);
+  for (const char *c = bytes; n >= length; c++, n--)
+    if (*c == *text && memcmp(c, text, length) == 0)
+      return 1;
+  return 0;
+}
+
+/* OFF, COFF, STNOFF … alone on the first line. */
+static int is_off(const char *bytes, size_t n) {
+  size_t i = 0;
+  while (i < n && i < 8 && strchr("STCN4", bytes[i]) && bytes[i])
+    i++;
+  return i + 3 < n && memcmp(bytes + i, "OFF", 3) == 0 && strchr("\r\n \t", bytes[i + 3]) && bytes[i + 3];
+}
+
+static uint64_t number_at(const char *bytes, size_t at) {
+  uint64_t number = 0;
+  for (size_t i = 4; i-- > 0;)
+    number = number << 8 | (unsigned char)bytes[at + i];
+  return number;
+}
+
+/* Whether a file of that size is a binary STL, which says how many faces it has. */
+static int is_stl(const char *bytes, size_t n, uint64_t size) {
+  return n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80);
+}
+
+int conic_assimp_is_binary(const void *bytes, uint64_t n) {
+  return is_stl(bytes, n < 84 ? 0 : 84, n);
+}
+
+/* Binary files of which the length must be what they say. */
+static int has_length(const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
+  if (is_stl(bytes, n, size))
+    *kind = CONIC_MODEL_STL;
+  else if (n >= 6 && memcmp(bytes, "MM", 2) == 0 && size == number_at(bytes, 2))
+    *kind = CONIC_MODEL_3DS;
+  else
+    return 0;
+  return 1;
+}
+
+/* What other kinds of files begin with too. */
+static int is_wrapped(conic_model_kind kind, const char *bytes, size_t n) {
+  if (kind == CONIC_MODEL_3MF)
+    return n >= 4 && memcmp(bytes, "PK\x03\x04", 4) == 0;
+  return n >= 1 && bytes[0] == '<' && (kind == CONIC_MODEL_DAE || kind == CONIC_MODEL_X3D || kind == CONIC_MODEL_AMF);
+}
+
+int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uint64_t size, conic_model_kind *kind) {
+  size_t n_blanks = 0;
+  if (has_length(bytes, n, size, kind))
+    return 1;
+  if (n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0)
+    n_blanks = 3;
+  while (n_blanks < n && bytes[n_blanks] && strchr(" \t\r\n", bytes[n_blanks]))
+    n_blanks++;
+  bytes += n_blanks;
+  n -= n_blanks;
+  for (size_t i = 0; i < sizeof contents / sizeof *contents; i++) {
+    size_t length = strlen(contents[i].start);
+    if (n < length || memcmp(bytes, contents[i].start, length) != 0)
+      continue;
+    *kind = contents[i].kind;
+    if (!contents[i].within || conic_assimp_has_text(bytes, n, contents[i].within))
+      return 1;
+  }
+  if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))
+    return 1;
+  *kind = CONIC_MODEL_OFF;
+  return is_off(bytes, n);
+}
+
+int conic_assimp_find_ending(const char *path, conic_model_kind *kind) {
+  for (int i = CONIC_MODEL_STL; i <= CONIC_MODEL_AMF; i++)
+    if (conic_file_has_ending(path, conic_model_kind_name((conic_model_kind)i))) {
+      *kind = (conic_model_kind)i;
+      return 1;
+    }
+  return 0;
+}

@@ -1,0 +1,174 @@
+#include "core/assimp/assimp_material.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "conic/triangles.h"
+#include "core/base/context_struct.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/files/scratch.h"
+#include "core/image/image_common.h"
+#include "core/image/image_samples.h"
+
+enum { LONGEST_PATH = 2 * CONIC_INPUT_LONGEST_WORD };
+
+/* What is said while a picture is read becomes a warning of the model: a mesh can be drawn without it. */
+typedef struct picture_log {
+  conic_context *context;
+  const char *model, *path; /* of the picture, where the message begins with it; and what it is called instead: */
+  const char *name;
+} picture_log;
+
+static void warn_of_picture(void *cookie, conic_log_level level, const char *message) {
+  const picture_log *log = cookie;
+  size_t n = strlen(log->path);
+  (void)level;
+  if (strncmp(message, log->path, n) == 0 && strncmp(message + n, ": ", 2) == 0)
+    message += n + 2;
+  conic_log(log->context, CONIC_LOG_WARNING, "%s: the texture %s is left out: %s", log->model, log->name, message);
+}
+
+/* The picture in a file, or no texture. Errors: MEMORY, CANCELLED. */
+static conic_status read_picture(const conic_input *input, const char *path, const char *name, conic_texture_wrap wrap,
+                                 conic_texture **texture) {
+  conic_context *context = input->context, told = *context;
+  picture_log log = {context, input->name, path, name};
+  conic_image image;
+  told.options.log = warn_of_picture;
+  told.options.log_cookie = &log;
+  conic_status status = conic_image_read(&told, path, &image);
+  if (status == CONIC_ERROR_MEMORY || status == CONIC_ERROR_CANCELLED)
+    return status;
+  if (status != CONIC_OK)
+    return CONIC_OK;
+  if (image.planes[CONIC_PLANE_RGBA])
+    status = conic_texture_create(context, &image, wrap, texture);
+  else
+    warn_of_picture(&log, CONIC_LOG_WARNING, "the image has no colour");
+  conic_image_release(context, &image);
+  return status;
+}
+
+/* A name as files have it: of a URI, with %20 and the like; of Windows, with \. */
+static void make_plain(char *name) {
+  char *to = name;
+  if (strncmp(name, "file://", 7) == 0)
+    memmove(name, name + 7, strlen(name) - 6);
+  for (const char *from = name; *from; from++, to++) {
+    char digits[3] = {from[0] == '%' ? from[1] : '\0', from[0] == '%' && from[1] ? from[2] : '\0', '\0'}, *end;
+    long code = strtol(digits, &end, 16);
+    int is_code = end == digits + 2 && code > 0;
+    *to = is_code ? (char)code : *from == '\\' ? '/' : *from;
+    from += is_code ? 2 : 0;
+  }
+  *to = '\0';
+}
+
+/* As the file names it, or beside the model, since such names are often those of another machine. */
+static int find_picture(const conic_input *input, const char *name, char path[LONGEST_PATH]) {
+  char plain[CONIC_INPUT_LONGEST_WORD];
+  snprintf(plain, sizeof plain, "%s", name);
+  if (conic_input_beside(input, name, strlen(name), path, LONGEST_PATH) && conic_file_is_there(path))
+    return 1;
+  make_plain(plain);
+  if (conic_input_beside(input, plain, strlen(plain), path, LONGEST_PATH) && conic_file_is_there(path))
+    return 1;
+  const char *slash = strrchr(plain, '/'), *last = slash ? slash + 1 : plain;
+  return *last && conic_input_beside(input, last, strlen(last), path, LONGEST_PATH) && conic_file_is_there(path);
+}
+
+static conic_status take_path(const conic_input *input, conic_assimp_process *process, uint64_t n_bytes,
+                              conic_texture_wrap wrap, conic_texture **texture) {
+  char name[CONIC_INPUT_LONGEST_WORD] = "", path[LONGEST_PATH];
+  if (n_bytes >= sizeof name)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a picture's name is too long", input->name);
+  conic_status status = conic_assimp_process_take(process, name, (size_t)n_bytes);
+  if (status != CONIC_OK)
+    return status;
+  if (find_picture(input, name, path))
+    return read_picture(input, path, path, wrap, texture);
+  conic_log(input->context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out", input->name, name);
+  return CONIC_OK;
+}
+
+/* Pictures are read from files, and this is one in another. */
+static conic_status read_bytes(const conic_input *input, const void *bytes, size_t n_bytes, const char *name,
+                               conic_texture_wrap wrap, conic_texture **texture) {
+  const char *folder = getenv("TMPDIR");
+  char beside[LONGEST_PATH], path[64];
+  conic_scratch scratch;
+  snprintf(beside, sizeof beside, "%s/texture", folder && *folder ? folder : "/tmp");
+  conic_status status = conic_scratch_open(input->context, beside, &scratch);
+  if (status != CONIC_OK)
+    return status;
+  snprintf(path, sizeof path, "/proc/self/fd/%d", scratch.descriptor);
+  status = conic_scratch_write(&scratch, 0, bytes, n_bytes);
+  if (status == CONIC_OK)
+    status = read_picture(input, path, name, wrap, texture);
+  conic_scratch_close(&scratch);
+  return status;
+}
+
+static conic_status make_from_texels(conic_context *context, const conic_assimp_record *record, const void *texels,
+                                     conic_texture_wrap wrap, conic_texture **texture) {
+  const conic_samples_layout layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1};
+  conic_image image;
+  conic_status status =
+      conic_image_allocate(context, (int)record->width, (int)record->height, 1u << CONIC_PLANE_RGBA, &image);
+  if (status != CONIC_OK)
+    return status;
+  conic_samples_to_rgba(context, texels, image.width, image.height, layout, image.planes[CONIC_PLANE_RGBA]);
+  status = conic_texture_create(context, &image, wrap, texture);
+  conic_image_release(context, &image);
+  return status;
+}
+
+static conic_status take_embedded(const conic_input *input, conic_assimp_process *process,
+                                  const conic_assimp_record *record, size_t i_material, conic_texture **texture) {
+  conic_texture_wrap wrap = record->is_clamped ? CONIC_WRAP_CLAMP : CONIC_WRAP_REPEAT;
+  int is_texels = record->picture == CONIC_ASSIMP_TEXELS;
+  char name[64];
+  if (is_texels &&
+      (record->width < 1 || record->height < 1 || record->width > CONIC_IMAGE_MAX_SIZE ||
+       record->height > CONIC_IMAGE_MAX_SIZE || record->n_bytes != UINT64_C(4) * record->width * record->height))
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a texture of %u × %u texels cannot be used", input->name,
+                      record->width, record->height);
+  if (record->n_bytes > SIZE_MAX / 2)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a texture is too large", input->name);
+  void *bytes = conic_memory_allocate(input->context, (size_t)record->n_bytes, 1);
+  if (!bytes)
+    return CONIC_ERROR_MEMORY;
+  snprintf(name, sizeof name, "of material %zu, in the file itself,", i_material);
+  conic_status status = conic_assimp_process_take(process, bytes, (size_t)record->n_bytes);
+  if (status == CONIC_OK)
+    status = is_texels ? make_from_texels(input->context, record, bytes, wrap, texture)
+                       : read_bytes(input, bytes, (size_t)record->n_bytes, name, wrap, texture);
+  conic_memory_release(input->context, bytes);
+  return status;
+}
+
+conic_status conic_assimp_take_material(const conic_input *input, conic_assimp_process *process,
+                                        const conic_assimp_record *record, conic_assimp_part_builder *parts) {
+  conic_faces *faces = parts->faces;
+  if (!faces || faces->n_made == CONIC_MAX_MATERIALS)
+    return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: there are too many materials", input->name);
+  conic_material material = {.texture = NULL};
+  for (int channel = 0; channel < 3; channel++) {
+    float value = conic_assimp_decode(parts, record->color[channel]);
+    material.color[channel] = value >= 0.0f && value <= 1e6f ? value : 1.0f;
+  }
+  conic_status status = CONIC_OK;
+  if (record->picture == CONIC_ASSIMP_PATH)
+    status = take_path(input, process, record->n_bytes, record->is_clamped ? CONIC_WRAP_CLAMP : CONIC_WRAP_REPEAT,
+                       &material.texture);
+  else if (record->picture != CONIC_ASSIMP_NO_PICTURE)
+    status = take_embedded(input, process, record, faces->n_made, &material.texture);
+  if (status == CONIC_OK)
+    status = conic_faces_add_material(input->context, faces, &material);
+  if (status != CONIC_OK)
+    conic_texture_destroy(material.texture);
+  return status;
+}

@@ -1,0 +1,39 @@
+/* The parts of a model that Assimp has read, put together. Vertices at one place and of one colour become one, as other
+ * files have them, whatever else their corners differ in. */
+#ifndef CONIC_ASSIMP_PART_H
+#define CONIC_ASSIMP_PART_H
+
+#include "core/assimp/assimp_process.h"
+#include "core/splats/builder.h"
+#include "core/splats/faces.h"
+
+typedef struct conic_assimp_part_builder {
+  conic_context *context;
+  conic_builder builder;
+  conic_faces *faces; /* the model's, where those are kept */
+  int is_linear;      /* the file's colours, which are else encoded as sRGB */
+  uint32_t *slots;    /* by place and colour: a point + 1; 0: none */
+  size_t n_slots;     /* a power of two */
+  double (*normals)[3];
+  size_t normal_room; /* sums of the corners' normals, of each point */
+  int has_normals;
+} conic_assimp_part_builder;
+
+/* Errors: MEMORY. */
+conic_status conic_assimp_parts_begin(conic_context *context, conic_model_kind kind, const conic_read_options *options,
+                                      conic_model *model, conic_assimp_part_builder *parts);
+
+/* Takes what follows a part's record. Errors: INPUT, MEMORY, CANCELLED. */
+conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,
+                                    conic_assimp_part_builder *parts);
+
+/* Gives the points their normals. Errors: MEMORY. */
+conic_status conic_assimp_parts_end(conic_assimp_part_builder *parts);
+
+/* What is not the model's. */
+void conic_assimp_parts_release(conic_assimp_part_builder *parts);
+
+/* The linear value of one of the file's colours. */
+float conic_assimp_decode(const conic_assimp_part_builder *parts, float value);
+
+#endif

@@ -1,0 +1,47 @@
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "core/assimp/assimp_writer_bridge.h"
+
+/* What any file may take beyond what it takes by its size. */
+static const uint64_t least_memory_bytes = UINT64_C(2) << 30, least_seconds = 60;
+static const uint64_t memory_per_byte = 64, bytes_per_second = 100000;
+
+static void set_limit(int resource, uint64_t most) {
+  struct rlimit limit;
+  if (getrlimit(resource, &limit) != 0)
+    return;
+  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY || most < limit.rlim_max ? (rlim_t)most : limit.rlim_max;
+  setrlimit(resource, &limit);
+}
+
+/* Address space that is there already (a sanitizer has much); 0 where it cannot be told. */
+static uint64_t own_address_space(void) {
+  unsigned long long pages = 0;
+  FILE *file = fopen("/proc/self/statm", "r");
+  int n = file ? fscanf(file, "%llu", &pages) : 0;
+  if (file)
+    fclose(file);
+  return n == 1 ? pages * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
+}
+
+void conic_assimp_settle(conic_assimp_request *request) {
+  static const int signals[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGINT,
+                                SIGTERM, SIGPIPE, SIGXCPU, SIGALRM, SIGCHLD, SIGHUP};
+  uint64_t address_space = own_address_space(), n_bytes = request->n_bytes;
+  for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
+    signal(signals[i], SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  request->descriptor = fcntl(request->descriptor, F_DUPFD, 3); /* none of those that lead nowhere from here on */
+  int nowhere = open("/dev/null", O_RDWR);
+  for (int descriptor = 0; descriptor < 3; descriptor++)
+    dup2(nowhere, descriptor);
+  set_limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_CPU, least_seconds + n_bytes / bytes_per_second);
+  if (address_space)
+    set_limit(RLIMIT_AS, address_space + least_memory_bytes + memory_per_byte * n_bytes);
+}

@@ -1,0 +1,19 @@
+/* What a context has read, so that a program never writes over it, whatever names a file has and whoever named it. */
+#ifndef CONIC_GUARD_H
+#define CONIC_GUARD_H
+
+#include <sys/stat.h>
+
+#include "conic/context.h"
+
+/* From now on what is opened for reading is noted, and opening it for writing fails; but for what `replaceable`, which
+ * may be null, is now the name of. */
+void conic_guard_inputs(conic_context *context, const char *replaceable);
+
+/* Notes a file that is open for reading, or is about to be. Errors: MEMORY. */
+conic_status conic_guard_note(conic_context *context, const struct stat *read);
+
+/* Whether a file that is there may be written over: not if it was read. Errors: ARGUMENT. */
+conic_status conic_guard_check(conic_context *context, const char *path, const struct stat *existing);
+
+#endif

@@ -1,0 +1,23 @@
+/* The values that a file's points have by name besides what splats hold, and the one of them that is wanted. */
+#ifndef CONIC_POINT_FIELDS_H
+#define CONIC_POINT_FIELDS_H
+
+#include "core/splats/builder.h"
+
+/* Whether both names mean the same: upper and lower case, blanks, "_" and "-" do not matter, nor does "scalar_" before
+ * it; "reflectance" is the intensity, "class" and "label" are the classification. */
+int conic_field_is(const char *name, const char *other);
+
+/* Adds a field to the model's list; `type` is static. Errors: MEMORY. */
+conic_status conic_fields_add(conic_builder *builder, const char *name, size_t length, const char *type);
+
+/* Which of the listed fields the options ask for; −1: they ask for none, or it may be absent. A field that is found
+ * gives the points scalars. Errors: INPUT (it is not there), MEMORY. */
+conic_status conic_fields_choose(conic_builder *builder, const char *file, const conic_read_options *options,
+                                 int *chosen);
+
+/* Of a file whose reader lists none: refuses a wanted field. Errors: INPUT. */
+conic_status conic_fields_check(conic_context *context, const char *file, const conic_read_options *options,
+                                const conic_model *model);
+
+#endif

@@ -1,0 +1,14 @@
+/* Letters for pictures: digits, capitals and a few signs, five pixels wide and seven high. */
+#ifndef CONIC_GLYPHS_H
+#define CONIC_GLYPHS_H
+
+#include <stdint.h>
+
+/* GLYPH_STEP: from one letter to the next. */
+enum { CONIC_GLYPH_WIDTH = 5, CONIC_GLYPH_HEIGHT = 7, CONIC_GLYPH_STEP = 6 };
+
+/* Rows from the top, each of five bits with the leftmost highest. Small letters look like capitals, what is not known
+ * like a box. */
+const uint8_t *conic_glyph(char letter);
+
+#endif

@@ -1,0 +1,219 @@
+#include "core/image/image_png.h"
+
+#include "core/image/image_foreign.h"
+
+#if CONIC_HAVE_PNG
+
+#include <errno.h>
+#include <png.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/file.h"
+#include "core/image/image_common.h"
+#include "core/image/image_samples.h"
+
+/* zlib's level, and the rows' filter. Of 1024² pixels of the lion that takes 12 ms; all filters and level 6 make a file
+ * that is smaller by an eighth in 64 ms, and no filter one that is larger by a third in 14 ms. */
+enum { ZIP_LEVEL = 1, FILTERS = PNG_FILTER_UP };
+
+/* A file on its way in or out. libpng leaves by longjmp: what is to be released lies here, not in variables. */
+typedef struct png_work {
+  conic_context *context;
+  const char *path;
+  FILE *file;
+  png_structp png;
+  png_infop info;
+  int width, height;
+  conic_samples_layout layout;
+  unsigned char *samples;
+  char message[100]; /* libpng's */
+  conic_status status;
+} png_work;
+
+static void keep_error(png_structp png, png_const_charp message) {
+  png_work *work = png_get_error_ptr(png);
+  snprintf(work->message, sizeof work->message, "%s", message);
+  png_longjmp(png, 1);
+}
+
+/* What it goes on after is no more than noted, if at all. */
+static void keep_quiet(png_structp png, png_const_charp message) {
+  png_work *work = png_get_error_ptr(png);
+  conic_log(work->context, CONIC_LOG_INFO, "%s: %s", work->path, message);
+}
+
+static size_t row_bytes(const png_work *work) {
+  return (size_t)work->width * (size_t)work->layout.n_channels * (size_t)work->layout.sample_bytes;
+}
+
+/* --- writing --- */
+
+static void write_bytes(png_structp png, png_bytep bytes, size_t n_bytes) {
+  png_work *work = png_get_io_ptr(png);
+  if (fwrite(bytes, 1, n_bytes, work->file) != n_bytes)
+    png_error(png, "the file cannot be written");
+}
+
+static void flush_nothing(png_structp png) {
+  (void)png;
+}
+
+/* 0 where libpng gave up. */
+static int encode(png_work *work) {
+  if (setjmp(png_jmpbuf(work->png)))
+    return 0;
+  png_set_write_fn(work->png, work, write_bytes, flush_nothing);
+  png_set_compression_level(work->png, ZIP_LEVEL);
+  png_set_filter(work->png, PNG_FILTER_TYPE_BASE, FILTERS);
+  png_set_IHDR(work->png, work->info, (png_uint_32)work->width, (png_uint_32)work->height, 8, PNG_COLOR_TYPE_RGBA,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB_gAMA_and_cHRM(work->png, work->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_write_info(work->png, work->info);
+  for (int y = 0; y < work->height; y++)
+    png_write_row(work->png, work->samples + (size_t)y * row_bytes(work));
+  png_write_end(work->png, work->info);
+  return 1;
+}
+
+static conic_status write_samples(png_work *work) {
+  conic_output *output;
+  conic_status status = conic_output_open(work->context, work->path, &output);
+  if (status != CONIC_OK)
+    return status;
+  work->file = conic_output_stream(output);
+  if (encode(work) || ferror(work->file))
+    return conic_output_commit(output); /* which also says what is wrong with the stream */
+  conic_output_abandon(output);
+  return conic_fail(work->context, CONIC_ERROR_MEMORY, "%s: cannot write: %s", work->path, work->message);
+}
+
+conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
+  if (!(planes & 1u << CONIC_PLANE_RGBA))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: the format holds rgba, which the image has not",
+                      path);
+  return CONIC_OK;
+}
+
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
+  png_work work = {.context = context,
+                   .path = path,
+                   .width = image->width,
+                   .height = image->height,
+                   .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1}};
+  conic_status status = conic_png_check(context, path, conic_image_planes(image));
+  if (status != CONIC_OK)
+    return status;
+  work.samples = conic_memory_allocate(context, (size_t)image->height, row_bytes(&work));
+  if (!work.samples)
+    return CONIC_ERROR_MEMORY;
+  conic_samples_from_rgba(context, image->planes[CONIC_PLANE_RGBA], image->width, image->height, work.layout,
+                          work.samples);
+  work.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &work, keep_error, keep_quiet);
+  work.info = work.png ? png_create_info_struct(work.png) : NULL;
+  status = work.info ? write_samples(&work)
+                     : conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot write: out of memory", path);
+  png_destroy_write_struct(&work.png, &work.info);
+  conic_memory_release(context, work.samples);
+  return status;
+}
+
+/* --- reading --- */
+
+static void read_bytes(png_structp png, png_bytep bytes, size_t n_bytes) {
+  png_work *work = png_get_io_ptr(png);
+  if (fread(bytes, 1, n_bytes, work->file) == n_bytes)
+    return;
+  if (ferror(work->file))
+    png_error(png, strerror(errno));
+  snprintf(work->message, sizeof work->message, "the file ends early (at byte %lld)", (long long)ftello(work->file));
+  png_longjmp(png, 1);
+}
+
+/* 0 where libpng gave up. */
+static int decode_header(png_work *work) {
+  if (setjmp(png_jmpbuf(work->png)))
+    return 0;
+  png_set_user_limits(work->png, CONIC_IMAGE_MAX_SIZE, CONIC_IMAGE_MAX_SIZE);
+  png_set_read_fn(work->png, work, read_bytes);
+  png_read_info(work->png, work->info);
+  png_set_expand(work->png);
+  png_set_swap(work->png); /* samples of 16 bits */
+  png_set_interlace_handling(work->png);
+  png_read_update_info(work->png, work->info);
+  work->width = (int)png_get_image_width(work->png, work->info);
+  work->height = (int)png_get_image_height(work->png, work->info);
+  work->layout.n_channels = png_get_channels(work->png, work->info);
+  work->layout.sample_bytes = png_get_bit_depth(work->png, work->info) / 8;
+  work->layout.is_straight = 1;
+  return 1;
+}
+
+static int decode_rows(png_work *work, int n_passes) {
+  if (setjmp(png_jmpbuf(work->png)))
+    return 0;
+  for (int i = 0; i < n_passes; i++)
+    for (int y = 0; y < work->height; y++)
+      png_read_row(work->png, work->samples + (size_t)y * row_bytes(work), NULL);
+  png_read_end(work->png, NULL);
+  return 1;
+}
+
+static conic_status fail_to_read(const png_work *work) {
+  return conic_fail(work->context, CONIC_ERROR_INPUT, "%s: cannot read: %s", work->path, work->message);
+}
+
+/* The size of the picture is looked at before there is room for it. */
+static conic_status read_samples(png_work *work, conic_image *image) {
+  conic_context *context = work->context;
+  if (!decode_header(work))
+    return fail_to_read(work);
+  size_t pixel_bytes = (size_t)work->layout.n_channels * (size_t)work->layout.sample_bytes;
+  conic_status status = conic_image_check_size(context, work->path, work->width, work->height, pixel_bytes);
+  if (status != CONIC_OK)
+    return status;
+  work->samples = conic_memory_allocate_zeroed(context, (size_t)work->height, row_bytes(work));
+  if (!work->samples)
+    return CONIC_ERROR_MEMORY;
+  int is_interlaced = png_get_interlace_type(work->png, work->info) != PNG_INTERLACE_NONE;
+  if (!decode_rows(work, is_interlaced ? PNG_INTERLACE_ADAM7_PASSES : 1))
+    return fail_to_read(work);
+  status = conic_image_allocate(context, work->width, work->height, 1u << CONIC_PLANE_RGBA, image);
+  if (status != CONIC_OK)
+    return status;
+  image->lacks_alpha = !conic_samples_have_alpha(work->layout);
+  conic_samples_to_rgba(context, work->samples, work->width, work->height, work->layout,
+                        image->planes[CONIC_PLANE_RGBA]);
+  return CONIC_OK;
+}
+
+conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
+  png_work work = {.context = context, .path = path, .file = fopen(path, "rb")};
+  if (!work.file)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+  work.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &work, keep_error, keep_quiet);
+  work.info = work.png ? png_create_info_struct(work.png) : NULL;
+  conic_status status = work.info ? read_samples(&work, image)
+                                  : conic_fail(context, CONIC_ERROR_MEMORY, "%s: cannot read: out of memory", path);
+  png_destroy_read_struct(&work.png, &work.info, NULL);
+  conic_memory_release(context, work.samples);
+  fclose(work.file);
+  return status;
+}
+
+#else
+
+conic_status conic_png_check(conic_context *context, const char *path, unsigned planes) {
+  return conic_foreign_check(context, path, "png", planes);
+}
+
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image) {
+  return conic_foreign_write(context, path, "png", image);
+}
+
+conic_status conic_png_read(conic_context *context, const char *path, conic_image *image) {
+  return conic_foreign_read(context, path, image);
+}
+
+#endif

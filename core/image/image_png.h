@@ -1,0 +1,19 @@
+/* PNG files through libpng. A build without it leaves them to OpenImageIO, which gives the same samples.
+ *
+ * Written: rgba, 8 bits, sRGB-encoded and said to be so, the colour divided by alpha. Read: any kind; grey, palettes
+ * and transparent colours become channels, and colours are sRGB-encoded whatever the file says of its gamma. */
+#ifndef CONIC_IMAGE_PNG_H
+#define CONIC_IMAGE_PNG_H
+
+#include "conic/image.h"
+
+/* Whether this build writes PNG, and these planes (bits) have what it holds. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
+conic_status conic_png_check(conic_context *context, const char *path, unsigned planes);
+
+/* Errors: ARGUMENT (no rgba), UNSUPPORTED, MEMORY, IO. */
+conic_status conic_png_write(conic_context *context, const char *path, const conic_image *image);
+
+/* Errors: INPUT, UNSUPPORTED, MEMORY. */
+conic_status conic_png_read(conic_context *context, const char *path, conic_image *image);
+
+#endif

@@ -1,0 +1,16 @@
+/* Which points lie on no surface: foliage, wires, noise. */
+#ifndef CONIC_SCATTER_H
+#define CONIC_SCATTER_H
+
+#include "core/splats/neighbourhood.h"
+
+/* Makes the LISTED slots about which there is no surface SCATTERED. Their normals are to be known, up to the sign.
+ * Errors: MEMORY, CANCELLED. */
+conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *neighbourhood, double from, double to);
+
+/* What a dot at a slot is given: how far it reaches, and where the outside is, as the normal; zero where the neighbours
+ * do not tell. */
+double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot);
+void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]);
+
+#endif

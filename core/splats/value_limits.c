@@ -1,0 +1,38 @@
+#include "core/splats/value_limits.h"
+
+#include <stdlib.h>
+
+void conic_value_sample_add(conic_value_sample *sample, double value) {
+  if (!(value - value == 0.0))
+    return;
+  if (sample->stride == 0)
+    sample->stride = 1;
+  if (sample->n_seen++ % sample->stride)
+    return;
+  if (sample->n == CONIC_MOST_VALUES) { /* every other, from now on; this one is at an even place */
+    for (size_t i = 0; i < CONIC_MOST_VALUES / 2; i++)
+      sample->values[i] = sample->values[2 * i];
+    sample->n /= 2;
+    sample->stride *= 2;
+  }
+  sample->values[sample->n++] = value + 0.0; /* no negative zero */
+}
+
+static int compare_values(const void *a, const void *b) {
+  double first = *(const double *)a, second = *(const double *)b;
+  return (first > second) - (first < second);
+}
+
+void conic_value_sample_limits(conic_value_sample *sample, double *minimum, double *maximum) {
+  *minimum = *maximum = 0.0;
+  if (sample->n == 0)
+    return;
+  size_t last = sample->n - 1, low = last / 50;
+  qsort(sample->values, sample->n, sizeof *sample->values, compare_values);
+  *minimum = sample->values[low];
+  *maximum = sample->values[last - low];
+  if (*minimum == *maximum) {
+    *minimum = sample->values[0];
+    *maximum = sample->values[last];
+  }
+}

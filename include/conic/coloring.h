@@ -1,0 +1,67 @@
+/* Colours made of what points hold: a value of the file (intensity, classification, …), the height, or the normal
+ * (docs/reference/formats.md, Colours). */
+#ifndef CONIC_COLORING_H
+#define CONIC_COLORING_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/context.h"
+#include "conic/model.h"
+#include "conic/splats.h"
+#include "conic/triangles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct conic_coloring_options {
+  size_t size; /* sizeof(conic_coloring_options), set by the init function */
+
+  /* "rgb": the colours that there are. "height", along `up`. "normal": its x, y, z as red, green, blue. "auto": the
+   * colours that there are, else the intensity where the file has one, else, where that is the same everywhere, the
+   * height. Any other word: the file's value of that name. */
+  const char *by;
+  const char *ramp; /* one of conic_ramp_name; null: the one that suits */
+
+  /* What the ramp's two ends mean; without, the 2nd and the 98th percentile. */
+  int has_range;
+  double minimum, maximum;
+
+  double up[3]; /* of any length; zero: the source's, or +y */
+} conic_coloring_options;
+
+/* "rgb", nothing else set. */
+CONIC_API void conic_coloring_options_init_sized(conic_coloring_options *options, size_t size);
+#define conic_coloring_options_init(options) conic_coloring_options_init_sized(options, sizeof *(options))
+
+/* The names of the ramps from 0 on: "sequential", "grey", …, "classes"; null after the last. */
+CONIC_API const char *conic_ramp_name(int i);
+
+/* What the colours mean. */
+typedef struct conic_coloring {
+  char field[40];          /* "height", "normal", or the value's name; empty: the colours are the file's */
+  const char *ramp;        /* null: of normals */
+  double minimum, maximum; /* of the ramp's ends */
+  int is_root;             /* the ramp goes with the square root of the value above the minimum: for intensities */
+  uint32_t classes[8];     /* of "classes", which there are below 256, as bits */
+  uint64_t reserved[8];
+} conic_coloring;
+
+/* The linear colour that stands for a value; one that is not finite is grey. */
+CONIC_API void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]);
+
+/* Sets what is to be read so that colours can be made as the options say: `field` and `field_is_optional`. Null options
+ * ask for nothing. */
+CONIC_API void conic_coloring_read(const conic_coloring_options *options, conic_read_options *reading);
+
+/* Gives the vertices of a drawing their colours, in place, by one scale for all of it, and releases the scalars that
+ * they are made of. Triangles lose their textures and their materials' colours, unless the colours stay as they are.
+ * Normals need tangent axes. Either set may be null or empty. Errors: ARGUMENT, MEMORY, INPUT (no scalar was read). */
+CONIC_API conic_status conic_drawing_color(conic_context *context, const conic_coloring_options *options,
+                                           conic_splats *splats, conic_triangles *triangles, conic_coloring *coloring);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

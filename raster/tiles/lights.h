@@ -1,0 +1,13 @@
+/* A frame's lights, from what its options say. */
+#ifndef CONIC_LIGHTS_H
+#define CONIC_LIGHTS_H
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "raster/tiles/finish.h"
+
+/* Errors: ARGUMENT (a light without a direction, a colour out of range …). */
+conic_status conic_finish_lights_init(conic_context *context, const conic_camera *camera,
+                                      const conic_render_options *options, conic_finish_lights *lights);
+
+#endif

@@ -1,0 +1,224 @@
+/* Cameras that a drawing just fits: how far its outline reaches along the planes through the eye and the picture's
+ * sides says where the eye has to be. */
+#include <math.h>
+
+#include "conic/triangles.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+#include "core/base/vectors.h"
+#include "core/image/framing.h"
+#include "core/splats/columns.h"
+
+enum {
+  MEASURED_TOGETHER = 1 << 15, /* points */
+  MOST_TURNS = 24,             /* pictures of a turntable that are looked at: neighbours differ little */
+  N_SIDES = 5                  /* right, left, bottom and top of a picture, and what is nearest */
+};
+
+/* How far points reach along `n` directions from `center`. */
+typedef struct reach {
+  const conic_drawing *drawing;
+  double cutoff, center[3];
+  size_t n, n_splat_tasks;
+  double (*directions)[3];
+  double *farthest; /* a task has n */
+} reach;
+
+static void reach_of_point(const reach *r, const double from_center[3], const double u[3], const double v[3],
+                           double *farthest) {
+  if (!(from_center[0] - from_center[0] == 0.0 && from_center[1] - from_center[1] == 0.0 &&
+        from_center[2] - from_center[2] == 0.0))
+    return;
+  for (size_t i = 0; i < r->n; i++) {
+    const double *direction = r->directions[i];
+    double along = conic_dot(direction, from_center);
+    if (u) {
+      double along_u = conic_dot(direction, u), along_v = conic_dot(direction, v);
+      double outline = r->cutoff * sqrt(along_u * along_u + along_v * along_v);
+      along += outline - outline == 0.0 ? outline : 0.0;
+    }
+    if (along > farthest[i])
+      farthest[i] = along;
+  }
+}
+
+static void take_at(float *const columns[3], size_t i, const double from[3], double to[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    to[axis] = (double)columns[axis][i] + from[axis];
+}
+
+static void reach_of_splats(const reach *r, size_t first, size_t end, double *farthest) {
+  static const double zero[3] = {0.0, 0.0, 0.0};
+  const conic_splats *s = r->drawing->splats;
+  double offset[3], place[3], u[3], v[3];
+  conic_subtract(s->origin, r->center, offset);
+  for (size_t i = first; i < end; i++) {
+    take_at(s->position, i, offset, place);
+    if (s->tangent_u[0]) {
+      take_at(s->tangent_u, i, zero, u);
+      take_at(s->tangent_v, i, zero, v);
+    }
+    reach_of_point(r, place, s->tangent_u[0] ? u : NULL, v, farthest);
+  }
+}
+
+static void reach_of_triangles(const reach *r, size_t first, size_t end, double *farthest) {
+  const conic_triangles *t = r->drawing->triangles;
+  double offset[3], place[3];
+  conic_subtract(t->origin, r->center, offset);
+  for (size_t i = first; i < end; i++)
+    for (int corner = 0; corner < 3; corner++) {
+      take_at(t->position, t->corners[i][corner], offset, place);
+      reach_of_point(r, place, NULL, NULL, farthest);
+    }
+}
+
+static void measure_task(void *data, size_t i_item, int i_thread) {
+  const reach *r = data;
+  int is_splats = i_item < r->n_splat_tasks;
+  size_t count = is_splats ? r->drawing->splats->count : r->drawing->triangles->count;
+  size_t first = (is_splats ? i_item : i_item - r->n_splat_tasks) * MEASURED_TOGETHER;
+  size_t end = count - first < MEASURED_TOGETHER ? count : first + MEASURED_TOGETHER;
+  double *farthest = r->farthest + i_item * r->n;
+  (void)i_thread;
+  for (size_t i = 0; i < r->n; i++)
+    farthest[i] = -HUGE_VAL;
+  (is_splats ? reach_of_splats : reach_of_triangles)(r, first, end, farthest);
+}
+
+static size_t tasks_for(size_t count) {
+  return (count + MEASURED_TOGETHER - 1) / MEASURED_TOGETHER;
+}
+
+/* The farthest of all, into the first task's place. */
+static conic_status measure_reach(conic_context *context, reach *r) {
+  r->n_splat_tasks = tasks_for(r->drawing->splats->count);
+  size_t n_tasks = r->n_splat_tasks + tasks_for(r->drawing->triangles->count);
+  conic_memory_release(context, r->farthest);
+  r->farthest = conic_memory_allocate(context, n_tasks * r->n, sizeof *r->farthest);
+  if (!r->farthest)
+    return CONIC_ERROR_MEMORY;
+  conic_parallel_for(context, n_tasks, measure_task, r);
+  for (size_t task = 1; task < n_tasks; task++)
+    for (size_t i = 0; i < r->n; i++)
+      if (r->farthest[task * r->n + i] > r->farthest[i])
+        r->farthest[i] = r->farthest[task * r->n + i];
+  return CONIC_OK;
+}
+
+/* A point (x, y, z) of camera axes about the centre, seen from z = -d, is left of the side of tangent t where
+ * x - t·z ≤ t·d; and so on. */
+static void set_sides(double rows[3][3], const double tangents[2], double sides[N_SIDES][3]) {
+  for (int i = 0; i < 3; i++) {
+    for (int side = 0; side < 4; side++)
+      sides[side][i] = (side % 2 ? -1.0 : 1.0) * rows[side / 2][i] - tangents[side / 2] * rows[2][i];
+    sides[4][i] = -rows[2][i];
+  }
+}
+
+/* What is sought: the eye, so far from the centre and so far beside it, in camera axes. */
+typedef struct stand {
+  double distance, beside[2];
+  double spans[2]; /* twice the distance from which the sides alone would be filled, times their tangents */
+} stand;
+
+static void find_stand(const reach *r, const double tangents[2], size_t n_turns, double least_gap, stand *found) {
+  double farthest[N_SIDES];
+  for (int side = 0; side < N_SIDES; side++) {
+    farthest[side] = r->farthest[side];
+    for (size_t turn = 1; turn < n_turns; turn++)
+      if (r->farthest[turn * N_SIDES + (size_t)side] > farthest[side])
+        farthest[side] = r->farthest[turn * N_SIDES + (size_t)side];
+  }
+  found->distance = farthest[4] + least_gap;
+  for (int axis = 0; axis < 2; axis++) {
+    double plus = farthest[2 * axis], minus = farthest[2 * axis + 1];
+    /* What turns about the centre keeps it in the middle. */
+    if (axis == 0 && n_turns > 1)
+      plus = minus = plus > minus ? plus : minus;
+    found->beside[axis] = 0.5 * (plus - minus);
+    found->spans[axis] = plus + minus;
+    if (found->spans[axis] > 2.0 * tangents[axis] * found->distance)
+      found->distance = found->spans[axis] / (2.0 * tangents[axis]);
+  }
+}
+
+static void set_turns(const conic_framing *framing, size_t n_turns, const double tangents[2], reach *r) {
+  for (size_t turn = 0; turn < n_turns; turn++) {
+    conic_framing turned = *framing;
+    double rows[3][3];
+    turned.azimuth_deg += 360.0 * (double)turn / (double)n_turns;
+    conic_framing_rotation(&turned, rows);
+    set_sides(rows, tangents, r->directions + turn * N_SIDES);
+  }
+}
+
+/* The side that does not decide is narrowed until it touches as well: only then the outline is in the middle. */
+static conic_status find_eye(conic_context *context, const conic_framing *framing, size_t n_turns, double least_gap,
+                             reach *r, stand *found) {
+  enum { N_ROUNDS = 6 };
+  double part = CONIC_FRAMING_PART, greatest = 0.0;
+  double tangents[2] = {part * conic_framing_tangent(framing, framing->width),
+                        part * conic_framing_tangent(framing, framing->height)};
+  for (int round = 0; round < N_ROUNDS; round++) {
+    set_turns(framing, n_turns, tangents, r);
+    conic_status status = measure_reach(context, r);
+    if (status != CONIC_OK)
+      return status;
+    find_stand(r, tangents, n_turns, least_gap, found);
+    if (found->distance > greatest)
+      greatest = found->distance;
+    found->distance = greatest;
+    for (int axis = 0; axis < 2; axis++) {
+      double touched = found->spans[axis] / (2.0 * greatest);
+      if (touched > 0.0 && touched < tangents[axis])
+        tangents[axis] = touched;
+    }
+  }
+  return CONIC_OK;
+}
+
+static conic_status frame_entered(conic_context *context, const conic_drawing *drawing, float cutoff,
+                                  const conic_framing *framing, size_t n_turns, conic_camera *camera) {
+  double low[3], high[3], diagonal[3], rows[3][3];
+  stand found;
+  reach r = {.drawing = drawing, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
+  if (conic_drawing_bounds(drawing, low, high) == 0)
+    return conic_camera_frame(context, framing, low, high, camera);
+  conic_subtract(high, low, diagonal);
+  for (int i = 0; i < 3; i++)
+    r.center[i] = 0.5 * low[i] + 0.5 * high[i];
+  r.directions = conic_memory_allocate(context, r.n, sizeof *r.directions);
+  if (!r.directions)
+    return CONIC_ERROR_MEMORY;
+  double size = conic_length(diagonal);
+  conic_status status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
+  if (status == CONIC_OK) {
+    const double at[3] = {-found.beside[0], -found.beside[1], found.distance};
+    conic_framing_rotation(framing, rows);
+    conic_framing_camera(framing, rows, r.center, at, camera);
+  }
+  conic_memory_release(context, r.directions);
+  conic_memory_release(context, r.farthest);
+  return status;
+}
+
+conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
+                                 const conic_framing *given, int n_turns, conic_camera *camera) {
+  conic_framing framing;
+  conic_entered_drawing entered;
+  if (!camera || n_turns < 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "frame: no camera, or no picture");
+  conic_status status = conic_framing_take(context, given, &framing);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_drawing_enter(context, "frame", drawing, &entered);
+  if (status == CONIC_OK) {
+    const conic_drawing close = {&entered.splats, &entered.triangles};
+    status =
+        frame_entered(context, &close, cutoff, &framing, n_turns < MOST_TURNS ? (size_t)n_turns : MOST_TURNS, camera);
+  }
+  conic_drawing_leave(context, &entered);
+  return status;
+}

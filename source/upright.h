@@ -1,0 +1,14 @@
+/* Which way up a model stands, as far as its shape tells. */
+#ifndef CONIC_UPRIGHT_H
+#define CONIC_UPRIGHT_H
+
+#include "conic/source.h"
+
+/* What tells for +z against +y. CONIC_UP_HABIT: nothing does. Looks at some 20,000 splats and triangles. Errors:
+ * MEMORY. */
+conic_status conic_upright_look(conic_context *context, const conic_drawing *drawing, conic_up_basis *basis);
+
+/* The same of a box alone. */
+conic_up_basis conic_upright_box(const double minimum[3], const double maximum[3]);
+
+#endif

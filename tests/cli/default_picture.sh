@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# What `conic render FILE -o OUT` does when nothing else is said: the outline fills the picture, stands upright, and has
+# soft edges.
+set -uo pipefail
+# shellcheck source=tests/support/program.bash
+source "$(dirname "$0")/../support/program.bash"
+
+# box FILE.pfm: the part of the width and of the height where something white is, and how many pixels are partly so
+box() {
+  python3 - "$1" << 'END'
+import struct, sys
+with open(sys.argv[1], 'rb') as file:
+    kind, size, scale = file.readline().strip(), file.readline().split(), float(file.readline())
+    width, height = int(size[0]), int(size[1])
+    values = struct.unpack('<%df' % (width * height * 3), file.read())
+assert kind == b'PF' and scale < 0, kind
+rows, columns, soft = set(), set(), 0
+for i in range(width * height):
+    alpha = values[3 * i]
+    if alpha > 0:
+        rows.add(i // width)
+        columns.add(i % width)
+        soft += alpha < 0.999
+print('%.3f %.3f %d' % ((max(columns) + 1 - min(columns)) / width, (max(rows) + 1 - min(rows)) / height, soft))
+END
+}
+
+# between VALUE LOW HIGH
+between() {
+  awk "BEGIN { exit !($1 >= $2 && $1 <= $3) }"
+}
+
+# A white slab that lies in the plane of x and y, and the same slab on its edge; without normals and faces
+for ((i = 0; i < 60; i++)); do
+  for ((j = 0; j < 40; j++)); do
+    echo "$i $j 0.$((i * j % 7))"
+  done
+done > flat.xyz
+awk '{ print $1, $3, -$2 }' flat.xyz > upright.xyz
+look="--shade none --background 0,0,0 --size 200x200"
+
+run_as_typed 0 render flat.xyz -o flat.pfm $look --json flat.json
+grep -q '^conic: up: z, as it lies flat; --up says otherwise$' err || fail "up is not told: $(cat err)"
+read -r width height soft < <(box flat.pfm)
+between "$width" 0.88 0.92 || between "$height" 0.88 0.92 || fail "the outline fills $width × $height of the picture"
+between "$width" 0 0.92 && between "$height" 0 0.92 || fail "the outline fills $width × $height of the picture"
+[[ $soft -gt 100 ]] || fail "$soft pixels are partly covered"
+run_as_typed 0 render flat.xyz -o up.pfm $look --up z
+[[ ! -s err ]] || fail "something is told of what was said: $(cat err)"
+"$conic" diff flat.pfm up.pfm > out || fail "--up z is another picture: $(cat out)"
+
+# Other shapes of picture; and the pictures of a turntable, none of which is larger
+run_as_typed 0 render flat.xyz -o wide.pfm --shade none --background 0,0,0 --size 300x100
+read -r width height soft < <(box wide.pfm)
+between "$width" 0.88 0.92 || between "$height" 0.86 0.94 || fail "of a wide picture $width × $height are filled"
+run_as_typed 0 render flat.xyz -o turn.pfm $look --turntable 3
+for i in 1 2 3; do
+  read -r width height soft < <(box turn.000$i.pfm)
+  between "$width" 0.5 0.92 || fail "turn $i is $width wide"
+done
+
+# The quality names samples and method; what is given goes first, and what is measured has one sample
+sample_of() { # the picture's method, and whether it has soft pixels
+  run_as_typed 0 render flat.xyz -o sampled.pfm $look --json sampled.json "$@"
+  read -r width height soft < <(box sampled.pfm)
+  echo "$(grep -o '"method": "[a-z]*"' sampled.json | cut -d'"' -f4) $((soft > 0))"
+}
+for pair in ':auto 1' '--quality draft:conic 0' '--quality good:auto 1' '--quality final:auto 1' \
+  '--quality draft --samples 2:conic 1' '--quality final --samples 1:auto 0' '--quality final --method disc:disc 1' \
+  '--repeat 2:auto 0' '--plain:conic 0' '--plain --quality good:auto 1'; do
+  # shellcheck disable=SC2086
+  got=$(sample_of ${pair%:*})
+  [[ $got == "${pair#*:}" ]] || fail "${pair%:*}: $got"
+done
+
+# Longitude and latitude become metres
+awk '{ printf "%.7f %.7f %.2f\n", -123.07 + $1 * 1e-5, 44.05 + $2 * 1e-5, 100 + 10 * $3 }' flat.xyz > degrees.xyz
+run_as_typed 0 render degrees.xyz -o degrees.pfm $look
+grep -q 'degrees of longitude and latitude: drawn in metres about -123.069705, 44.050195' err || fail "$(cat err)"
+read -r width height soft < <(box degrees.pfm)
+between "$width" 0.88 0.92 || between "$height" 0.88 0.92 || fail "degrees fill $width × $height"
+run_as_typed 0 prepare degrees.xyz -o degrees.ply
+grep -q 'degrees of longitude and latitude.*reproject' err || fail "prepare: $(cat err)"
+
+[[ $failures -eq 0 ]]

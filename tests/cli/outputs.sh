@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# Outputs among other files: no input is written over, under any name; a link is followed, a mode kept, a long name fits.
+set -uo pipefail
+
+source "$1/tests/support/program.bash"
+# What was read stays as it is, and the run says so: kept FILE ARGUMENTS …
+kept() {
+  local before
+  before=$(cksum < "$1")
+  run 2 "${@:2}"
+  [[ $(cksum < "$1") == "$before" ]] || fail "conic ${*:2}: writes over $1"
+  [[ $(wc -l < err) -eq 1 ]] || fail "conic ${*:2}: not one line: $(head -c 300 err)"
+  grep -q 'is an input, and would be written over' err || fail "conic ${*:2}: $(cat err)"
+}
+has() { # FEATURE of the build
+  "$conic" --version | grep -q "^In this build:.*$1"
+}
+"$conic" make sphere -n 2000 -o s.ply
+ln -s s.ply link.ply
+ln s.ply twin.ply
+mkdir folder
+ln -s ../s.ply folder/far.ply
+
+# Positional inputs
+for name in s.ply ./s.ply link.ply twin.ply folder/far.ply; do
+  kept s.ply prepare s.ply -o $name
+  kept s.ply mls project s.ply -o $name
+  kept s.ply prepare $name -o link.ply
+done
+# What an input names
+printf 'mtllib m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' > m.obj
+printf 'newmtl a\nmap_Kd t.pfm\n' > m.mtl
+{ printf 'PF\n1 1\n-1\n'; head -c 12 /dev/zero; } > t.pfm
+mesh="render m.obj --as mesh --size 16x16"
+# shellcheck disable=SC2086 # words
+{
+  kept t.pfm $mesh -o t.pfm
+  kept m.mtl $mesh -o a.pfm --json m.mtl
+  kept t.pfm $mesh --turntable 2 -o a.pfm --overdraw t.pfm --frames 1 --json t.pfm
+  kept m.mtl hybrid m.obj -o a.chy --json m.mtl
+  cp t.pfm turn.0002.pfm
+  sed -i 's/t.pfm/turn.0002.pfm/' m.mtl
+  kept turn.0002.pfm $mesh -o turn.pfm --turntable 2
+}
+printf '{"width": 16, "height": 16, "fx": 16, "fy": 16, "cx": 8, "cy": 8,
+  "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 6], [0, 0, 0, 1]]}' > camera.json
+kept camera.json render s.ply --camera camera.json -o a.pfm --json camera.json
+if has zstd; then
+  run 0 layer s.ply -o s.lpc
+  kept s.lpc render s.lpc -o a.pfm --json s.lpc --size 16x16
+fi
+
+# Where rewriting is wanted, it is whole or not at all
+cp s.ply one.ply
+cp s.ply two.ply
+run 0 prepare one.ply --in-place --count 500
+run 0 prepare s.ply -o half.ply --count 500
+cmp one.ply half.ply || fail "--in-place writes something else than -o"
+run 0 mls project two.ply --in-place --json two.json
+cmp -s two.ply s.ply && fail "mls --in-place writes nothing"
+run 2 prepare one.ply --in-place -o two.ply
+run 2 prepare - --in-place
+run 2 prepare one.ply --in-place --json one.ply
+cmp one.ply half.ply || fail "a wrong use of --in-place writes"
+cp s.ply short.ply
+truncate -s -9 short.ply
+cp short.ply before.ply
+run 3 prepare short.ply --in-place
+cmp short.ply before.ply || fail "--in-place loses an input that it cannot read"
+
+# A link is followed, be there something at its end or not; modes stay
+mkdir real
+ln -s real/there.ply there.ply
+ln -s real/new.ply new.ply
+ln -s there.ply again.ply
+echo before > real/there.ply
+chmod 640 real/there.ply
+for name in there new again; do
+  run 0 make torus -n 10 -o $name.ply
+  [[ -L $name.ply ]] || fail "the link $name.ply is replaced"
+done
+run 0 info real/new.ply
+run 0 info real/there.ply
+[[ $(stat -c %a real/there.ply) == 640 ]] || fail "the mode of a replaced file becomes $(stat -c %a real/there.ply)"
+ln -s loop.ply loop.ply
+run 4 make torus -n 10 -o loop.ply
+run 2 render s.ply -o there.ply -o real/there.ply
+rm real/new.ply
+run 2 render s.ply --size 16x16 -o new.ply -o real/new.ply
+
+# Names as long as names can be
+for ending in ply pfm; do
+  long=$(printf 'x%.0s' {1..251}).$ending
+  if [[ $ending == ply ]]; then
+    run 0 make torus -n 10 -o "$long"
+  else
+    run 0 render s.ply --size 8x8 -o "$long"
+  fi
+  [[ -s $long ]] || fail "no file of a long name"
+done
+
+# Memory that fails in every thread is told once; and JSON is JSON whatever a file is called
+"$conic" make sphere -n 200000 -o many.ply
+for kib in 80000 100000 120000; do
+  grep -qa __asan_init "$conic" && continue
+  (
+    ulimit -v $kib
+    exec "$conic" octree many.ply -o many.cot --threads 8 2> err
+  )
+  [[ $(wc -l < err) -le 1 ]] || fail "one failure, $(wc -l < err) lines: $(head -n 3 err)"
+done
+bad=$'\xff\xfe-\x01"\\.xyz'
+printf '0 0 0\n0 1e30 0\n' > "$bad"
+run 0 info "$bad" --check --json -
+if type -P python3 > /dev/null; then
+  python3 -c 'import json, sys; json.loads(open(sys.argv[1], "rb").read().decode("utf-8"))' out || fail "no JSON: $(cat out)"
+fi
+run 3 render "$bad" -o a.pfm
+[[ $(wc -l < err) -eq 1 ]] || fail "a name breaks the line: $(cat err)"
+[[ $failures -eq 0 ]]
