@@ -87,7 +87,10 @@ done
 for background in '' x 1,2 1:2:3 : 1: :1 -1 none:1 inf; do
   run 2 render ball.ply -o no.pfm --background "$background"
 done
-eight=(--light head --light 1,2,3 --light 1,2,3 --light 1,2,3 --light 1,2,3 --light 1,2,3 --light 1,2,3 --light 1,2,3)
+eight=(--light head)
+for i in 1 2 3 4 5 6 7; do
+  eight+=(--light "1,2,$i")
+done
 run 0 render ball.ply -o x.pfm --size 16x16 "${eight[@]}"
 run 2 render ball.ply -o no.pfm "${eight[@]}" --light none --light head
 run 2 verify ball.ply --background 1:0
