@@ -1,6 +1,6 @@
 /* The lights of a picture: --light and --sky, and what they are where nobody said. */
-#ifndef CONIC_RENDER_LIGHTS_H
-#define CONIC_RENDER_LIGHTS_H
+#ifndef CONIC_LIGHT_OPTIONS_H
+#define CONIC_LIGHT_OPTIONS_H
 
 #include "cli/render/render_job.h"
 
