@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
+#include "core/splats/estimate.h"
 #include "core/splats/repairs_log.h"
 #include "source/mesh_input.h"
 #include "source/source_kind.h"
@@ -82,6 +83,9 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
   estimate.finds_dots = options->finds_dots;
+  estimate.stays_at_mesh = 1;
+  if (model->n_triangles && !model->points.tangent_u[0])
+    d->base.tolerance = conic_mesh_tolerance(&model->points);
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;

@@ -31,6 +31,7 @@ static conic_status lay_patches(patches_source *p, const conic_source_options *o
   if (options->h_in_spacings && laying.surface.h > 0.0)
     status = conic_source_spacing(p->points, &spacing);
   laying.surface.h *= spacing;
+  laying.most_off = p->points->tolerance;
   p->base.scale.epsilon = (double)options->cutoff * p->base.scale.splat_length;
   return status == CONIC_OK ? conic_patches_create(p->base.context, splats, &laying, &p->patches) : status;
 }

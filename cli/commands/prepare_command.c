@@ -57,6 +57,7 @@ static conic_status thin_model(prepare_job *job) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
     plain.finds_dots = 0;
+    plain.stays_at_mesh = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -147,6 +148,7 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   prepare_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
   cli_coloring_init(&job.coloring);
+  job.estimate.stays_at_mesh = 1;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),

@@ -4,23 +4,31 @@
 
 #include "core/files/file.h"
 
-/* How a file of a kind begins, and what it has besides within the first bytes; null: nothing more. */
+/* How a file of a kind begins, and what it has besides within the first bytes; empty: nothing more. */
 typedef struct content {
   conic_model_kind kind;
-  const char *start, *within;
+  const char *start, *within, *also;
 } content;
 
 static const content contents[] = {
-    {CONIC_MODEL_GLB, "glTF", NULL},       {CONIC_MODEL_FBX, "Kaydara FBX Binary", NULL},
-    {CONIC_MODEL_FBX, "; FBX", NULL},      {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model"},
-    {CONIC_MODEL_STL, "solid", "facet"},   {CONIC_MODEL_STL, "solid", "endsolid"},
-    {CONIC_MODEL_GLTF, "{", "\"asset\""},  {CONIC_MODEL_DAE, "<", "<COLLADA"},
-    {CONIC_MODEL_X3D, "<", "<X3D"},        {CONIC_MODEL_AMF, "<", "<amf"},
-    {CONIC_MODEL_DXF, "0\nSECTION", NULL}, {CONIC_MODEL_DXF, "0\r\nSECTION", NULL},
+    {CONIC_MODEL_GLB, "glTF", "", ""},
+    {CONIC_MODEL_FBX, "Kaydara FBX Binary", "", ""},
+    {CONIC_MODEL_FBX, "; FBX", "", ""},
+    {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model", ""},
+    {CONIC_MODEL_STL, "solid", "facet", ""},
+    {CONIC_MODEL_STL, "solid", "endsolid", ""},
+    {CONIC_MODEL_GLTF, "{", "\"asset\"", "\"version\""},
+    {CONIC_MODEL_DAE, "<", "<COLLADA", ""},
+    {CONIC_MODEL_X3D, "<", "<X3D", ""},
+    {CONIC_MODEL_AMF, "<", "<amf", ""},
+    {CONIC_MODEL_DXF, "0\nSECTION", "", ""},
+    {CONIC_MODEL_DXF, "0\r\nSECTION", "", ""},
 };
 
 int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
   size_t length = strlen(text);
+  if (length == 0)
+    return 1;
   for (const char *c = bytes; n >= length; c++, n--)
     if (*c == *text && memcmp(c, text, length) == 0)
       return 1;
@@ -84,7 +92,7 @@ int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uin
     if (n < length || memcmp(bytes, contents[i].start, length) != 0)
       continue;
     *kind = contents[i].kind;
-    if (!contents[i].within || conic_assimp_has_text(bytes, n, contents[i].within))
+    if (conic_assimp_has_text(bytes, n, contents[i].within) && conic_assimp_has_text(bytes, n, contents[i].also))
       return 1;
   }
   if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))

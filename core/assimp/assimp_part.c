@@ -59,7 +59,8 @@ static conic_status take_array(conic_assimp_process *process, int is_there, size
   return bytes ? conic_assimp_process_take(process, bytes, n * size) : CONIC_ERROR_MEMORY;
 }
 
-static conic_status take_arrays(conic_assimp_process *process, const conic_assimp_record *record, assimp_part *taken) {
+static conic_status take_part_arrays(conic_assimp_process *process, const conic_assimp_record *record,
+                                     assimp_part *taken) {
   size_t n = taken->n_vertices, n_triangles = taken->n_triangles;
   conic_status status = take_array(process, 1, n, sizeof *taken->position, &taken->position);
   if (status == CONIC_OK)
@@ -238,7 +239,7 @@ conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_a
   assimp_part taken = {.n_vertices = (size_t)record->n_vertices, .n_triangles = (size_t)record->n_triangles};
   if (record->n_vertices > CONIC_MAX_POINTS || record->n_triangles > SIZE_MAX / sizeof *taken.triangles)
     return conic_fail(process->context, CONIC_ERROR_INPUT, "%s: there are too many vertices", process->name);
-  conic_status status = take_arrays(process, record, &taken);
+  conic_status status = take_part_arrays(process, record, &taken);
   if (parts->faces)
     parts->faces->current_material =
         record->i_material < parts->faces->n_made ? record->i_material : (uint32_t)parts->faces->n_made;

@@ -258,7 +258,9 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
 static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
   conic_repairs counted = {0};
-  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL};
+  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL, INFINITY};
+  if (options->stays_at_mesh || options->feature_angle_deg > 0.0)
+    estimate.tolerance = conic_mesh_tolerance(&model->points);
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
   conic_status status = CONIC_ERROR_MEMORY;
   if (estimate.states)
@@ -276,24 +278,6 @@ static conic_status estimate_plain(conic_context *context, const conic_estimate_
   }
   conic_memory_release(context, estimate.dot);
   conic_memory_release(context, estimate.states);
-  return status;
-}
-
-/* A mesh with creases: its copy, split there, takes its place when all is done. */
-static conic_status estimate_split(conic_context *context, const conic_estimate_options *options, double cosine,
-                                   conic_model *model, conic_repairs *repairs) {
-  conic_model split;
-  conic_creases creases;
-  conic_status status = conic_creases_split(context, cosine, model, &split, &creases);
-  if (status != CONIC_OK)
-    return status;
-  status = estimate_plain(context, options, &split, repairs);
-  if (status == CONIC_OK)
-    status = conic_creases_clip(context, &creases, (double)options->cutoff, &split);
-  conic_creases_release(context, &creases);
-  conic_model_release(context, status == CONIC_OK ? model : &split);
-  if (status == CONIC_OK)
-    *model = split;
   return status;
 }
 
@@ -339,10 +323,12 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
     conic_log(context, CONIC_LOG_WARNING,
               "x and y are degrees of longitude and latitude, beside heights in metres: what becomes of them is a "
               "needle; reproject them, as pdal does by filters.reprojection");
-  double cosine = conic_cos(conic_radians(options->feature_angle_deg));
-  if (options->feature_angle_deg == 0.0 || model->points.count == 0)
-    return estimate_plain(context, options, model, repairs);
-  if (model->n_triangles && !model->points.tangent_u[0])
-    return estimate_split(context, options, cosine, model, repairs);
-  return estimate_sharp_points(context, options, cosine, model, repairs);
+  double angle = options->feature_angle_deg, cosine = angle > 0.0 ? conic_cos(conic_radians(angle)) : -1.0;
+  int is_mesh = model->n_triangles && !model->points.tangent_u[0];
+  if (angle > 0.0 && model->points.count && !is_mesh)
+    return estimate_sharp_points(context, options, cosine, model, repairs);
+  status = estimate_plain(context, options, model, repairs);
+  return status == CONIC_OK && is_mesh && (angle > 0.0 || options->stays_at_mesh)
+             ? conic_mesh_bound(context, (double)options->cutoff, cosine, model, repairs)
+             : status;
 }

@@ -25,6 +25,7 @@ typedef struct conic_estimate {
   float *tangent_u[3]; /* of each point, beside the model's own: valid where FACED, SPREAD or ISOLATED */
   float *tangent_v[3];
   float *dot; /* of each point; null: none are looked for */
+  double tolerance; /* no outline of a vertex grows, for blending, farther than this from its faces */
 } conic_estimate;
 
 /* How far an outline reaches beyond the cell that it must cover: curved surfaces take the cells of neighbours
@@ -39,6 +40,21 @@ int conic_unit_vector(float *const arrays[3], size_t i, double unit[3]);
 /* Gives the RAW vertices that have a face with an area their axes: FACED. Errors: ARGUMENT (more triangles than can be
  * numbered, an index out of range), MEMORY, CANCELLED. */
 conic_status conic_estimate_from_faces(conic_context *context, conic_estimate *estimate);
+
+/* How far a splat may stand out from a mesh of these vertices: less than a pixel of a picture that shows all of it. */
+double conic_mesh_tolerance(const conic_splats *points);
+
+/* Whether the points of a mesh that are in no triangle are what its maker left behind, and not there to be seen. */
+static inline int conic_mesh_has_leftovers(size_t n_points, size_t n_loose) {
+  return n_loose < n_points / 10;
+}
+
+/* Where a vertex's splat reaches farther from the mesh, or two of its triangles meet by more than the angle of that
+ * cosine (-1: none do), it becomes one for each of the triangles, clipped to that: the first takes its place, the
+ * others stand after all. Leftovers get axes that are no numbers, and are counted as failed where `repairs` is not
+ * null. Errors: as above; the model is then as it was. */
+conic_status conic_mesh_bound(conic_context *context, double cutoff, double cosine, conic_model *model,
+                              conic_repairs *repairs);
 
 /* The local spacing of the LISTED slots, by their own neighbours alone. */
 conic_status conic_estimate_spacings(conic_context *context, const conic_neighbourhood *neighbourhood,

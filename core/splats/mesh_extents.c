@@ -125,9 +125,11 @@ static void spread_vertex(const spreading *in, size_t vertex) {
         conic_ellipse_cover(&ellipse, support[j][0], support[j][1]);
       }
     }
-  /* For blending an outline grows less where the surface is sharp and the ellipse stands out from it; and to twice what
-   * it must cover at most: on a fan of slivers it would grow without end. */
-  conic_ellipse_overlap(&ellipse, area, CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND * flatness, 2.0 * sqrt(greatest2));
+  /* For blending an outline grows less where the surface is sharp and the ellipse stands out from it: no farther than
+   * it may; and to twice what it must cover at most: on a fan of slivers it would grow without end. */
+  double steepness = sqrt(1.0 - flatness * flatness), most = 2.0 * sqrt(greatest2);
+  most = most * steepness > in->estimate->tolerance ? in->estimate->tolerance / steepness : most;
+  conic_ellipse_overlap(&ellipse, area, CONIC_OUTLINE_COVER, CONIC_OUTLINE_BLEND * flatness, most);
   int is_good = conic_ellipse_axes(&ellipse, u, v, in->estimate->cutoff, tangent_u, tangent_v);
   for (int axis = 0; axis < 3; axis++) {
     in->estimate->tangent_u[axis][vertex] = tangent_u[axis];

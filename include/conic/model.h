@@ -127,9 +127,14 @@ typedef struct conic_estimate_options {
 
   /* Points whose neighbours make no surface (foliage, wires, noise) become small dots: see conic_splats. */
   int finds_dots;
+
+  /* Splats of a mesh stay at it, to less than anybody would see: where a vertex's would not, the vertex becomes a splat
+   * for each of its triangles. Vertices of no triangle, if they are less than a tenth, are leftovers and get no splat.
+   * With creases all of this is so anyway. */
+  int stays_at_mesh;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases, no dots. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots, a splat a vertex. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

@@ -26,10 +26,11 @@ typedef struct conic_patches_options {
   size_t size;                   /* sizeof(conic_patches_options), set by the init function */
   conic_surface_options surface; /* of type MLS */
   float cutoff;                  /* F_g of the kernel that will draw; 0.25 to 5 */
-  double step_px; /* samples of a patch facing the camera are no farther apart on the screen; 0.25 to 16 */
+  double step_px;  /* samples of a patch facing the camera are no farther apart on the screen; 0.25 to 16 */
+  double most_off; /* above 0: no patch reaches to where no splat of the points near by is within this length */
 } conic_patches_options;
 
-/* The surface's defaults, cutoff 1.5, steps of 2 px. */
+/* The surface's defaults, cutoff 1.5, steps of 2 px, patches that reach as far as they are sound. */
 CONIC_API void conic_patches_options_init_sized(conic_patches_options *options, size_t size);
 #define conic_patches_options_init(options) conic_patches_options_init_sized(options, sizeof *(options))
 

@@ -94,11 +94,8 @@ static double slope_at(const conic_fit *fit, int degree, double x, double y) {
 
 /* Whether the polynomial is to be trusted on a circle: as far as at its middle, and not too steep. */
 static int is_sound(const conic_fit *fit, int degree, double radius) {
-  static const double directions[8][2] = {
-      {1, 0},  {0.70710678118654752, 0.70710678118654752},   {0, 1},  {-0.70710678118654752, 0.70710678118654752},
-      {-1, 0}, {-0.70710678118654752, -0.70710678118654752}, {0, -1}, {0.70710678118654752, -0.70710678118654752}};
   for (int i = 0; i < 8; i++) {
-    double x = radius * directions[i][0], y = radius * directions[i][1];
+    double x = radius * conic_eight_directions[i][0], y = radius * conic_eight_directions[i][1];
     if (!(conic_fit_gain(fit, degree, x, y) <= MOST_GAIN && slope_at(fit, degree, x, y) <= MOST_SLOPE))
       return 0;
   }
@@ -106,9 +103,11 @@ static int is_sound(const conic_fit *fit, int degree, double radius) {
 }
 
 /* The greatest radius on which the polynomial is sound, of so many steps from `radius` down to `least`; 0: none. */
-static double sound_radius(const conic_fit *fit, int degree, double h, double radius, double least) {
+static double sound_radius(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
+                           double radius, double least) {
   for (; radius >= least; radius *= SHRINKAGE)
-    if (is_sound(fit, degree, radius / h))
+    if (is_sound(&workspace->fit, degree, radius / h) &&
+        (!(patches->options.most_off > 0.0) || conic_patch_stays_at_points(patches, workspace, degree, h, radius)))
       return radius;
   return 0.0;
 }
@@ -162,7 +161,7 @@ static void lay_patch(laying *work, size_t slot, conic_workspace *workspace) {
   radius = radius > least ? radius : least;
   for (int degree = surface->options.degree; degree > 1; degree--) { /* a plane is what the splat has */
     conic_fit_solve(fit, degree);
-    double sound = sound_radius(fit, degree, h, radius, least);
+    double sound = sound_radius(patches, workspace, degree, h, radius, least);
     if (!(sound > 0.0))
       continue;
     set_patch(&patches->patches[slot], fit, degree, r, h, sound, turn < 0.0 ? -1.0 : 1.0);

@@ -45,6 +45,14 @@ void conic_patches_release_frames(conic_patches *patches);
 /* Decides what becomes of every slot; also how many samples the DEEP ones have. */
 void conic_patches_plan(conic_patches *patches, const conic_patches_view *view, uint8_t *plans);
 
+/* Unit vectors, 45° apart. */
+extern const double conic_eight_directions[8][2];
+
+/* Whether the polynomial of the workspace's fit, on a circle, on one half as large and in the middle, is within the
+ * options' most_off of the splats of the points that it was fitted to. */
+int conic_patch_stays_at_points(const conic_patches *patches, const conic_workspace *workspace, int degree, double h,
+                                double radius);
+
 /* What a FADING slot's patch weighs; the rest is its splat's. */
 double conic_patches_share(const conic_patches *patches, const conic_patches_view *view, size_t slot);
 

@@ -189,6 +189,7 @@ static void test_drawings(void) {
     conic_triangles triangles = {0};
     conic_estimate_options estimate;
     conic_estimate_options_init(&estimate);
+    estimate.stays_at_mesh = 1;
     if (i == 2)
       CHECK_OK(conic_triangles_read(f.context, path, &triangles));
     else {

@@ -413,6 +413,25 @@ static void test_failures(fixture *f) {
   s->n_clips = 0;
 }
 
+/* A torus as a mesh would have it: no patch leaves its splats by more than it may. */
+static void test_staying(fixture *f) {
+  static const double most_off[3] = {0.0, 1e-6, 0.1};
+  size_t n_patches[3];
+  fill_torus(f, 3000);
+  for (int i = 0; i < 3; i++) {
+    conic_patches_options options;
+    conic_patches_report report;
+    conic_patches *patches;
+    conic_patches_options_init(&options);
+    options.most_off = most_off[i];
+    CHECK_OK(conic_patches_create(f->context, &f->splats, &options, &patches));
+    conic_patches_describe(patches, &report);
+    n_patches[i] = report.n_patches;
+    conic_patches_destroy(patches);
+  }
+  CHECK(n_patches[0] == 3000 && n_patches[1] == 0 && n_patches[2] == 3000);
+}
+
 static void test_refusals(const fixture *f) {
   conic_patches_options options;
   conic_patches *patches;
@@ -443,6 +462,7 @@ int main(void) {
   test_bits();
   test_culling(&f);
   test_failures(&f);
+  test_staying(&f);
   test_refusals(&f);
   fixture_close(&f);
   return check_result();

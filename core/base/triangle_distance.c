@@ -1,7 +1,6 @@
-#include "lod/mesh/distance.h"
+#include "core/base/triangle_distance.h"
 
 #include "core/base/vectors.h"
-#include "lod/mesh/mesh.h"
 
 /* From p - a and the side b - a, of which `along` is the product; it lies between the ends. */
 static double distance2_to_side(const double way[3], const double side[3], double along) {

@@ -1,0 +1,8 @@
+/* How far a point is from a triangle. */
+#ifndef CONIC_TRIANGLE_DISTANCE_H
+#define CONIC_TRIANGLE_DISTANCE_H
+
+/* The squared distance of p from the triangle a, b, c, its border included; not a number where that has no area. */
+double conic_distance2_to_triangle(const double p[3], const double a[3], const double b[3], const double c[3]);
+
+#endif
