@@ -34,7 +34,7 @@ typedef struct cli_render_job {
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
   conic_framing framing;
-  int is_up_given;
+  int is_up_given, is_elevation_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */

@@ -94,8 +94,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
        .is_given = &raw.is_framing_given},
-      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90,
-       .is_given = &raw.is_framing_given},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
+       "the camera's height above the horizon [15; 35 for what lies flat]", -90, 90,
+       .is_given = &job->is_elevation_given},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
@@ -193,5 +194,6 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     view->width = raw.size[0];
     view->height = raw.size[1];
   }
+  raw.is_framing_given |= job->is_elevation_given;
   return cli_scene_check(session, &raw, job);
 }

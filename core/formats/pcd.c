@@ -12,34 +12,17 @@
 #include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
 
-enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, SCALAR = PACKED + 1, N_SLOTS = SCALAR + 1 };
+enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, SCALAR, N_SLOTS };
 
 typedef struct pcd_reader {
   conic_input *input;
   conic_builder builder;
   conic_pcd_header header;
-  int field_of[N_SLOTS]; /* by meaning, the packed colour and the scalar; -1: none */
+  int field_of[N_SLOTS]; /* by meaning, the packed colour, and the scalar; -1: none */
   int has_origin, is_origin_set;
   int is_again;
   double block[N_SLOTS][BLOCK];
 } pcd_reader;
-
-/* Those that are one number each can be asked for. */
-static conic_status choose_scalar(pcd_reader *reader, const conic_read_options *options) {
-  const conic_pcd_header *header = &reader->header;
-  conic_status status = CONIC_OK;
-  int chosen = -1, n_known = 0;
-  for (size_t i = 0; i < header->names.n && status == CONIC_OK; i++)
-    if (header->fields[i].is_known)
-      status = conic_fields_add(&reader->builder, header->names.name[i], strlen(header->names.name[i]),
-                                conic_ply_type_name(header->fields[i].type));
-  if (status == CONIC_OK)
-    status = conic_fields_choose(&reader->builder, reader->input->name, options, &chosen);
-  for (size_t i = 0; i < header->names.n && chosen >= 0; i++)
-    if (header->fields[i].is_known && n_known++ == chosen)
-      reader->field_of[SCALAR] = (int)i;
-  return status;
-}
 
 /* Which fields are read, and whether their positions may need more digits than a float has. */
 static conic_status choose_fields(pcd_reader *reader) {
@@ -59,6 +42,26 @@ static conic_status choose_fields(pcd_reader *reader) {
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
   if (status == CONIC_OK && header->names.has_normals)
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
+  return status;
+}
+
+/* Every field of one number is listed, but for the padding, which has no name. */
+static conic_status choose_scalar(pcd_reader *reader, const conic_read_options *options) {
+  const conic_pcd_header *header = &reader->header;
+  size_t listed[CONIC_TEXT_MOST_COLUMNS], n = 0;
+  conic_status status = CONIC_OK;
+  int chosen;
+  for (size_t i = 0; status == CONIC_OK && i < header->names.n; i++) {
+    const char *name = header->names.name[i];
+    if (!header->fields[i].is_known || strcmp(name, "_") == 0)
+      continue;
+    listed[n++] = i;
+    status = conic_fields_add(&reader->builder, name, strlen(name), conic_ply_type_name(header->fields[i].type));
+  }
+  if (status == CONIC_OK)
+    status = conic_fields_choose(&reader->builder, reader->input->name, options, &chosen);
+  if (status == CONIC_OK && chosen >= 0)
+    reader->field_of[SCALAR] = (int)listed[chosen];
   return status;
 }
 
@@ -100,10 +103,10 @@ static conic_status append_block(pcd_reader *reader, size_t n) {
       if (reader->header.names.has_normals)
         points->normal[axis][points->count + i] = (float)reader->block[CONIC_TEXT_NORMAL + axis][i];
     }
-  if (reader->header.i_packed >= 0)
-    unpack_colors(reader, n, points);
   for (size_t i = 0; i < n && points->scalar; i++)
     points->scalar[points->count + i] = (float)reader->block[SCALAR][i];
+  if (reader->header.i_packed >= 0)
+    unpack_colors(reader, n, points);
   points->count += n;
   return conic_builder_deliver(&reader->builder, 0);
 }

@@ -169,6 +169,25 @@ static void test_ascii(void) {
   conic_model_release(context, &model);
 }
 
+/* The field that is asked for, by any way of storing it. */
+static void test_scalars(void) {
+  conic_read_options options;
+  conic_model model;
+  conic_read_options_init(&options);
+  options.field = "Intensity";
+  const char *path =
+      files_write("a.pcd", "FIELDS x y z _ h intensity\nSIZE 4 4 4 1 4 2\nTYPE F F F U F U\nCOUNT 1 1 1 2 3 1\n"
+                           "POINTS 2\nDATA ascii\n1 2 3 0 0 8 8 8 700\n4 5 6 0 0 8 8 8 65535\n");
+  CHECK_OK(conic_model_read(context, path, &options, &model));
+  CHECK(model.n_fields == 4 && strcmp(model.fields[3].name, "intensity") == 0);
+  CHECK(model.points.scalar && model.points.scalar[0] == 700.0f && model.points.scalar[1] == 65535.0f);
+  conic_model_release(context, &model);
+  options.field = "h";
+  files_check_failed("three", conic_model_read(context, path, &options, &model), "no field 'h'", "x, y, z, intensity",
+                     (const char *)NULL);
+  CHECK(unlink(path) == 0);
+}
+
 static void check_refused(const char *text, const char *what, const char *where) {
   conic_model model;
   pcd_file file = begin(text);
@@ -216,6 +235,7 @@ int main(int argc, char **argv) {
   test_compressed();
   test_lzf();
   test_ascii();
+  test_scalars();
   test_refused();
   test_foreign(argc > 1 ? argv[1] : ".");
   files_end(context);
