@@ -38,14 +38,9 @@ static int check_folders(const cli_session *session, const char *const *paths, i
   return exit_code;
 }
 
-static const char *name_in_folder(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash ? slash + 1 : path;
-}
-
 static int find_folder(const char *path, struct stat *found) {
   char folder[4096];
-  int n = (int)(name_in_folder(path) - path);
+  int n = (int)(conic_file_name(path) - path);
   if (n >= (int)sizeof folder)
     return 0;
   snprintf(folder, sizeof folder, "%.*s", n, path);
@@ -67,7 +62,7 @@ static int is_same_file(const char *first, const char *second) {
     return is_first && is_second && S_ISREG(a.st_mode) && is_one(&a, &b);
   return conic_file_follow(first, first_target, sizeof first_target) &&
          conic_file_follow(second, second_target, sizeof second_target) &&
-         strcmp(name_in_folder(first_target), name_in_folder(second_target)) == 0 && find_folder(first_target, &a) &&
+         strcmp(conic_file_name(first_target), conic_file_name(second_target)) == 0 && find_folder(first_target, &a) &&
          find_folder(second_target, &b) && is_one(&a, &b);
 }
 

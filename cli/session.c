@@ -100,11 +100,11 @@ void cli_warn(const cli_session *session, const char *format, ...) {
 
 /* What failed after a signal was stopped by it; what was done all the same, or was wrong before, stays what it was. */
 int cli_exit_after_signals(int exit_code) {
-  if (exit_code != CLI_RESOURCE)
+  if (exit_code <= CLI_DIFFERENT)
     return exit_code;
   if (atomic_load(&first_signal))
     return 128 + atomic_load(&first_signal);
-  return atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
+  return exit_code == CLI_RESOURCE && atomic_load(&pipe_is_closed) ? 128 + SIGPIPE : exit_code;
 }
 
 int cli_exit_of(conic_status status) {
@@ -214,7 +214,7 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
 
 /* Signals that come together are one wish to stop: a terminal, timeout and service managers signal the process and then
  * its group, and so reach it twice. Nobody's fingers are that fast. */
-static const long long one_wish_ms = 100;
+static const long long one_wish_ms = 250;
 
 /* The first signal asks the work to stop, so that it removes what it has half written; a later one kills. */
 static void on_interrupt(int signal_number) {
@@ -235,14 +235,13 @@ static void on_closed_pipe(int signal_number) {
   atomic_store(&pipe_is_closed, 1);
 }
 
-/* A signal that whoever started the program has turned off stays off. */
+/* A signal that whoever started the program has turned off stays off. What waits, say for a pipe, is woken. */
 static void catch_signal(int signal_number, void (*handler)(int)) {
   struct sigaction action;
   if (sigaction(signal_number, NULL, &action) != 0 || action.sa_handler == SIG_IGN)
     return;
   memset(&action, 0, sizeof action);
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(signal_number, &action, NULL);
 }

@@ -85,10 +85,10 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
     project_degrees(context, path, &model->points);
   estimate.cutoff = options->cutoff;
   estimate.n_neighbours = options->n_neighbours;
+  estimate.finds_dots = options->finds_dots;
   estimate.stays_at_mesh = 1;
   if (model->n_triangles && !model->points.tangent_u[0])
     d->base.tolerance = conic_mesh_tolerance(&model->points);
-  estimate.finds_dots = options->finds_dots;
   conic_status status = conic_model_to_splats(context, &estimate, model, &repairs);
   if (status != CONIC_OK)
     return status;

@@ -56,8 +56,8 @@ static conic_status thin_model(prepare_job *job) {
   if (model->n_triangles || model->points.tangent_u[0]) {
     conic_estimate_options plain = job->estimate;
     plain.feature_angle_deg = 0.0;
-    plain.stays_at_mesh = 0;
     plain.finds_dots = 0;
+    plain.stays_at_mesh = 0;
     status = conic_model_to_splats(context, &plain, model, NULL);
     if (status != CONIC_OK)
       return status;
@@ -76,6 +76,8 @@ static int read_model(prepare_job *job) {
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
+  if (status == CONIC_OK)
+    status = cli_build_check_reach(&job->base, &job->model.points);
   return cli_exit_of(status);
 }
 
@@ -147,8 +149,8 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
   static const cli_build_steps steps = {make_prepared, tell_prepared, report_prepared, release_prepared};
   prepare_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}}}};
   conic_estimate_options_init(&job.estimate);
-  job.estimate.stays_at_mesh = 1;
   cli_coloring_init(&job.coloring);
+  job.estimate.stays_at_mesh = 1;
   const cli_option options[] = {
       {"o", CLI_TEXT, &job.base.output, "OUT.ply", "the file to write"},
       CLI_IN_PLACE(job.base),

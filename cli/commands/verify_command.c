@@ -238,8 +238,8 @@ static int run(cli_session *session, int argc, char **argv) {
       {"image", CLI_TEXT, &job.image_path, "FILE", "the picture to verify, of whatever renderer [drawn anew]"},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
-  if (exit_code == CLI_DONE && job.scene.planes & 1u << CONIC_PLANE_CLUSTER)
-    exit_code = cli_usage("verify: the plane cluster holds names; the oracle knows what is drawn");
+  if (exit_code == CLI_DONE && job.scene.planes & ~CONIC_DRAWN_PLANES)
+    exit_code = cli_usage("verify: the planes cluster and P are made of id and Z; the oracle knows what is drawn");
   if (exit_code == CLI_DONE)
     exit_code = cli_check_outputs(session, NULL, 0);
   if (exit_code == CLI_DONE)

@@ -130,7 +130,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
   job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0;
-  job->unwritten_planes = job->deep_path ? ~job->planes & 1u << CONIC_PLANE_RGBA : 0;
+  if (job->deep_path)
+    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_RGBA; /* which its samples make */
+  if (job->planes & 1u << CONIC_PLANE_POSITION)
+    job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_Z; /* by which places are found */
   job->planes |= job->unwritten_planes;
   if (job->overdraw_path)
     job->planes |= 1u << CONIC_PLANE_COUNT;

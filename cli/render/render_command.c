@@ -180,6 +180,9 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     return status;
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
+  status = conic_image_locate(session->context, &camera, job->view.samples, image);
+  if (status != CONIC_OK)
+    return status;
   take_medians(job, repeats, (size_t)job->repeat);
   warn_of_empty(session, job);
   warn_of_error(session, job);

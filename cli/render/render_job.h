@@ -34,11 +34,11 @@ typedef struct cli_render_job {
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
   conic_framing framing;
-  int is_up_given;
+  int is_up_given, is_elevation_given;
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
-  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
   int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
   cli_frames frames;

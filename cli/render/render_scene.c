@@ -1,10 +1,11 @@
 /* A scene as the commands that draw one take it: opened, measured, framed. */
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -86,6 +87,20 @@ void cli_scene_release(cli_render_job *job) {
   conic_source_close(job->source);
 }
 
+/* What lies flat shows more of itself from higher up. */
+static double elevation_for(const conic_source_scale *scale, const double up[3]) {
+  static const double flat_part = 0.33, flat_elevation_deg = 35.0, elevation_deg = 15.0;
+  double height = 0.0, ground = HUGE_VAL;
+  for (int axis = 0; axis < 3; axis++) {
+    double extent = scale->maximum[axis] - scale->minimum[axis];
+    if (up[axis] != 0.0)
+      height = extent;
+    else
+      ground = extent < ground ? extent : ground;
+  }
+  return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
+}
+
 conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_camera *camera) {
   conic_framing framing = job->framing;
   if (job->camera_path) {
@@ -95,6 +110,8 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   }
   if (!job->is_up_given)
     memcpy(framing.up, conic_source_measure(job->source)->up, sizeof framing.up);
+  if (!job->is_plain && !job->is_elevation_given)
+    framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
   if (job->is_plain)
     return conic_source_frame(job->source, &framing, camera);

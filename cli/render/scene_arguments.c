@@ -4,7 +4,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
@@ -95,8 +95,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
        .is_given = &raw.is_framing_given},
-      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG", "the camera's height above the horizon [15]", -90, 90,
-       .is_given = &raw.is_framing_given},
+      {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
+       "the camera's height above the horizon [15; 35 for what lies flat]", -90, 90,
+       .is_given = &job->is_elevation_given},
       {"fov", CLI_NUMBER, &view->fov_deg, "DEG", "field of view across the shorter side [40]", 0.001, 179.9,
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
@@ -156,8 +157,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; cluster of hybrids [rgba,Z]", .parse = cli_parse_planes,
-       .is_given = &job->is_aov_given},
+       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids [rgba,Z]",
+       .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
       {"h", CLI_PARSED, &raw.h, "H", "patch: what is smaller is smoothed away; also in spacings (2x) [local]",
@@ -200,5 +201,6 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     view->width = raw.size[0];
     view->height = raw.size[1];
   }
+  raw.is_framing_given |= job->is_elevation_given;
   return cli_scene_check(session, &raw, job);
 }

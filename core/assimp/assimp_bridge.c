@@ -2,6 +2,7 @@
 #include "core/assimp/assimp_bridge.h"
 
 #include <assimp/cimport.h>
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@ typedef struct placement {
   int is_mirrored;
 } placement;
 
-static placement place_in(const placement *parent, const struct aiMatrix4x4 *m) {
+static placement place_below(const placement *parent, const struct aiMatrix4x4 *m) {
   const double own[4][4] = {{(double)m->a1, (double)m->a2, (double)m->a3, (double)m->a4},
                             {(double)m->b1, (double)m->b2, (double)m->b3, (double)m->b4},
                             {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4},
@@ -164,7 +165,7 @@ static void send_mesh(conic_assimp_writer *w, const struct aiMesh *mesh, const p
 }
 
 static void send_node(conic_assimp_writer *w, const struct aiNode *node, const placement *parent) {
-  placement place = place_in(parent, &node->mTransformation);
+  placement place = place_below(parent, &node->mTransformation);
   find_normal_rows(&place);
   for (unsigned i = 0; i < node->mNumMeshes && !w->is_failed; i++)
     if (node->mMeshes[i] < w->scene->mNumMeshes)
@@ -181,7 +182,7 @@ static int find_number(const struct aiMetadata *data, const char *key, int none)
 }
 
 /* Which way is up as Assimp leaves it: DAE, 3DS and DXF are turned by it. */
-static void find_up(const conic_assimp_writer *w, double up[3]) {
+static void find_scene_up(const conic_assimp_writer *w, double up[3]) {
   static const char *const z_up[] = {"stl", "3mf", "amf"};
   int axis = 1;
   if (strcmp(w->request->ending, "off") == 0)
@@ -212,7 +213,7 @@ static void send_scene(conic_assimp_writer *w) {
     w->has_triangles |= count_faces(w->scene->mMeshes[i], 3) > 0;
   if (w->scene->mRootNode)
     send_node(w, w->scene->mRootNode, &world);
-  find_up(w, end.up);
+  find_scene_up(w, end.up);
   conic_assimp_send_bytes(w, &end, sizeof end);
   free(w->sent);
 }
@@ -237,6 +238,16 @@ static void hear(const char *message, char *cookie) {
     }
 }
 
+/* Assimp multiplies a node's translation and rotation of glTF 1 the wrong way round, and nobody can tell afterwards. */
+static void warn_of_gltf_1(conic_assimp_writer *w) {
+  static const char note[] = "this is glTF 1, of which parts that are moved and turned may stand in wrong places";
+  const struct aiMetadata *data = w->scene->mMetaData;
+  for (unsigned i = 0; data && i < data->mNumProperties; i++)
+    if (strcmp(data->mKeys[i].data, AI_METADATA_SOURCE_FORMAT) == 0 && data->mValues[i].mType == AI_AISTRING &&
+        strcmp(((const struct aiString *)data->mValues[i].mData)->data, "glTF Importer") == 0)
+      conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_NOTE}, note, sizeof note - 1);
+}
+
 static const struct aiScene *import(conic_assimp_writer *w) {
   struct aiFileIO io = conic_assimp_files(w);
   struct aiLogStream stream = {hear, (char *)w};
@@ -249,14 +260,15 @@ static const struct aiScene *import(conic_assimp_writer *w) {
                                       properties);
 }
 
-static void read_model(conic_assimp_request *request) {
+static void read_and_end(conic_assimp_request *request) {
   conic_assimp_settle(request);
   conic_assimp_writer w = {.request = request};
   w.scene = import(&w);
   const char *why = w.why_refused ? w.why_refused : aiGetErrorString();
-  if (w.scene && !w.why_refused)
+  if (w.scene && !w.why_refused) {
+    warn_of_gltf_1(&w);
     send_scene(&w);
-  else
+  } else
     conic_assimp_send_failure(&w,
                               strstr(why, "bad_alloc") ? "it takes more memory than a file of its size should" : why);
   _exit(0);
@@ -267,4 +279,4 @@ static void read_model(conic_assimp_request *request) {
 
 CONIC_API extern const conic_assimp_bridge_functions conic_assimp_bridge;
 const conic_assimp_bridge_functions conic_assimp_bridge = {
-    TEXT(CONIC_VERSION_MAJOR) "." TEXT(CONIC_VERSION_MINOR) "." TEXT(CONIC_VERSION_PATCH), read_model};
+    TEXT(CONIC_VERSION_MAJOR) "." TEXT(CONIC_VERSION_MINOR) "." TEXT(CONIC_VERSION_PATCH), read_and_end};

@@ -75,7 +75,7 @@ static size_t write_nothing(struct aiFile *base, const char *from, size_t size, 
   return 0;
 }
 
-static void flush_nothing(struct aiFile *base) {
+static void flush_memory_file(struct aiFile *base) {
   (void)base;
 }
 
@@ -91,7 +91,7 @@ static int is_below(const char *name) {
   return 1;
 }
 
-static unsigned char *read_whole(const char *path, size_t *n_bytes) {
+static unsigned char *read_side_file(const char *path, size_t *n_bytes) {
   struct stat about;
   unsigned char *bytes = NULL;
   int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -115,13 +115,13 @@ static unsigned char *read_beside(conic_assimp_writer *w, const char *name, size
   int n = snprintf(path, sizeof path, "%.*s%s", (int)w->request->folder_length, w->request->folder, name);
   if (!is_below(name) || n < 0 || (size_t)n >= sizeof path)
     return NULL;
-  unsigned char *bytes = read_whole(path, n_bytes);
+  unsigned char *bytes = read_side_file(path, n_bytes);
   if (bytes)
     conic_assimp_send(w, (conic_assimp_record){.type = CONIC_ASSIMP_OPENED}, path, (size_t)n);
   return bytes;
 }
 
-static struct aiFile *open_file(struct aiFileIO *io, const char *name, const char *mode) {
+static struct aiFile *open_memory_file(struct aiFileIO *io, const char *name, const char *mode) {
   conic_assimp_writer *w = (conic_assimp_writer *)io->UserData;
   if (strchr(mode, 'w') || strchr(mode, 'a') || strchr(mode, '+'))
     return NULL;
@@ -139,16 +139,16 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *name, const cha
     free(file);
     return NULL;
   }
-  file->base = (struct aiFile){read_items, write_nothing, tell_place, tell_size, seek, flush_nothing, (char *)file};
+  file->base = (struct aiFile){read_items, write_nothing, tell_place, tell_size, seek, flush_memory_file, (char *)file};
   return &file->base;
 }
 
-static void close_file(struct aiFileIO *io, struct aiFile *base) {
+static void close_memory_file(struct aiFileIO *io, struct aiFile *base) {
   (void)io;
   free(file_of(base)->own_bytes);
   free(file_of(base));
 }
 
 struct aiFileIO conic_assimp_files(conic_assimp_writer *w) {
-  return (struct aiFileIO){open_file, close_file, (char *)w};
+  return (struct aiFileIO){open_memory_file, close_memory_file, (char *)w};
 }

@@ -4,23 +4,31 @@
 
 #include "core/files/file.h"
 
-/* How a file of a kind begins, and what it has besides within the first bytes; null: nothing more. */
+/* How a file of a kind begins, and what it has besides within the first bytes; empty: nothing more. */
 typedef struct content {
   conic_model_kind kind;
-  const char *start, *within;
+  const char *start, *within, *also;
 } content;
 
 static const content contents[] = {
-    {CONIC_MODEL_GLB, "glTF", NULL},       {CONIC_MODEL_FBX, "Kaydara FBX Binary", NULL},
-    {CONIC_MODEL_FBX, "; FBX", NULL},      {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model"},
-    {CONIC_MODEL_STL, "solid", "facet"},   {CONIC_MODEL_STL, "solid", "endsolid"},
-    {CONIC_MODEL_GLTF, "{", "\"asset\""},  {CONIC_MODEL_DAE, "<", "<COLLADA"},
-    {CONIC_MODEL_X3D, "<", "<X3D"},        {CONIC_MODEL_AMF, "<", "<amf"},
-    {CONIC_MODEL_DXF, "0\nSECTION", NULL}, {CONIC_MODEL_DXF, "0\r\nSECTION", NULL},
+    {CONIC_MODEL_GLB, "glTF", "", ""},
+    {CONIC_MODEL_FBX, "Kaydara FBX Binary", "", ""},
+    {CONIC_MODEL_FBX, "; FBX", "", ""},
+    {CONIC_MODEL_3MF, "PK\x03\x04", "3D/3dmodel.model", ""},
+    {CONIC_MODEL_STL, "solid", "facet", ""},
+    {CONIC_MODEL_STL, "solid", "endsolid", ""},
+    {CONIC_MODEL_GLTF, "{", "\"asset\"", "\"version\""},
+    {CONIC_MODEL_DAE, "<", "<COLLADA", ""},
+    {CONIC_MODEL_X3D, "<", "<X3D", ""},
+    {CONIC_MODEL_AMF, "<", "<amf", ""},
+    {CONIC_MODEL_DXF, "0\nSECTION", "", ""},
+    {CONIC_MODEL_DXF, "0\r\nSECTION", "", ""},
 };
 
 int conic_assimp_has_text(const void *bytes, size_t n, const char *text) {
   size_t length = strlen(text);
+  if (length == 0)
+    return 1;
   for (const char *c = bytes; n >= length; c++, n--)
     if (*c == *text && memcmp(c, text, length) == 0)
       return 1;
@@ -42,13 +50,30 @@ static uint64_t number_at(const char *bytes, size_t at) {
   return number;
 }
 
-/* Whether a file of that size is a binary STL, which says how many faces it has. */
+/* Whether the faces that are there have normals, of length 1 or 0, and places within reach. */
+static int has_stl_faces(const char *bytes, size_t n) {
+  for (size_t at = 84; at + 50 <= n; at += 50) {
+    float values[12];
+    memcpy(values, bytes + at, sizeof values);
+    float square = values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
+    if (!(square == 0.0f || (square > 0.99f && square < 1.01f)))
+      return 0;
+    for (int i = 3; i < 12; i++)
+      if (!(values[i] > -1e15f && values[i] < 1e15f))
+        return 0;
+  }
+  return 1;
+}
+
+/* Whether a file of that size is a binary STL, which says how many faces it has; of a pipe, whether it may be. */
 static int is_stl(const char *bytes, size_t n, uint64_t size) {
-  return n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80);
+  if (n < 134 || number_at(bytes, 80) == 0)
+    return 0;
+  return size == UINT64_MAX ? has_stl_faces(bytes, n) : size == 84 + 50 * number_at(bytes, 80);
 }
 
 int conic_assimp_is_binary(const void *bytes, uint64_t n) {
-  return is_stl(bytes, n < 84 ? 0 : 84, n);
+  return is_stl(bytes, n < 134 ? 0 : 134, n);
 }
 
 /* Binary files of which the length must be what they say. */
@@ -84,7 +109,7 @@ int conic_assimp_find_content(const char *path, const char *bytes, size_t n, uin
     if (n < length || memcmp(bytes, contents[i].start, length) != 0)
       continue;
     *kind = contents[i].kind;
-    if (!contents[i].within || conic_assimp_has_text(bytes, n, contents[i].within))
+    if (conic_assimp_has_text(bytes, n, contents[i].within) && conic_assimp_has_text(bytes, n, contents[i].also))
       return 1;
   }
   if (conic_assimp_find_ending(path, kind) && is_wrapped(*kind, bytes, n))

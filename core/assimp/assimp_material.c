@@ -32,8 +32,8 @@ static void warn_of_picture(void *cookie, conic_log_level level, const char *mes
 }
 
 /* The picture in a file, or no texture. Errors: MEMORY, CANCELLED. */
-static conic_status read_picture(const conic_input *input, const char *path, const char *name, conic_texture_wrap wrap,
-                                 conic_texture **texture) {
+static conic_status read_texture_file(const conic_input *input, const char *path, const char *name,
+                                      conic_texture_wrap wrap, conic_texture **texture) {
   conic_context *context = input->context, told = *context;
   picture_log log = {context, input->name, path, name};
   conic_image image;
@@ -68,7 +68,7 @@ static void make_plain(char *name) {
 }
 
 /* As the file names it, or beside the model, since such names are often those of another machine. */
-static int find_picture(const conic_input *input, const char *name, char path[LONGEST_PATH]) {
+static int find_texture_file(const conic_input *input, const char *name, char path[LONGEST_PATH]) {
   char plain[CONIC_INPUT_LONGEST_WORD];
   snprintf(plain, sizeof plain, "%s", name);
   if (conic_input_beside(input, name, strlen(name), path, LONGEST_PATH) && conic_file_is_there(path))
@@ -88,15 +88,15 @@ static conic_status take_path(const conic_input *input, conic_assimp_process *pr
   conic_status status = conic_assimp_process_take(process, name, (size_t)n_bytes);
   if (status != CONIC_OK)
     return status;
-  if (find_picture(input, name, path))
-    return read_picture(input, path, path, wrap, texture);
+  if (find_texture_file(input, name, path))
+    return read_texture_file(input, path, path, wrap, texture);
   conic_log(input->context, CONIC_LOG_WARNING, "%s: the texture %s is not there, and is left out", input->name, name);
   return CONIC_OK;
 }
 
 /* Pictures are read from files, and this is one in another. */
-static conic_status read_bytes(const conic_input *input, const void *bytes, size_t n_bytes, const char *name,
-                               conic_texture_wrap wrap, conic_texture **texture) {
+static conic_status read_embedded(const conic_input *input, const void *bytes, size_t n_bytes, const char *name,
+                                  conic_texture_wrap wrap, conic_texture **texture) {
   const char *folder = getenv("TMPDIR");
   char beside[LONGEST_PATH], path[64];
   conic_scratch scratch;
@@ -107,7 +107,7 @@ static conic_status read_bytes(const conic_input *input, const void *bytes, size
   snprintf(path, sizeof path, "/proc/self/fd/%d", scratch.descriptor);
   status = conic_scratch_write(&scratch, 0, bytes, n_bytes);
   if (status == CONIC_OK)
-    status = read_picture(input, path, name, wrap, texture);
+    status = read_texture_file(input, path, name, wrap, texture);
   conic_scratch_close(&scratch);
   return status;
 }
@@ -145,7 +145,7 @@ static conic_status take_embedded(const conic_input *input, conic_assimp_process
   conic_status status = conic_assimp_process_take(process, bytes, (size_t)record->n_bytes);
   if (status == CONIC_OK)
     status = is_texels ? make_from_texels(input->context, record, bytes, wrap, texture)
-                       : read_bytes(input, bytes, (size_t)record->n_bytes, name, wrap, texture);
+                       : read_embedded(input, bytes, (size_t)record->n_bytes, name, wrap, texture);
   conic_memory_release(input->context, bytes);
   return status;
 }

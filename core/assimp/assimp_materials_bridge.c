@@ -79,8 +79,8 @@ static int is_gltf(const conic_assimp_writer *w) {
 }
 
 /* A texture takes the place of a colour, but for glTF, where it is multiplied. */
-static void find_color(const conic_assimp_writer *w, const struct aiMaterial *material, int has_texture,
-                       float color[3]) {
+static void find_material_color(const conic_assimp_writer *w, const struct aiMaterial *material, int has_texture,
+                                float color[3]) {
   struct aiColor4D found = {1.0f, 1.0f, 1.0f, 1.0f};
   color[0] = color[1] = color[2] = 1.0f;
   if (is_default(w, material) || (has_texture && !is_gltf(w)))
@@ -98,7 +98,7 @@ static void send_material(conic_assimp_writer *w, const struct aiMaterial *mater
   struct aiString path;
   unsigned i_coordinate;
   int is_clamped = 0, has_texture = find_texture(material, &path, &i_coordinate, &is_clamped);
-  find_color(w, material, has_texture, record.color);
+  find_material_color(w, material, has_texture, record.color);
   record.is_clamped = (uint32_t)is_clamped;
   if (!has_texture) {
     conic_assimp_send(w, record, NULL, 0);

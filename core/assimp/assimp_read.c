@@ -1,4 +1,5 @@
 #include "core/assimp/assimp_read.h"
+#include "core/files/guard.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -48,7 +49,7 @@ typedef struct whole_file {
   size_t n_bytes, room;
 } whole_file;
 
-static conic_status read_whole(conic_input *input, whole_file *file) {
+static conic_status read_into_memory(conic_input *input, whole_file *file) {
   uint64_t remaining = conic_input_remaining_bytes(input);
   conic_status status = CONIC_OK;
   if (remaining != UINT64_MAX && remaining <= most_bytes)
@@ -97,14 +98,15 @@ static conic_status pass_note_on(assimp_reader *reader, const conic_assimp_recor
   char text[LONGEST_TEXT];
   conic_status status = take_text(reader, record, text);
   if (status == CONIC_OK)
-    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: Assimp says: %.200s", reader->input->name, text);
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: %.200s", reader->input->name, text);
   return status;
 }
 
 /* A file that was read besides. */
 static conic_status note_opened(assimp_reader *reader, const conic_assimp_record *record) {
   char path[LONGEST_TEXT];
-  return take_text(reader, record, path);
+  conic_status status = take_text(reader, record, path);
+  return status == CONIC_OK ? conic_guard_note_path(reader->input->context, path) : status;
 }
 
 static conic_status take_end(assimp_reader *reader, const conic_assimp_record *record) {
@@ -141,7 +143,7 @@ conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_pr
                                        const conic_read_options *options, conic_model *model) {
   conic_assimp_record record = {.type = 0};
   assimp_reader reader = {.input = input, .process = process};
-  conic_status status = conic_assimp_parts_begin(input->context, kind, options, model, &reader.parts);
+  conic_status status = conic_assimp_parts_begin(input->context, input->name, kind, options, model, &reader.parts);
   while (status == CONIC_OK && record.type != CONIC_ASSIMP_END) {
     status = conic_assimp_process_take(process, &record, sizeof record);
     if (status == CONIC_OK)
@@ -168,8 +170,9 @@ static void warn_if_cut(const conic_input *input, conic_model_kind kind, const w
             input->name, texts[i].end);
 }
 
-static conic_status start(const conic_input *input, const conic_assimp_bridge_functions *bridge, conic_model_kind kind,
-                          const conic_read_options *options, const whole_file *file, conic_assimp_process *process) {
+static conic_status start_process(const conic_input *input, const conic_assimp_bridge_functions *bridge,
+                                  conic_model_kind kind, const conic_read_options *options, const whole_file *file,
+                                  conic_assimp_process *process) {
   char made[16];
   const char *ending = conic_model_kind_name(kind), *slash = strrchr(input->name, '/');
   const char *name = slash ? slash + 1 : input->name;
@@ -194,9 +197,9 @@ conic_status conic_assimp_read(conic_input *input, conic_model_kind kind, const 
   if (!bridge)
     return conic_fail(input->context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read %s: %s", input->name,
                       conic_model_kind_name(kind), message);
-  conic_status status = read_whole(input, &file);
+  conic_status status = read_into_memory(input, &file);
   if (status == CONIC_OK)
-    status = start(input, bridge, kind, options, &file, &process);
+    status = start_process(input, bridge, kind, options, &file, &process);
   conic_memory_release(input->context, file.bytes); /* the process has its own */
   if (status == CONIC_OK)
     status = conic_assimp_read_records(input, &process, kind, options, model);

@@ -30,11 +30,13 @@ static uint64_t own_address_space(void) {
 }
 
 void conic_assimp_settle(conic_assimp_request *request) {
-  static const int signals[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGINT,
-                                SIGTERM, SIGPIPE, SIGXCPU, SIGALRM, SIGCHLD, SIGHUP};
+  static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGXCPU, SIGALRM, SIGCHLD};
+  static const int wishes[] = {SIGINT, SIGTERM, SIGHUP}; /* for the parent, with which this ends */
   uint64_t address_space = own_address_space(), n_bytes = request->n_bytes;
-  for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
-    signal(signals[i], SIG_DFL);
+  for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++)
+    signal(faults[i], SIG_DFL);
+  for (size_t i = 0; i < sizeof wishes / sizeof wishes[0]; i++)
+    signal(wishes[i], SIG_IGN);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   request->descriptor = fcntl(request->descriptor, F_DUPFD, 3); /* none of those that lead nowhere from here on */
   int nowhere = open("/dev/null", O_RDWR);

@@ -38,7 +38,7 @@ static void release_output(conic_output *output) {
   conic_memory_release(context, output);
 }
 
-static const char *name_in_folder(const char *path) {
+const char *conic_file_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash ? slash + 1 : path;
 }
@@ -50,7 +50,7 @@ int conic_file_follow(const char *path, char *target, size_t room) {
     ssize_t length = readlink(target, link, sizeof link);
     if (length < 0 || length == (ssize_t)sizeof link)
       return 1; /* no link */
-    size_t folder = link[0] == '/' ? 0 : (size_t)(name_in_folder(target) - target);
+    size_t folder = link[0] == '/' ? 0 : (size_t)(conic_file_name(target) - target);
     n = (int)(folder + (size_t)length);
     if ((size_t)n < room) {
       memcpy(target + folder, link, (size_t)length);
@@ -79,7 +79,7 @@ static name_parts split_name(const char *name) {
 
 /* PATH "dir/name.ext" is written as "dir/.name.PID-N.ext": hidden, beside it, with its ending. */
 static char *temporary_name(conic_context *context, const char *path, int attempt) {
-  const char *name = name_in_folder(path);
+  const char *name = conic_file_name(path);
   const name_parts parts = split_name(name);
   size_t n = strlen(path) + 48;
   char *temporary = conic_memory_allocate(context, n, 1);

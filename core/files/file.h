@@ -33,6 +33,9 @@ void conic_output_sweep(conic_context *context, const char *path);
 /* What PATH is in the end, past symbolic links, be it there or not; 0 where the room is too small or links go round. */
 int conic_file_follow(const char *path, char *target, size_t room);
 
+/* What follows the last slash. */
+const char *conic_file_name(const char *path);
+
 /* Whether PATH is a file that can be read: no folder, device or pipe, which a name in somebody else's file should not
  * lead to. */
 int conic_file_is_there(const char *path);

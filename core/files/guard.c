@@ -40,6 +40,11 @@ conic_status conic_guard_note(conic_context *context, const struct stat *read) {
   return status;
 }
 
+conic_status conic_guard_note_path(conic_context *context, const char *path) {
+  struct stat found;
+  return stat(path, &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
+}
+
 conic_status conic_guard_check(conic_context *context, const char *path, const struct stat *existing) {
   if (!is_noted(context, existing))
     return CONIC_OK;

@@ -13,6 +13,9 @@ void conic_guard_inputs(conic_context *context, const char *replaceable);
 /* Notes a file that is open for reading, or is about to be. Errors: MEMORY. */
 conic_status conic_guard_note(conic_context *context, const struct stat *read);
 
+/* The same of a file by its name; one that is not there is no input. */
+conic_status conic_guard_note_path(conic_context *context, const char *path);
+
 /* Whether a file that is there may be written over: not if it was read. Errors: ARGUMENT. */
 conic_status conic_guard_check(conic_context *context, const char *path, const struct stat *existing);
 

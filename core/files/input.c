@@ -77,8 +77,12 @@ conic_status conic_input_fill(conic_input *input, size_t count) {
   input->next = 0;
   while (input->filled < count && !input->is_at_end) {
     ssize_t n = read(input->descriptor, input->window + input->filled, CONIC_INPUT_WINDOW - input->filled);
-    if (n < 0 && errno == EINTR)
+    if (n < 0 && errno == EINTR) { /* whoever waits for a pipe may have been told to stop */
+      conic_status status = conic_progress(input->context, "read", 0.0);
+      if (status != CONIC_OK)
+        return status;
       continue;
+    }
     if (n < 0)
       return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %llu)", input->name,
                         strerror(errno), (unsigned long long)input->window_offset + input->filled);

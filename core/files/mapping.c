@@ -25,6 +25,8 @@ static conic_status read_all(conic_context *context, const char *name, int descr
     ssize_t n = read(descriptor, mapping->bytes + mapping->n_bytes, room - mapping->n_bytes);
     if (n == 0)
       return CONIC_OK;
+    if (n < 0 && errno == EINTR && conic_progress(context, "read", 0.0) != CONIC_OK)
+      return CONIC_ERROR_CANCELLED;
     if (n < 0 && errno != EINTR)
       return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s (at byte %zu)", name, strerror(errno),
                         mapping->n_bytes);

@@ -13,7 +13,7 @@ const char conic_readable_kinds[] =
 #define CLOUD_REMEDY "save it as PLY (with SuperSplat or gsbox)"
 #define PACKED_REMEDY "unpack it first"
 #define PICTURE_REMEDY "give a scene; a picture is for conic diff or --texture"
-#define BYTES(text) text, sizeof text - 1
+#define BYTES(text) text, sizeof(text) - 1
 
 /* Longer beginnings come before those that they begin with. */
 static const conic_foreign_kind kinds[] = {

@@ -137,7 +137,7 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
     model->up[2] = 1.0;
     break;
   case CONIC_MODEL_PCD:
-    status = conic_pcd_read(input, delivery, model);
+    status = conic_pcd_read(input, options, delivery, model);
     break;
   default:
     status = conic_assimp_read(input, kind, options, model);

@@ -9,15 +9,16 @@
 #include "core/files/number.h"
 #include "core/formats/pcd_header.h"
 #include "core/formats/ply_source.h"
+#include "core/formats/point_fields.h"
 #include "core/formats/raw_colors.h"
 
-enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, N_SLOTS = PACKED + 1 };
+enum { BLOCK = 256, PACKED = CONIC_TEXT_N_MEANINGS, SCALAR, N_SLOTS };
 
 typedef struct pcd_reader {
   conic_input *input;
   conic_builder builder;
   conic_pcd_header header;
-  int field_of[N_SLOTS]; /* by meaning, and the packed colour; -1: none */
+  int field_of[N_SLOTS]; /* by meaning, the packed colour, and the scalar; -1: none */
   int has_origin, is_origin_set;
   int is_again;
   double block[N_SLOTS][BLOCK];
@@ -41,6 +42,26 @@ static conic_status choose_fields(pcd_reader *reader) {
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_COLORS);
   if (status == CONIC_OK && header->names.has_normals)
     status = conic_builder_add_field(&reader->builder, CONIC_SPLATS_NORMALS);
+  return status;
+}
+
+/* Every field of one number is listed, but for the padding, which has no name. */
+static conic_status choose_scalar(pcd_reader *reader, const conic_read_options *options) {
+  const conic_pcd_header *header = &reader->header;
+  size_t listed[CONIC_TEXT_MOST_COLUMNS], n = 0;
+  conic_status status = CONIC_OK;
+  int chosen;
+  for (size_t i = 0; status == CONIC_OK && i < header->names.n; i++) {
+    const char *name = header->names.name[i];
+    if (!header->fields[i].is_known || strcmp(name, "_") == 0)
+      continue;
+    listed[n++] = i;
+    status = conic_fields_add(&reader->builder, name, strlen(name), conic_ply_type_name(header->fields[i].type));
+  }
+  if (status == CONIC_OK)
+    status = conic_fields_choose(&reader->builder, reader->input->name, options, &chosen);
+  if (status == CONIC_OK && chosen >= 0)
+    reader->field_of[SCALAR] = (int)listed[chosen];
   return status;
 }
 
@@ -82,6 +103,8 @@ static conic_status append_block(pcd_reader *reader, size_t n) {
       if (reader->header.names.has_normals)
         points->normal[axis][points->count + i] = (float)reader->block[CONIC_TEXT_NORMAL + axis][i];
     }
+  for (size_t i = 0; i < n && points->scalar; i++)
+    points->scalar[points->count + i] = (float)reader->block[SCALAR][i];
   if (reader->header.i_packed >= 0)
     unpack_colors(reader, n, points);
   points->count += n;
@@ -271,10 +294,12 @@ static conic_status check_points(const pcd_reader *reader) {
   return CONIC_OK;
 }
 
-static conic_status read_points(pcd_reader *reader) {
+static conic_status read_points(pcd_reader *reader, const conic_read_options *options) {
   conic_status status = conic_pcd_header_read(reader->input, &reader->header);
   if (status == CONIC_OK)
     status = choose_fields(reader);
+  if (status == CONIC_OK)
+    status = choose_scalar(reader, options);
   if (status == CONIC_OK)
     status = reader->header.data == CONIC_PCD_ASCII    ? read_text_rows(reader)
              : reader->header.data == CONIC_PCD_BINARY ? read_binary_rows(reader)
@@ -282,7 +307,8 @@ static conic_status read_points(pcd_reader *reader) {
   return status == CONIC_OK ? check_points(reader) : status;
 }
 
-conic_status conic_pcd_read(conic_input *input, const conic_delivery *delivery, conic_model *model) {
+conic_status conic_pcd_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model) {
   pcd_reader *reader = conic_memory_allocate_zeroed(input->context, 1, sizeof *reader);
   memset(model, 0, sizeof *model);
   if (!reader)
@@ -291,7 +317,7 @@ conic_status conic_pcd_read(conic_input *input, const conic_delivery *delivery, 
   reader->is_again = delivery && delivery->is_again;
   conic_status status = conic_builder_begin(input->context, model, 0, delivery, &reader->builder);
   if (status == CONIC_OK)
-    status = read_points(reader);
+    status = read_points(reader, options);
   if (status == CONIC_OK && !delivery)
     status = conic_raw_colors_decode(input->context, &model->points, 1);
   if (status == CONIC_OK)

@@ -16,6 +16,7 @@ int conic_pcd_is_likely(const char *bytes, size_t n);
 
 /* Reads a model from the start of the file; with a delivery the points go there. On failure *model is for the caller to
  * release. Errors: INPUT, MEMORY, CANCELLED, the receiver's. */
-conic_status conic_pcd_read(conic_input *input, const conic_delivery *delivery, conic_model *model);
+conic_status conic_pcd_read(conic_input *input, const conic_read_options *options, const conic_delivery *delivery,
+                            conic_model *model);
 
 #endif

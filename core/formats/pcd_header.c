@@ -50,7 +50,7 @@ static conic_status read_size(header_reader *reader, size_t i, const char *word,
 }
 
 static conic_status read_type(header_reader *reader, size_t i, const char *word, size_t length) {
-  if (length != 1 || !memchr("FIU", word[0], 3))
+  if (length != 1 || (word[0] != 'F' && word[0] != 'I' && word[0] != 'U'))
     return conic_input_wrong(reader->input, "a type is neither F, I nor U");
   reader->header->fields[i].letter = word[0];
   return CONIC_OK;

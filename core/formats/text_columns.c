@@ -38,7 +38,7 @@ static int find_meaning(const char (*reduced)[CONIC_TEXT_NAME_ROOM], int meaning
   for (int i_name = 0; i_name < 16 && names_of[meaning][i_name]; i_name++)
     for (size_t i = 0; i < columns->n; i++)
       if (columns->meaning[i] < 0 && strcmp(reduced[i], names_of[meaning][i_name]) == 0) {
-        columns->meaning[i] = (signed char)meaning;
+        columns->meaning[i] = meaning;
         return 1;
       }
   return 0;
@@ -157,7 +157,7 @@ static void set_three(conic_text_columns *columns, size_t at, int first) {
   for (size_t i = 0; i < 3; i++) {
     const char *name = names_of[(size_t)first + i][0];
     set_name(columns, at + i, name, strlen(name));
-    columns->meaning[at + i] = (signed char)(first + (int)i);
+    columns->meaning[at + i] = first + (int)i;
   }
   columns->has_colors |= first == CONIC_TEXT_RED;
   columns->has_normals |= first == CONIC_TEXT_NORMAL;

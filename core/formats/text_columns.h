@@ -18,7 +18,7 @@ enum { CONIC_TEXT_MOST_COLUMNS = 200, CONIC_TEXT_NAME_ROOM = 40, CONIC_TEXT_MOST
 typedef struct conic_text_columns {
   size_t n;
   int has_colors, has_normals;
-  signed char meaning[CONIC_TEXT_MOST_COLUMNS];             /* of conic_text_meaning; those of three values count on */
+  int meaning[CONIC_TEXT_MOST_COLUMNS];                     /* of conic_text_meaning; those of three values count on */
   char name[CONIC_TEXT_MOST_COLUMNS][CONIC_TEXT_NAME_ROOM]; /* as given; "-": no name */
 } conic_text_columns;
 

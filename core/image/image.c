@@ -16,6 +16,7 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_COUNT] = {"count", 1, 1, {"count"}},
     [CONIC_PLANE_ID] = {"id", 1, 1, {"id"}},
     [CONIC_PLANE_CLUSTER] = {"cluster", 1, 1, {"cluster"}},
+    [CONIC_PLANE_POSITION] = {"P", 3, 0, {"P.X", "P.Y", "P.Z"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

@@ -1,5 +1,5 @@
-/* OpenEXR files through OpenEXRCore. Where that is not built in, conic_exr_write is UNSUPPORTED and conic_exr_read
- * leaves the file to OpenImageIO, which knows rgba only.
+/* OpenEXR files through OpenEXRCore. Where that is not built in, conic_exr_write is UNSUPPORTED; then, and where it
+ * cannot decompress the file (before version 3.2 DWAA and DWAB), conic_exr_read leaves it to OpenImageIO.
  *
  * Written: one part of scanlines, the channels of conic_plane_describe in alphabetical order, FLOAT (or HALF) and UINT,
  * and the attributes. Read: the first part, scanlines or tiles, any compression; the data window is the picture. */

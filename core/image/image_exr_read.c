@@ -11,8 +11,10 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
+#include "core/image/image_channels.h"
 #include "core/image/image_common.h"
 #include "core/image/image_exr_stream.h"
+#include "core/image/openimageio_bridge.h"
 
 typedef struct exr_reader {
   conic_exr_stream stream;
@@ -27,11 +29,8 @@ typedef struct exr_reader {
   exr_decode_pipeline_t *pipelines; /* one a thread */
   atomic_int result;
   atomic_ullong failed_bytes; /* what the chunk that could not be decoded is unpacked to */
+  int is_for_others;          /* the library cannot decode it, and another one may */
 } exr_reader;
-
-static conic_exr_target find_target(const exr_reader *reader, const char *name) {
-  return conic_exr_find_channel(reader->is_luminance && strcmp(name, "Y") == 0 ? "R" : name);
-}
 
 static int has_channel(const exr_attr_chlist_t *channels, const char *name) {
   for (int i = 0; i < channels->num_channels; i++)
@@ -53,7 +52,7 @@ static conic_status choose_planes(conic_context *context, exr_reader *reader, un
   *planes = 0;
   for (int i = 0; i < channels->num_channels; i++) {
     const exr_attr_chlist_entry_t *channel = &channels->entries[i];
-    conic_exr_target target = find_target(reader, channel->name.str);
+    conic_channel target = conic_channel_find_in(channel->name.str, reader->is_luminance);
     if (target.plane < 0) {
       conic_log(context, CONIC_LOG_INFO, "%s: channel %s is ignored", path, channel->name.str);
       continue;
@@ -107,7 +106,7 @@ static void point_channels(const exr_reader *reader, exr_decode_pipeline_t *pipe
   const conic_image *image = reader->image;
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[i];
-    conic_exr_target target = find_target(reader, channel->channel_name);
+    conic_channel target = conic_channel_find_in(channel->channel_name, reader->is_luminance);
     channel->decode_to_ptr = NULL;
     if (target.plane < 0)
       continue;
@@ -169,19 +168,10 @@ static conic_status read_chunks(conic_context *context, exr_reader *reader) {
   exr_result_t result = atomic_load(&reader->result);
   if (result == EXR_ERR_OUT_OF_MEMORY)
     return doubt_memory(context, reader);
+  reader->is_for_others = result == EXR_ERR_FEATURE_NOT_IMPLEMENTED && conic_bridge_is_there();
+  if (reader->is_for_others)
+    return CONIC_ERROR_UNSUPPORTED;
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&reader->stream, result, "read", CONIC_ERROR_INPUT);
-}
-
-/* What the file says nothing of: alpha 1, and grey for a picture of luminance alone. */
-static void complete_rgba(const exr_reader *reader, int has_alpha) {
-  float *rgba = reader->image->planes[CONIC_PLANE_RGBA];
-  size_t n = rgba ? conic_image_pixels(reader->image) : 0;
-  for (size_t i = 0; i < n; i++) {
-    if (!has_alpha)
-      rgba[4 * i + 3] = 1.0f;
-    if (reader->is_luminance)
-      rgba[4 * i + 1] = rgba[4 * i + 2] = rgba[4 * i];
-  }
 }
 
 static void take_floats(conic_attribute *to, conic_attribute_type type, const void *floats, size_t n_bytes) {
@@ -261,8 +251,7 @@ static conic_status read_part(conic_context *context, exr_reader *reader) {
     conic_image_release(context, reader->image);
     return status;
   }
-  reader->image->lacks_alpha = planes & 1u << CONIC_PLANE_RGBA && !has_alpha;
-  complete_rgba(reader, has_alpha);
+  conic_channels_complete(reader->image, has_alpha, reader->is_luminance);
   read_attributes(reader);
   return CONIC_OK;
 }
@@ -281,6 +270,11 @@ conic_status conic_exr_read(conic_context *context, const char *path, conic_imag
   exr_result_t result = exr_start_read(&reader.file, path, &settings);
   conic_status status = result == EXR_ERR_SUCCESS ? read_part(context, &reader)
                                                   : conic_exr_fail(&reader.stream, result, "read", CONIC_ERROR_INPUT);
+  if (reader.is_for_others) {
+    status = conic_foreign_read(context, path, image);
+    if (status == CONIC_OK)
+      read_attributes(&reader);
+  }
   if (result == EXR_ERR_SUCCESS)
     exr_finish(&reader.file);
   fclose(file);

@@ -145,16 +145,6 @@ static int has_long_name(const conic_image *image) {
   return 0;
 }
 
-conic_exr_target conic_exr_find_channel(const char *name) {
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
-    const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
-    for (int c = 0; c < plane->n_channels; c++)
-      if (strcmp(plane->channels[c], name) == 0)
-        return (conic_exr_target){i, c};
-  }
-  return (conic_exr_target){-1, -1};
-}
-
 exr_result_t conic_exr_prepare_attributes(exr_context_t file, const conic_image *image) {
   return has_long_name(image) ? exr_set_longname_support(file, 1) : EXR_ERR_SUCCESS;
 }

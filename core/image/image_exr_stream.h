@@ -22,13 +22,6 @@ typedef struct conic_exr_stream {
   char message[200]; /* the library's first, as its later ones only repeat that something failed */
 } conic_exr_stream;
 
-/* Which of an image's channels a file's is; plane < 0: none. */
-typedef struct conic_exr_target {
-  int plane, channel;
-} conic_exr_target;
-
-conic_exr_target conic_exr_find_channel(const char *name);
-
 /* Fills `stream`, and `settings` with the functions that work on it. */
 void conic_exr_stream_init(conic_exr_stream *stream, conic_context *context, const char *path, FILE *file,
                            exr_context_initializer_t *settings);

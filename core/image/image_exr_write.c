@@ -10,6 +10,7 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
+#include "core/image/image_channels.h"
 #include "core/image/image_exr_stream.h"
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
@@ -81,7 +82,7 @@ static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
 static void point_channels(exr_encode_pipeline_t *pipeline, const conic_image *image) {
   for (int i = 0; i < pipeline->channel_count; i++) {
     exr_coding_channel_info_t *channel = &pipeline->channels[i];
-    conic_exr_target from = conic_exr_find_channel(channel->channel_name);
+    conic_channel from = conic_channel_find(channel->channel_name);
     const uint8_t *first = (const uint8_t *)image->planes[from.plane] + (size_t)from.channel * 4;
     channel->user_pixel_stride = conic_plane_describe((conic_plane)from.plane)->n_channels * 4;
     channel->user_line_stride = channel->user_pixel_stride * image->width;

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
+#include "core/image/image_channels.h"
 #include "core/image/image_common.h"
 #include "core/image/image_samples.h"
 #include "core/image/openimageio_bridge.h"
@@ -81,8 +82,8 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
     return status;
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_samples_layout layout = choose_layout(&writer);
-  conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
-                                  layout.is_straight};
+  const conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
+                                        layout.is_straight};
   void *samples = conic_memory_allocate(context, conic_image_pixels(image),
                                         (size_t)layout.n_channels * (size_t)layout.sample_bytes);
   if (!samples)
@@ -103,7 +104,8 @@ typedef struct reading {
 static void *make_room_for_picture(void *cookie, const conic_bridge_picture *picture) {
   reading *work = cookie;
   if (picture->width < 1 || picture->height < 1 || picture->width > CONIC_IMAGE_MAX_SIZE ||
-      picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 || picture->n_channels > 64) {
+      picture->height > CONIC_IMAGE_MAX_SIZE || picture->n_channels < 1 ||
+      picture->n_channels > CONIC_BRIDGE_CHANNELS) {
     work->status =
         conic_fail(work->context, CONIC_ERROR_INPUT, "%s: a picture of %d × %d with %d channels cannot be used",
                    work->path, picture->width, picture->height, picture->n_channels);
@@ -151,18 +153,86 @@ static conic_status read_samples(conic_context *context, const char *path, conic
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, message);
 }
 
+static float read_value(const conic_bridge_channel *channel, const void *sample) {
+  uint32_t number;
+  float value;
+  memcpy(&number, sample, sizeof number);
+  memcpy(&value, sample, sizeof value);
+  return channel->is_uint ? (float)number : value;
+}
+
+static uint32_t read_number(const conic_bridge_channel *channel, const void *sample) {
+  uint32_t number;
+  float value;
+  memcpy(&number, sample, sizeof number);
+  memcpy(&value, sample, sizeof value);
+  if (channel->is_uint)
+    return number;
+  return value >= 4294967296.0f ? UINT32_MAX : value > 0.0f ? (uint32_t)value : 0;
+}
+
+static int has_channel(const conic_bridge_picture *picture, const char *name) {
+  for (int i = 0; i < picture->n_channels; i++)
+    if (strcmp(picture->channels[i].name, name) == 0)
+      return 1;
+  return 0;
+}
+
+/* Channel `i` of the samples, into the plane that it belongs to, if any. */
+static void take_channel(const conic_bridge_picture *picture, const unsigned char *samples, int i, conic_channel to,
+                         const conic_image *image) {
+  const conic_plane_description *plane = conic_plane_describe((conic_plane)to.plane);
+  size_t n = conic_image_pixels(image), stride = (size_t)plane->n_channels;
+  for (size_t pixel = 0; pixel < n; pixel++) {
+    const unsigned char *sample = samples + 4 * (pixel * (size_t)picture->n_channels + (size_t)i);
+    size_t at = pixel * stride + (size_t)to.channel;
+    if (plane->is_uint)
+      ((uint32_t *)image->planes[to.plane])[at] = read_number(&picture->channels[i], sample);
+    else
+      ((float *)image->planes[to.plane])[at] = read_value(&picture->channels[i], sample);
+  }
+}
+
+/* An EXR's planes, as conic_exr_read would have them. */
+static conic_status take_channels(conic_context *context, const char *path, const conic_bridge_picture *picture,
+                                  const void *samples, conic_image *image) {
+  conic_channel to[CONIC_BRIDGE_CHANNELS];
+  unsigned planes = 0;
+  int is_luminance = has_channel(picture, "Y") && !has_channel(picture, "R") && !has_channel(picture, "G") &&
+                     !has_channel(picture, "B");
+  for (int i = 0; i < picture->n_channels; i++) {
+    to[i] = conic_channel_find_in(picture->channels[i].name, is_luminance);
+    planes |= to[i].plane < 0 ? 0 : 1u << to[i].plane;
+  }
+  if (!planes)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: has no channel that conic knows", path);
+  conic_status status = conic_image_allocate(context, picture->width, picture->height, planes, image);
+  for (int i = 0; i < picture->n_channels && status == CONIC_OK; i++)
+    if (to[i].plane >= 0)
+      take_channel(picture, samples, i, to[i], image);
+  if (status == CONIC_OK)
+    conic_channels_complete(image, has_channel(picture, "A"), is_luminance);
+  return status;
+}
+
+static conic_status take_colors(conic_context *context, const conic_bridge_picture *picture, const void *samples,
+                                conic_image *image) {
+  const conic_samples_layout layout = {picture->n_channels, picture->sample_bytes, picture->is_straight};
+  conic_status status = conic_image_allocate(context, picture->width, picture->height, 1u << CONIC_PLANE_RGBA, image);
+  if (status != CONIC_OK)
+    return status;
+  image->lacks_alpha = !conic_samples_have_alpha(layout);
+  conic_samples_to_rgba(context, samples, picture->width, picture->height, layout, image->planes[CONIC_PLANE_RGBA]);
+  return status;
+}
+
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image) {
   conic_bridge_picture picture = {0};
   reading work = {.context = context, .path = path, .status = CONIC_OK};
   conic_status status = read_samples(context, path, &picture, &work);
   if (status == CONIC_OK)
-    status = conic_image_allocate(context, picture.width, picture.height, 1u << CONIC_PLANE_RGBA, image);
-  if (status == CONIC_OK) {
-    conic_samples_layout layout = {picture.n_channels, picture.sample_bytes, picture.is_straight};
-    image->lacks_alpha = !conic_samples_have_alpha(layout);
-    conic_samples_to_rgba(context, work.samples, picture.width, picture.height, layout,
-                          image->planes[CONIC_PLANE_RGBA]);
-  }
+    status = picture.is_named ? take_channels(context, path, &picture, work.samples, image)
+                              : take_colors(context, &picture, work.samples, image);
   conic_memory_release(context, work.samples);
   return status;
 }

@@ -4,7 +4,7 @@
  * Written: rgba. 8 bits, sRGB-encoded, for all but: tif 16 bits, sRGB-encoded; hdr (and other floating-point formats)
  * linear floats. Where the format has an alpha channel the colour is divided by alpha before it is encoded; where it
  * has none, the picture stands over black. Read: rgba, by the same rules backwards; grey goes to R, G and B; without
- * alpha A is 1. */
+ * alpha A is 1. Of an EXR all planes are read, by the names of its channels. */
 #ifndef CONIC_IMAGE_FOREIGN_H
 #define CONIC_IMAGE_FOREIGN_H
 

@@ -86,6 +86,27 @@ bool read_samples(OIIO::ImageInput &input, const OIIO::TypeDesc &type, void *sam
   return true;
 }
 
+// An EXR's channels, each by its name. Those of numbers are read once more, as OpenImageIO makes fractions of the
+// largest number there is where all are to be floats.
+void name_channels(const OIIO::ImageSpec &spec, conic_bridge_picture &picture) {
+  picture.is_named = 1;
+  picture.sample_bytes = 4;
+  for (int i = 0; i < spec.nchannels && i < CONIC_BRIDGE_CHANNELS; i++) {
+    const std::string name = spec.channel_name(i);
+    name.copy(picture.channels[i].name, sizeof picture.channels[i].name - 1);
+    picture.channels[i].is_uint = spec.channelformat(i) == OIIO::TypeDesc::UINT32;
+  }
+}
+
+bool read_numbers(OIIO::ImageInput &input, const conic_bridge_picture &picture, void *samples) {
+  bool is_well = true;
+  for (int i = 0; i < picture.n_channels && is_well; i++)
+    if (picture.channels[i].is_uint)
+      is_well = input.read_image(0, 0, i, i + 1, OIIO::TypeDesc::UINT32, static_cast<char *>(samples) + 4 * size_t(i),
+                                 OIIO::stride_t(4) * picture.n_channels);
+  return is_well;
+}
+
 conic_bridge_result find_writer(const char *ending, conic_bridge_writer *writer, char *message) {
   return guarded(message, [&] {
     auto output = OIIO::ImageOutput::create(ending);
@@ -141,11 +162,14 @@ conic_bridge_result read(const char *path, conic_bridge_picture *picture,
     const OIIO::TypeDesc type = spec.format;
     picture->sample_bytes = type == OIIO::TypeDesc::UINT8 ? 1 : type.is_floating_point() ? 4 : 2;
     picture->is_straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
+    if (std::strcmp(input->format_name(), "openexr") == 0)
+      name_channels(spec, *picture);
     void *room = make_room(cookie, picture);
     if (!room)
       return CONIC_BRIDGE_MEMORY;
     // Some readers go on after an error, and have only noted it.
-    if (!read_samples(*input, type_of(picture->sample_bytes), room) || input->has_error())
+    if (!read_samples(*input, type_of(picture->sample_bytes), room) ||
+        (picture->is_named && !read_numbers(*input, *picture, room)) || input->has_error())
       return fail(message, input->geterror());
     input->close();
     return CONIC_BRIDGE_OK;

@@ -11,10 +11,19 @@
 extern "C" {
 #endif
 
+enum { CONIC_BRIDGE_CHANNELS = 64 };
+
+typedef struct conic_bridge_channel {
+  char name[32];
+  int is_uint; /* its samples are 32-bit numbers */
+} conic_bridge_channel;
+
 typedef struct conic_bridge_picture {
   int width, height, n_channels;
   int sample_bytes; /* 1, 2: unsigned integers; 4: floats */
   int is_straight;  /* the colour is not multiplied by alpha */
+  int is_named;     /* what the channels are is told by their names: an EXR that was read */
+  conic_bridge_channel channels[CONIC_BRIDGE_CHANNELS];
 } conic_bridge_picture;
 
 typedef struct conic_bridge_writer {

@@ -33,6 +33,11 @@ typedef struct neighbour_search {
   double *distances2;
 } neighbour_search;
 
+static inline void move_on(neighbour_search *s, size_t i) {
+  s->distances2[i] = s->distances2[i - 1];
+  s->slots[i] = s->slots[i - 1];
+}
+
 static void insert(neighbour_search *s, uint32_t slot, double distance2) {
   size_t i = s->n_found;
   if (i == s->k) {
@@ -41,13 +46,10 @@ static void insert(neighbour_search *s, uint32_t slot, double distance2) {
       return;
   } else
     s->n_found++;
-  for (; i > 0; i--) {
-    if (distance2 > s->distances2[i - 1] ||
-        (distance2 == s->distances2[i - 1] && !lies_before(s->tree, slot, s->slots[i - 1])))
-      break;
-    s->distances2[i] = s->distances2[i - 1];
-    s->slots[i] = s->slots[i - 1];
-  }
+  for (; i > 0 && s->distances2[i - 1] > distance2; i--)
+    move_on(s, i);
+  for (; i > 0 && s->distances2[i - 1] == distance2 && lies_before(s->tree, slot, s->slots[i - 1]); i--)
+    move_on(s, i);
   s->distances2[i] = distance2;
   s->slots[i] = slot;
   if (s->n_found == s->k)
@@ -81,9 +83,8 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
   stack[n_stack++].distance2 = box_distance2(tree->boxes[0], query);
   while (n_stack > 0) {
     size_t i_node = stack[--n_stack].i_node;
-    if (!(stack[n_stack].distance2 <= s.limit2))
-      continue;
-    while (i_node < tree->n_leaves - 1) {
+    int is_near = stack[n_stack].distance2 <= s.limit2;
+    while (is_near && i_node < tree->n_leaves - 1) {
       size_t near = 2 * i_node + 1, far = near + 1;
       double near2 = box_distance2(tree->boxes[near], query), far2 = box_distance2(tree->boxes[far], query);
       if (far2 < near2) {
@@ -98,10 +99,9 @@ size_t conic_neighbours_nearest(const conic_neighbours *tree, const double query
         stack[n_stack++].distance2 = far2;
       }
       i_node = near;
-      if (!(near2 <= s.limit2))
-        break;
+      is_near = near2 <= s.limit2;
     }
-    if (i_node >= tree->n_leaves - 1 && box_distance2(tree->boxes[i_node], query) <= s.limit2)
+    if (is_near)
       search_leaf(&s, i_node - (tree->n_leaves - 1));
   }
   return s.n_found;

@@ -16,15 +16,16 @@ extern "C" {
 #endif
 
 typedef enum conic_plane {
-  CONIC_PLANE_RGBA = 0,    /* 4 floats: R, G, B premultiplied by A */
-  CONIC_PLANE_Z = 1,       /* 1 float: camera-space z, 0 where nothing is */
-  CONIC_PLANE_NORMAL = 2,  /* 3 floats: world, unit, towards the viewer; 0 where nothing is */
-  CONIC_PLANE_ALBEDO = 3,  /* 3 floats: colour before shading */
-  CONIC_PLANE_WEIGHT = 4,  /* 1 float: sum of the weights */
-  CONIC_PLANE_COUNT = 5,   /* 1 uint32: splats blended */
-  CONIC_PLANE_ID = 6,      /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
-  CONIC_PLANE_CLUSTER = 7, /* 1 uint32: cluster of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
-  CONIC_N_PLANES = 8
+  CONIC_PLANE_RGBA = 0,     /* 4 floats: R, G, B premultiplied by A */
+  CONIC_PLANE_Z = 1,        /* 1 float: camera-space z, 0 where nothing is */
+  CONIC_PLANE_NORMAL = 2,   /* 3 floats: world, unit, towards the viewer; 0 where nothing is */
+  CONIC_PLANE_ALBEDO = 3,   /* 3 floats: colour before shading */
+  CONIC_PLANE_WEIGHT = 4,   /* 1 float: sum of the weights */
+  CONIC_PLANE_COUNT = 5,    /* 1 uint32: splats blended */
+  CONIC_PLANE_ID = 6,       /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
+  CONIC_PLANE_CLUSTER = 7,  /* 1 uint32: cluster of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
+  CONIC_PLANE_POSITION = 8, /* 3 floats: world, of what Z is the depth of; 0 where nothing is; conic_image_locate's */
+  CONIC_N_PLANES = 9
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */
@@ -83,6 +84,11 @@ CONIC_API conic_status conic_image_allocate(conic_context *context, int width, i
 CONIC_API unsigned conic_image_planes(const conic_image *image);
 /* Releases the planes and leaves an empty image; null is allowed. */
 CONIC_API void conic_image_release(conic_context *context, conic_image *image);
+
+/* Fills the plane P, if the image has it, from the plane Z, which was drawn by this camera with `samples` × `samples`
+ * samples a pixel. Errors: ARGUMENT (there is no Z, or not of this size). */
+CONIC_API conic_status conic_image_locate(conic_context *context, const conic_camera *camera, int samples,
+                                          conic_image *image);
 
 /* 64-bit FNV-1a over the plane's little-endian bytes, row by row; 0 where the plane is not there. */
 CONIC_API uint64_t conic_image_hash(const conic_image *image, conic_plane plane);

@@ -48,18 +48,24 @@ static void take_at(float *const columns[3], size_t i, const double from[3], dou
     to[axis] = (double)columns[axis][i] + from[axis];
 }
 
+/* Of a splat with clip lines most is cut away, and its centre is where they meet: on the outline, if anything is. */
 static void reach_of_splats(const reach *r, size_t first, size_t end, double *farthest) {
   static const double zero[3] = {0.0, 0.0, 0.0};
   const conic_splats *s = r->drawing->splats;
   double offset[3], place[3], u[3], v[3];
+  size_t i_clip = 0;
   conic_subtract(s->origin, r->center, offset);
+  while (i_clip < s->n_clips && s->clips[i_clip].splat < first)
+    i_clip++;
   for (size_t i = first; i < end; i++) {
+    int is_clipped = i_clip < s->n_clips && s->clips[i_clip].splat == i;
+    i_clip += (size_t)is_clipped;
     take_at(s->position, i, offset, place);
-    if (s->tangent_u[0]) {
+    if (s->tangent_u[0] && !is_clipped) {
       take_at(s->tangent_u, i, zero, u);
       take_at(s->tangent_v, i, zero, v);
     }
-    reach_of_point(r, place, s->tangent_u[0] ? u : NULL, v, farthest);
+    reach_of_point(r, place, s->tangent_u[0] && !is_clipped ? u : NULL, v, farthest);
   }
 }
 

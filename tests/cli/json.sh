@@ -81,10 +81,12 @@ printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' '.5 .5 .5' '4 0 0' '4 0 1' > ten
 printf 'f %s\n' '1 5 2' '2 5 3' '3 5 4' '4 5 1' '2 3 7 6' >> tent.obj
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > triangle.obj
 printf '%s\n' '0 0 0' '1e30 0 0' '0 1e30 0' > far.xyz
+for i in {1..60}; do echo "$i 0 0"; done > wire.xyz
 printf '%s\n' '0 0 0' '1 0 0' '0 1 0' '1 1 0' '1 1 0' 'nan 0 0' > odd.xyz
 
 write make make make knot -n 50k -o knot.ply
 write prepare prepare prepare knot.ply -o thin.ply --count 20000 --seed 1
+write prepare-dots prepare prepare wire.xyz -o wire.ply
 write octree octree octree knot.ply -o knot.cot
 write hybrid hybrid hybrid tent.obj -o tent.chy --largest 1 --phase1 -0.1 --phase2 0.1 --most-error 0
 write mls-project mls_project mls project knot.ply -o clean.ply
@@ -99,6 +101,7 @@ write render-hybrid render_hybrid render tent.chy -o tent.exr
 write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
 write render-auto render render knot.ply -o auto.exr --method auto --zoom 20 --size 256x256
 write render-other render render thin.ply -o other.exr --size 256x256 --method disc --samples 2 --epsilon 2x
+write render-dots render render wire.ply -o wire.exr --size 64x64
 write render-odd render render odd.xyz -o odd.exr --size 64x64
 grep -q '"nan": 1,' runs/render-odd.json || fail "render does not count what it leaves out"
 grep -q '"duplicate": 1,' runs/render-odd.json || fail "render does not count what lies where others are"

@@ -42,6 +42,15 @@ mesh="render m.obj --as mesh --size 16x16"
   sed -i 's/t.pfm/turn.0002.pfm/' m.mtl
   kept turn.0002.pfm $mesh -o turn.pfm --turntable 2
 }
+# (three corners in a file of their own, as glTF has them)
+printf '{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"uri": "g.bin", "byteLength": 36}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
+  "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]}' > g.gltf
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0' > g.bin
+if "$conic" info g.gltf > out 2> err; then
+  kept g.bin render g.gltf --as mesh --size 16x16 -o a.pfm --json g.bin
+fi
 printf '{"width": 16, "height": 16, "fx": 16, "fy": 16, "cx": 8, "cy": 8,
   "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 6], [0, 0, 0, 1]]}' > camera.json
 kept camera.json render s.ply --camera camera.json -o a.pfm --json camera.json

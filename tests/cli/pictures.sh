@@ -95,4 +95,15 @@ grep -q 'R (half), G (half), B (half), A (half), Z (float), id (uint), N.X (half
   fail "$(grep 'channel list' info)"
 grep -q 'chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329' info || fail "no chromaticities"
 grep -q 'worldToCamera: .*, 1$' info || fail "no worldToCamera with its last column"
+for compression in dwaa dwab; do # which the library may leave to OpenImageIO
+  in_build OpenImageIO || continue
+  oiiotool a.exr --ch R,G,B,A,Z,N.X,N.Y,N.Z --compression $compression -o b.exr
+  run 0 info b.exr
+  grep -q '^planes *rgba, Z, N$' out || fail "of $compression: $(cat out)"
+  run 0 render knot.ply $picture --aov rgba,Z,N -o c.exr
+  run 0 diff c.exr b.exr --max-abs 0.05
+  run 0 render knot.ply $picture --aov id -o c.exr
+  oiiotool --native c.exr --compression $compression -o b.exr
+  run 0 diff c.exr b.exr
+done
 [[ $failures -eq 0 ]]

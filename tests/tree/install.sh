@@ -80,7 +80,12 @@ draw "$work/by_package/shared"
 # Whatever file there is, the other example draws.
 "$work/prefix/bin/conic" make plane -n 100 -o "$work/plane.ply"
 "$work/prefix/bin/conic" octree "$work/plane.ply" -o "$work/plane.cot"
-for file in "$work/plane.ply" "$work/plane.cot"; do
+files=("$work/plane.ply" "$work/plane.cot")
+if [[ -e $library_folder/conic/conic-assimp.so ]]; then # the other module, which is found as the first
+  printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' > "$work/plane.off"
+  files+=("$work/plane.off")
+fi
+for file in "${files[@]}"; do
   "$work/by_package/any_file" "$file" "$file.pfm" || { echo "any_file does not draw $file"; exit 1; }
   not_black "$file.pfm" || { echo "any_file draws $file black"; exit 1; }
 done

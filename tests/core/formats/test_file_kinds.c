@@ -12,13 +12,14 @@ static void check_refused(const char *name, const char *bytes, size_t n, const c
   CHECK(unlink(path) == 0);
 }
 
-#define REFUSED(name, bytes, kind, remedy) check_refused(name, bytes, sizeof bytes - 1, kind, remedy)
+#define REFUSED(name, bytes, kind, remedy) check_refused(name, bytes, sizeof(bytes) - 1, kind, remedy)
 
 static void test_bytes_tell(void) {
   REFUSED("a.dat", "ASTM-E57\1\0\0\0", "an E57 scan", "save it as LAS or PLY");
   REFUSED("a.las", "\x1f\x8b\x08", "a gzip archive", "gunzip");
   REFUSED("a", "PK\x03\x04", "a ZIP archive", "unzip");
   REFUSED("a.obj", "\x89PNG....", "a PNG image", "--texture");
+  REFUSED("a.json", "\x89PNG....", "a PNG image", "--texture");
   REFUSED("a.obj", "\xff\xd8\xff\xe0", "a JPEG image", "--texture");
   REFUSED("a.xyz", "\x76\x2f\x31\x01", "an OpenEXR image", "conic diff");
   REFUSED("a.obj", "II*\0\x08\0\0\0", "a TIFF image", "--texture");
@@ -46,7 +47,7 @@ static void test_endings_tell(void) {
 static void test_unknown(void) {
   static const char rubbish[] = "\7\1\2\3\4\5\xfe";
   char archive[300] = {0};
-  memcpy(archive + 257, "ustar", 5);
+  memcpy(archive + 257, "ustar", sizeof "ustar");
   REFUSED("a.bin", rubbish, "no model that is known", "");
   check_refused("a", archive, sizeof archive, "a tar archive", "tar -x");
   CHECK(!conic_foreign_kind_find("a.xyz", "1 2 3\n", 6, 1) && !conic_foreign_kind_find("a.xyz", "1 2 3\n", 6, 0));

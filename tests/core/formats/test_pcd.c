@@ -156,6 +156,10 @@ static void test_ascii(void) {
   check_vector(model.points.color, 0, 0.0f, 1.0f, 0.0f);
   check_vector(model.points.color, 1, 0.0f, 0.0f, 1.0f);
   conic_model_release(context, &model);
+  file = begin("FIELDS a x y z\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 3 1 1 1\nPOINTS 1\nDATA ascii\n7 7 7 1 2 3\n");
+  model = read_points(&file, 1, 0);
+  CHECK(model.points.origin[0] == 1.0 && model.points.origin[2] == 3.0);
+  conic_model_release(context, &model);
   file = begin("FIELDS X Y Z Red Green Blue\nSIZE 8 8 8 2 2 2\nTYPE F F F U U U\nPOINTS 3\nDATA ascii\n"
                "nan nan nan 0 0 0\n1e6 2 3 65535 0 256\n");
   model = read_points(&file, 2, CONIC_SPLATS_COLORS);
@@ -163,6 +167,25 @@ static void test_ascii(void) {
         model.points.position[0][0] != model.points.position[0][0]);
   check_vector(model.points.color, 1, 1.0f, 0.0f, (float)conic_srgb_decode(256.0 / 65535.0));
   conic_model_release(context, &model);
+}
+
+/* The field that is asked for, by any way of storing it. */
+static void test_scalars(void) {
+  conic_read_options options;
+  conic_model model;
+  conic_read_options_init(&options);
+  options.field = "Intensity";
+  const char *path =
+      files_write("a.pcd", "FIELDS x y z _ h intensity\nSIZE 4 4 4 1 4 2\nTYPE F F F U F U\nCOUNT 1 1 1 2 3 1\n"
+                           "POINTS 2\nDATA ascii\n1 2 3 0 0 8 8 8 700\n4 5 6 0 0 8 8 8 65535\n");
+  CHECK_OK(conic_model_read(context, path, &options, &model));
+  CHECK(model.n_fields == 4 && strcmp(model.fields[3].name, "intensity") == 0);
+  CHECK(model.points.scalar && model.points.scalar[0] == 700.0f && model.points.scalar[1] == 65535.0f);
+  conic_model_release(context, &model);
+  options.field = "h";
+  files_check_failed("three", conic_model_read(context, path, &options, &model), "no field 'h'", "x, y, z, intensity",
+                     (const char *)NULL);
+  CHECK(unlink(path) == 0);
 }
 
 static void check_refused(const char *text, const char *what, const char *where) {
@@ -212,6 +235,7 @@ int main(int argc, char **argv) {
   test_compressed();
   test_lzf();
   test_ascii();
+  test_scalars();
   test_refused();
   test_foreign(argc > 1 ? argv[1] : ".");
   files_end(context);

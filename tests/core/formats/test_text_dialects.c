@@ -61,6 +61,9 @@ static void test_headers(void) {
   check_read("a.asc", "//X Y Z R G B\n2\n1.5 2.5 3.5 255 51 0\n4.25 -5 6 0 0 255\n", COLORS); /* names and a count */
   check_read("a.xyz", "# X Y Z R G B Intensity Nx Ny Nz\n1.5 2.5 3.5 255 51 0 -7 0 0 1\n4.25 -5 6 0 0 255 9 1 0 0\n",
              BOTH);
+  check_read("a.xyz", "# X Y Z\n1.5 2.5 3.5 255 51 0\n4.25 -5 6 0 0 255\n", COLORS); /* goes without saying */
+  check_read("a.xyz", "# Z X Y\n3.5 1.5 2.5 17\n6 4.25 -5 18\n", NONE);              /* and this does not */
+  check_read("a.xyz", "# x y z are in metres\n1.5 2.5 3.5\n4.25 -5 6\n", NONE);
   check_read("a.xyz", "# Intensity Nx Ny Nz X Y Z\n7 0 0 1 1.5 2.5 3.5\n9 1 0 0 4.25 -5 6\n", NORMALS);
   check_read("a.csv", "id,Easting (m),Northing (m),Elevation [m],class\nA1,1.5,2.5,3.5,tree top\nA2,4.25,-5,6,\n",
              NONE);
@@ -105,6 +108,7 @@ static void test_numbers_of_columns(void) {
   check_read("a.xyz", "1.5 2.5 3.5 0.5 255 51 0 0.1\n4.25 -5 6 0.5 0 0 255 0.1\n", COLORS);
   check_read("a.xyz", "1.5 2.5 3.5 0 0 1 0.5 0.1\n4.25 -5 6 1 0 0 0.5 0.1\n", NORMALS);
   check_read("a.xyz", "1.5 2.5 3.5 255 51 0 -7.5 0 0 1\n4.25 -5 6 0 0 255 9.5 1 0 0\n", BOTH);
+  check_read("a.xyz", "1.5 2.5 3.5 0 0 1 255 51 0 -7.5\n4.25 -5 6 1 0 0 0 0 255 9.5\n", BOTH);
   check_read("a.xyz", "1.5 2.5 3.5 -7 255 51 0 0 0 1 4\n4.25 -5 6 9 0 0 255 1 0 0 4\n", BOTH);
 }
 

@@ -1,4 +1,5 @@
-/* What an EXR says of its camera: points to the left of its matrices land where the camera sees them. */
+/* What an EXR says of its camera: points to the left of its matrices land where the camera sees them; and where the
+ * world lies behind its pixels. */
 #include "tests/support/image_fixture.h"
 
 static const conic_attribute *find(const conic_image *image, const char *name) {
@@ -66,6 +67,36 @@ static void test_file(conic_context *context, const conic_camera *camera) {
   conic_image_release(context, &image);
 }
 
+/* Places are where the camera sees the pixel's middle, or the sample next to it, at that depth. */
+static void test_positions(conic_context *context, const conic_camera *camera, int samples) {
+  conic_image image;
+  const double offset = samples % 2 ? 0.5 : 0.5 - 0.5 / samples;
+  CHECK_OK(conic_image_allocate(context, 640, 480, 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_POSITION, &image));
+  float *z = image.planes[CONIC_PLANE_Z], *place = image.planes[CONIC_PLANE_POSITION];
+  for (int i = 0; i < 640 * 480; i++)
+    z[i] = i % 3 ? 1.0f + (float)(i % 97) : 0.0f;
+  CHECK_OK(conic_image_locate(context, camera, samples, &image));
+  for (int i = 0; i < 640 * 480; i += 101) {
+    const float *p = place + 3 * i;
+    double seen[3];
+    if (z[i] == 0.0f) {
+      CHECK(p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f);
+      continue;
+    }
+    for (int row = 0; row < 3; row++) {
+      const double *m = camera->cam_from_world[row];
+      seen[row] = m[0] * (double)p[0] + m[1] * (double)p[1] + m[2] * (double)p[2] + m[3];
+    }
+    CHECK_NEAR(seen[2], (double)z[i], 2e-5);
+    CHECK_NEAR(camera->fx * seen[0] / seen[2] + camera->cx, i % 640 + offset, 5e-3);
+    CHECK_NEAR(camera->fy * seen[1] / seen[2] + camera->cy, i / 640 + offset, 5e-3);
+  }
+  conic_camera other = *camera;
+  other.width--;
+  CHECK(conic_image_locate(context, &other, 1, &image) == CONIC_ERROR_ARGUMENT);
+  conic_image_release(context, &image);
+}
+
 int main(void) {
   conic_context *context = check_context(1);
   conic_camera camera = a_camera();
@@ -74,6 +105,8 @@ int main(void) {
   CHECK(image.n_attributes == 6);
   for (int i = 0; i < 8; i++)
     check_point(&image, &camera, (const double[3]){i % 2 - 0.4, i / 2 % 2 - 0.6, i / 4 + 0.1});
+  for (int samples = 1; samples <= 4; samples++)
+    test_positions(context, &camera, samples);
   if (has_feature("OpenEXR")) {
     open_test_folder();
     test_file(context, &camera);

@@ -6,13 +6,13 @@
 #include "tests/support/image_fixture.h"
 
 static void test_descriptions(void) {
-  static const char *const names[] = {"rgba", "Z", "N", "albedo", "weight", "count", "id", "cluster"};
+  static const char *const names[] = {"rgba", "Z", "N", "albedo", "weight", "count", "id", "cluster", "P"};
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     CHECK(plane && strcmp(plane->name, names[i]) == 0);
     if (!plane)
       continue;
-    CHECK(plane->is_uint == (i >= CONIC_PLANE_COUNT));
+    CHECK(plane->is_uint == (i >= CONIC_PLANE_COUNT && i <= CONIC_PLANE_CLUSTER));
     for (int c = 0; c < plane->n_channels; c++)
       CHECK(plane->channels[c] && plane->channels[c][0]);
   }

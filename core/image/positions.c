@@ -1,0 +1,40 @@
+/* Where what a pixel shows lies in the world: by its depth and the camera. */
+#include "conic/image.h"
+#include "core/base/message.h"
+#include "core/base/threads.h"
+
+typedef struct positions {
+  const conic_camera *camera;
+  double offset; /* of the sample that Z is of, from the pixel's centre */
+  const float *z;
+  float *to;
+} positions;
+
+static void locate_row(void *data, size_t y, int i_thread) {
+  const positions *work = data;
+  const conic_camera *camera = work->camera;
+  size_t width = (size_t)camera->width;
+  (void)i_thread;
+  for (size_t x = 0; x < width; x++) {
+    const double z = (double)work->z[y * width + x];
+    const double there[3] = {z * (((double)x + 0.5 + work->offset - camera->cx) / camera->fx),
+                             z * (((double)y + 0.5 + work->offset - camera->cy) / camera->fy), z};
+    for (int axis = 0; axis < 3; axis++) {
+      double sum = 0.0;
+      for (int row = 0; row < 3; row++)
+        sum += camera->cam_from_world[row][axis] * (there[row] - camera->cam_from_world[row][3]);
+      work->to[3 * (y * width + x) + (size_t)axis] = z > 0.0 ? (float)sum : 0.0f;
+    }
+  }
+}
+
+conic_status conic_image_locate(conic_context *context, const conic_camera *camera, int samples, conic_image *image) {
+  if (!camera || !image || !image->planes[CONIC_PLANE_POSITION])
+    return CONIC_OK;
+  if (!image->planes[CONIC_PLANE_Z] || image->width != camera->width || image->height != camera->height || samples < 1)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: places come of the plane Z and its camera");
+  positions work = {.camera = camera, .z = image->planes[CONIC_PLANE_Z], .to = image->planes[CONIC_PLANE_POSITION]};
+  work.offset = samples % 2 ? 0.0 : -0.5 / samples;
+  conic_parallel_for(context, (size_t)image->height, locate_row, &work);
+  return CONIC_OK;
+}
