@@ -12,7 +12,7 @@ typedef struct value_range {
   uint64_t n;
 } value_range;
 
-static conic_status widen(void *cookie, const conic_splats *batch) {
+static conic_status widen_values(void *cookie, const conic_splats *batch) {
   value_range *range = cookie;
   for (size_t i = 0; batch->scalar && i < batch->count; i++) {
     double value = (double)batch->scalar[i];
@@ -28,7 +28,7 @@ static conic_status widen(void *cookie, const conic_splats *batch) {
 /* Reads the file once more, for one field; nothing is told of it that has been before. */
 static conic_status find_range(conic_context *context, const char *path, const char *name, value_range *range) {
   conic_read_options options;
-  conic_delivery delivery = {.receive = widen, .cookie = range, .batch = BATCH, .is_again = 1};
+  conic_delivery delivery = {.receive = widen_values, .cookie = range, .batch = BATCH, .is_again = 1};
   conic_model_kind kind = CONIC_MODEL_PLY;
   conic_model model;
   conic_input input;

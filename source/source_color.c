@@ -19,7 +19,7 @@ conic_status conic_coloring_refuse(conic_context *context, const char *path, con
 }
 
 /* Heights need to know which way is up, and so does the front of normals. */
-static conic_status find_up(conic_source *source, conic_splats *splats, conic_triangles *triangles) {
+static conic_status find_upright(conic_source *source, conic_splats *splats, conic_triangles *triangles) {
   static conic_splats no_splats;
   conic_source_scale *scale = &source->scale;
   const conic_drawing drawing = {splats ? splats : &no_splats, triangles};
@@ -42,7 +42,7 @@ conic_status conic_source_color(conic_source *source, const conic_source_options
     return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "source: the colouring's options were not initialised");
   if (own.up[0] == 0.0 && own.up[1] == 0.0 && own.up[2] == 0.0) {
     if (strcmp(own.by, "height") == 0 || strcmp(own.by, "normal") == 0)
-      status = find_up(source, splats, triangles);
+      status = find_upright(source, splats, triangles);
     memcpy(own.up, source->scale.up, sizeof own.up);
   }
   return status == CONIC_OK ? conic_drawing_color(source->context, &own, splats, triangles, &source->coloring) : status;

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/base/memory.h"
+#include "core/coloring/coloring_stream.h"
 #include "core/files/file.h"
-#include "core/splats/coloring_stream.h"
 
 void cli_coloring_init(cli_coloring *coloring) {
   memset(coloring, 0, sizeof *coloring);

@@ -1,7 +1,7 @@
 /* conic render --legend: what the colours mean. */
 #include "cli/render/render_job.h"
 #include "core/base/message.h"
-#include "core/image/legend.h"
+#include "core/coloring/legend.h"
 
 static conic_status write_legend(cli_session *session, const cli_render_job *job, const conic_coloring *coloring) {
   conic_image legend;

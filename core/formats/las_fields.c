@@ -6,8 +6,8 @@
 
 enum { RECORD_HEADER_BYTES = 54, DESCRIPTION_BYTES = 192, EXTRA_BYTES_RECORD = 4 };
 
-static void add(conic_las_fields *fields, const char *name, size_t at, conic_ply_type type, unsigned shift,
-                unsigned mask) {
+static void add_las_field(conic_las_fields *fields, const char *name, size_t at, conic_ply_type type, unsigned shift,
+                          unsigned mask) {
   if (fields->n == CONIC_LAS_MOST_FIELDS)
     return;
   conic_las_field *field = &fields->list[fields->n++];
@@ -20,19 +20,19 @@ void conic_las_fields_of_format(unsigned format, conic_las_fields *fields) {
   static const unsigned char gps_time_at[] = {0, 20, 0, 20, 20, 20, 22, 22, 22, 22, 22};
   int is_new = format >= 6;
   fields->n = 0;
-  add(fields, "intensity", 12, CONIC_PLY_UINT16, 0, 0);
-  add(fields, "return_number", 14, CONIC_PLY_UINT8, 0, is_new ? 15 : 7);
-  add(fields, "number_of_returns", 14, CONIC_PLY_UINT8, is_new ? 4 : 3, is_new ? 15 : 7);
-  add(fields, "classification", is_new ? 16 : 15, CONIC_PLY_UINT8, 0, is_new ? 0 : 31);
-  add(fields, "scan_angle", is_new ? 18 : 16, is_new ? CONIC_PLY_INT16 : CONIC_PLY_INT8, 0, 0);
+  add_las_field(fields, "intensity", 12, CONIC_PLY_UINT16, 0, 0);
+  add_las_field(fields, "return_number", 14, CONIC_PLY_UINT8, 0, is_new ? 15 : 7);
+  add_las_field(fields, "number_of_returns", 14, CONIC_PLY_UINT8, is_new ? 4 : 3, is_new ? 15 : 7);
+  add_las_field(fields, "classification", is_new ? 16 : 15, CONIC_PLY_UINT8, 0, is_new ? 0 : 31);
+  add_las_field(fields, "scan_angle", is_new ? 18 : 16, is_new ? CONIC_PLY_INT16 : CONIC_PLY_INT8, 0, 0);
   if (is_new)
     fields->list[fields->n - 1].scale = 0.006;
-  add(fields, "user_data", 17, CONIC_PLY_UINT8, 0, 0);
-  add(fields, "point_source_id", is_new ? 20 : 18, CONIC_PLY_UINT16, 0, 0);
+  add_las_field(fields, "user_data", 17, CONIC_PLY_UINT8, 0, 0);
+  add_las_field(fields, "point_source_id", is_new ? 20 : 18, CONIC_PLY_UINT16, 0, 0);
   if (gps_time_at[format])
-    add(fields, "gps_time", gps_time_at[format], CONIC_PLY_DOUBLE, 0, 0);
+    add_las_field(fields, "gps_time", gps_time_at[format], CONIC_PLY_DOUBLE, 0, 0);
   if (format == 8 || format == 10)
-    add(fields, "nir", 36, CONIC_PLY_UINT16, 0, 0);
+    add_las_field(fields, "nir", 36, CONIC_PLY_UINT16, 0, 0);
 }
 
 /* The types of extra bytes by their numbers; those of 64 bits and those that are not described take room only. */
@@ -66,7 +66,7 @@ static size_t describe_extra(const unsigned char *bytes, size_t at, size_t point
     if ((unsigned char)name[i] < 0x20 || (unsigned char)name[i] >= 0x7f)
       name[i] = '?';
   if (is_known && name[0] && at + n_bytes <= point_bytes && fields->n < CONIC_LAS_MOST_FIELDS) {
-    add(fields, name, at, type, 0, 0);
+    add_las_field(fields, name, at, type, 0, 0);
     conic_las_field *field = &fields->list[fields->n - 1];
     field->scale = options & 8 ? double_at(bytes + 112) : 1.0;
     field->offset = options & 16 ? double_at(bytes + 136) : 0.0;

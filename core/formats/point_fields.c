@@ -10,7 +10,7 @@
 enum { NAME_ROOM = sizeof(((conic_model_field *)0)->name) };
 
 /* What does not matter in a name is left out. */
-static void reduce(const char *name, char reduced[NAME_ROOM]) {
+static void reduce_field_name(const char *name, char reduced[NAME_ROOM]) {
   size_t n = 0;
   for (const char *c = name; *c && n + 1 < NAME_ROOM; c++)
     if (*c != '_' && *c != '-' && *c != ' ')
@@ -32,8 +32,8 @@ static const char *meaning(const char *reduced) {
 
 int conic_field_is(const char *name, const char *other) {
   char first[NAME_ROOM], second[NAME_ROOM];
-  reduce(name, first);
-  reduce(other, second);
+  reduce_field_name(name, first);
+  reduce_field_name(other, second);
   return strcmp(meaning(first), meaning(second)) == 0;
 }
 
@@ -52,16 +52,17 @@ conic_status conic_fields_add(conic_builder *builder, const char *name, size_t l
 }
 
 /* "a, b, c", as many as there is room for. */
-static void list_names(const conic_model *model, char *text, size_t room) {
+static void list_field_names(const conic_model *model, char *text, size_t room) {
   size_t length = 0;
   for (size_t i = 0; i < model->n_fields && length < room; i++)
     length += (size_t)snprintf(text + length, room - length, "%s%s", i ? ", " : "", model->fields[i].name);
 }
 
-static conic_status refuse(conic_context *context, const char *file, const char *wanted, const conic_model *model) {
+static conic_status refuse_field(conic_context *context, const char *file, const char *wanted,
+                                 const conic_model *model) {
   char names[400] = "";
   const char *nearest = NULL;
-  list_names(model, names, sizeof names);
+  list_field_names(model, names, sizeof names);
   for (size_t i = 0; i < model->n_fields; i++)
     nearest = conic_nearer_word(wanted, nearest, model->fields[i].name);
   if (!model->n_fields)
@@ -86,13 +87,14 @@ conic_status conic_fields_choose(conic_builder *builder, const char *file, const
   *chosen = options->field ? find_field(builder->model, options->field) : -1;
   if (*chosen >= 0)
     return conic_builder_add_field(builder, CONIC_SPLATS_SCALARS);
-  return options->field && !options->field_is_optional ? refuse(builder->context, file, options->field, builder->model)
-                                                       : CONIC_OK;
+  return options->field && !options->field_is_optional
+             ? refuse_field(builder->context, file, options->field, builder->model)
+             : CONIC_OK;
 }
 
 conic_status conic_fields_check(conic_context *context, const char *file, const conic_read_options *options,
                                 const conic_model *model) {
   return options->field && !options->field_is_optional && !model->points.scalar
-             ? refuse(context, file, options->field, model)
+             ? refuse_field(context, file, options->field, model)
              : CONIC_OK;
 }

@@ -7,12 +7,17 @@ static int is_upper_half(float value) {
   return value >= 0.0f && value <= 65280.0f && value == (float)((int)value & 0xff00);
 }
 
+static int is_one_byte(float value) {
+  return value >= 0.0f && value <= 65535.0f && value == (float)(((int)value >> 8) * 257);
+}
+
 void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range) {
   for (int channel = 0; channel < 3 && points->color[0]; channel++)
     for (size_t i = 0; i < points->count; i++) {
       float value = points->color[channel][i];
       range->largest = value > range->largest ? value : range->largest;
       range->has_low_bits |= !is_upper_half(value);
+      range->has_two_bytes |= !is_one_byte(value);
     }
 }
 
@@ -29,7 +34,7 @@ static int find_whole(const conic_raw_range *range, int may_be_fractions) {
   float largest = range->largest;
   if (largest <= 255.0f)
     return may_be_fractions && largest <= 1.0f ? 1 : 255;
-  return !range->has_low_bits ? 65280 : largest <= 4095.0f ? 4095 : 65535;
+  return !range->has_low_bits ? 65280 : largest <= 4095.0f && range->has_two_bytes ? 4095 : 65535;
 }
 
 conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_range *range, int may_be_fractions,
@@ -58,7 +63,7 @@ void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t 
 
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions) {
   conic_raw_scale scale;
-  conic_raw_range range = {0.0f, 0};
+  conic_raw_range range = {0.0f, 0, 0};
   if (!points->color[0])
     return CONIC_OK;
   conic_raw_colors_see(points, &range);

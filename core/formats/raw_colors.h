@@ -5,10 +5,11 @@
 
 #include "conic/splats.h"
 
-/* What tells the scale: the largest value, and whether any is no multiple of 256. Zeroed: none was seen. */
+/* What tells the scale: the largest value, whether any is no multiple of 256, and whether any is no byte twice. Zeroed:
+ * none was seen. */
 typedef struct conic_raw_range {
   float largest;
-  int has_low_bits;
+  int has_low_bits, has_two_bytes;
 } conic_raw_range;
 
 void conic_raw_colors_see(const conic_splats *points, conic_raw_range *range);
@@ -27,7 +28,7 @@ conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_rang
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
 /* Decodes sRGB values in place, by the largest of them: up to 1 are fractions (where `may_be_fractions`), up to 255
- * codes of 8 bits, up to 4095 of 12, beyond that of 16. Codes of 16 bits that are all multiples of 256 are codes of 8
+ * codes of 8 bits, up to 4095 of 12, beyond that of 16, as are codes of 8 that stand in both bytes. Codes of 16 bits that are all multiples of 256 are codes of 8
  * bits in the upper half, of which 255 × 256 is white. Where the largest is 0 nobody has filled them in, and they are
  * dropped: the points are white. Errors: MEMORY. */
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);

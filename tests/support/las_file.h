@@ -76,4 +76,32 @@ static inline void las_set_color(las_file *file, size_t i, unsigned red, unsigne
   las_put(file, at + 4, blue, 2);
 }
 
+/* In place of the file's record one that describes two values behind those of the format: "height\nabove", an int16
+ * times 0.5 less 1, and "speed", a float. The points, each with 6 bytes more, are all 0 again. Returns where the
+ * descriptions begin. */
+static inline size_t las_describe_extra(las_file *file, size_t n) {
+  size_t header_bytes = file->points_offset - 64, at = header_bytes + 54;
+  size_t points_offset = at + 2 * 192, n_bytes = points_offset + n * file->point_bytes;
+  unsigned char *bytes = calloc(n_bytes, 1);
+  if (!bytes)
+    exit(1);
+  memcpy(bytes, file->bytes, header_bytes);
+  free(file->bytes);
+  file->bytes = bytes;
+  file->n_bytes = n_bytes;
+  file->points_offset = points_offset;
+  las_put(file, 96, points_offset, 4);
+  memcpy(bytes + header_bytes + 2, "LASF_Spec", 9);
+  las_put(file, header_bytes + 18, 4, 2);
+  las_put(file, header_bytes + 20, 2 * 192, 2);
+  bytes[at + 2] = 4;
+  bytes[at + 3] = 8 | 16;
+  memcpy(bytes + at + 4, "height\nabove", 12);
+  las_put_double(file, at + 112, 0.5);
+  las_put_double(file, at + 136, -1.0);
+  bytes[at + 192 + 2] = 9;
+  memcpy(bytes + at + 192 + 4, "speed", 5);
+  return at;
+}
+
 #endif

@@ -199,6 +199,10 @@ static inline void seeds_all_las(seed_set *set) {
     seeds_add(set, "las", "las", 1, file.bytes, file.n_bytes);
     free(file.bytes);
   }
+  las_file described = las_begin(4, 6, 2, 6);
+  las_describe_extra(&described, 2);
+  seeds_add(set, "las", "las", 1, described.bytes, described.n_bytes);
+  free(described.bytes);
 }
 
 /* Pictures are written by the library into the tests' folder, and removed there. */

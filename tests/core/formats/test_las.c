@@ -61,6 +61,10 @@ static void test_colors(void) {
   CHECK(model.points.color[0] && model.points.color[0][1] == 1.0f);
   CHECK(model.points.color[0] && model.points.color[1][1] == (float)conic_srgb_decode(128.0 / 255.0));
   conic_model_release(context, &model);
+  las_set_color(&file, 1, 3 * 257, 257, 0); /* 8 bits in both bytes, however dark */
+  CHECK_OK(read_bytes(&file, file.n_bytes, &model));
+  CHECK(model.points.color[0] && model.points.color[0][1] == (float)conic_srgb_decode(3.0 / 255.0));
+  conic_model_release(context, &model);
   las_set_color(&file, 1, 4095, 300, 0); /* 12 bits */
   CHECK_OK(read_bytes(&file, file.n_bytes, &model));
   CHECK(model.points.color[0] && model.points.color[0][1] == 1.0f);

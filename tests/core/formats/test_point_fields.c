@@ -77,49 +77,29 @@ static void test_las(int minor, int format, size_t time_at) {
   free(file.bytes);
 }
 
-/* The record before the points describes two values behind the format's own; the second is scaled. */
 static void test_extra_bytes(void) {
-  enum { HEADER = 375, RECORD = 54, EXTRA = 2 + 4, POINTS = 2 };
+  enum { POINTS = 2 };
   static const float heights[] = {-1.0f, 2.5f}, speeds[] = {1.5f, -3.25f};
   conic_model model;
-  las_file file = las_begin(4, 6, POINTS, EXTRA);
-  size_t offset = HEADER + RECORD + 2 * 192, n_bytes = offset + POINTS * file.point_bytes;
-  unsigned char *bytes = calloc(n_bytes, 1);
-  if (!bytes)
-    exit(1);
-  memcpy(bytes, file.bytes, HEADER);
-  free(file.bytes);
-  file.bytes = bytes;
-  file.n_bytes = n_bytes;
-  las_put(&file, 96, offset, 4);
-  memcpy(bytes + HEADER + 2, "LASF_Spec", 9);
-  las_put(&file, HEADER + 18, 4, 2);
-  las_put(&file, HEADER + 20, 2 * 192, 2);
-  unsigned char *first = bytes + HEADER + RECORD, *second = first + 192;
-  first[2] = 4; /* int16 */
-  first[3] = 8 | 16;
-  memcpy(first + 4, "height\nabove", 12);
-  las_put_double(&file, HEADER + RECORD + 112, 0.5);
-  las_put_double(&file, HEADER + RECORD + 136, -1.0);
-  second[2] = 9; /* float */
-  memcpy(second + 4, "speed", 5);
-  las_put(&file, offset + file.point_bytes + 30, 7, 2);
+  las_file file = las_begin(4, 6, POINTS, 6);
+  size_t described_at = las_describe_extra(&file, POINTS);
+  las_put(&file, file.points_offset + file.point_bytes + 30, 7, 2);
   for (size_t i = 0; i < POINTS; i++)
-    memcpy(bytes + offset + i * file.point_bytes + 32, &speeds[i], 4);
-  const char *path = files_write_bytes("extra.las", bytes, n_bytes);
+    memcpy(file.bytes + file.points_offset + i * file.point_bytes + 32, &speeds[i], 4);
+  const char *path = files_write_bytes("extra.las", file.bytes, file.n_bytes);
   check_values(path, "height?above", heights, 2);
   check_values(path, "speed", speeds, 2);
   CHECK_OK(conic_model_read(context, path, NULL, &model));
   CHECK(!model.points.scalar && find(&model, "speed") && strcmp(find(&model, "speed")->type, "float") == 0);
   CHECK(find(&model, "intensity") && strcmp(find(&model, "intensity")->type, "uint16") == 0);
   conic_model_release(context, &model);
-
-  first[2] = 7; /* 64 bits are not read: no room is left for what follows */
   CHECK(unlink(path) == 0);
-  path = files_write_bytes("extra.las", bytes, n_bytes);
+
+  file.bytes[described_at + 2] = 7; /* 64 bits are not read: no room is left for what follows */
+  path = files_write_bytes("extra.las", file.bytes, file.n_bytes);
   files_check_failed("too far", read_field(path, "speed", 0, &model), "no field 'speed'", NULL);
   CHECK(unlink(path) == 0);
-  free(bytes);
+  free(file.bytes);
 }
 
 static void test_ply(void) {
@@ -169,6 +149,28 @@ static void test_text(void) {
   CHECK(unlink(path) == 0);
   path = files_write("a.xyz", "0 0 0 5 1\n1 0 0 6 2\n0 1 0 9 3\n");
   check_values(path, "5", fifth, 3);
+  CHECK(unlink(path) == 0);
+}
+
+static void test_pcd(void) {
+  static const float curvatures[] = {0.5f, -2.0f}, labels[] = {3.0f, 200.0f};
+  conic_model model;
+  const char *path = files_write("a.pcd", "VERSION .7\nFIELDS x y z fpfh curvature label\nSIZE 4 4 4 4 4 1\n"
+                                          "TYPE F F F F F U\nCOUNT 1 1 1 2 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
+                                          "DATA ascii\n0 0 0 9 9 .5 3\n1 0 0 9 9 -2 200\n");
+  check_values(path, "curvature", curvatures, 2);
+  check_values(path, "classification", labels, 2);
+  files_check_failed("pcd", read_field(path, "fpfh", 0, &model), "no field 'fpfh'", "x, y, z, curvature, label", NULL);
+  CHECK(unlink(path) == 0);
+  char binary[300];
+  int n = snprintf(binary, sizeof binary,
+                   "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\n"
+                   "COUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n");
+  memset(binary + n, 0, 32);
+  memcpy(binary + n + 12, &curvatures[0], 4);
+  memcpy(binary + n + 28, &curvatures[1], 4);
+  path = files_write_bytes("b.pcd", binary, (size_t)n + 32);
+  check_values(path, "Intensity", curvatures, 2);
   CHECK(unlink(path) == 0);
 }
 
@@ -229,6 +231,7 @@ int main(void) {
   test_extra_bytes();
   test_ply();
   test_text();
+  test_pcd();
   test_batches();
   test_without();
   files_end(context);

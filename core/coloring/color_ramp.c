@@ -1,4 +1,4 @@
-#include "core/splats/color_ramp.h"
+#include "core/coloring/color_ramp.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* The legend: its colours are those of the values, and it stays within the picture. */
-#include "core/image/glyphs.h"
-#include "core/image/legend.h"
+#include "core/coloring/glyphs.h"
+#include "core/coloring/legend.h"
 #include "tests/support/check.h"
 
 static conic_context *context;

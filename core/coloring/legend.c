@@ -1,13 +1,13 @@
-#include "core/image/legend.h"
+#include "core/coloring/legend.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "core/base/color.h"
-#include "core/image/glyphs.h"
+#include "core/coloring/color_ramp.h"
+#include "core/coloring/glyphs.h"
 #include "core/image/image_common.h"
-#include "core/splats/color_ramp.h"
 
 /* In units of the letters' pixels. */
 enum { MARGIN = 5, TITLE = 12, BAR_WIDTH = 10, BAR_HEIGHT = 90, TICK = 3, ROW = 10, SWATCH = 8, MOST_ROWS = 24 };
@@ -34,28 +34,28 @@ static const float ink[3] = {0.85f, 0.85f, 0.85f}, paper[3] = {0.012f, 0.012f, 0
 
 /* --- what it says --- */
 
-static legend_row *add_row(legend *l, const char *text) {
+static legend_row *add_legend_row(legend *l, const char *text) {
   legend_row *row = &l->rows[l->n_rows++];
   snprintf(row->text, sizeof row->text, "%s", text);
   return row;
 }
 
 /* Those that there are, as many as there is room for. */
-static void list_classes(legend *l) {
+static void list_class_rows(legend *l) {
   char number[40];
   for (uint32_t i = 0; i < 256 && l->n_rows < MOST_ROWS; i++) {
     const char *name = conic_class_name(i);
     if (!(l->coloring->classes[i / 32] >> i % 32 & 1u))
       continue;
     snprintf(number, sizeof number, "class %u", (unsigned)i);
-    conic_class_color(i, add_row(l, name ? name : number)->color);
+    conic_class_color(i, add_legend_row(l, name ? name : number)->color);
   }
 }
 
 static void list_axes(legend *l) {
   static const char *const names[] = {"+X", "+Y", "+Z"};
   for (int axis = 0; axis < 3; axis++) {
-    legend_row *row = add_row(l, names[axis]);
+    legend_row *row = add_legend_row(l, names[axis]);
     for (int channel = 0; channel < 3; channel++)
       row->color[channel] = (float)conic_srgb_decode(channel == axis ? 1.0 : 0.5);
   }
@@ -88,7 +88,7 @@ static void list_ticks(legend *l) {
   l->has_bar = 1;
   if (!(extent > 0.0)) {
     snprintf(text, sizeof text, "%.6g", c->minimum);
-    add_row(l, text)->at = 0.5;
+    add_legend_row(l, text)->at = 0.5;
     return;
   }
   double step = tick_step(extent, &n_decimals);
@@ -96,11 +96,11 @@ static void list_ticks(legend *l) {
     double t = (tick - c->minimum) / extent;
     snprintf(text, sizeof text, fabs(tick) < 1e7 ? "%.*f" : "%.*g", fabs(tick) < 1e7 ? n_decimals : 8,
              fabs(tick) < 1e-3 * step ? 0.0 : tick);
-    add_row(l, text)->at = c->is_root ? sqrt(t > 0.0 ? t : 0.0) : t;
+    add_legend_row(l, text)->at = c->is_root ? sqrt(t > 0.0 ? t : 0.0) : t;
   }
 }
 
-static int text_width(const char *text) {
+static int legend_text_width(const char *text) {
   return (int)strlen(text) * CONIC_GLYPH_STEP - 1;
 }
 
@@ -110,12 +110,13 @@ static void lay_out(const conic_coloring *coloring, legend *l) {
   if (!coloring->ramp)
     list_axes(l);
   else if (strcmp(coloring->ramp, conic_ramp_name(CONIC_RAMP_CLASSES)) == 0)
-    list_classes(l);
+    list_class_rows(l);
   else
     list_ticks(l);
-  int indent = l->has_bar ? BAR_WIDTH + TICK + 2 : SWATCH + 3, widest = text_width(coloring->field);
+  int indent = l->has_bar ? BAR_WIDTH + TICK + 2 : SWATCH + 3, widest = legend_text_width(coloring->field);
   for (int i = 0; i < l->n_rows; i++)
-    widest = indent + text_width(l->rows[i].text) > widest ? indent + text_width(l->rows[i].text) : widest;
+    widest =
+        indent + legend_text_width(l->rows[i].text) > widest ? indent + legend_text_width(l->rows[i].text) : widest;
   l->width = widest + 2 * MARGIN;
   l->height = 2 * MARGIN + TITLE + (l->has_bar ? BAR_HEIGHT : l->n_rows * ROW - (ROW - SWATCH));
 }
@@ -123,7 +124,8 @@ static void lay_out(const conic_coloring *coloring, legend *l) {
 /* --- drawing it --- */
 
 /* A rectangle from there on, in pixels of the picture. */
-static void fill(const conic_image *image, const int x[2], const int y[2], const float color[3], float alpha) {
+static void fill_rectangle(const conic_image *image, const int x[2], const int y[2], const float color[3],
+                           float alpha) {
   float *rgba = image->planes[CONIC_PLANE_RGBA];
   for (int row = y[0] > 0 ? y[0] : 0; row < y[1] && row < image->height; row++)
     for (int column = x[0] > 0 ? x[0] : 0; column < x[1] && column < image->width; column++) {
@@ -137,7 +139,7 @@ static void fill(const conic_image *image, const int x[2], const int y[2], const
 static void draw_box(const canvas *to, int x, int y, int width, int height, const float color[3], float alpha) {
   const int columns[2] = {to->x + x * to->unit, to->x + (x + width) * to->unit};
   const int rows[2] = {to->y + y * to->unit, to->y + (y + height) * to->unit};
-  fill(to->image, columns, rows, color, alpha);
+  fill_rectangle(to->image, columns, rows, color, alpha);
 }
 
 static void draw_text(const canvas *to, int x, int y, const char *text) {
@@ -151,7 +153,7 @@ static void draw_text(const canvas *to, int x, int y, const char *text) {
 }
 
 /* Each row of the picture has its own colour. */
-static void draw_bar(const canvas *to, const conic_coloring *coloring) {
+static void draw_ramp_bar(const canvas *to, const conic_coloring *coloring) {
   int n = BAR_HEIGHT * to->unit, top = to->y + (MARGIN + TITLE) * to->unit;
   const int columns[2] = {to->x + MARGIN * to->unit, to->x + (MARGIN + BAR_WIDTH) * to->unit};
   for (int i = 0; i < n; i++) {
@@ -160,7 +162,7 @@ static void draw_bar(const canvas *to, const conic_coloring *coloring) {
     double t = ((double)i + 0.5) / (double)n;
     conic_coloring_color(
         coloring, coloring->minimum + (coloring->maximum - coloring->minimum) * (coloring->is_root ? t * t : t), color);
-    fill(to->image, columns, rows, color, 1.0f);
+    fill_rectangle(to->image, columns, rows, color, 1.0f);
   }
 }
 
@@ -169,7 +171,7 @@ static void draw(const legend *l, const canvas *to, float alpha) {
   draw_box(to, 0, 0, l->width, l->height, paper, alpha);
   draw_text(to, MARGIN, MARGIN, l->coloring->field);
   if (l->has_bar)
-    draw_bar(to, l->coloring);
+    draw_ramp_bar(to, l->coloring);
   for (int i = 0; i < l->n_rows; i++) {
     const legend_row *row = &l->rows[i];
     int y = first + ROW * i;

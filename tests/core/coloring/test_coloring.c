@@ -1,7 +1,7 @@
 /* Colours made of values: the ramps, the range that they take, and what is coloured. */
 #include "core/base/color.h"
-#include "core/splats/color_ramp.h"
-#include "core/splats/value_limits.h"
+#include "core/coloring/color_ramp.h"
+#include "core/coloring/value_limits.h"
 #include "tests/support/check.h"
 
 static conic_context *context;
@@ -37,6 +37,10 @@ static void test_ramps(void) {
     CHECK(memcmp(color, first, sizeof color) == 0);
     CHECK(conic_ramp_name(ramp) != NULL);
   }
+  float grey[3];
+  conic_ramp_color(CONIC_RAMP_GREY, 0.5, grey); /* of lightness 0.64 */
+  for (int channel = 0; channel < 3; channel++)
+    CHECK_NEAR((double)grey[channel], 0.64 * 0.64 * 0.64, 1e-6);
   CHECK(!conic_ramp_name(-1) && conic_ramp_name(CONIC_RAMP_CLASSES) && !conic_ramp_name(CONIC_N_RAMPS));
 }
 

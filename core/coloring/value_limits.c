@@ -1,4 +1,4 @@
-#include "core/splats/value_limits.h"
+#include "core/coloring/value_limits.h"
 
 #include <stdlib.h>
 

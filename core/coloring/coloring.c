@@ -9,9 +9,9 @@
 #include "core/base/message.h"
 #include "core/base/options.h"
 #include "core/base/vectors.h"
+#include "core/coloring/color_ramp.h"
+#include "core/coloring/coloring_stream.h"
 #include "core/formats/point_fields.h"
-#include "core/splats/color_ramp.h"
-#include "core/splats/coloring_stream.h"
 #include "core/splats/columns.h"
 
 static const char *const ramp_names[CONIC_N_RAMPS] = {"sequential", "grey", "heat", "diverging", "terrain", "classes"};
@@ -53,7 +53,7 @@ static int find_ramp(const char *name) {
   return i;
 }
 
-static int is_word(const char *by, const char *word) {
+static int is_that_word(const char *by, const char *word) {
   return strcmp(by, word) == 0;
 }
 
@@ -62,8 +62,8 @@ void conic_coloring_read(const conic_coloring_options *options, conic_read_optio
   conic_coloring_options_init(&own);
   if (!options || !conic_options_take(&own, options) || !own.by)
     return;
-  int is_auto = is_word(own.by, "auto");
-  if (is_word(own.by, "rgb") || is_word(own.by, "height") || is_word(own.by, "normal"))
+  int is_auto = is_that_word(own.by, "auto");
+  if (is_that_word(own.by, "rgb") || is_that_word(own.by, "height") || is_that_word(own.by, "normal"))
     return;
   reading->field = is_auto ? "intensity" : own.by;
   reading->field_is_optional = is_auto;
@@ -75,8 +75,8 @@ static void paint_unknown(float linear[3]) {
   linear[0] = linear[1] = linear[2] = 0.2f;
 }
 
-void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]) {
-  int ramp = coloring->ramp ? find_ramp(coloring->ramp) : CONIC_N_RAMPS;
+/* `ramp`: the coloring's, or CONIC_N_RAMPS. */
+static void paint_value(const conic_coloring *coloring, int ramp, double value, float linear[3]) {
   double extent = coloring->maximum - coloring->minimum;
   if (!(value - value == 0.0) || ramp == CONIC_N_RAMPS) {
     paint_unknown(linear);
@@ -90,7 +90,11 @@ void conic_coloring_color(const conic_coloring *coloring, double value, float li
   conic_ramp_color((conic_ramp)ramp, coloring->is_root && t > 0.0 ? sqrt(t) : t, linear);
 }
 
-static double value_of(const painting *p, const vertices *set, size_t i) {
+void conic_coloring_color(const conic_coloring *coloring, double value, float linear[3]) {
+  paint_value(coloring, coloring->ramp ? find_ramp(coloring->ramp) : CONIC_N_RAMPS, value, linear);
+}
+
+static double value_at_vertex(const painting *p, const vertices *set, size_t i) {
   double height = 0.0;
   if (p->kind == BY_VALUE)
     return *set->scalar ? (double)(*set->scalar)[i] : NAN;
@@ -99,7 +103,7 @@ static double value_of(const painting *p, const vertices *set, size_t i) {
   return height;
 }
 
-static void normal_of(const vertices *set, size_t i, double normal[3]) {
+static void normal_at_vertex(const vertices *set, size_t i, double normal[3]) {
   const conic_splats *s = set->splats;
   double u[3], v[3];
   int has_axes = s && s->tangent_u[0];
@@ -118,7 +122,7 @@ static double front_of(const painting *p, const vertices *set) {
   size_t n_down = 0;
   double normal[3];
   for (size_t i = 0; i < set->count && set->splats; i++) {
-    normal_of(set, i, normal);
+    normal_at_vertex(set, i, normal);
     n_down += conic_normalize(normal) && conic_dot(normal, p->up) < -0.5;
   }
   return n_down > set->count / 2 ? -1.0 : 1.0;
@@ -134,16 +138,17 @@ static void paint_normal(double normal[3], double front, float linear[3]) {
     linear[axis] = (float)conic_srgb_decode(0.5 + 0.5 * front * normal[axis]);
 }
 
-static void paint(const painting *p, const vertices *set) {
+static void paint_vertices(const painting *p, const vertices *set) {
   double front = p->kind == BY_NORMAL ? front_of(p, set) : 1.0;
+  int ramp = p->coloring->ramp ? find_ramp(p->coloring->ramp) : CONIC_N_RAMPS;
   for (size_t i = 0; i < set->count; i++) {
     float linear[3];
     double normal[3];
     if (p->kind == BY_NORMAL) {
-      normal_of(set, i, normal);
+      normal_at_vertex(set, i, normal);
       paint_normal(normal, front, linear);
     } else
-      conic_coloring_color(p->coloring, value_of(p, set, i), linear);
+      paint_value(p->coloring, ramp, value_at_vertex(p, set, i), linear);
     for (int channel = 0; channel < 3; channel++)
       set->color[channel][i] = linear[channel];
   }
@@ -196,7 +201,7 @@ static conic_status find_limits(const painting *p, double *minimum, double *maxi
     return CONIC_ERROR_MEMORY;
   for (int k = 0; k < 2; k++)
     for (size_t i = 0; i < p->sets[k].count; i++)
-      conic_value_sample_add(sample, value_of(p, &p->sets[k], i));
+      conic_value_sample_add(sample, value_at_vertex(p, &p->sets[k], i));
   conic_value_sample_limits(sample, minimum, maximum);
   conic_memory_release(p->context, sample);
   return CONIC_OK;
@@ -208,7 +213,7 @@ static void list_classes(const painting *p) {
   int is_first = 1;
   for (int k = 0; k < 2; k++)
     for (size_t i = 0; i < p->sets[k].count; i++) {
-      double value = value_of(p, &p->sets[k], i);
+      double value = value_at_vertex(p, &p->sets[k], i);
       if (!(value - value == 0.0))
         continue;
       if (value >= 0.0 && value < 256.0)
@@ -240,7 +245,7 @@ static conic_status scale_coloring(painting *p, const conic_coloring_options *op
   conic_coloring *c = p->coloring;
   if (p->kind == BY_NORMAL)
     return CONIC_OK;
-  if (is_word(c->ramp, ramp_names[CONIC_RAMP_CLASSES])) {
+  if (is_that_word(c->ramp, ramp_names[CONIC_RAMP_CLASSES])) {
     list_classes(p);
     return CONIC_OK;
   }
@@ -265,13 +270,13 @@ static conic_status choose_by_itself(painting *p, const conic_coloring_options *
   return status;
 }
 
-static conic_status choose(painting *p, const conic_coloring_options *options, int has_colors) {
+static conic_status choose_coloring(painting *p, const conic_coloring_options *options, int has_colors) {
   const char *by = options->by;
-  if (is_word(by, "rgb") || (is_word(by, "auto") && has_colors))
+  if (is_that_word(by, "rgb") || (is_that_word(by, "auto") && has_colors))
     return CONIC_OK;
-  if (is_word(by, "auto"))
+  if (is_that_word(by, "auto"))
     return choose_by_itself(p, options);
-  coloring_kind kind = is_word(by, "height") ? BY_HEIGHT : is_word(by, "normal") ? BY_NORMAL : BY_VALUE;
+  coloring_kind kind = is_that_word(by, "height") ? BY_HEIGHT : is_that_word(by, "normal") ? BY_NORMAL : BY_VALUE;
   if (kind == BY_VALUE && !*p->sets[0].scalar && !*p->sets[1].scalar)
     return conic_fail(p->context, CONIC_ERROR_INPUT, "colouring: the points have no '%s'", by);
   name_coloring(p, kind, by, options->ramp);
@@ -296,21 +301,22 @@ static void drop_scalars(conic_context *context, float **scalar) {
 }
 
 int conic_coloring_needs_range(const conic_coloring_options *options) {
-  int is_of_classes = options->ramp ? is_word(options->ramp, ramp_names[CONIC_RAMP_CLASSES])
+  int is_of_classes = options->ramp ? is_that_word(options->ramp, ramp_names[CONIC_RAMP_CLASSES])
                                     : conic_field_is(options->by, "classification");
-  return !options->has_range && !is_of_classes && !is_word(options->by, "normal") && !is_word(options->by, "rgb");
+  return !options->has_range && !is_of_classes && !is_that_word(options->by, "normal") &&
+         !is_that_word(options->by, "rgb");
 }
 
 void conic_coloring_sample(const conic_coloring_options *options, const conic_splats *batch,
                            conic_value_sample *sample) {
-  painting p = {.kind = is_word(options->by, "height") ? BY_HEIGHT : BY_VALUE,
+  painting p = {.kind = is_that_word(options->by, "height") ? BY_HEIGHT : BY_VALUE,
                 .up = {options->up[0], options->up[1], options->up[2]}};
   float *scalar = batch->scalar;
   const vertices set = {.count = batch->count, .origin = batch->origin, .position = batch->position, .scalar = &scalar};
   if (!conic_normalize(p.up))
     p.up[1] = 1.0;
   for (size_t i = 0; i < batch->count; i++)
-    conic_value_sample_add(sample, value_of(&p, &set, i));
+    conic_value_sample_add(sample, value_at_vertex(&p, &set, i));
 }
 
 static conic_status paint_all(painting *p, conic_triangles *triangles) {
@@ -318,7 +324,7 @@ static conic_status paint_all(painting *p, conic_triangles *triangles) {
   for (int k = 0; k < 2 && status == CONIC_OK; k++)
     status = need_colors(p->context, &p->sets[k]);
   for (int k = 0; k < 2 && status == CONIC_OK; k++)
-    paint(p, &p->sets[k]);
+    paint_vertices(p, &p->sets[k]);
   if (status == CONIC_OK)
     whiten_materials(triangles);
   for (int axis = 0; axis < 3; axis++)
@@ -346,7 +352,7 @@ conic_status conic_drawing_color(conic_context *context, const conic_coloring_op
   p.sets[1] = (vertices){t->n_vertices, t->origin, t->position, t->color, &t->scalar, NULL, {NULL, NULL, NULL}};
   if (!conic_normalize(p.up))
     p.up[1] = 1.0;
-  status = choose(&p, &own, s->color[0] || t->color[0] || t->n_materials);
+  status = choose_coloring(&p, &own, s->color[0] || t->color[0] || t->n_materials);
   if (status == CONIC_OK && p.kind == BY_NORMAL && s->count && !s->tangent_u[0] && !s->normal[0])
     status = conic_fail(context, CONIC_ERROR_ARGUMENT, "colouring: the points have no normals");
   if (status == CONIC_OK && coloring->field[0])

@@ -1,4 +1,4 @@
-#include "core/image/glyphs.h"
+#include "core/coloring/glyphs.h"
 
 #include <stddef.h>
 

@@ -3,7 +3,7 @@
 #define CONIC_COLORING_STREAM_H
 
 #include "conic/coloring.h"
-#include "core/splats/value_limits.h"
+#include "core/coloring/value_limits.h"
 
 /* Whether the ends of the ramp are to be found: not given, and neither of normals nor of classes. */
 int conic_coloring_needs_range(const conic_coloring_options *options);
