@@ -1,4 +1,4 @@
-#include "cli/render/lights.h"
+#include "cli/render/render_lights.h"
 
 #include <stdlib.h>
 #include <string.h>
