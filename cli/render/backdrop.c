@@ -3,7 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "core/base/color.h"
 
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. */

@@ -38,7 +38,7 @@ typedef struct cli_render_job {
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
-  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
   int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
   cli_frames frames;

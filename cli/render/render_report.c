@@ -3,7 +3,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"

@@ -4,7 +4,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
