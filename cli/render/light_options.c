@@ -1,4 +1,8 @@
+<<<<<<<< HEAD:cli/render/light_options.c
 #include "cli/render/light_options.h"
+========
+#include "cli/render/light_options.h"
+>>>>>>>> light:cli/render/light_options.c
 
 #include <stdlib.h>
 #include <string.h>

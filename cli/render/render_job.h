@@ -73,6 +73,7 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
+  conic_camera last_camera;
   double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;            /* when reading began */
   uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */

@@ -24,7 +24,8 @@ static conic_text_word trim(conic_text_word line) {
 
 int conic_xyz_is_comment(conic_text_word line) {
   line = trim(line);
-  return line.length == 0 || line.text[0] == '#' || (line.length >= 2 && line.text[0] == '/' && line.text[1] == '/');
+  return line.length == 0 || line.text[0] == '#' || line.text[0] == '%' ||
+         (line.length >= 2 && line.text[0] == '/' && line.text[1] == '/');
 }
 
 int conic_xyz_names_columns(conic_text_word line, conic_xyz_heading *heading) {
@@ -33,7 +34,7 @@ int conic_xyz_names_columns(conic_text_word line, conic_xyz_heading *heading) {
   conic_text_word names[CONIC_TEXT_MOST_COLUMNS];
   int is_open;
   line = trim(line);
-  while (line.length && (line.text[0] == '#' || line.text[0] == '/'))
+  while (line.length && strchr("#/%", line.text[0]) && line.text[0])
     line = (conic_text_word){line.text + 1, line.length - 1};
   int is_parted = memchr(line.text, ',', line.length) || memchr(line.text, ';', line.length);
   int is_tabbed = !is_parted && memchr(trim(line).text, '\t', trim(line).length) != NULL;
@@ -96,6 +97,8 @@ static conic_status take_line(const conic_input *input, conic_text_word line, co
   conic_text_dialect any;
   conic_text_word words[2];
   int is_open;
+  if (memchr(trim(line).text, '\r', trim(line).length))
+    return conic_input_wrong(input, "lines end with a carriage return alone: write them with a line feed");
   if (conic_xyz_is_comment(line)) {
     if (heading->names <= CONIC_XYZ_IN_COMMENT && conic_xyz_names_columns(line, heading))
       heading->names = CONIC_XYZ_IN_COMMENT;

@@ -21,7 +21,7 @@ typedef struct conic_xyz_heading {
   conic_text_dialect dialect;
 } conic_xyz_heading;
 
-/* Empty, or begins with # or //. */
+/* Empty, or begins with #, % or //. */
 int conic_xyz_is_comment(conic_text_word line);
 
 /* Whether the line names columns, x, y and z among them; fills in the columns and the marks. */

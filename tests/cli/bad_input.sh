@@ -178,8 +178,8 @@ run_wrong 3 header.chy ': ends within its header (at byte 200)$' render header.c
 run_wrong 3 damaged.chy ': is damaged.*(at byte [0-9]*)$' info damaged.chy --check
 run_wrong 3 damaged.chy ': is damaged' render damaged.chy -o outputs/a.pfm
 
-printf '4000000000\n0 0 0\n' > huge.pts
-wrong_model huge.pts '4000000000.*line 1'
+printf '5000000000\n0 0 0\n' > huge.pts
+wrong_model huge.pts 'number of points.*line 1'
 printf '{"width": 1e300}' > camera.json
 wrong_camera camera.json '(line 1)'
 matrix='"world_to_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,3],[0,0,0,1]]'

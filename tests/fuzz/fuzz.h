@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "conic/conic.h"
+#include "core/assimp/assimp_kinds.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes);
 
@@ -98,6 +99,9 @@ static inline void fuzz_field(const uint8_t *bytes, size_t n_bytes, const char *
 static inline int fuzz_model(const uint8_t *bytes, size_t n_bytes, conic_model_kind kind) {
   conic_model model;
   double low[3], high[3];
+  conic_model_kind found;
+  if (kind < CONIC_MODEL_STL && conic_assimp_find_content("", (const char *)bytes, n_bytes, n_bytes, &found))
+    return -1; /* which would start a process */
   fuzz_input input = fuzz_open(bytes, n_bytes);
   conic_status status = conic_model_read(input.context, input.path, NULL, &model);
   int is_mine = status == CONIC_OK && model.kind == kind;

@@ -57,6 +57,7 @@ static void test_headers(void) {
   check_read("a.txt", "X  Y  Z\n1.5  2.5  3.5\n4.25  -5  6\n", NONE);
   check_read("a.txt", "x y z r g b\n1.5 2.5 3.5 255 51 0\n4.25 -5 6 0 0 255\n", COLORS);
   check_read("a.txt", "r g b x y z\n255 51 0 1.5 2.5 3.5\n0 0 255 4.25 -5 6\n", COLORS);
+  check_read("a.asc", "% Z X Y\n% by hand\n3.5 1.5 2.5\n6 4.25 -5\n", NONE);
   check_read("a.asc", "//X Y Z\n1.5 2.5 3.5\n4.25 -5 6\n", NONE);
   check_read("a.asc", "//X Y Z R G B\n2\n1.5 2.5 3.5 255 51 0\n4.25 -5 6 0 0 255\n", COLORS); /* names and a count */
   check_read("a.xyz", "# X Y Z R G B Intensity Nx Ny Nz\n1.5 2.5 3.5 255 51 0 -7 0 0 1\n4.25 -5 6 0 0 255 9 1 0 0\n",
@@ -171,6 +172,7 @@ static void test_refused(void) {
   check_refused("X,Y,Z\n1,2,3\n1,two,3\n", "not a number", "line 3");
   check_refused("X,Y,Z\n", "without a point", "line 2");
   check_refused("\1\2\3\n", "no text", "line 1");
+  check_refused("x y z\r1 2 3\r4 5 6\r", "carriage return alone", "line 1");
   check_refused("15\n71\n0 0 0\n1 0 0\n", "PTX scan", "line 2");
 }
 
