@@ -19,7 +19,7 @@ macro(conic_add_module name library)
 endmacro()
 
 if(TARGET OpenImageIO::OpenImageIO)
-  conic_add_module(openimageio OpenImageIO::OpenImageIO core/image/openimageio_bridge.cpp)
+  conic_add_module(openimageio OpenImageIO::OpenImageIO core/pictures/openimageio_bridge.cpp)
   target_compile_options(conic_openimageio PRIVATE -Wno-shadow)
 endif()
 if(TARGET assimp::assimp)

@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #include "core/assimp/assimp_read.h"
-#include "core/image/openimageio_bridge.h"
+#include "core/pictures/openimageio_bridge.h"
 
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)

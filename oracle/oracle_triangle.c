@@ -114,12 +114,21 @@ static void normal_of_triangle(const conic_triangles *set, const uint32_t corner
   oracle_cross(a, b, normal);
 }
 
-/* World, unit, towards the viewer; *length is that of the mean that it comes from, and *away how far that points away.
- */
+static double cosine_between(const double a[3], const double b[3]) {
+  return oracle_dot(a, b) / (oracle_length(a) * oracle_length(b));
+}
+
+/* World, unit: on the side of the face that is seen, and mirrored along the ray where it leans away even so. *doubt is
+ * the cosine by which the less certain of the two questions of sides was decided. */
 static void find_shading_normal(const conic_triangles *set, const oracle_triangle *t, const conic_camera *camera,
-                                double x, double y, double normal[3], double *away) {
-  double at[2], ray[3] = {(x / 256.0 - camera->cx) / camera->fx, (y / 256.0 - camera->cy) / camera->fy, 1.0}, d[3];
-  normal_of_triangle(set, set->corners[t->index], normal);
+                                double x, double y, double normal[3], double *doubt) {
+  double at[2], ray[3] = {(x / 256.0 - camera->cx) / camera->fx, (y / 256.0 - camera->cy) / camera->fy, 1.0};
+  double d[3], face[3];
+  normal_of_triangle(set, set->corners[t->index], face);
+  if (!(oracle_length(face) > 0.0))
+    for (int axis = 0; axis < 3; axis++)
+      face[axis] = -camera->cam_from_world[2][axis];
+  memcpy(normal, face, sizeof face);
   if (set->normal[0]) {
     const uint32_t *corners = set->normal_corners ? set->normal_corners[t->index] : set->corners[t->index];
     double mean[3];
@@ -133,13 +142,14 @@ static void find_shading_normal(const conic_triangles *set, const oracle_triangl
   for (int axis = 0; axis < 3; axis++)
     d[axis] = camera->cam_from_world[0][axis] * ray[0] + camera->cam_from_world[1][axis] * ray[1] +
               camera->cam_from_world[2][axis] * ray[2];
-  if (!(oracle_length(normal) > 0.0))
-    for (int axis = 0; axis < 3; axis++)
-      normal[axis] = -camera->cam_from_world[2][axis];
-  *away = oracle_dot(normal, d) / (oracle_length(normal) * oracle_length(d));
-  double scale = (*away > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
+  double behind = cosine_between(face, d), along = cosine_between(normal, face);
+  double scale = ((behind > 0.0) != (along < 0.0) ? -1.0 : 1.0) / oracle_length(normal);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] *= scale;
+  double away = oracle_dot(normal, d) / oracle_dot(d, d);
+  for (int axis = 0; axis < 3 && away > 0.0; axis++)
+    normal[axis] -= 2.0 * away * d[axis];
+  *doubt = fabs(behind) < fabs(along) ? behind : along;
 }
 
 /* The greatest difference of a component between corners. */
@@ -200,14 +210,14 @@ static void look_at_piece(const oracle_mesh *mesh, const oracle_view *view, cons
   oracle_splat *splat = &seen->splat;
   double ray[3] = {(x / 256.0 - view->camera.cx) / view->camera.fx, (y / 256.0 - view->camera.cy) / view->camera.fy,
                    1.0},
-         away;
+         doubt;
   memset(seen, 0, sizeof *seen);
   splat->index = mesh->first_id + t->index;
   splat->opacity = 1.0;
   splat->behind = 1.0 / (1.0 + mesh->epsilon * s->iz / oracle_length(ray));
   find_color(mesh->triangles, t, x, y, splat->color);
-  find_shading_normal(mesh->triangles, t, &view->camera, x, y, splat->normal, &away);
-  splat->is_facing_unsure = fabs(away) < 4.0 * ORACLE_ROUNDINGS * ORACLE_UNIT;
+  find_shading_normal(mesh->triangles, t, &view->camera, x, y, splat->normal, &doubt);
+  splat->is_facing_unsure = fabs(doubt) < 4.0 * ORACLE_ROUNDINGS * ORACLE_UNIT;
   seen->candidate.splat = splat;
   seen->candidate.is_drawn = 1;
   seen->candidate.shape.range[0] = -INFINITY;

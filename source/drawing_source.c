@@ -39,12 +39,15 @@ static conic_status append_to_drawing(drawing_source *d, conic_splats *more) {
 }
 
 /* A model's faces become triangles. */
-static conic_status take_triangles(drawing_source *d, const char *path, conic_model *model) {
+static conic_status take_triangles(drawing_source *d, const char *path, const conic_source_options *options,
+                                   conic_model *model) {
   conic_context *context = d->base.context;
   conic_triangles triangles;
   conic_status status = conic_triangles_take(context, model, &triangles);
   if (status == CONIC_OK)
     status = conic_mesh_check(context, path, &triangles);
+  if (status == CONIC_OK && options->crease_deg > 0.0 && !triangles.normal[0] && !options->is_smooth)
+    status = conic_triangles_crease(context, &triangles, options->crease_deg);
   if (status == CONIC_OK)
     status = conic_triangles_append(context, &d->triangles, &triangles);
   conic_triangles_release(context, &triangles);
@@ -94,6 +97,28 @@ static conic_status take_points(drawing_source *d, const char *path, const conic
   return append_to_drawing(d, &model->points);
 }
 
+/* As fits: the faces that there are, and the points beside them. */
+static conic_status take_as_fits(drawing_source *d, const char *path, const conic_source_options *options,
+                                 conic_model *model) {
+  conic_context *context = d->base.context;
+  conic_model loose;
+  if (model->n_triangles && !conic_mesh_has_face(model)) {
+    conic_log(context, CONIC_LOG_WARNING, "%s: no face has three finite corners at three places; the points are drawn",
+              path);
+    model->n_triangles = 0;
+  }
+  if (model->n_triangles == 0)
+    return take_points(d, path, options, model);
+  memset(&loose, 0, sizeof loose);
+  conic_status status = conic_mesh_gather_loose(context, model, &loose.points);
+  if (status == CONIC_OK)
+    status = take_triangles(d, path, options, model);
+  if (status == CONIC_OK && loose.points.count)
+    status = take_points(d, path, options, &loose);
+  conic_model_release(context, &loose);
+  return status;
+}
+
 /* `up` is the model's, where its file or its kind says it. */
 static conic_status read_model(drawing_source *d, const char *path, const conic_source_options *options, double up[3]) {
   conic_context *context = d->base.context;
@@ -103,7 +128,7 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   conic_read_options_init(&reading);
   reading.cutoff = options->cutoff;
   reading.columns = options->columns;
-  reading.keeps_faces = options->as == CONIC_AS_MESH;
+  reading.keeps_faces = options->as == CONIC_AS_MESH || options->as == CONIC_AS_AUTO;
   conic_coloring_read(options->coloring, &reading);
   conic_status status = conic_model_read(context, path, &reading, &model);
   if (status != CONIC_OK)
@@ -113,8 +138,10 @@ static conic_status read_model(drawing_source *d, const char *path, const conic_
   if (conic_splats_bounds(&model.points, low, high) == 0)
     status = conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", path,
                         model.points.count ? "no point is finite" : "it holds no points");
+  else if (options->as == CONIC_AS_AUTO)
+    status = take_as_fits(d, path, options, &model);
   else if (reading.keeps_faces && model.n_triangles)
-    status = take_triangles(d, path, &model);
+    status = take_triangles(d, path, options, &model);
   else
     status = take_points(d, path, options, &model);
   conic_model_release(context, &model);
@@ -149,6 +176,8 @@ static conic_status dress(drawing_source *d, const conic_source_options *options
   if (options->as == CONIC_AS_MESH && d->triangles.count == 0)
     conic_log(context, CONIC_LOG_WARNING, "%s: there are no faces to draw as a mesh; the points are drawn",
               d->base.name);
+  if (d->triangles.count == 0 && options->texture_path)
+    conic_log(context, CONIC_LOG_WARNING, "%s: there are no faces for the texture to lie on", d->base.name);
   if (d->triangles.count == 0)
     return CONIC_OK;
   if (options->is_smooth)

@@ -2,31 +2,56 @@
 
 #include <string.h>
 
+#include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/splats/estimate.h"
+#include "core/splats/splats_gather.h"
 
-static int is_apart(const conic_triangles *mesh, uint32_t a, uint32_t b) {
+static int is_apart(float *const position[3], uint32_t a, uint32_t b) {
   for (int axis = 0; axis < 3; axis++)
-    if (mesh->position[axis][a] != mesh->position[axis][b])
+    if (position[axis][a] != position[axis][b])
       return 1;
   return 0;
 }
 
 /* Whether any face has three finite corners at three places. */
-static int has_face(const conic_triangles *mesh) {
-  for (size_t i = 0; i < mesh->count; i++) {
-    const uint32_t *c = mesh->corners[i];
+static int has_face(float *const position[3], const uint32_t (*corners)[3], size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    const uint32_t *c = corners[i];
     int is_finite = 1;
     for (int corner = 0; corner < 3; corner++)
       for (int axis = 0; axis < 3; axis++)
-        is_finite &= mesh->position[axis][c[corner]] - mesh->position[axis][c[corner]] == 0.0f;
-    if (is_finite && is_apart(mesh, c[0], c[1]) && is_apart(mesh, c[1], c[2]) && is_apart(mesh, c[2], c[0]))
+        is_finite &= position[axis][c[corner]] - position[axis][c[corner]] == 0.0f;
+    if (is_finite && is_apart(position, c[0], c[1]) && is_apart(position, c[1], c[2]) && is_apart(position, c[2], c[0]))
       return 1;
   }
   return 0;
 }
 
+int conic_mesh_has_face(const conic_model *model) {
+  return has_face(model->points.position, (const uint32_t(*)[3])model->triangles, model->n_triangles);
+}
+
+conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose) {
+  size_t n = model->points.count, n_loose = 0;
+  memset(loose, 0, sizeof *loose);
+  uint32_t *list = conic_memory_allocate_zeroed(context, n, sizeof *list); /* first whether each is in a triangle */
+  if (!list)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < 3 * model->n_triangles; i++)
+    list[model->triangles[i / 3][i % 3]] = 1;
+  for (size_t i = 0; i < n; i++)
+    if (!list[i])
+      list[n_loose++] = (uint32_t)i;
+  conic_status status = CONIC_OK;
+  if (n_loose && !conic_mesh_has_leftovers(n, n_loose))
+    status = conic_splats_gather(context, &model->points, list, n_loose, loose);
+  conic_memory_release(context, list);
+  return status;
+}
+
 conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles) {
-  if (has_face(triangles))
+  if (has_face(triangles->position, (const uint32_t(*)[3])triangles->corners, triangles->count))
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: no face has three finite corners at three places", path);
 }

@@ -3,6 +3,7 @@
 #define CONIC_MESH_INPUT_H
 
 #include "conic/coloring.h"
+#include "conic/model.h"
 #include "conic/triangles.h"
 
 /* Reads a mesh; `texture_path` may be null, and so may `coloring`, which names the scalar that its vertices get. On
@@ -10,6 +11,13 @@
  */
 conic_status conic_mesh_read(conic_context *context, const char *path, const char *texture_path,
                              const conic_coloring_options *coloring, conic_triangles *triangles);
+
+/* Whether any of a model's triangles has three finite corners at three places. */
+int conic_mesh_has_face(const conic_model *model);
+
+/* Copies the vertices of no triangle; none where they are leftovers. On success the caller releases *loose. Errors:
+ * MEMORY. */
+conic_status conic_mesh_gather_loose(conic_context *context, const conic_model *model, conic_splats *loose);
 
 /* Refuses a mesh without a face that has an area, by name: INPUT. */
 conic_status conic_mesh_check(conic_context *context, const char *path, const conic_triangles *triangles);

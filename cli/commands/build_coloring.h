@@ -27,7 +27,8 @@ int cli_coloring_check(const cli_session *session, cli_coloring *coloring);
 /* What is to be read. */
 void cli_coloring_read(const cli_coloring *coloring, conic_read_options *reading);
 
-/* Colours splats or triangles, of which either may be null; `up` is what their file says, or zero. Errors: as conic_drawing_color. */
+/* Colours splats or triangles, of which either may be null; `up` is what their file says, or zero. Errors: as
+ * conic_drawing_color. */
 conic_status cli_coloring_apply(cli_session *session, cli_coloring *coloring, const double up[3], conic_splats *splats,
                                 conic_triangles *triangles);
 

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "cli/outputs.h"
+#include "core/base/message.h"
+#include "source/reach.h"
 
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending) {
   int exit_code = cli_check_ending(build->output, ending);
@@ -39,6 +41,14 @@ int cli_build_parse(cli_build *build, const cli_option *options, int n_options, 
                      command);
   exit_code = cli_build_take_paths(build, positional[0], ending);
   return exit_code == CLI_DONE ? cli_build_check(build, &build->input, 1, ending) : exit_code;
+}
+
+conic_status cli_build_check_reach(const cli_build *build, const conic_splats *points) {
+  double low[3], high[3];
+  if (conic_splats_bounds(points, low, high) == 0 || conic_is_in_reach(low, high))
+    return CONIC_OK;
+  return conic_fail(build->session->context, CONIC_ERROR_INPUT, "%s: cannot be drawn: %s", build->input,
+                    conic_why_out_of_reach(points));
 }
 
 void cli_build_hint_faces(const cli_build *build, const conic_model *model) {

@@ -40,6 +40,9 @@ int cli_build_take_paths(cli_build *build, const char *input, const char *ending
 /* What of that concerns the output, for any number of inputs. Returns CLI_DONE or, after a message, the exit code. */
 int cli_build_check(const cli_build *build, const char *const *inputs, int n_inputs, const char *ending);
 
+/* Refuses points that reach farther out than can be drawn, in the words of conic render. Errors: INPUT. */
+conic_status cli_build_check_reach(const cli_build *build, const conic_splats *points);
+
 /* Warns where the input is a mesh, of which the output will only hold what stands for the vertices. */
 void cli_build_hint_faces(const cli_build *build, const conic_model *model);
 

@@ -37,6 +37,9 @@ static conic_status append_colored(layer_job *job, const conic_splats *batch) {
   if (!job->has_points)
     job->has_colors = batch->color[0] != NULL;
   job->has_points = 1;
+  conic_status status = cli_build_check_reach(&job->base, batch);
+  if (status != CONIC_OK)
+    return status;
   if (!batch->color[0] == !job->has_colors)
     return conic_layers_builder_append(job->builder, batch);
   if (!job->has_colors)
@@ -50,7 +53,7 @@ static conic_status append_colored(layer_job *job, const conic_splats *batch) {
   conic_splats colored = *batch;
   for (int channel = 0; channel < 3; channel++)
     colored.color[channel] = white;
-  conic_status status = conic_layers_builder_append(job->builder, &colored);
+  status = conic_layers_builder_append(job->builder, &colored);
   conic_memory_release(context, white);
   return status;
 }

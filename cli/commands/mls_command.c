@@ -75,6 +75,8 @@ static conic_status read_points(mls_job *job) {
     status = conic_model_to_splats(context, &estimate, &job->model, &job->repairs);
   }
   if (status == CONIC_OK)
+    status = cli_build_check_reach(&job->base, points);
+  if (status == CONIC_OK)
     status = find_unit(job);
   cli_build_end_stage(&job->base.stages[ESTIMATE], start);
   return status;

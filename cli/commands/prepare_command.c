@@ -76,6 +76,8 @@ static int read_model(prepare_job *job) {
   conic_status status = conic_model_read(job->base.session->context, job->base.input, &options, &job->model);
   job->n_in = status == CONIC_OK ? job->model.points.count : 0;
   cli_build_hint_faces(&job->base, &job->model);
+  if (status == CONIC_OK)
+    status = cli_build_check_reach(&job->base, &job->model.points);
   return cli_exit_of(status);
 }
 

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "core/base/color.h"
 
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. */
@@ -46,7 +46,7 @@ void cli_backdrop_show(const cli_render_job *job, conic_image *image) {
     put_behind(&job->backdrop, conic_exposure_factor(job->options.exposure), image);
 }
 
-static int is_default(const cli_render_job *job) {
+static int uses_studio(const cli_render_job *job) {
   return !job->is_plain && !job->is_background_given;
 }
 
@@ -65,7 +65,7 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
                                 const conic_image *image) {
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_image alone, shown = *image;
-  if (!is_default(job) || !is_to_look_at(job, path) || !rgba)
+  if (!uses_studio(job) || !is_to_look_at(job, path) || !rgba)
     return cli_planes_write(session, job, path, image);
   conic_status status =
       conic_image_allocate(session->context, image->width, image->height, 1u << CONIC_PLANE_RGBA, &alone);
@@ -81,7 +81,7 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
 
 void cli_backdrop_report(cli_json *json, const cli_render_job *job) {
   const conic_render_options *options = &job->options;
-  const cli_backdrop *gradient = is_default(job) ? &studio : &job->backdrop;
+  const cli_backdrop *gradient = uses_studio(job) ? &studio : &job->backdrop;
   const float *const colors[] = {options->has_background ? options->background : gradient->top, gradient->bottom};
   int n_colors = options->has_background ? 1 : gradient->is_given ? 2 : 0;
   cli_json_array(json, "background");

@@ -5,7 +5,7 @@
 #include "cli/render/render_job.h"
 
 /* A parser of values, into a cli_render_job: COLOR, COLOR:COLOR of the top and the bottom, or none. */
-int cli_parse_background(const char *text, void *job);
+int cli_parse_background(const char *text, void *value);
 
 /* Puts the gradient that was asked for behind the picture, in all its outputs. */
 void cli_backdrop_show(const cli_render_job *job, conic_image *image);

@@ -168,6 +168,7 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   conic_camera camera;
   double start = cli_seconds();
   conic_status status = cli_scene_camera(job, i_frame, &camera);
+  job->last_camera = camera;
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = cli_choose_exposure(session, job, &camera);

@@ -38,7 +38,7 @@ typedef struct cli_render_job {
   int is_plain; /* --plain: nothing is chosen by what looks best */
   int is_background_given;
   cli_backdrop backdrop;                       /* --background with two colours */
-  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/lights.h) */
+  int is_light_given, is_sky_given, is_studio; /* of the lights: those of the options (cli/render/light_options.h) */
   int n_frames;                                /* of a turntable; 1 without */
   int is_turntable;
   cli_frames frames;
@@ -73,6 +73,7 @@ typedef struct cli_render_job {
 
   /* What came of it. */
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
+  conic_camera last_camera;
   double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
   double begun_seconds;            /* when reading began */
   uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */

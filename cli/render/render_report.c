@@ -3,7 +3,7 @@
 
 #include "cli/color_options.h"
 #include "cli/render/frames.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "cli/source_facts.h"
 #include "cli/tell.h"
 #include "core/base/message.h"
@@ -94,6 +94,38 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
   return report_source(json, job);
 }
 
+/* As a camera's file has it, so that this can be one. */
+static void report_camera(cli_json *json, const cli_render_job *job) {
+  static const char *const bases[] = {[CONIC_UP_HABIT] = "habit", [CONIC_UP_KIND] = "kind",
+                                      [CONIC_UP_FLAT] = "flat",   [CONIC_UP_OPEN] = "open",
+                                      [CONIC_UP_BASE] = "base",   [CONIC_UP_FACING] = "facing"};
+  const conic_camera *camera = &job->last_camera;
+  if (!job->camera_path) {
+    const conic_source_scale *scale = conic_source_measure(job->source);
+    cli_json_array(json, "up");
+    for (int i = 0; i < 3; i++)
+      cli_json_number(json, NULL, job->is_up_given ? job->framing.up[i] : scale->up[i]);
+    cli_json_close(json);
+    cli_json_text(json, "up_basis", job->is_up_given ? "given" : bases[scale->up_basis]);
+  }
+  cli_json_object(json, "camera");
+  cli_json_count(json, "width", (uint64_t)camera->width);
+  cli_json_count(json, "height", (uint64_t)camera->height);
+  cli_json_number(json, "fx", camera->fx);
+  cli_json_number(json, "fy", camera->fy);
+  cli_json_number(json, "cx", camera->cx);
+  cli_json_number(json, "cy", camera->cy);
+  cli_json_array(json, "world_to_camera");
+  for (int row = 0; row < 4; row++) {
+    cli_json_array(json, NULL);
+    for (int column = 0; column < 4; column++)
+      cli_json_number(json, NULL, row < 3 ? camera->cam_from_world[row][column] : column == 3 ? 1.0 : 0.0);
+    cli_json_close(json);
+  }
+  cli_json_close(json);
+  cli_json_close(json);
+}
+
 static void report_settings(cli_json *json, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   cli_json_text(json, "device", job->device.used);
@@ -105,6 +137,7 @@ static void report_settings(cli_json *json, const cli_render_job *job) {
   cli_json_text(json, "epsilon_mode", s->epsilon_is_fixed ? "fixed" : "auto");
   cli_json_number(json, "epsilon", s->epsilon);
   cli_json_number(json, "near", s->near_z);
+  report_camera(json, job);
   cli_lights_report(json, job);
   cli_backdrop_report(json, job);
   cli_json_count(json, "frames", (uint64_t)cli_frames_count(job));

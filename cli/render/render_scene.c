@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "cli/render/frames.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;

@@ -4,11 +4,12 @@
 
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
-#include "cli/render/lights.h"
+#include "cli/render/light_options.h"
 #include "cli/render/scene_options.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
-static const char *const as_words[] = {"points", "mesh", "hybrid", NULL};
+static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};
+static const conic_representation as_values[] = {CONIC_AS_AUTO, CONIC_AS_POINTS, CONIC_AS_MESH, CONIC_AS_HYBRID};
 static const char *const quality_words[] = {"draft", "good", "final", NULL};
 static const char *const only_words[] = {"triangles", "surfels", NULL};
 
@@ -104,11 +105,14 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [y; z for LAS]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
-       "what a mesh is drawn as: points (a splat a vertex), mesh (triangles) or hybrid (both) [points]",
-       .choices = as_words},
+       "what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both) [auto]",
+       .choices = as_words, .is_given = &raw.is_as_given},
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
+      {"crease", CLI_NUMBER, &job->opening.crease_deg, "DEG",
+       "triangles without normals are round over edges up to this angle; 0: flat [30]", 0, 90,
+       .is_given = &raw.is_crease_given},
       CLI_COLOR_OPTIONS(&job->coloring),
       {"error", CLI_NUMBER, &job->view.error_px, "PX",
        "of a .cot, .lpc or hybrid, no more than keeps the error on the screen below this; 0: all [0]", 0, 65536},
@@ -185,6 +189,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   o->isa = session->isa = (conic_isa)raw.isa;
   job->view.budget = job->budget;
   job->opening.cutoff = o->kernel.cutoff;
+  raw.as = raw.is_as_given ? (int)as_values[raw.as] : job->is_plain ? CONIC_AS_POINTS : CONIC_AS_AUTO;
+  if (!job->is_plain && !raw.is_crease_given && !job->opening.is_smooth)
+    job->opening.crease_deg = 30.0;
   job->opening.projects_degrees = !job->is_plain;
   job->opening.finds_dots = !job->is_plain;
   job->opening.h_in_spacings = raw.h.is_in_spacings;

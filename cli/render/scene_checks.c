@@ -28,7 +28,7 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   int is_hybrid = (job->abilities & CONIC_SOURCE_CLUSTERS) != 0;
   if (job->view.error_px > 0.0 && job->budget > 0)
     return cli_usage("%s: --error and --budget are two ways to choose; give one of both", command);
-  if (job->is_patch && (as != CONIC_AS_POINTS || is_hybrid))
+  if (job->is_patch && ((as != CONIC_AS_POINTS && as != CONIC_AS_AUTO) || is_hybrid))
     return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
   if (job->is_patch && cli_lod_is_wanted(job))
     return cli_usage("%s: --method patch draws samples of its own: not with --error or --budget", command);
@@ -58,8 +58,10 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
                      command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
-  if (job->opening.is_smooth && words->as != CONIC_AS_MESH)
-    return cli_usage("%s: --smooth is about triangles; give --as mesh, too", command);
+  if ((job->opening.is_smooth || words->is_crease_given) && words->as != CONIC_AS_MESH && words->as != CONIC_AS_AUTO)
+    return cli_usage("%s: --smooth and --crease are about triangles; give --as mesh, too", command);
+  if (job->opening.is_smooth && words->is_crease_given)
+    return cli_usage("%s: --smooth rounds all edges, --crease those up to an angle; give one of both", command);
   if (!job->is_patch && words->is_patch_given)
     return cli_usage("%s: --degree and --h are of patches; give --method patch, too", command);
   if (job->backdrop.is_given && !job->is_for_looking)
@@ -73,7 +75,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
   int colors = check_colors(session, job, words->as);
   if (colors != CLI_DONE)
     return colors;
-  job->opening.as = job->is_patch && words->as == CONIC_AS_POINTS ? CONIC_AS_PATCHES : (conic_representation)words->as;
+  job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
   job->opening.is_whole = !cli_lod_is_wanted(job) && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
   int answer = check_choice(session, job, words->as);

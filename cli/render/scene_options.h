@@ -15,7 +15,8 @@ typedef struct cli_scene_words {
   int isa;
   double cutoff, prefilter;
   int passes, is_patch_given;
-  int as; /* a conic_representation */
+  int as, is_as_given; /* a conic_representation */
+  int is_crease_given;
   cli_length h;
 } cli_scene_words;
 

@@ -50,13 +50,30 @@ static uint64_t number_at(const char *bytes, size_t at) {
   return number;
 }
 
-/* Whether a file of that size is a binary STL, which says how many faces it has. */
+/* Whether the faces that are there have normals, of length 1 or 0, and places within reach. */
+static int has_stl_faces(const char *bytes, size_t n) {
+  for (size_t at = 84; at + 50 <= n; at += 50) {
+    float values[12];
+    memcpy(values, bytes + at, sizeof values);
+    float square = values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
+    if (!(square == 0.0f || (square > 0.99f && square < 1.01f)))
+      return 0;
+    for (int i = 3; i < 12; i++)
+      if (!(values[i] > -1e15f && values[i] < 1e15f))
+        return 0;
+  }
+  return 1;
+}
+
+/* Whether a file of that size is a binary STL, which says how many faces it has; of a pipe, whether it may be. */
 static int is_stl(const char *bytes, size_t n, uint64_t size) {
-  return n >= 84 && number_at(bytes, 80) > 0 && size == 84 + 50 * number_at(bytes, 80);
+  if (n < 134 || number_at(bytes, 80) == 0)
+    return 0;
+  return size == UINT64_MAX ? has_stl_faces(bytes, n) : size == 84 + 50 * number_at(bytes, 80);
 }
 
 int conic_assimp_is_binary(const void *bytes, uint64_t n) {
-  return is_stl(bytes, n < 84 ? 0 : 84, n);
+  return is_stl(bytes, n < 134 ? 0 : 134, n);
 }
 
 /* Binary files of which the length must be what they say. */

@@ -11,7 +11,7 @@
 #include "core/files/file.h"
 #include "core/files/scratch.h"
 #include "core/image/image_common.h"
-#include "core/image/image_samples.h"
+#include "core/pictures/image_samples.h"
 
 enum { LONGEST_PATH = 2 * CONIC_INPUT_LONGEST_WORD };
 

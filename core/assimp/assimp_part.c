@@ -24,10 +24,12 @@ float conic_assimp_decode(const conic_assimp_part_builder *parts, float value) {
   return (float)conic_srgb_decode(is_code ? whole / 255.0 : (double)value);
 }
 
-conic_status conic_assimp_parts_begin(conic_context *context, conic_model_kind kind, const conic_read_options *options,
-                                      conic_model *model, conic_assimp_part_builder *parts) {
+conic_status conic_assimp_parts_begin(conic_context *context, const char *name, conic_model_kind kind,
+                                      const conic_read_options *options, conic_model *model,
+                                      conic_assimp_part_builder *parts) {
   memset(parts, 0, sizeof *parts);
   parts->context = context;
+  parts->name = name;
   parts->is_linear = kind == CONIC_MODEL_GLTF || kind == CONIC_MODEL_GLB;
   conic_status status = conic_builder_begin(context, model, 0, NULL, &parts->builder);
   if (status == CONIC_OK && options->keeps_faces)
@@ -158,7 +160,7 @@ static uint32_t add_vertex(conic_assimp_part_builder *parts, const assimp_part *
 static conic_status add_vertices(conic_assimp_part_builder *parts, assimp_part *taken) {
   size_t count = parts->builder.model->points.count + taken->n_vertices;
   if (count > CONIC_MAX_POINTS)
-    return conic_fail(parts->context, CONIC_ERROR_INPUT, "there are too many vertices");
+    return conic_fail(parts->context, CONIC_ERROR_INPUT, "%s: there are too many vertices", parts->name);
   conic_status status = conic_builder_reserve_points(&parts->builder, count);
   if (status == CONIC_OK && taken->color)
     status = conic_builder_add_field(&parts->builder, CONIC_SPLATS_COLORS);
@@ -217,7 +219,7 @@ static conic_status add_triangles(conic_assimp_part_builder *parts, const assimp
   conic_status status = parts->faces ? add_attributes(parts, taken) : CONIC_OK;
   if (status == CONIC_OK && parts->faces &&
       (parts->faces->n_normals > CONIC_MAX_POINTS || parts->faces->n_coordinates > CONIC_MAX_POINTS))
-    status = conic_fail(parts->context, CONIC_ERROR_INPUT, "there are too many vertices");
+    status = conic_fail(parts->context, CONIC_ERROR_INPUT, "%s: there are too many vertices", parts->name);
   for (size_t i = 0; status == CONIC_OK && i < taken->n_triangles; i++) {
     uint32_t normals[3], coordinates[3];
     const uint32_t *corners = taken->triangles[i];
@@ -237,8 +239,9 @@ static conic_status add_triangles(conic_assimp_part_builder *parts, const assimp
 conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,
                                     conic_assimp_part_builder *parts) {
   assimp_part taken = {.n_vertices = (size_t)record->n_vertices, .n_triangles = (size_t)record->n_triangles};
-  if (record->n_vertices > CONIC_MAX_POINTS || record->n_triangles > SIZE_MAX / sizeof *taken.triangles)
-    return conic_fail(process->context, CONIC_ERROR_INPUT, "%s: there are too many vertices", process->name);
+  if (record->n_vertices < 1 || record->n_vertices > CONIC_MAX_POINTS ||
+      record->n_triangles > SIZE_MAX / sizeof *taken.triangles)
+    return conic_fail(process->context, CONIC_ERROR_INPUT, "%s: there are no vertices, or too many", process->name);
   conic_status status = take_part_arrays(process, record, &taken);
   if (parts->faces)
     parts->faces->current_material =

@@ -9,6 +9,7 @@
 
 typedef struct conic_assimp_part_builder {
   conic_context *context;
+  const char *name; /* of the file, for messages */
   conic_builder builder;
   conic_faces *faces; /* the model's, where those are kept */
   int is_linear;      /* the file's colours, which are else encoded as sRGB */
@@ -20,8 +21,9 @@ typedef struct conic_assimp_part_builder {
 } conic_assimp_part_builder;
 
 /* Errors: MEMORY. */
-conic_status conic_assimp_parts_begin(conic_context *context, conic_model_kind kind, const conic_read_options *options,
-                                      conic_model *model, conic_assimp_part_builder *parts);
+conic_status conic_assimp_parts_begin(conic_context *context, const char *name, conic_model_kind kind,
+                                      const conic_read_options *options, conic_model *model,
+                                      conic_assimp_part_builder *parts);
 
 /* Takes what follows a part's record. Errors: INPUT, MEMORY, CANCELLED. */
 conic_status conic_assimp_take_part(conic_assimp_process *process, const conic_assimp_record *record,

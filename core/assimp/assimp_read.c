@@ -143,7 +143,7 @@ conic_status conic_assimp_read_records(const conic_input *input, conic_assimp_pr
                                        const conic_read_options *options, conic_model *model) {
   conic_assimp_record record = {.type = 0};
   assimp_reader reader = {.input = input, .process = process};
-  conic_status status = conic_assimp_parts_begin(input->context, kind, options, model, &reader.parts);
+  conic_status status = conic_assimp_parts_begin(input->context, input->name, kind, options, model, &reader.parts);
   while (status == CONIC_OK && record.type != CONIC_ASSIMP_END) {
     status = conic_assimp_process_take(process, &record, sizeof record);
     if (status == CONIC_OK)

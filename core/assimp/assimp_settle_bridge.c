@@ -8,8 +8,8 @@
 #include "core/assimp/assimp_writer_bridge.h"
 
 /* What any file may take beyond what it takes by its size. */
-static const uint64_t least_memory_bytes = UINT64_C(2) << 30, least_seconds = 60;
-static const uint64_t memory_per_byte = 64, bytes_per_second = 100000;
+static const uint64_t least_memory_bytes = UINT64_C(1) << 30, least_seconds = 60;
+static const uint64_t memory_per_byte = 256, bytes_per_second = 100000;
 
 static void set_limit(int resource, uint64_t most) {
   struct rlimit limit;

@@ -4,7 +4,7 @@
 
 #include "conic/image.h"
 
-static void add(conic_image *image, const char *name, conic_attribute_type type, const double *values, size_t n) {
+static void append(conic_image *image, const char *name, conic_attribute_type type, const double *values, size_t n) {
   if (image->n_attributes == CONIC_MAX_ATTRIBUTES)
     return;
   conic_attribute *attribute = &image->attributes[image->n_attributes++];
@@ -20,7 +20,7 @@ static void add_matrix(conic_image *image, const char *name, const double rows[4
   for (int row = 0; row < 4; row++)
     for (int column = 0; column < 4; column++)
       values[4 * column + row] = rows[row][column];
-  add(image, name, CONIC_ATTRIBUTE_FLOAT_MATRIX, values, 16);
+  append(image, name, CONIC_ATTRIBUTE_FLOAT_MATRIX, values, 16);
 }
 
 void conic_image_describe_camera(conic_image *image, const conic_camera *camera) {
@@ -42,8 +42,8 @@ void conic_image_describe_camera(conic_image *image, const conic_camera *camera)
   }
   add_matrix(image, "worldToCamera", (const double(*)[4])to_camera);
   add_matrix(image, "worldToNDC", (const double(*)[4])to_ndc);
-  add(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
-  add(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
-  add(image, "pixelAspectRatio", CONIC_ATTRIBUTE_FLOAT, &aspect, 1);
-  add(image, "chromaticities", CONIC_ATTRIBUTE_CHROMATICITIES, rec_709, 8);
+  append(image, "screenWindowCenter", CONIC_ATTRIBUTE_FLOAT_PAIR, center, 2);
+  append(image, "screenWindowWidth", CONIC_ATTRIBUTE_FLOAT, &window_width, 1);
+  append(image, "pixelAspectRatio", CONIC_ATTRIBUTE_FLOAT, &aspect, 1);
+  append(image, "chromaticities", CONIC_ATTRIBUTE_CHROMATICITIES, rec_709, 8);
 }

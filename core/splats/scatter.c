@@ -10,9 +10,9 @@
 #include "core/base/vectors.h"
 #include "core/splats/covariance.h"
 
-/* The scatter is the least of the covariance's eigenvalues over the sum of the lesser two: 0 in a plane, 0.22 on a sharp
- * edge and in a cube's corner, about 0.4 where points fill a space or a stick, half at most. Of the neighbours, where a
- * bent surface has little, and of the neighbours' neighbours, where a noisy one and thin walls have. */
+/* The scatter is the least of the covariance's eigenvalues over the sum of the lesser two: 0 in a plane, 0.22 on a
+ * sharp edge and in a cube's corner, about 0.4 where points fill a space or a stick, half at most. Of the neighbours,
+ * where a bent surface has little, and of the neighbours' neighbours, where a noisy one and thin walls have. */
 #define FULL_SCATTER 0.3
 /* How little the neighbours' normals agree, one less the mean of |n · n'|: half where they are drawn at random. */
 #define FULL_DISAGREEMENT 0.15

@@ -28,10 +28,12 @@ typedef struct conic_source conic_source;
 
 /* What a file becomes that does not say by itself. */
 typedef enum conic_representation {
-  CONIC_AS_POINTS = 0, /* splats: of a mesh, one a vertex */
-  CONIC_AS_MESH = 1,   /* triangles, where there are faces */
-  CONIC_AS_HYBRID = 2, /* a mesh becomes a hybrid model */
-  CONIC_AS_PATCHES = 3 /* points become samples of the polynomials about them */
+  CONIC_AS_POINTS = 0,  /* splats: of a mesh, one a vertex */
+  CONIC_AS_MESH = 1,    /* triangles, where there are faces */
+  CONIC_AS_HYBRID = 2,  /* a mesh becomes a hybrid model */
+  CONIC_AS_PATCHES = 3, /* points become samples of the polynomials about them */
+  CONIC_AS_AUTO = 4     /* each file as fits: triangles where it has faces, beside them its points of no face where
+                           these are no leftovers; else splats */
 } conic_representation;
 
 /* What a source can do besides being drawn, as bits. */
@@ -54,15 +56,16 @@ typedef struct conic_source_options {
   const conic_patches_options *patches; /* but for the cutoff; null: the defaults */
   int h_in_spacings;                    /* the patches' surface.h is in median sample spacings */
   int projects_degrees; /* raw points whose x and y are longitude and latitude are drawn in metres, and said to be */
-  int finds_dots; /* raw points about which there is no surface become dots, which face each picture's camera */
+  int finds_dots;       /* raw points about which there is no surface become dots, which face each picture's camera */
 
   /* What colours are made of; null: they are as the files have them. Heights and normals are of what is drawn whole;
    * of a .cot or .lpc, with is_whole. */
   const conic_coloring_options *coloring;
   const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
+  double crease_deg;   /* above 0: triangles of a file without normals are round over edges up to this angle */
 } conic_source_options;
 
-/* Splats, cutoff 1.5, 20 neighbours, no dots. */
+/* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */
 CONIC_API void conic_source_options_init_sized(conic_source_options *options, size_t size);
 #define conic_source_options_init(options) conic_source_options_init_sized(options, sizeof *(options))
 

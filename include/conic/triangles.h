@@ -114,6 +114,11 @@ CONIC_API conic_status conic_triangles_texture(conic_context *context, conic_tri
  * Errors: MEMORY. */
 CONIC_API conic_status conic_triangles_smooth(conic_context *context, conic_triangles *triangles);
 
+/* Gives every corner the mean of the normals, weighted by area, of the faces around it that hang together with its own
+ * by edges of no more than the angle (0 to 90): those are round, others sharp. Corners at one place belong together,
+ * whichever vertices they name. Errors: ARGUMENT, MEMORY, CANCELLED; the normals are then as they were. */
+CONIC_API conic_status conic_triangles_crease(conic_context *context, conic_triangles *triangles, double angle_deg);
+
 /* The axis-aligned box of the finite vertices that triangles use, in world coordinates. Returns how many corners are
  * finite; where that is 0, minimum and maximum are zero. */
 CONIC_API size_t conic_triangles_bounds(const conic_triangles *triangles, double minimum[3], double maximum[3]);

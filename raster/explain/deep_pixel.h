@@ -2,7 +2,7 @@
 #ifndef CONIC_DEEP_PIXEL_H
 #define CONIC_DEEP_PIXEL_H
 
-#include "core/image/image_exr_deep.h"
+#include "core/pictures/image_exr_deep.h"
 
 /* The samples stand in the order of the sums, each with its own colour (rgba without A), depth, id and weight. They
  * come out in the order of their depths, colours times alpha. Over each other they are `shaded`, or where that is null

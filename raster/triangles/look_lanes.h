@@ -40,10 +40,18 @@ CONIC_INLINE void find_places(const conic_triangle_look *look, lanes column, lan
   }
 }
 
+CONIC_INLINE lanes dot_of_lanes(const lanes a[3], const lanes b[3]) {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
 CONIC_INLINE void find_normals(const conic_triangle_look *look, const look_places *p, const float world_from_cam[3][3],
                                lanes dx, lanes dy, lanes normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
-    normal[axis] = lanes_of(look->face[axis]);
+  lanes ray[3], face[3];
+  for (int axis = 0; axis < 3; axis++) {
+    const float *m = world_from_cam[axis];
+    ray[axis] = (m[0] * dx + m[1] * dy) + m[2];
+    normal[axis] = face[axis] = lanes_of(look->face[axis]);
+  }
   if (look->has_normals) {
     lanes mean[3];
     for (int axis = 0; axis < 3; axis++)
@@ -53,14 +61,14 @@ CONIC_INLINE void find_normals(const conic_triangle_look *look, const look_place
     for (int axis = 0; axis < 3; axis++)
       normal[axis] = lanes_select(is_usable, mean[axis] * scale, normal[axis]);
   }
-  lanes away = lanes_of(0.0f);
-  for (int i = 0; i < 3; i++) {
-    const float *m = world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
-  lanes_mask is_away = lanes_less(lanes_of(0.0f), away);
+  lanes zero = lanes_of(0.0f);
+  lanes_mask is_turned = lanes_less(zero, dot_of_lanes(face, ray)) ^ lanes_less(dot_of_lanes(normal, face), zero);
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = lanes_select(is_away, -normal[axis], normal[axis]);
+    normal[axis] = lanes_select(is_turned, -normal[axis], normal[axis]);
+  lanes away = dot_of_lanes(normal, ray), part = 2.0f * away / dot_of_lanes(ray, ray);
+  lanes_mask is_away = lanes_less(zero, away);
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = lanes_select(is_away, normal[axis] - part * ray[axis], normal[axis]);
 }
 
 /* The colours without the texture's. */

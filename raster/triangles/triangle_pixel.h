@@ -52,11 +52,21 @@ static inline void conic_triangle_look_place(const conic_triangle_look *look, co
   }
 }
 
-/* The unit normal, towards the viewer, who looks along (dx, dy, 1). */
+static inline float conic_triangle_dot(const float a[3], const float b[3]) {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+/* The unit normal, towards the viewer, who looks along (dx, dy, 1). It lies on the side of the face that is seen, and
+ * where it leans away even so, as near an outline, it is mirrored in the plane across the ray: turned round it would
+ * point the other way at once, and light would jump. */
 static inline void conic_triangle_look_normal(const conic_triangle_look *look, const conic_triangle_weights *w,
                                               const float world_from_cam[3][3], float dx, float dy, float normal[3]) {
-  for (int axis = 0; axis < 3; axis++)
+  float ray[3];
+  for (int axis = 0; axis < 3; axis++) {
+    const float *m = world_from_cam[axis];
+    ray[axis] = (m[0] * dx + m[1] * dy) + m[2];
     normal[axis] = look->face[axis];
+  }
   if (look->has_normals) {
     float mean[3], scale;
     for (int axis = 0; axis < 3; axis++)
@@ -66,13 +76,13 @@ static inline void conic_triangle_look_normal(const conic_triangle_look *look, c
     for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
       normal[axis] = mean[axis] * scale;
   }
-  float away = 0.0f;
-  for (int i = 0; i < 3; i++) {
-    const float *m = world_from_cam[i];
-    away += normal[i] * ((m[0] * dx + m[1] * dy) + m[2]);
-  }
+  int is_behind = conic_triangle_dot(look->face, ray) > 0.0f,
+      is_opposite = conic_triangle_dot(normal, look->face) < 0.0f;
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = away > 0.0f ? -normal[axis] : normal[axis];
+    normal[axis] = is_behind != is_opposite ? -normal[axis] : normal[axis];
+  float away = conic_triangle_dot(normal, ray), part = 2.0f * away / conic_triangle_dot(ray, ray);
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = away > 0.0f ? normal[axis] - part * ray[axis] : normal[axis];
 }
 
 /* What a pixel sees of its triangle; where there is a texture, the colour without it, and where it is seen. */

@@ -40,6 +40,14 @@ for kind in off stl; do
   cat a.$kind | "$conic" info - | grep -q "^kind  *$kind$" || fail "a.$kind by way of a pipe is not $kind"
 done
 
+# A binary STL from a pipe, whose size is not known.
+perl -e 'open $f, "a.obj"; while (<$f>) { push @v, [split] if s/^v //; push @f, [split] if s/^f //; }
+  print "\0" x 80, pack "V", scalar @f;
+  print pack "f<12v", 0, 0, 0, map({@{$v[$_ - 1]}} @$_), 0 for @f;' > b.stl
+cat b.stl | "$conic" info - | grep -q '^kind  *stl$' || fail "a binary STL by way of a pipe is none"
+head -c 2000 /dev/urandom > noise
+cat noise | "$conic" info - > /dev/null 2>&1 && fail "noise is read"
+
 # The picture of the OBJ, bit for bit, and up where the kind of file has it.
 draw() { # FILE OUTPUT OPTIONS …
   run 0 render "$1" -o "$2" --as mesh --size 64x64 "${@:3}"

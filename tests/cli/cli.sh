@@ -231,6 +231,10 @@ done
 printf '0 0 0\n0 1e30 0\n' > giant.xyz
 run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' render giant.xyz -o outputs/a.pfm
 run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' octree giant.xyz -o outputs/a.cot
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' prepare giant.xyz -o outputs/a.ply
+run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' mls thin giant.xyz -o outputs/a.ply --count 1
+[[ $has_zstd -eq 0 ]] ||
+  run_wrong 3 'giant.xyz: cannot be drawn: a point is farther out than 1e20' layer giant.xyz -o outputs/a.lpc
 run 0 info giant.xyz --check
 grep -q '^sound *no' out || fail "info takes what cannot be drawn for sound"
 grep -q 'cannot be drawn: a point is farther out than 1e20' out || fail "info does not say why: $(cat out)"

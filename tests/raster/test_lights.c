@@ -8,7 +8,7 @@ static conic_light light_in(conic_light_frame frame, double x, double y, double 
   return light;
 }
 
-static double random_unit(uint64_t *state, double v[3]) {
+static double random_direction(uint64_t *state, double v[3]) {
   double length;
   do {
     for (int i = 0; i < 3; i++)
@@ -60,7 +60,7 @@ static void fill_lighting(uint64_t *state, int n_lights, conic_lighting *lightin
   memset(lighting, 0, sizeof *lighting);
   lighting->is_given = 1;
   lighting->n_lights = n_lights;
-  random_unit(state, lighting->up);
+  random_direction(state, lighting->up);
   for (int c = 0; c < 3; c++) {
     lighting->sky[c] = (float)fixture_random(state);
     lighting->ground[c] = (float)fixture_random(state);
@@ -86,8 +86,8 @@ static void test_against_double(fixture *f) {
     f->options.shading = number % 2 ? CONIC_SHADE_PHONG : CONIC_SHADE_LAMBERT;
     turn_camera(&f->camera, 6.0 * fixture_random(&state), 3.0 * fixture_random(&state));
     CHECK_OK(conic_finish_lights_init(f->context, &f->camera, &f->options, &lights));
-    random_unit(&state, v);
-    double length = random_unit(&state, n);
+    random_direction(&state, v);
+    double length = random_direction(&state, n);
     for (int i = 0; i < 3; i++) {
       viewer[i] = (float)v[i];
       normal[i] = (float)n[i];

@@ -398,6 +398,41 @@ static void test_many(void) {
   fixture_close(&f);
 }
 
+/* How many splats and triangles a file is, each as fits, and how many normals these have. */
+static void expect_auto(const char *name, const char *text, size_t n_splats, size_t n_triangles, size_t n_normals) {
+  fixture f = open_counted();
+  conic_source_options opening;
+  conic_source *source;
+  const char *const both[] = {files_write(name, text), paths[PLY]};
+  conic_source_options_init(&opening);
+  opening.as = CONIC_AS_AUTO;
+  opening.crease_deg = 30.0;
+  for (int n = 1; n <= 2; n++) {
+    CHECK_OK(conic_source_open(f.context, both, (size_t)n, &opening, &source));
+    const conic_drawing *drawing = &conic_source_chosen(source)->drawing;
+    CHECK(drawing->splats->count == n_splats + (n == 2 ? 3000 : 0));
+    CHECK(drawing->triangles->count == n_triangles && drawing->triangles->n_normals == n_normals);
+    conic_source_close(source);
+  }
+  CHECK(remove(both[0]) == 0);
+  fixture_close(&f);
+}
+
+/* Triangles where there are faces, points where there are none, both where both are meant. */
+static void test_auto(void) {
+  char fan[2048] = "v 0 0 0\n";
+  for (int i = 0; i < 24; i++)
+    snprintf(fan + strlen(fan), sizeof fan - strlen(fan), "v %g %g 0\n", cos(0.25 * i), sin(0.25 * i));
+  for (int i = 2; i < 24; i++)
+    snprintf(fan + strlen(fan), sizeof fan - strlen(fan), "f 1 %d %d\n", i, i + 1);
+  expect_auto("bend.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.9 0.9 0.2\nf 1 2 3\nf 2 4 3\n", 0, 2, 4);
+  expect_auto("edge.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.6 0.6 1\nf 1 2 3\nf 2 4 3\n", 0, 2, 6);
+  expect_auto("beside.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 3 3 3\nv 3 4 3\n", 2, 1, 3);
+  expect_auto("left.obj", fan, 0, 22, 24);
+  expect_auto("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 2\n", 4, 0, 0);
+  expect_auto("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", 3, 0, 0);
+}
+
 /* --- files as they stand --- */
 
 static void test_inspecting(void) {
@@ -453,6 +488,7 @@ static void test_memory(const char *path, conic_representation as) {
   conic_source_options opening;
   conic_source_options_init(&opening);
   opening.as = as;
+  opening.crease_deg = as == CONIC_AS_AUTO ? 30.0 : 0.0;
   fixture f = open_counted();
   conic_source *source;
   conic_status status = CONIC_ERROR_MEMORY;
@@ -478,10 +514,12 @@ int main(void) {
   test_hybrid();
   test_patches();
   test_many();
+  test_auto();
   test_inspecting();
   test_refusals();
   test_memory(paths[PLY], CONIC_AS_POINTS);
   test_memory(paths[OBJ], CONIC_AS_MESH);
+  test_memory(paths[OBJ], CONIC_AS_AUTO);
   test_memory(paths[PLY], CONIC_AS_PATCHES);
   test_memory(paths[COT], CONIC_AS_POINTS);
   test_memory(paths[CHY], CONIC_AS_POINTS);

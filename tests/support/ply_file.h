@@ -96,6 +96,7 @@ static inline int ply_same_models(const conic_model *a, const conic_model *b) {
          ply_same_arrays(p->tangent_v, q->tangent_v, p->count) && ply_same_arrays(p->normal, q->normal, p->count) &&
          ply_same_arrays(p->color, q->color, p->count) &&
          (!p->opacity || memcmp(p->opacity, q->opacity, p->count * sizeof(float)) == 0) &&
+         (!p->dot || memcmp(p->dot, q->dot, p->count * sizeof(float)) == 0) &&
          (!a->n_triangles || memcmp(a->triangles, b->triangles, a->n_triangles * sizeof *a->triangles) == 0);
 }
 

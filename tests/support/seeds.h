@@ -114,7 +114,7 @@ static inline void seeds_all_ply(seed_set *set) {
   seeds_ply(set,
             "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float tu_x\n"
             "property float tu_y\nproperty float tu_z\nproperty float tv_x\nproperty float tv_y\nproperty float tv_z\n"
-            "property uchar a\nproperty list uchar int clip_or\nproperty float opacity\n",
+            "property uchar dot\nproperty list uchar int clip_or\nproperty float opacity\n",
             "fffffffffblf", 3, "", 0, 0);
   seeds_ply(set,
             "comment TextureFile gone.pfm\ncomment TextureFile gone too.pfm\nelement vertex 3\nproperty float x\n"

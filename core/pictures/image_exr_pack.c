@@ -5,7 +5,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/image/image_exr_deep.h"
+#include "core/pictures/image_exr_deep.h"
 
 #if CONIC_HAVE_ZLIB
 #include <zlib.h>

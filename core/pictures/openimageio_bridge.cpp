@@ -1,6 +1,6 @@
 // The bridge to OpenImageIO, the one C++ file and a module of its own. It moves samples and decides nothing about
 // colour.
-#include "core/image/openimageio_bridge.h"
+#include "core/pictures/openimageio_bridge.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

@@ -1,4 +1,4 @@
-#include "core/image/image_exr.h"
+#include "core/pictures/image_exr.h"
 
 #include "core/base/message.h"
 
@@ -10,8 +10,8 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
-#include "core/image/image_channels.h"
-#include "core/image/image_exr_stream.h"
+#include "core/pictures/image_channels.h"
+#include "core/pictures/image_exr_stream.h"
 
 /* zlib's level. 4, the library's default, makes files at most 5 % smaller and takes up to a half longer. */
 enum { ZIP_LEVEL = 2 };

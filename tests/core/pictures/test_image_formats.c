@@ -1,6 +1,6 @@
 /* PNG, and TIFF, JPEG, HDR through OpenImageIO: which codes colours become, and what comes back. */
 #include "core/base/color.h"
-#include "core/image/image_samples.h"
+#include "core/pictures/image_samples.h"
 #include "tests/support/image_fixture.h"
 
 static conic_image write_and_read(conic_context *context, const char *name, const conic_image *image) {

@@ -1,4 +1,4 @@
-#include "core/image/image_samples.h"
+#include "core/pictures/image_samples.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "core/image/image_exr_deep.h"
+#include "core/pictures/image_exr_deep.h"
 
 #include "core/base/message.h"
 
@@ -8,7 +8,7 @@
 
 #include "core/base/memory.h"
 #include "core/files/file.h"
-#include "core/image/image_exr_stream.h"
+#include "core/pictures/image_exr_stream.h"
 
 #if CONIC_HAVE_ZLIB
 static const exr_compression_t compression = EXR_COMPRESSION_ZIPS;

@@ -1,5 +1,5 @@
 /* EXR files: every bit there and back, what stands in the header, and files that are cut short. */
-#include "core/image/image_foreign.h"
+#include "core/pictures/image_foreign.h"
 #include "tests/support/image_fixture.h"
 
 static conic_attribute text_attribute(const char *name, const char *text) {

@@ -1,6 +1,6 @@
 #if CONIC_HAVE_OPENEXR
 
-#include "core/image/image_exr_stream.h"
+#include "core/pictures/image_exr_stream.h"
 
 #include <errno.h>
 #include <string.h>

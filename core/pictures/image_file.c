@@ -10,10 +10,10 @@
 #include "core/base/options.h"
 #include "core/files/guard.h"
 #include "core/image/image_common.h"
-#include "core/image/image_exr.h"
-#include "core/image/image_foreign.h"
-#include "core/image/image_pfm.h"
-#include "core/image/image_png.h"
+#include "core/pictures/image_exr.h"
+#include "core/pictures/image_foreign.h"
+#include "core/pictures/image_pfm.h"
+#include "core/pictures/image_png.h"
 
 void conic_image_options_init_sized(conic_image_options *options, size_t size) {
   static const conic_image_options own = {.size = sizeof own};

@@ -1,4 +1,8 @@
-#include "cli/render/lights.h"
+<<<<<<<< HEAD:cli/render/light_options.c
+#include "cli/render/light_options.h"
+========
+#include "cli/render/light_options.h"
+>>>>>>>> light:cli/render/light_options.c
 
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +106,11 @@ void cli_lights_settle(cli_render_job *job) {
   conic_lighting *lighting = &job->options.lighting;
   if (!job->is_light_given)
     (void)(job->is_plain ? cli_parse_light("head", job) : add_studio(job));
+  /* What has no colours of its own is white, which no material is: the lights stand back as far as plaster is darker. */
+  float part = job->is_plain || job->is_light_given || conic_source_measure(job->source)->has_colors ? 1.0f : 0.75f;
+  for (int i = 0; i < lighting->n_lights; i++)
+    for (int c = 0; c < 3; c++)
+      lighting->lights[i].color[c] *= part;
   for (int i = 0; i < 3 && !job->is_sky_given; i++) {
     lighting->sky[i] = job->is_studio ? studio_sky[i] : plain_sky;
     lighting->ground[i] = job->is_studio ? studio_ground[i] : plain_sky;

@@ -1,7 +1,7 @@
-#include "core/image/image_exr.h"
+#include "core/pictures/image_exr.h"
 
 #include "core/base/message.h"
-#include "core/image/image_foreign.h"
+#include "core/pictures/image_foreign.h"
 
 #if CONIC_HAVE_OPENEXR
 
@@ -11,10 +11,10 @@
 
 #include "core/base/memory.h"
 #include "core/base/threads.h"
-#include "core/image/image_channels.h"
 #include "core/image/image_common.h"
-#include "core/image/image_exr_stream.h"
-#include "core/image/openimageio_bridge.h"
+#include "core/pictures/image_channels.h"
+#include "core/pictures/image_exr_stream.h"
+#include "core/pictures/openimageio_bridge.h"
 
 typedef struct exr_reader {
   conic_exr_stream stream;

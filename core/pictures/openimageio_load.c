@@ -1,7 +1,7 @@
 #include <stdio.h>
 
 #include "core/base/module.h"
-#include "core/image/openimageio_bridge.h"
+#include "core/pictures/openimageio_bridge.h"
 
 #if CONIC_HAVE_OPENIMAGEIO
 

@@ -1,4 +1,4 @@
-#include "core/image/image_foreign.h"
+#include "core/pictures/image_foreign.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -6,10 +6,10 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/file.h"
-#include "core/image/image_channels.h"
 #include "core/image/image_common.h"
-#include "core/image/image_samples.h"
-#include "core/image/openimageio_bridge.h"
+#include "core/pictures/image_channels.h"
+#include "core/pictures/image_samples.h"
+#include "core/pictures/openimageio_bridge.h"
 
 /* OpenImageIO writes EXR too, but would leave out all but rgba. */
 static int is_float_format(const char *format) {

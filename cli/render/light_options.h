@@ -1,6 +1,6 @@
 /* The lights of a picture: --light and --sky, and what they are where nobody said. */
-#ifndef CONIC_RENDER_LIGHTS_H
-#define CONIC_RENDER_LIGHTS_H
+#ifndef CONIC_LIGHT_OPTIONS_H
+#define CONIC_LIGHT_OPTIONS_H
 
 #include "cli/render/render_job.h"
 
@@ -12,9 +12,9 @@ void cli_report_color(cli_json *json, const char *key, const float color[3]);
 
 /* Parsers of values, into a cli_render_job. --light may be given again:
  * X,Y,Z, camera:X,Y,Z or head, each with :COLOR behind it or without; studio; none. */
-int cli_parse_light(const char *text, void *job);
+int cli_parse_light(const char *text, void *value);
 /* COLOR, or COLOR:COLOR of the sky and the ground. */
-int cli_parse_sky(const char *text, void *job);
+int cli_parse_sky(const char *text, void *value);
 
 /* What the options about light mean together, once the scene is open and it is known what points up. */
 void cli_lights_settle(cli_render_job *job);

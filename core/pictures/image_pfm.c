@@ -1,4 +1,4 @@
-#include "core/image/image_pfm.h"
+#include "core/pictures/image_pfm.h"
 
 #include <errno.h>
 #include <stdio.h>

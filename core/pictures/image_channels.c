@@ -1,4 +1,4 @@
-#include "core/image/image_channels.h"
+#include "core/pictures/image_channels.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* PNG files of every kind: what their samples become, that OpenImageIO's are the same, and files that are not sound. */
 #include "core/base/color.h"
-#include "core/image/image_foreign.h"
+#include "core/pictures/image_foreign.h"
 #include "tests/support/image_fixture.h"
 #include "tests/support/png_file.h"
 

@@ -1,6 +1,6 @@
-#include "core/image/image_png.h"
+#include "core/pictures/image_png.h"
 
-#include "core/image/image_foreign.h"
+#include "core/pictures/image_foreign.h"
 
 #if CONIC_HAVE_PNG
 
@@ -12,7 +12,7 @@
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/image/image_common.h"
-#include "core/image/image_samples.h"
+#include "core/pictures/image_samples.h"
 
 /* zlib's level, and the rows' filter. Of 1024² pixels of the lion that takes 12 ms; all filters and level 6 make a file
  * that is smaller by an eighth in 64 ms, and no filter one that is larger by a third in 14 ms. */
@@ -50,7 +50,7 @@ static size_t row_bytes(const png_work *work) {
 
 /* --- writing --- */
 
-static void write_bytes(png_structp png, png_bytep bytes, size_t n_bytes) {
+static void write_png(png_structp png, png_bytep bytes, size_t n_bytes) {
   png_work *work = png_get_io_ptr(png);
   if (fwrite(bytes, 1, n_bytes, work->file) != n_bytes)
     png_error(png, "the file cannot be written");
@@ -64,7 +64,7 @@ static void flush_nothing(png_structp png) {
 static int encode(png_work *work) {
   if (setjmp(png_jmpbuf(work->png)))
     return 0;
-  png_set_write_fn(work->png, work, write_bytes, flush_nothing);
+  png_set_write_fn(work->png, work, write_png, flush_nothing);
   png_set_compression_level(work->png, ZIP_LEVEL);
   png_set_filter(work->png, PNG_FILTER_TYPE_BASE, FILTERS);
   png_set_IHDR(work->png, work->info, (png_uint_32)work->width, (png_uint_32)work->height, 8, PNG_COLOR_TYPE_RGBA,
@@ -121,7 +121,7 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
 
 /* --- reading --- */
 
-static void read_bytes(png_structp png, png_bytep bytes, size_t n_bytes) {
+static void read_png(png_structp png, png_bytep bytes, size_t n_bytes) {
   png_work *work = png_get_io_ptr(png);
   if (fread(bytes, 1, n_bytes, work->file) == n_bytes)
     return;
@@ -136,7 +136,7 @@ static int decode_header(png_work *work) {
   if (setjmp(png_jmpbuf(work->png)))
     return 0;
   png_set_user_limits(work->png, CONIC_IMAGE_MAX_SIZE, CONIC_IMAGE_MAX_SIZE);
-  png_set_read_fn(work->png, work, read_bytes);
+  png_set_read_fn(work->png, work, read_png);
   png_read_info(work->png, work->info);
   png_set_expand(work->png);
   png_set_swap(work->png); /* samples of 16 bits */
