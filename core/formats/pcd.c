@@ -1,5 +1,6 @@
 #include "core/formats/pcd.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/base/memory.h"
@@ -147,7 +148,10 @@ static conic_status read_text_row(pcd_reader *reader, conic_text_word line, size
     double *value = &reader->block[slot][i_row];
     if (reader->field_of[slot] < 0)
       continue;
-    if (conic_number_parse(words[slot].text, words[slot].length, value) != words[slot].length)
+    int is_number = conic_number_parse(words[slot].text, words[slot].length, value) == words[slot].length;
+    if (slot == SCALAR && !is_number)
+      *value = (double)NAN; /* nobody would mind, had it not been asked for */
+    else if (!is_number)
       return conic_input_wrong(reader->input, "a value is not a number");
     if (slot == PACKED)
       *value = packed_bits(&header->fields[reader->field_of[slot]], *value);
