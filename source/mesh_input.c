@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/splats/estimate.h"
+#include "core/estimate/estimate.h"
 #include "core/splats/splats_gather.h"
 
 static int is_apart(float *const position[3], uint32_t a, uint32_t b) {

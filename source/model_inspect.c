@@ -53,7 +53,8 @@ static void tell_defects(const conic_splats *points, conic_facts *facts) {
 }
 
 static void tell_fields(unsigned fields, conic_facts *facts) {
-  static const char *const names[] = {"axes", "normals", "colors", "opacities", "clip lines", "dots"}; /* as the bits go */
+  static const char *const names[] = {"axes",      "normals",    "colors",
+                                      "opacities", "clip lines", "dots"}; /* as the bits go */
   char text[96] = "positions";
   size_t length = sizeof "positions" - 1;
   CONIC_ADD_FACTS(facts, CONIC_ARRAY("fields"));

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
-#include "core/splats/voronoi_cell.h"
+#include "core/estimate/voronoi_cell.h"
 
 enum { N_NEIGHBOURS = 32 };
 

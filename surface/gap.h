@@ -2,7 +2,7 @@
 #ifndef CONIC_GAP_H
 #define CONIC_GAP_H
 
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 
 typedef struct conic_gap {
   double center[3]; /* in the tangent plane */

@@ -3,7 +3,7 @@
 #define CONIC_MLS_SURFACE_H
 
 #include "conic/surface.h"
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "surface/kernels/surface_kernels.h"
 
 /* Cells of the tree summed as one sample each (PSS §3.4.2); made where they are asked for. */

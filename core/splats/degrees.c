@@ -5,7 +5,8 @@
 #include "core/base/trigonometry.h"
 
 /* Of a scan: degrees that it spans at most; how much farther than that it lies from the scales' origin, and how much
- * higher it is. A degree is 111 km, so a scan of a kilometre with a relief of ten metres is a thousand times as high. */
+ * higher it is. A degree is 111 km, so a scan of a kilometre with a relief of ten metres is a thousand times as high.
+ */
 static const double most_degrees = 5.0, least_remoteness = 4.0, least_height = 50.0;
 
 /* WGS 84: the semi-major axis in metres, and the squared eccentricity. */
@@ -19,8 +20,7 @@ int conic_points_are_degrees(const conic_splats *points) {
   for (int axis = 0; axis < 2; axis++)
     middle[axis] = 0.5 * low[axis] + 0.5 * high[axis];
   return low[0] >= -180.0 && high[0] <= 180.0 && low[1] >= -90.0 && high[1] <= 90.0 && ground > 0.0 &&
-         ground <= most_degrees &&
-         sqrt(middle[0] * middle[0] + middle[1] * middle[1]) > least_remoteness * ground &&
+         ground <= most_degrees && sqrt(middle[0] * middle[0] + middle[1] * middle[1]) > least_remoteness * ground &&
          high[2] - low[2] > least_height * ground;
 }
 

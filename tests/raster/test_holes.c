@@ -7,7 +7,7 @@
  * scanner saw nothing, between leaves, at silhouettes. The local spacing is the edge of the square that each point has
  * to itself, by the disc that holds its 6 nearest neighbours; of the rim's, the median. "Far behind" is 3 of those too.
  */
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "tests/support/fixture.h"
 
 enum { SIZE = 1024, MAX_SPAN = 160 /* pixels; what is wider is no pinhole of these models */ };

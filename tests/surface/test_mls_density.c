@@ -1,5 +1,5 @@
 /* Thinning and densifying: fewer points or more of them, and the same surface. */
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "tests/support/surface_shapes.h"
 
 static double greatest_distance(shape s, const conic_splats *splats) {

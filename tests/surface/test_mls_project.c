@@ -1,6 +1,6 @@
 /* The projection: it meets its definition, a second time it stays, and nothing changes its bits. */
 #include "core/base/eigen.h"
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "tests/support/surface_shapes.h"
 
 /* --- the definition, by plain sums over all samples --- */

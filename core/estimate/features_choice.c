@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/splats/features.h"
+#include "core/estimate/features.h"
 
 enum { MAX_CANDIDATES = 16 };
 

@@ -1,4 +1,4 @@
-#include "core/splats/covariance.h"
+#include "core/estimate/covariance.h"
 
 conic_covariance conic_covariance_about(const conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance covariance = {.count = 1.0};

@@ -2,7 +2,7 @@
 #ifndef CONIC_NORMALS_H
 #define CONIC_NORMALS_H
 
-#include "core/splats/neighbourhood.h"
+#include "core/estimate/neighbourhood.h"
 
 /* Gives every slot that is GUESSED (and LISTED) its normal: the direction in which the slot and its neighbours spread
  * least, up to the sign. Errors: CANCELLED. */

@@ -6,9 +6,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
+#include "core/estimate/estimate.h"
+#include "core/estimate/incidence.h"
 #include "core/splats/ellipse.h"
-#include "core/splats/estimate.h"
-#include "core/splats/incidence.h"
 
 /* The cosine from which on a face is steep in a vertex's tangent plane: 60°. */
 #define STEEP 0.5

@@ -6,9 +6,9 @@
 #include "core/base/memory.h"
 #include "core/base/triangle_distance.h"
 #include "core/base/vectors.h"
+#include "core/estimate/estimate.h"
+#include "core/estimate/incidence.h"
 #include "core/splats/ellipse.h"
-#include "core/splats/estimate.h"
-#include "core/splats/incidence.h"
 #include "core/splats/splats_gather.h"
 
 /* What a splat may stand out, as a part of the mesh's diagonal: not a pixel where a picture of 1024 shows all of it. */

@@ -1,4 +1,4 @@
-#include "core/splats/neighbourhood.h"
+#include "core/estimate/neighbourhood.h"
 
 #include <math.h>
 #include <string.h>

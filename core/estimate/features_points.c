@@ -7,10 +7,10 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
+#include "core/estimate/features.h"
+#include "core/estimate/neighbourhood.h"
 #include "core/splats/clip.h"
 #include "core/splats/ellipse.h"
-#include "core/splats/features.h"
-#include "core/splats/neighbourhood.h"
 
 /* Neighbours that a small plane is fitted to, and of which the spacing is told. */
 enum { FEW = 9 };

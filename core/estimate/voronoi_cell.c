@@ -1,4 +1,4 @@
-#include "core/splats/voronoi_cell.h"
+#include "core/estimate/voronoi_cell.h"
 
 #include <string.h>
 

@@ -6,8 +6,8 @@
 #include "core/base/message.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
+#include "core/estimate/neighbourhood.h"
 #include "core/splats/columns.h"
-#include "core/splats/neighbourhood.h"
 
 /* Where more corners meet, all of them are as flat as their faces: each would look at all others. */
 enum { MOST_CORNERS = 256 };

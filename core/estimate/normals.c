@@ -1,4 +1,4 @@
-#include "core/splats/normals.h"
+#include "core/estimate/normals.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
-#include "core/splats/covariance.h"
+#include "core/estimate/covariance.h"
 
 static void guess_normal(conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance covariance = conic_covariance_about(neighbourhood, slot);

@@ -1,11 +1,11 @@
-/* What the steps of an estimate share (core/splats/estimate.c drives them). */
+/* What the steps of an estimate share (core/estimate/estimate.c drives them). */
 #ifndef CONIC_ESTIMATE_H
 #define CONIC_ESTIMATE_H
 
 #include <stdint.h>
 
 #include "conic/model.h"
-#include "core/splats/neighbourhood.h"
+#include "core/estimate/neighbourhood.h"
 
 /* What has become of a point. */
 typedef enum conic_point_state {
@@ -24,7 +24,7 @@ typedef struct conic_estimate {
   uint8_t *states;     /* conic_point_state of each point */
   float *tangent_u[3]; /* of each point, beside the model's own: valid where FACED, SPREAD or ISOLATED */
   float *tangent_v[3];
-  float *dot; /* of each point; null: none are looked for */
+  float *dot;       /* of each point; null: none are looked for */
   double tolerance; /* no outline of a vertex grows, for blending, farther than this from its faces */
 } conic_estimate;
 

@@ -5,7 +5,7 @@
 #include "core/base/message.h"
 #include "core/base/random.h"
 #include "core/base/threads.h"
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 
 enum { SHARED_LEVELS = 6 };
 

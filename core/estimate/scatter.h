@@ -2,7 +2,7 @@
 #ifndef CONIC_SCATTER_H
 #define CONIC_SCATTER_H
 
-#include "core/splats/neighbourhood.h"
+#include "core/estimate/neighbourhood.h"
 
 /* Makes the LISTED slots about which there is no surface SCATTERED. Their normals are to be known, up to the sign.
  * Errors: MEMORY, CANCELLED. */

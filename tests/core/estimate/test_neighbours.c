@@ -1,5 +1,5 @@
 /* The kd-tree against looking at every point: ties, duplicates, points that are nowhere, tiny sets. */
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "tests/support/check.h"
 #include "tests/support/random_numbers.h"
 

@@ -1,4 +1,4 @@
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 
 enum { MAX_DEPTH = 34 };
 

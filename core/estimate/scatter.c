@@ -1,14 +1,14 @@
 /* A slot's score says how little of a surface its neighbourhood is; the mean of the scores round about decides, so that
  * a leaf among leaves goes with them, and a sharp corner with its faces. docs/notes/estimation.md has the
  * measurements. */
-#include "core/splats/scatter.h"
+#include "core/estimate/scatter.h"
 
 #include <math.h>
 
 #include "core/base/eigen.h"
 #include "core/base/memory.h"
 #include "core/base/vectors.h"
-#include "core/splats/covariance.h"
+#include "core/estimate/covariance.h"
 
 /* The scatter is the least of the covariance's eigenvalues over the sum of the lesser two: 0 in a plane, 0.22 on a
  * sharp edge and in a cube's corner, about 0.4 where points fill a space or a stick, half at most. Of the neighbours,

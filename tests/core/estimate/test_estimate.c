@@ -1,5 +1,5 @@
 /* Outlines of raw points: they cover what was sampled, whatever the pattern, and nothing that was not. */
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 #include "tests/support/outlines.h"
 
 static const double along_z[3] = {0.0, 0.0, 1.0};

@@ -2,7 +2,7 @@
 #ifndef CONIC_COVARIANCE_H
 #define CONIC_COVARIANCE_H
 
-#include "core/splats/neighbourhood.h"
+#include "core/estimate/neighbourhood.h"
 
 typedef struct conic_covariance {
   double origin[3]; /* the slot's position; it adds nothing to the sums but to their number */

@@ -4,8 +4,8 @@
 #include "conic/splats.h"
 #include "core/base/memory.h"
 #include "core/base/real.h"
+#include "core/estimate/neighbours.h"
 #include "core/splats/columns.h"
-#include "core/splats/neighbours.h"
 
 enum { N_NEAREST = 8, MAX_SAMPLES = 20000 };
 

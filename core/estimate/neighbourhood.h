@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "core/base/threads.h"
-#include "core/splats/neighbours.h"
+#include "core/estimate/neighbours.h"
 
 enum { CONIC_MAX_NEIGHBOURS = 64 };
 

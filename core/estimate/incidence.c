@@ -1,4 +1,4 @@
-#include "core/splats/incidence.h"
+#include "core/estimate/incidence.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* From a model to splats: what came with good axes keeps them, vertices take theirs from their faces, and the rest from
  * its neighbours. All is computed beside the model, which changes only when nothing can fail any more. */
-#include "core/splats/estimate.h"
+#include "core/estimate/estimate.h"
 #include "core/base/options.h"
 #include "core/splats/columns.h"
 #include "core/splats/degrees.h"
@@ -13,10 +13,10 @@
 #include "core/base/real.h"
 #include "core/base/trigonometry.h"
 #include "core/base/vectors.h"
+#include "core/estimate/features.h"
+#include "core/estimate/normals.h"
+#include "core/estimate/scatter.h"
 #include "core/splats/clip.h"
-#include "core/splats/features.h"
-#include "core/splats/normals.h"
-#include "core/splats/scatter.h"
 
 void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size) {
   static const conic_estimate_options own = {.size = sizeof own, .n_neighbours = 20, .cutoff = 1.5f};

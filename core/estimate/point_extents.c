@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "core/base/vectors.h"
+#include "core/estimate/estimate.h"
+#include "core/estimate/scatter.h"
+#include "core/estimate/voronoi_cell.h"
 #include "core/splats/ellipse.h"
-#include "core/splats/estimate.h"
-#include "core/splats/scatter.h"
-#include "core/splats/voronoi_cell.h"
 
 /* The cell's radius in local spacings; times CONIC_OUTLINE_COVER, half the width of a gap that closes. */
 #define CELL_RADIUS 1.5
