@@ -44,7 +44,7 @@ static double trace_of(const double matrix[6]) {
 }
 
 /* By the sum of the products of two eigenvalues each, which needs none of them. */
-static int is_line(const double m[6]) {
+static int is_wire(const double m[6]) {
   double pairs = m[0] * m[3] - m[1] * m[1] + (m[0] * m[5] - m[2] * m[2]) + (m[3] * m[5] - m[4] * m[4]),
          trace = trace_of(m);
   return pairs < LINE_WIDTH2 * trace * trace;
@@ -60,7 +60,7 @@ static int is_lone_line(const conic_neighbourhood *neighbourhood, size_t slot) {
                                n < CONIC_MAX_NEIGHBOURS ? n : CONIC_MAX_NEIGHBOURS, HUGE_VAL, slots, distances2);
   conic_covariance_add(&covariance, neighbourhood, slots, n);
   conic_covariance_matrix(&covariance, matrix);
-  return is_line(matrix);
+  return is_wire(matrix);
 }
 
 static double scatter_of(const double matrix[6]) {
@@ -100,7 +100,7 @@ static double score_of(const conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance_add(&covariance, neighbourhood, conic_neighbourhood_of(neighbourhood, slot),
                        neighbourhood->n_neighbours);
   conic_covariance_matrix(&covariance, matrix);
-  if (is_line(matrix))
+  if (is_wire(matrix))
     return is_lone_line(neighbourhood, slot) ? GREATEST_SCORE : 0.0;
   double score = least(disagreement_of(neighbourhood, slot) / FULL_DISAGREEMENT, GREATEST_SCORE);
   if (score >= LEAST_SCORE)
@@ -168,7 +168,7 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
 
 /* --- what a dot is given --- */
 
-static double spacing_at(const conic_neighbourhood *neighbourhood, size_t slot) {
+static double spacing_about(const conic_neighbourhood *neighbourhood, size_t slot) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
   double position[3];
   conic_neighbourhood_position(neighbourhood, slot, position);
@@ -183,7 +183,7 @@ double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot
     size_t other = i ? list[i - 1] : slot, at = n;
     if (!is_listed(neighbourhood, other))
       continue;
-    double value = spacing_at(neighbourhood, other);
+    double value = spacing_about(neighbourhood, other);
     for (; at > 0 && sorted[at - 1] > value; at--)
       sorted[at] = sorted[at - 1];
     sorted[at] = value;
