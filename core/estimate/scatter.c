@@ -26,8 +26,11 @@
 /* How often scores are spread to the neighbours. */
 #define N_MEANS 3
 
-/* Of a dot in spacings, which are the distances to the second neighbour. */
+/* Of a dot in spacings, which are the distances to the second neighbour; and where there are so few points that they
+ * tell of no surface: the corners of a cube are eight places, not a blob. */
 #define DOT_REACH 0.65
+#define LONE_REACH 0.12
+enum { FEWEST_IN_SURFACE = 12 };
 
 typedef struct scatter_work {
   conic_neighbourhood *neighbourhood;
@@ -138,6 +141,12 @@ static conic_status find_with(conic_context *context, scatter_work *work, float 
   conic_neighbourhood *neighbourhood = work->neighbourhood;
   size_t n_slots = neighbourhood->tree.n_slots;
   work->to = scores[0];
+  if (n_slots < FEWEST_IN_SURFACE) {
+    for (size_t slot = 0; slot < n_slots; slot++)
+      if (is_listed(neighbourhood, slot))
+        neighbourhood->flags[slot] |= CONIC_SLOT_SCATTERED;
+    return CONIC_OK;
+  }
   conic_status status = conic_slots_for(context, n_slots, score_slots, work, from, to);
   for (int i = 0; i < N_MEANS && status == CONIC_OK; i++) {
     work->from = scores[i % 2];
@@ -189,7 +198,7 @@ double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot
     sorted[at] = value;
     n++;
   }
-  return DOT_REACH * sorted[n / 2];
+  return (neighbourhood->tree.n_slots < FEWEST_IN_SURFACE ? LONE_REACH : DOT_REACH) * sorted[n / 2];
 }
 
 void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]) {
