@@ -40,10 +40,9 @@ def low_poly():
     write_mesh('rook.obj', *revolve([(1, 0), (1, 0.3), (0.6, 0.5), (0.5, 2), (0.8, 2.2), (0.8, 2.8)], 8))
     gear = [((1 if k % 4 < 2 else 0.8) * math.cos(math.pi * k / 20), (1 if k % 4 < 2 else 0.8) * math.sin(math.pi * k / 20))
             for k in range(40)]
-    vertices = [(x, y, z) for z in (0.0, 0.3) for x, y in gear] + [(0, 0, 0), (0, 0, 0.3)]
-    faces = [(k, (k + 1) % 40, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
-    faces += [((k + 1) % 40, k, 80) for k in range(40)] + [(40 + k, 40 + (k + 1) % 40, 81) for k in range(40)]
-    write_mesh('gear.obj', vertices, faces)
+    vertices = [(x, y, z) for z in (0.0, 0.3) for x, y in gear]
+    sides = [(k, (k + 1) % 40, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
+    write_mesh('gear.obj', vertices, sides + [tuple(reversed(range(40))), tuple(range(40, 80))])
     ground = [(x, y, 0.8 * math.sin(0.9 * x) * math.cos(0.7 * y)) for y in range(12) for x in range(12)]
     write_mesh('hills-z-up.obj', ground, [(y * 12 + x, y * 12 + x + 1, y * 12 + x + 13, y * 12 + x + 12)
                                           for y in range(11) for x in range(11)])
