@@ -26,7 +26,7 @@ conic_status conic_source_stand(conic_source *source) {
     return CONIC_OK;
   conic_status status = CONIC_OK;
   if (source->kind->draw)
-    scale->up_basis = conic_upright_box(scale->minimum, scale->maximum);
+    scale->up_basis = conic_upright_box(scale->minimum, scale->maximum, 0);
   else {
     status = conic_source_frame(source, NULL, &camera);
     if (status == CONIC_OK)
@@ -40,7 +40,7 @@ conic_status conic_source_stand(conic_source *source) {
 }
 
 conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
-                              conic_camera *camera) {
+                              conic_camera *camera, double *near_z) {
   conic_framing own;
   conic_framing_init(&own);
   memcpy(own.up, source->scale.up, sizeof own.up);
@@ -49,11 +49,13 @@ conic_status conic_source_fit(conic_source *source, const conic_framing *framing
   double zoom = own.zoom;
   own.zoom = 1.0; /* what lies outside a picture that is zoomed into counts as well */
   conic_status status = conic_source_frame(source, &own, camera);
+  if (near_z)
+    *near_z = source->scale.near_z;
   if (status != CONIC_OK || source->kind->draw)
     return status == CONIC_OK ? conic_source_frame(source, framing ? framing : &own, camera) : status;
   status = choose_outline(source, camera, cutoff);
   own.zoom = zoom;
   return status == CONIC_OK
-             ? conic_drawing_frame(source->context, &source->choice.drawing, cutoff, &own, n_turns, camera)
+             ? conic_drawing_frame(source->context, &source->choice.drawing, cutoff, &own, n_turns, camera, near_z)
              : status;
 }

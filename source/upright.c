@@ -12,9 +12,9 @@
 /* So many splats and triangles are looked at; fewer than the least say nothing. */
 enum { MOST_SAMPLES = 20000, LEAST_SAMPLES = 30 };
 
-/* Points lie flat where their height is below this part of both extents of the ground; a drawing in a plane is thinner
- * still, and is looked at from its front. */
-static const double flat_part = 0.33, planar_part = 0.002;
+/* What lies flat is lower than this part of both extents of the ground. A mesh in a plane, which is thinner still, is a
+ * drawing, and is looked at from its front; points in a plane are a floor. */
+static const double flat_part = 0.33, planar_part = 1e-4;
 
 /* An open surface is missing where nobody looked or nothing is: below. The mean of its normals by area is at least so
  * long, and is mostly vertical. */
@@ -89,14 +89,16 @@ static void find_extent(const samples *s, double low[3], double high[3]) {
   }
 }
 
-conic_up_basis conic_upright_box(const double minimum[3], const double maximum[3]) {
+conic_up_basis conic_upright_box(const double minimum[3], const double maximum[3], int is_mesh) {
   double extent[3];
   conic_subtract(maximum, minimum, extent);
   double across = extent[0] < extent[1] ? extent[0] : extent[1];
   double around = extent[0] < extent[2] ? extent[0] : extent[2];
-  if (extent[1] < planar_part * around)
+  if (is_mesh && extent[1] < planar_part * around)
     return CONIC_UP_FACING;
-  return extent[2] >= planar_part * across && extent[2] < flat_part * across ? CONIC_UP_FLAT : CONIC_UP_HABIT;
+  if (is_mesh && extent[2] < planar_part * across)
+    return CONIC_UP_HABIT;
+  return extent[2] < flat_part * across ? CONIC_UP_FLAT : CONIC_UP_HABIT;
 }
 
 /* Whether the mean normal is vertical: +z, and then +y, as the first two of an answer; 0: neither. */
@@ -119,7 +121,7 @@ static double share_at(const samples *s, int axis, double end, double height, do
   return sum / total;
 }
 
-static conic_up_basis look_at_samples(const samples *s) {
+static conic_up_basis look_at_samples(const samples *s, int is_mesh) {
   double low[3], high[3], mean[3] = {0.0, 0.0, 0.0}, total = 0.0, greatest = 0.0;
   for (size_t i = 0; i < s->count; i++) {
     total += conic_length(s->area[i]);
@@ -133,8 +135,8 @@ static conic_up_basis look_at_samples(const samples *s) {
     mean[axis] /= total;
     greatest = high[axis] - low[axis] > greatest ? high[axis] - low[axis] : greatest;
   }
-  conic_up_basis flat = conic_upright_box(low, high);
-  int open = flat == CONIC_UP_FACING || high[2] - low[2] < planar_part * greatest ? 0 : opens_along(mean);
+  conic_up_basis flat = conic_upright_box(low, high, is_mesh);
+  int open = flat == CONIC_UP_FACING || (is_mesh && high[2] - low[2] < planar_part * greatest) ? 0 : opens_along(mean);
   if (flat != CONIC_UP_HABIT)
     return open == 1 ? CONIC_UP_HABIT : flat;
   if (open)
@@ -157,7 +159,7 @@ conic_status conic_upright_look(conic_context *context, const conic_drawing *dra
   if (status == CONIC_OK) {
     take_splat_samples(&s, drawing->splats);
     take_triangle_samples(&s, drawing->triangles);
-    *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s);
+    *basis = s.count < LEAST_SAMPLES ? CONIC_UP_HABIT : look_at_samples(&s, drawing->triangles->count > 0);
   }
   conic_memory_release(context, s.place);
   conic_memory_release(context, s.area);

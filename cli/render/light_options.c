@@ -95,14 +95,15 @@ int cli_parse_sky(const char *text, void *value) {
 static void find_up(const cli_render_job *job, double up[3]) {
   const double *scene = job->is_up_given ? job->framing.up : conic_source_measure(job->source)->up;
   for (int i = 0; i < 3; i++)
-    up[i] = job->camera_path ? -job->camera.cam_from_world[1][i] : scene[i];
+    up[i] = job->camera_path && !job->is_up_given ? -job->camera.cam_from_world[1][i] : scene[i];
 }
 
 void cli_lights_settle(cli_render_job *job) {
   conic_lighting *lighting = &job->options.lighting;
   if (!job->is_light_given)
     (void)(job->is_plain ? cli_parse_light("head", job) : add_studio(job));
-  /* What has no colours of its own is white, which no material is: the lights stand back as far as plaster is darker. */
+  /* What has no colours of its own is white, which no material is: the lights stand back as far as plaster is darker.
+   */
   float part = job->is_plain || job->is_light_given || conic_source_measure(job->source)->has_colors ? 1.0f : 0.75f;
   for (int i = 0; i < lighting->n_lights; i++)
     for (int c = 0; c < 3; c++)

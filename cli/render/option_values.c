@@ -72,16 +72,12 @@ static int find_plane(const char *name, size_t length) {
 int cli_parse_planes(const char *text, void *value) {
   unsigned *planes = value;
   *planes = 0;
-  if (strcmp(text, "all") == 0) {
-    *planes = CONIC_DRAWN_PLANES;
-    return 1;
-  }
   while (*text) {
     size_t length = strcspn(text, ",");
-    int plane = find_plane(text, length);
-    if (plane < 0)
+    int plane = find_plane(text, length), is_all = length == 3 && strncmp(text, "all", 3) == 0;
+    if (plane < 0 && !is_all)
       return 0;
-    *planes |= 1u << plane;
+    *planes |= is_all ? CONIC_DRAWN_PLANES : 1u << plane;
     text += length;
     if (*text == ',' && text[1])
       text++;

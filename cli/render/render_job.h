@@ -104,7 +104,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job);
 conic_status cli_scene_open(cli_session *session, cli_render_job *job);
 void cli_scene_release(cli_render_job *job);
 /* The camera of a frame. */
-conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_camera *camera);
+conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera);
 
 /* --progressive: a picture of each level, of which the last stays in `image`. */
 conic_status cli_render_levels(cli_session *session, cli_render_job *job, const conic_camera *camera,

@@ -96,9 +96,9 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
 
 /* As a camera's file has it, so that this can be one. */
 static void report_camera(cli_json *json, const cli_render_job *job) {
-  static const char *const bases[] = {[CONIC_UP_HABIT] = "habit", [CONIC_UP_KIND] = "kind",
-                                      [CONIC_UP_FLAT] = "flat",   [CONIC_UP_OPEN] = "open",
-                                      [CONIC_UP_BASE] = "base",   [CONIC_UP_FACING] = "facing"};
+  static const char *const bases[] = {
+      [CONIC_UP_HABIT] = "habit", [CONIC_UP_KIND] = "kind", [CONIC_UP_FLAT] = "flat",
+      [CONIC_UP_OPEN] = "open",   [CONIC_UP_BASE] = "base", [CONIC_UP_FACING] = "facing"};
   const conic_camera *camera = &job->last_camera;
   if (!job->camera_path) {
     const conic_source_scale *scale = conic_source_measure(job->source);

@@ -101,7 +101,7 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
   return height > 0.0 && height < flat_part * ground ? flat_elevation_deg : elevation_deg;
 }
 
-conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_camera *camera) {
+conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
   conic_framing framing = job->framing;
   if (job->camera_path) {
     *camera = job->camera;
@@ -115,5 +115,11 @@ conic_status cli_scene_camera(const cli_render_job *job, int i_frame, conic_came
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
   if (job->is_plain)
     return conic_source_frame(job->source, &framing, camera);
-  return conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera);
+  double near_z;
+  conic_status status =
+      conic_source_fit(job->source, &framing, job->options.kernel.cutoff, job->n_frames, camera, &near_z);
+  /* Strays, which are not framed, are no reason to cut off what is. */
+  if (status == CONIC_OK && job->near_z.value < 0.0 && near_z < job->options.near_z)
+    job->options.near_z = near_z;
+  return status;
 }

@@ -53,9 +53,8 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return cli_usage("%s: no input; see conic help %s", command, command);
   if (job->camera_path && words->is_size_given)
     return cli_usage("%s: --size is the camera file's; give one of both", command);
-  if (job->camera_path && (words->is_framing_given || (job->is_up_given && !job->is_turntable)))
-    return cli_usage("%s: --azimuth, --elevation, --fov, --zoom and --up frame the scene; --camera does it itself",
-                     command);
+  if (job->camera_path && words->is_framing_given)
+    return cli_usage("%s: --azimuth, --elevation, --fov and --zoom frame the scene; --camera does it itself", command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)
     return cli_usage("%s: --texture lies on triangles; give --as mesh or hybrid, too", command);
   if ((job->opening.is_smooth || words->is_crease_given) && words->as != CONIC_AS_MESH && words->as != CONIC_AS_AUTO)

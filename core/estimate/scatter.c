@@ -30,7 +30,7 @@
  * tell of no surface: the corners of a cube are eight places, not a blob. */
 #define DOT_REACH 0.65
 #define LONE_REACH 0.12
-enum { FEWEST_IN_SURFACE = 12 };
+enum { FEWEST_IN_SURFACE = 20 };
 
 typedef struct scatter_work {
   conic_neighbourhood *neighbourhood;

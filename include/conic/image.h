@@ -183,9 +183,9 @@ CONIC_API conic_status conic_image_heatmap(conic_context *context, const conic_i
 CONIC_API conic_status conic_image_flip_heatmap(conic_context *context, const conic_image *a, const conic_image *b,
                                                 conic_image *heatmap);
 
-/* The exposure in stops that makes a picture with an rgba plane as bright as is good: the greatest multiple of 1/8, from
- * -16 to 16, with which at most one in twenty of the covered pixels (A at least 1/2) has a luminance above 2^(-3/8). 0
- * where nothing is covered, or all is black. */
+/* The exposure in stops that makes a picture with an rgba plane as bright as is good: the greatest multiple of 1/8,
+ * from -16 to 16, with which at most one in twenty of the covered pixels (A at least 1/2) has a luminance above
+ * 2^(-3/8). 0 where nothing is covered, or all is black. */
 CONIC_API double conic_image_exposure(const conic_image *image);
 
 /* A false-colour picture of how many splats were blended in each pixel (count plane needed): black for none, blue for

@@ -138,7 +138,7 @@ CONIC_API conic_status conic_source_stand(conic_source *source);
  * What was chosen before is chosen anew by the next picture. Of what streams, conic_source_frame's camera. Null
  * `framing` as there. Errors: as conic_source_frame, conic_source_choose and conic_drawing_frame. */
 CONIC_API conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
-                                        conic_camera *camera);
+                                        conic_camera *camera, double *near_z);
 
 /* Fills in what the options leave open: near_z and splat_length where they are 0, an epsilon below 0 where the source
  * has its own. Choosing and drawing do so by themselves. */

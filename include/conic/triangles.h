@@ -136,10 +136,13 @@ CONIC_API double conic_drawing_near(const conic_drawing *drawing);
 
 /* A camera from which the outline of what is drawn fills 90 % of the picture's width or height, whichever it fills
  * first, and lies in its middle (at zoom 1). Splats reach as far as `cutoff` standard deviations. Of a turntable of
- * n_turns pictures, of which this is one, the camera stands equally far off and no picture's outline is larger. Where
- * nothing is finite, conic_camera_frame's camera. Errors: ARGUMENT, INPUT (broken triangles), MEMORY. */
+ * n_turns pictures, of which this is one, the camera stands equally far off and no picture's outline is larger. Strays,
+ * one in a hundred at most and far from all others, are left out. *near_z (null is allowed) is a near distance that
+ * fits what is framed, as conic_drawing_near does without strays. Where nothing is finite, conic_camera_frame's camera.
+ * Errors: ARGUMENT, INPUT (broken triangles), MEMORY. */
 CONIC_API conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
-                                           const conic_framing *framing, int n_turns, conic_camera *camera);
+                                           const conic_framing *framing, int n_turns, conic_camera *camera,
+                                           double *near_z);
 
 /* conic_render_samples (1 sample: conic_render) for splats and triangles together. In the plane `id`, triangle j is
  * the number of splats + j. Triangles with a vertex that is not finite are skipped and counted. With splats alone the

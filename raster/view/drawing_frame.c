@@ -1,6 +1,7 @@
 /* Cameras that a drawing just fits: how far its outline reaches along the planes through the eye and the picture's
  * sides says where the eye has to be. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "conic/triangles.h"
 #include "core/base/memory.h"
@@ -16,10 +17,11 @@ enum {
   N_SIDES = 5                  /* right, left, bottom and top of a picture, and what is nearest */
 };
 
-/* How far points reach along `n` directions from `center`. */
+/* How far points within a box reach along `n` directions from `center`. */
 typedef struct reach {
   const conic_drawing *drawing;
   double cutoff, center[3];
+  double low[3], high[3]; /* from the center */
   size_t n, n_splat_tasks;
   double (*directions)[3];
   double *farthest; /* a task has n */
@@ -27,9 +29,9 @@ typedef struct reach {
 
 static void reach_of_point(const reach *r, const double from_center[3], const double u[3], const double v[3],
                            double *farthest) {
-  if (!(from_center[0] - from_center[0] == 0.0 && from_center[1] - from_center[1] == 0.0 &&
-        from_center[2] - from_center[2] == 0.0))
-    return;
+  for (int axis = 0; axis < 3; axis++)
+    if (!(from_center[axis] >= r->low[axis] && from_center[axis] <= r->high[axis]))
+      return;
   for (size_t i = 0; i < r->n; i++) {
     const double *direction = r->directions[i];
     double along = conic_dot(direction, from_center);
@@ -52,7 +54,7 @@ static void take_at(float *const columns[3], size_t i, const double from[3], dou
 static void reach_of_splats(const reach *r, size_t first, size_t end, double *farthest) {
   static const double zero[3] = {0.0, 0.0, 0.0};
   const conic_splats *s = r->drawing->splats;
-  double offset[3], place[3], u[3], v[3];
+  double offset[3], place[3], u[3] = {0.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0};
   size_t i_clip = 0;
   conic_subtract(s->origin, r->center, offset);
   while (i_clip < s->n_clips && s->clips[i_clip].splat < first)
@@ -185,25 +187,81 @@ static conic_status find_eye(conic_context *context, const conic_framing *framin
   return CONIC_OK;
 }
 
+/* --- strays --- */
+
+enum { MOST_PLACES = 20000 };
+
+static int compare_reach(const void *a, const void *b) {
+  const double *first = a, *second = b;
+  return (*first > *second) - (*first < *second);
+}
+
+/* Some of a component of all places, in order; returns how many. */
+static size_t sort_places(const conic_drawing *drawing, int axis, double *sorted) {
+  const conic_splats *s = drawing->splats;
+  const conic_triangles *t = drawing->triangles;
+  size_t n = 0, stride = 1 + s->count / MOST_PLACES;
+  for (size_t i = 0; i < s->count; i += stride)
+    sorted[n++] = (double)s->position[axis][i] + s->origin[axis];
+  stride = 1 + t->count / MOST_PLACES;
+  for (size_t i = 0; i < t->count; i += stride)
+    sorted[n++] = (double)t->position[axis][t->corners[i][0]] + t->origin[axis];
+  size_t n_finite = 0;
+  for (size_t i = 0; i < n; i++)
+    if (sorted[i] - sorted[i] == 0.0)
+      sorted[n_finite++] = sorted[i];
+  qsort(sorted, n_finite, sizeof *sorted, compare_reach);
+  return n_finite;
+}
+
+/* Fewer than one in a hundred on either side, farther out than four times what the others span, are strays: a point
+ * that a scanner threw to the origin would else be all there is to see. */
+static conic_status leave_out_strays(conic_context *context, const conic_drawing *drawing, double low[3],
+                                     double high[3]) {
+  static const double stray_spans = 4.0;
+  double *sorted = conic_memory_allocate(context, 2 * (size_t)MOST_PLACES + 2, sizeof *sorted);
+  if (!sorted)
+    return CONIC_ERROR_MEMORY;
+  for (int axis = 0; axis < 3; axis++) {
+    size_t n = sort_places(drawing, axis, sorted), n_out = n / 100;
+    if (n_out == 0)
+      continue;
+    double first = sorted[n_out], last = sorted[n - 1 - n_out], most = stray_spans * (last - first);
+    low[axis] = first - most > low[axis] && most > 0.0 ? first : low[axis];
+    high[axis] = last + most < high[axis] && most > 0.0 ? last : high[axis];
+  }
+  conic_memory_release(context, sorted);
+  return CONIC_OK;
+}
+
 static conic_status frame_entered(conic_context *context, const conic_drawing *drawing, float cutoff,
-                                  const conic_framing *framing, size_t n_turns, conic_camera *camera) {
+                                  const conic_framing *framing, size_t n_turns, conic_camera *camera, double *near_z) {
   double low[3], high[3], diagonal[3], rows[3][3];
   stand found;
   reach r = {.drawing = drawing, .cutoff = (double)cutoff, .n = n_turns * N_SIDES};
+  *near_z = conic_drawing_near(drawing);
   if (conic_drawing_bounds(drawing, low, high) == 0)
     return conic_camera_frame(context, framing, low, high, camera);
+  conic_status status = leave_out_strays(context, drawing, low, high);
+  if (status != CONIC_OK)
+    return status;
   conic_subtract(high, low, diagonal);
-  for (int i = 0; i < 3; i++)
+  for (int i = 0; i < 3; i++) {
+    double margin = 1e-9 * diagonal[i]; /* of rounding: what is on the box's border is in it */
     r.center[i] = 0.5 * low[i] + 0.5 * high[i];
+    r.low[i] = low[i] - r.center[i] - margin;
+    r.high[i] = high[i] - r.center[i] + margin;
+  }
   r.directions = conic_memory_allocate(context, r.n, sizeof *r.directions);
   if (!r.directions)
     return CONIC_ERROR_MEMORY;
   double size = conic_length(diagonal);
-  conic_status status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
+  status = find_eye(context, framing, n_turns, size > 0.0 ? 0.05 * size : 1.0, &r, &found);
   if (status == CONIC_OK) {
     const double at[3] = {-found.beside[0], -found.beside[1], found.distance};
     conic_framing_rotation(framing, rows);
     conic_framing_camera(framing, rows, r.center, at, camera);
+    *near_z = size > 0.0 ? 1e-4 * size : 1e-4;
   }
   conic_memory_release(context, r.directions);
   conic_memory_release(context, r.farthest);
@@ -211,9 +269,10 @@ static conic_status frame_entered(conic_context *context, const conic_drawing *d
 }
 
 conic_status conic_drawing_frame(conic_context *context, const conic_drawing *drawing, float cutoff,
-                                 const conic_framing *given, int n_turns, conic_camera *camera) {
+                                 const conic_framing *given, int n_turns, conic_camera *camera, double *near_z) {
   conic_framing framing;
   conic_entered_drawing entered;
+  double unused;
   if (!camera || n_turns < 1)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "frame: no camera, or no picture");
   conic_status status = conic_framing_take(context, given, &framing);
@@ -222,8 +281,8 @@ conic_status conic_drawing_frame(conic_context *context, const conic_drawing *dr
   status = conic_drawing_enter(context, "frame", drawing, &entered);
   if (status == CONIC_OK) {
     const conic_drawing close = {&entered.splats, &entered.triangles};
-    status =
-        frame_entered(context, &close, cutoff, &framing, n_turns < MOST_TURNS ? (size_t)n_turns : MOST_TURNS, camera);
+    size_t n_seen = n_turns < MOST_TURNS ? (size_t)n_turns : MOST_TURNS;
+    status = frame_entered(context, &close, cutoff, &framing, n_seen, camera, near_z ? near_z : &unused);
   }
   conic_drawing_leave(context, &entered);
   return status;

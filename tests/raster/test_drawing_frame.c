@@ -46,7 +46,7 @@ static void find_box(const fixture *f, double cutoff, double low[2], double high
 
 static void frame(fixture *f, const conic_framing *framing, double cutoff, int n_turns) {
   const conic_drawing drawing = {.splats = &f->splats};
-  CHECK_OK(conic_drawing_frame(f->context, &drawing, (float)cutoff, framing, n_turns, &f->camera));
+  CHECK_OK(conic_drawing_frame(f->context, &drawing, (float)cutoff, framing, n_turns, &f->camera, NULL));
 }
 
 static void test_outline_fills_picture(double radius, double cutoff, int width, int height) {
@@ -118,7 +118,27 @@ static void test_zoom_and_points(void) {
   f.splats.position[0][0] = NAN;
   f.splats.count = 1;
   frame(&f, &framing, 1.5, 1);
-  CHECK(conic_drawing_frame(f.context, &(conic_drawing){0}, 1.5f, &framing, 0, &f.camera) == CONIC_ERROR_ARGUMENT);
+  CHECK(conic_drawing_frame(f.context, &(conic_drawing){0}, 1.5f, &framing, 0, &f.camera, NULL) ==
+        CONIC_ERROR_ARGUMENT);
+  fixture_close(&f);
+}
+
+/* One point in a thousand that a scanner threw far away is not what is framed; near goes with what is. */
+static void test_strays(void) {
+  fixture f = fixture_open(1);
+  conic_framing framing;
+  double near_z;
+  conic_framing_init(&framing);
+  scatter(&f, 0.05);
+  frame(&f, &framing, 1.5, 1);
+  conic_camera before = f.camera;
+  f.splats.position[0][7] = 1e5f;
+  f.splats.position[2][9] = -3e4f;
+  const conic_drawing drawing = {.splats = &f.splats};
+  CHECK_OK(conic_drawing_frame(f.context, &drawing, 1.5f, &framing, 1, &f.camera, &near_z));
+  CHECK(near_z < 1e-3 && conic_drawing_near(&drawing) > 1.0);
+  for (int row = 0; row < 3; row++)
+    CHECK_NEAR(f.camera.cam_from_world[row][3], before.cam_from_world[row][3], 0.3);
   fixture_close(&f);
 }
 
@@ -128,5 +148,6 @@ int main(void) {
   test_outline_fills_picture(0.001, 1.5, 200, 900);
   test_turntable_keeps_its_distance();
   test_zoom_and_points();
+  test_strays();
   return check_result();
 }
