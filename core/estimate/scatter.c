@@ -184,6 +184,19 @@ static double spacing_about(const conic_neighbourhood *neighbourhood, size_t slo
   return sqrt(conic_neighbours_distance2(&neighbourhood->tree, list[neighbourhood->n_neighbours > 1], position));
 }
 
+/* So few points are to be seen from where all of them are: as dots of a hundredth of their extent at least. */
+static double lone_reach(const conic_neighbourhood *neighbourhood, size_t slot, double spacing) {
+  static const double least_part = 0.005;
+  double position[3], farthest2 = 0.0;
+  conic_neighbourhood_position(neighbourhood, slot, position);
+  for (uint32_t other = 0; other < neighbourhood->tree.n_slots; other++) {
+    double distance2 = conic_neighbours_distance2(&neighbourhood->tree, other, position);
+    farthest2 = distance2 > farthest2 ? distance2 : farthest2;
+  }
+  double reach = LONE_REACH * spacing, least = least_part * sqrt(farthest2);
+  return reach > least ? reach : least;
+}
+
 double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
   double sorted[CONIC_MAX_NEIGHBOURS + 1];
@@ -198,7 +211,8 @@ double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot
     sorted[at] = value;
     n++;
   }
-  return (neighbourhood->tree.n_slots < FEWEST_IN_SURFACE ? LONE_REACH : DOT_REACH) * sorted[n / 2];
+  return neighbourhood->tree.n_slots < FEWEST_IN_SURFACE ? lone_reach(neighbourhood, slot, sorted[n / 2])
+                                                         : DOT_REACH * sorted[n / 2];
 }
 
 void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]) {
