@@ -76,6 +76,6 @@ oiiotool a.exr --ch CryptoObject00.A --printstats | grep -qE 'Max: 0\.[1-9]' || 
 sum_is_alpha t.0002.exr
 sum_is_alpha h.exr
 sum_is_alpha p.exr
-run 0 render "${inputs[@]}" --size 300x256 --as auto --samples 16 --cryptomatte -o bands.exr # two bands of samples
+run 0 render "${inputs[@]}" --size 300x256 --zoom 3 --as auto --samples 16 --cryptomatte -o bands.exr # two bands of samples
 sum_is_alpha bands.exr
 [[ $failures -eq 0 ]]
