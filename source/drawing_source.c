@@ -16,6 +16,8 @@ typedef struct drawing_source {
   conic_splats splats;
   conic_triangles triangles;
   conic_repairs repairs; /* of all inputs */
+  size_t *ends;          /* of each input, the splats of it and those before it; then likewise the triangles */
+  size_t n_inputs;
   size_t n_dots;
   conic_splats facing; /* the same with the dots turned to the camera: axes of its own, where there are dots */
 } drawing_source;
@@ -242,9 +244,15 @@ static conic_status open_drawing(conic_source *source, const char *const *paths,
   conic_source_scale *scale = &source->scale;
   double up[3] = {0.0, 0.0, 0.0};
   conic_status status = CONIC_OK;
+  d->ends = conic_memory_allocate_zeroed(source->context, 2 * n_paths, sizeof *d->ends);
+  if (!d->ends)
+    return CONIC_ERROR_MEMORY;
+  d->n_inputs = n_paths;
   for (size_t i = 0; i < n_paths && status == CONIC_OK; i++) {
     double own[3] = {0.0, 0.0, 0.0};
     status = read_into_drawing(d, paths[i], options, own);
+    d->ends[i] = d->splats.count;
+    d->ends[n_paths + i] = d->triangles.count;
     for (int axis = 0; axis < 3; axis++) /* what not all say is not known */
       up[axis] = i == 0 || up[axis] == own[axis] ? own[axis] : 0.0;
   }
@@ -292,6 +300,23 @@ static void close_drawing(conic_source *source) {
   }
   conic_splats_release(source->context, &d->splats);
   conic_triangles_release(source->context, &d->triangles);
+  conic_memory_release(source->context, d->ends);
+}
+
+/* Inputs are appended in their order, and the triangles' ids follow those of all splats. */
+static size_t find_drawing_input(const conic_source *source, uint32_t id) {
+  const drawing_source *d = (const drawing_source *)source;
+  int is_triangle = id >= d->splats.count;
+  size_t at = is_triangle ? id - d->splats.count : id, low = 0, high = d->n_inputs;
+  const size_t *ends = d->ends + (is_triangle ? d->n_inputs : 0);
+  while (low + 1 < high) {
+    size_t middle = low + (high - low - 1) / 2;
+    if (at < ends[middle])
+      high = middle + 1;
+    else
+      low = middle + 1;
+  }
+  return low;
 }
 
 static conic_status find_drawing_spacing(conic_source *source, double *spacing) {
@@ -316,5 +341,6 @@ const conic_source_kind conic_source_kind_drawing = {
     .close = close_drawing,
     .find_spacing = find_drawing_spacing,
     .choose = choose_in_drawing,
+    .input_of = find_drawing_input,
     .tell_rest = tell_drawing_rest,
 };

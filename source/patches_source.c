@@ -85,6 +85,10 @@ static const char *name_patches_splat(const conic_source *source, uint32_t splat
   return "point";
 }
 
+static size_t find_patches_input(const conic_source *source, uint32_t id) {
+  return conic_source_input_of(((const patches_source *)source)->points, id);
+}
+
 /* Of what was handed over to be drawn. */
 static void tell_patches_primitives(const conic_source *source, conic_facts *facts, uint64_t *n_splats) {
   const conic_patch_selection *selection = &((const patches_source *)source)->selection;
@@ -108,6 +112,7 @@ const conic_source_kind conic_source_kind_patches = {
     .choose = choose_from_patches,
     .name_image = name_patches_image,
     .name_splat = name_patches_splat,
+    .input_of = find_patches_input,
     .tell_primitives = tell_patches_primitives,
     .tell_rest = tell_patches_rest,
 };

@@ -220,6 +220,10 @@ const char *conic_source_name_splat(const conic_source *source, uint32_t splat, 
   return source->kind->name_splat && !source->choice.is_all ? source->kind->name_splat(source, splat, number) : NULL;
 }
 
+size_t conic_source_input_of(const conic_source *source, uint32_t id) {
+  return source->kind->input_of ? source->kind->input_of(source, id) : 0;
+}
+
 void conic_source_name_image(const conic_source *source, conic_image *image) {
   if (source->kind->name_image && !source->choice.is_all)
     source->kind->name_image(source, image);

@@ -35,6 +35,8 @@ typedef struct conic_source_kind {
                        conic_render_statistics *statistics);
   void (*name_image)(const conic_source *source, conic_image *image);
   const char *(*name_splat)(const conic_source *source, uint32_t splat, uint32_t *number);
+  /* Which input has an id; null: the first. */
+  size_t (*input_of)(const conic_source *source, uint32_t id);
 
   /* Of the last picture: adds to the object "primitives", where *n_splats is what drawing counted; and what follows. */
   void (*tell_primitives)(const conic_source *source, conic_facts *facts, uint64_t *n_splats);
@@ -58,7 +60,7 @@ struct conic_source {
   conic_source_choice choice;
   conic_source_view view; /* of the last picture */
   conic_coloring coloring;
-  double tolerance;       /* by which splats made of meshes are off these; 0: none are */
+  double tolerance; /* by which splats made of meshes are off these; 0: none are */
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,

@@ -59,8 +59,9 @@ int cli_parse_exposure(const char *text, void *value) {
                                         job->options.exposure >= -100.0 && job->options.exposure <= 100.0);
 }
 
+/* Of those that --aov may name. */
 static int find_plane(const char *name, size_t length) {
-  for (int i = 0; i < CONIC_N_PLANES; i++) {
+  for (int i = 0; i < CONIC_PLANE_MATTE_0; i++) {
     const char *known = conic_plane_describe((conic_plane)i)->name;
     if (strlen(known) == length && strncmp(known, name, length) == 0)
       return i;

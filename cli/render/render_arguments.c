@@ -74,6 +74,8 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   if (job->is_patch && job->deep_path)
     return cli_usage("render: --method patch draws samples of its own: not with --deep");
   answer = check_streaming(job, is_streaming_given);
+  if (answer == CLI_DONE && job->has_mattes)
+    answer = cli_mattes_check(job);
   if (answer == CLI_DONE)
     answer = cli_planes_check(session, job);
   return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 4) : answer;
@@ -104,6 +106,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
       {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
+      {"cryptomatte", CLI_FLAG, &job->has_mattes, NULL,
+       "into .exr: mattes by which each input, or each patch of a hybrid, is picked by its name in Nuke or Blender"},
       {"turntable", CLI_PARSED, job, "N", "N pictures around the scene: OUT.0001.exr …, or as OUT_%04d.exr says",
        .parse = cli_parse_turntable},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",
@@ -141,5 +145,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     job->planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
   if (job->planes & 1u << CONIC_PLANE_CLUSTER)
     job->planes |= 1u << CONIC_PLANE_ID;
+  if (job->has_mattes)
+    job->planes |= CONIC_MATTE_PLANES;
   return answer == CLI_DONE ? check_outputs(session, job, is_streaming_given) : answer;
 }

@@ -188,6 +188,10 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   warn_of_empty(session, job);
   warn_of_error(session, job);
   describe(job, &camera, image);
+  if (job->has_mattes)
+    status = cli_mattes_fill(session, job, &camera, image);
+  if (status != CONIC_OK)
+    return status;
   status = cli_legend_show(session, job, image);
   if (status == CONIC_OK)
     status = write_frame(session, job, image, i_frame);
@@ -225,6 +229,7 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   } else
     exit_code = cli_exit_of(status);
   conic_image_release(session->context, &image);
+  conic_cryptomatte_manifest_release(session->context, &job->manifest);
   free(repeats);
   return exit_code;
 }

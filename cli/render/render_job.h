@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/device_option.h"
 #include "cli/json_write.h"
+#include "core/pictures/cryptomatte.h"
 
 enum { CLI_MAX_OUTPUTS = 8 };
 
@@ -30,6 +31,7 @@ typedef struct cli_render_job {
   const char *clusters_path;    /* --clusters; null: none */
   const char *legend_path;      /* --legend-out; null: none */
   int has_legend;               /* --legend: in the picture */
+  int has_mattes;               /* --cryptomatte */
   const char *progressive_path; /* --progressive; null: none */
   const char *camera_path;      /* null: framed */
   conic_camera camera;          /* the file's */
@@ -75,8 +77,9 @@ typedef struct cli_render_job {
   conic_render_statistics statistics; /* of the last frame; times are medians where frames repeat */
   conic_camera last_camera;
   double first_frame_ms, camera_ms, frames_ms, write_ms, hash_ms, total_ms;
-  double begun_seconds;            /* when reading began */
-  uint64_t hashes[CONIC_N_PLANES]; /* of the last image, where they are reported */
+  double begun_seconds;                /* when reading began */
+  conic_cryptomatte_manifest manifest; /* of the last image */
+  uint64_t hashes[CONIC_N_PLANES];     /* of the last image, where they are reported */
 } cli_render_job;
 
 /* Reads the arguments. Returns CLI_DONE, CLI_USAGE after a message, or -1 where help was printed. */
@@ -128,6 +131,11 @@ conic_status cli_choose_exposure(cli_session *session, cli_render_job *job, cons
 /* --clusters: the clusters of a hybrid in colours of their own, as they are shaded in `image`. */
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image);
+
+/* --cryptomatte: wrong usage where there is nothing to name, or nowhere to write it. */
+int cli_mattes_check(const cli_render_job *job);
+/* Fills the image's matte planes, and names the mattes in job->manifest, which the image then has. */
+conic_status cli_mattes_fill(cli_session *session, cli_render_job *job, const conic_camera *camera, conic_image *image);
 
 /* --legend, --legend-out: what the colours mean, over the image and by itself. */
 conic_status cli_legend_show(cli_session *session, cli_render_job *job, conic_image *image);

@@ -22,9 +22,10 @@ static int is_covered(const conic_image *image, conic_plane plane, size_t i) {
 
 /* The plane that tells what is covered: the first of these that both images have; negative where there is none. */
 static int covering_plane(const conic_image *a, const conic_image *b) {
-  static const conic_plane order[] = {CONIC_PLANE_RGBA,   CONIC_PLANE_ID,      CONIC_PLANE_Z,
-                                      CONIC_PLANE_WEIGHT, CONIC_PLANE_COUNT,   CONIC_PLANE_NORMAL,
-                                      CONIC_PLANE_ALBEDO, CONIC_PLANE_CLUSTER, CONIC_PLANE_POSITION};
+  static const conic_plane order[] = {CONIC_PLANE_RGBA,    CONIC_PLANE_ID,      CONIC_PLANE_Z,
+                                      CONIC_PLANE_WEIGHT,  CONIC_PLANE_COUNT,   CONIC_PLANE_NORMAL,
+                                      CONIC_PLANE_ALBEDO,  CONIC_PLANE_CLUSTER, CONIC_PLANE_POSITION,
+                                      CONIC_PLANE_MATTE_0, CONIC_PLANE_MATTE_1, CONIC_PLANE_MATTE_2};
   for (size_t i = 0; i < sizeof order / sizeof order[0]; i++)
     if (a->planes[order[i]] && b->planes[order[i]])
       return (int)order[i];

@@ -17,6 +17,18 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_ID] = {"id", 1, 1, {"id"}},
     [CONIC_PLANE_CLUSTER] = {"cluster", 1, 1, {"cluster"}},
     [CONIC_PLANE_POSITION] = {"P", 3, 0, {"P.X", "P.Y", "P.Z"}},
+    [CONIC_PLANE_MATTE_0] = {"CryptoObject00",
+                             4,
+                             0,
+                             {"CryptoObject00.R", "CryptoObject00.G", "CryptoObject00.B", "CryptoObject00.A"}},
+    [CONIC_PLANE_MATTE_1] = {"CryptoObject01",
+                             4,
+                             0,
+                             {"CryptoObject01.R", "CryptoObject01.G", "CryptoObject01.B", "CryptoObject01.A"}},
+    [CONIC_PLANE_MATTE_2] = {"CryptoObject02",
+                             4,
+                             0,
+                             {"CryptoObject02.R", "CryptoObject02.G", "CryptoObject02.B", "CryptoObject02.A"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

@@ -8,8 +8,10 @@
 
 #include "conic/image.h"
 
-/* Whether this build writes EXR; it holds every plane. Errors: UNSUPPORTED. */
-conic_status conic_exr_check(conic_context *context, const char *path);
+/* Whether this build writes EXR; it holds every plane. Errors: UNSUPPORTED, ARGUMENT (mattes by a compression that
+ * changes their bits). */
+conic_status conic_exr_check(conic_context *context, const char *path, unsigned planes,
+                             const conic_image_options *options);
 
 /* Errors: ARGUMENT (an attribute that the format refuses), UNSUPPORTED, MEMORY, IO. */
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,

@@ -10,6 +10,7 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/files/file.h"
+#include "core/pictures/cryptomatte.h"
 #include "core/pictures/image_channels.h"
 #include "core/pictures/image_exr_stream.h"
 
@@ -59,6 +60,23 @@ static exr_result_t add_channels(exr_context_t file, const exr_writer *writer) {
   return EXR_ERR_SUCCESS;
 }
 
+/* What readers of a Cryptomatte look for. */
+static exr_result_t describe_mattes(exr_context_t file, const conic_image *image) {
+  const char *const values[][2] = {{"name", CONIC_CRYPTOMATTE_NAME},
+                                   {"hash", "MurmurHash3_32"},
+                                   {"conversion", "uint32_to_float32"},
+                                   {"manifest", image->manifest}};
+  exr_result_t result = EXR_ERR_SUCCESS;
+  for (size_t i = 0; i < sizeof values / sizeof *values && result == EXR_ERR_SUCCESS; i++) {
+    char key[32];
+    snprintf(key, sizeof key, "cryptomatte/%.7x/%s", (unsigned)conic_cryptomatte_bits(CONIC_CRYPTOMATTE_NAME) >> 4,
+             values[i][0]);
+    if (values[i][1])
+      result = exr_attr_set_string(file, 0, key, values[i][1]);
+  }
+  return result;
+}
+
 static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
   const conic_image *image = writer->image;
   exr_compression_t compression = compression_of(writer->options);
@@ -74,6 +92,8 @@ static exr_result_t write_header(exr_context_t file, const exr_writer *writer) {
     result = add_channels(file, writer);
   if (result == EXR_ERR_SUCCESS)
     result = conic_exr_add_attributes(file, image);
+  if (result == EXR_ERR_SUCCESS && conic_image_planes(image) & CONIC_MATTE_PLANES)
+    result = describe_mattes(file, image);
   if (result == EXR_ERR_SUCCESS)
     result = exr_write_header(file);
   return result;
@@ -180,7 +200,9 @@ static conic_status write_by_way(conic_context *context, const char *path, FILE 
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
                              const conic_image_options *options) {
   conic_output *output;
-  conic_status status = conic_output_open(context, path, &output);
+  conic_status status = conic_exr_check(context, path, conic_image_planes(image), options);
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &output);
   if (status != CONIC_OK)
     return status;
   FILE *stream = conic_output_stream(output);
@@ -190,22 +212,25 @@ conic_status conic_exr_write(conic_context *context, const char *path, const con
   return conic_output_end(output, status);
 }
 
-conic_status conic_exr_check(conic_context *context, const char *path) {
-  (void)context;
-  (void)path;
+conic_status conic_exr_check(conic_context *context, const char *path, unsigned planes,
+                             const conic_image_options *options) {
+  if (planes & CONIC_MATTE_PLANES && options->compression == CONIC_COMPRESSION_PXR24)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: cannot write: pxr24 loses bits by which mattes are named",
+                      path);
   return CONIC_OK;
 }
 
 #else
 
-conic_status conic_exr_check(conic_context *context, const char *path) {
+conic_status conic_exr_check(conic_context *context, const char *path, unsigned planes,
+                             const conic_image_options *options) {
+  (void)planes, (void)options;
   return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot write: this build is without OpenEXR", path);
 }
 
 conic_status conic_exr_write(conic_context *context, const char *path, const conic_image *image,
                              const conic_image_options *options) {
-  (void)image, (void)options;
-  return conic_exr_check(context, path);
+  return conic_exr_check(context, path, conic_image_planes(image), options);
 }
 
 #endif

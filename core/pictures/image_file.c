@@ -73,7 +73,7 @@ conic_status conic_image_check_output_as(conic_context *context, const char *pat
   if (status != CONIC_OK)
     return status;
   if (strcasecmp(format, "exr") == 0)
-    return conic_exr_check(context, path);
+    return conic_exr_check(context, path, planes, &own);
   if (strcasecmp(format, "pfm") == 0)
     return conic_pfm_check(context, path, planes);
   if (strcasecmp(format, "png") == 0)

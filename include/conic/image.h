@@ -25,12 +25,19 @@ typedef enum conic_plane {
   CONIC_PLANE_ID = 6,       /* 1 uint32: index of the nearest visible splat, 0xFFFFFFFF where nothing is */
   CONIC_PLANE_CLUSTER = 7,  /* 1 uint32: cluster of a hybrid model, 0xFFFFFFFF where nothing is; conic_hybrid_name's */
   CONIC_PLANE_POSITION = 8, /* 3 floats: world, of what Z is the depth of; 0 where nothing is; conic_image_locate's */
-  CONIC_N_PLANES = 9
+  CONIC_PLANE_MATTE_0 = 9,  /* 4 floats, the bits of two names' hashes beside their coverages: the first layer of a
+                               Cryptomatte; 0 where there are fewer names */
+  CONIC_PLANE_MATTE_1 = 10, /* the second layer */
+  CONIC_PLANE_MATTE_2 = 11, /* the third */
+  CONIC_N_PLANES = 12
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */
 #define CONIC_N_DRAWN_PLANES CONIC_PLANE_CLUSTER
 #define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
+
+/* The planes of a Cryptomatte, as bits. */
+#define CONIC_MATTE_PLANES (7u << CONIC_PLANE_MATTE_0)
 
 /* Room for planes in structs, so that a later version may have more. */
 #define CONIC_MAX_PLANES 16
@@ -73,7 +80,8 @@ typedef struct conic_image {
   int n_attributes;
   conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
   uint64_t lacks_alpha; /* A of rgba, which is 1, is not in the file that the image was read from */
-  uint64_t reserved[7];
+  const char *manifest; /* the names of a Cryptomatte in JSON, for an EXR's header; the caller's. Null: none */
+  uint64_t reserved[6];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.
@@ -154,14 +162,15 @@ typedef struct conic_plane_difference {
 } conic_plane_difference;
 
 typedef struct conic_difference {
-  int identical;           /* same size, same planes, same bits, a missing A being 1 */
-  int same_size;           /* where 0, nothing below is set */
-  double max_abs, rmse;    /* over all common planes but id and count; NaN against a number counts as infinite */
-  double p999;             /* 99.9 % of the pixels differ by no more in any of those planes */
-  double psnr, ssim;       /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
-  double flip;             /* mean ꟻLIP of R, G, B, clamped to 0 … 1: 0 where nothing differs, 1 at most */
-  size_t over_code;        /* pixels where R, G or B, sRGB-encoded, differ by more than 1/255 */
-  int has_color;           /* both have rgba: psnr, ssim, flip and over_code are set */
+  int identical; /* same size, same planes, same bits, a missing A being 1 */
+  int same_size; /* where 0, nothing below is set */
+  double max_abs,
+      rmse;          /* over all common planes but those that name or count; NaN against a number counts as infinite */
+  double p999;       /* 99.9 % of the pixels differ by no more in any of those planes */
+  double psnr, ssim; /* of R, G, B, sRGB-encoded, peak 1; psnr is infinite for equal pictures */
+  double flip;       /* mean ꟻLIP of R, G, B, clamped to 0 … 1: 0 where nothing differs, 1 at most */
+  size_t over_code;  /* pixels where R, G or B, sRGB-encoded, differ by more than 1/255 */
+  int has_color;     /* both have rgba: psnr, ssim, flip and over_code are set */
   size_t differing_pixels; /* pixels where any common plane differs */
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_MAX_PLANES];

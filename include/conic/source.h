@@ -182,6 +182,10 @@ CONIC_API const conic_source_choice *conic_source_chosen(const conic_source *sou
 /* What else a splat of the choice is called: "point", "node" or "cluster", and its number; null: nothing. */
 CONIC_API const char *conic_source_name_splat(const conic_source *source, uint32_t splat, uint32_t *number);
 
+/* Which of the files that were opened, from 0, has what an image's id plane calls `id`. What is no id gets a number,
+ * too. */
+CONIC_API size_t conic_source_input_of(const conic_source *source, uint32_t id);
+
 /* Names what was chosen in an image that conic_render_drawing drew of it: in the planes id and cluster. */
 CONIC_API void conic_source_name_image(const conic_source *source, conic_image *image);
 

@@ -10,7 +10,7 @@
 #include "core/base/threads.h"
 #include "core/image/image_common.h"
 #include "core/image/view_arguments.h"
-#include "raster/frame/drawing.h"
+#include "raster/frame/samples.h"
 
 /* The fine picture is drawn in bands of about so many of its pixels, so that memory is bounded: 20 bytes a pixel for
  * colour and depth, 56 for all planes. The bands depend on nothing but the size, as the bits of a band's rows depend on
@@ -210,27 +210,63 @@ static conic_status allocate_fine(conic_context *context, int width, int height,
   return CONIC_OK;
 }
 
+/* Rows of the picture in a band; one sample a pixel is drawn at once. */
+static int band_rows(const conic_camera *camera, int samples) {
+  size_t n = BAND_PIXELS / ((size_t)camera->width * (size_t)samples * (size_t)samples);
+  return n < 1 ? 1 : samples > 1 && n < (size_t)camera->height ? (int)n : camera->height;
+}
+
+/* What is done with each band. */
+typedef struct band_taker {
+  conic_samples_receiver *receive;
+  void *cookie;
+} band_taker;
+
 /* Of `fine`, the first rows. */
-static conic_status draw_band(conic_renderer *renderer, conic_context *context, const conic_whole_drawing *drawing,
-                              const conic_camera *camera, const conic_render_options *options, conic_image *fine,
-                              reduction *r, conic_render_statistics *sum) {
+static conic_status draw_band(conic_renderer *renderer, const conic_whole_drawing *drawing, const conic_camera *camera,
+                              const conic_render_options *options, conic_image *fine, const band_taker *taker,
+                              int first_row, conic_render_statistics *sum) {
   conic_render_statistics band;
   fine->height = camera->height;
   conic_status status = conic_render_whole(renderer, drawing, camera, options, fine, &band);
   if (status != CONIC_OK)
     return status;
   double start = conic_seconds_now();
-  r->fine = fine;
-  conic_parallel_for(context, (size_t)fine->height / r->samples, reduce_row, r);
+  status = taker->receive(taker->cookie, fine, first_row);
   add_statistics(&band, sum);
   sum->ms.resolve += 1e3 * (conic_seconds_now() - start);
-  return CONIC_OK;
+  return status;
 }
 
-/* Rows of the picture in a band. */
-static int band_rows(const conic_camera *camera, int samples) {
-  size_t n = BAND_PIXELS / ((size_t)camera->width * (size_t)samples * (size_t)samples);
-  return n < 1 ? 1 : n < (size_t)camera->height ? (int)n : camera->height;
+static conic_status draw_bands(conic_context *context, conic_renderer *renderer, const conic_whole_drawing *drawing,
+                               const conic_camera *camera, const conic_render_options *options, int samples,
+                               unsigned planes, const band_taker *taker, conic_render_statistics *sum) {
+  conic_image fine_image;
+  int rows = band_rows(camera, samples);
+  conic_status status = allocate_fine(context, samples * camera->width, samples * rows, planes, &fine_image);
+  if (status != CONIC_OK)
+    return status;
+  for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
+    int n_rows = camera->height - y < rows ? camera->height - y : rows;
+    conic_camera fine = fine_camera(camera, samples, y, n_rows);
+    status = draw_band(renderer, drawing, &fine, options, &fine_image, taker, y, sum);
+  }
+  conic_image_release(context, &fine_image);
+  return status;
+}
+
+/* What makes a picture of the bands. */
+typedef struct reducer {
+  conic_context *context;
+  reduction reduction;
+} reducer;
+
+static conic_status reduce_band(void *cookie, conic_image *fine, int first_row) {
+  reducer *r = cookie;
+  r->reduction.fine = fine;
+  r->reduction.first_row = (size_t)first_row;
+  conic_parallel_for(r->context, (size_t)fine->height / r->reduction.samples, reduce_row, &r->reduction);
+  return CONIC_OK;
 }
 
 static conic_status render_samples(conic_context *context, conic_renderer *renderer, const conic_whole_drawing *drawing,
@@ -239,29 +275,40 @@ static conic_status render_samples(conic_context *context, conic_renderer *rende
   conic_render_statistics sum;
   double start = conic_seconds_now();
   conic_render_options same = *options;
-  reduction r = {.image = image, .samples = (size_t)samples};
+  reducer r = {context, {.image = image, .samples = (size_t)samples}};
+  const band_taker taker = {reduce_band, &r};
   conic_status status = conic_whole_drawing_scale(context, drawing, &same);
   memset(&sum, 0, sizeof sum);
-  conic_image fine_image;
-  int rows = band_rows(camera, samples);
   if (status == CONIC_OK)
-    status = allocate_fine(context, samples * camera->width, samples * rows, conic_image_planes(image), &fine_image);
-  if (status != CONIC_OK)
-    return status;
-  for (int y = 0; y < camera->height && status == CONIC_OK; y += rows) {
-    int n_rows = camera->height - y < rows ? camera->height - y : rows;
-    conic_camera fine = fine_camera(camera, samples, y, n_rows);
-    r.first_row = (size_t)y;
-    status = draw_band(renderer, context, drawing, &fine, &same, &fine_image, &r, &sum);
-  }
-  conic_image_release(context, &fine_image);
-  if (status == CONIC_OK && rows < camera->height) {
+    status = draw_bands(context, renderer, drawing, camera, &same, samples,
+                        conic_image_planes(image) & CONIC_DRAWN_PLANES, &taker, &sum);
+  if (status == CONIC_OK && band_rows(camera, samples) < camera->height) {
     conic_camera whole = fine_camera(camera, samples, 0, camera->height);
     status = count_whole(context, drawing, &whole, &same, &sum);
   }
   sum.ms.frame = 1e3 * (conic_seconds_now() - start);
   if (status == CONIC_OK && statistics)
     *statistics = sum;
+  return status;
+}
+
+conic_status conic_render_bands(conic_context *context, conic_renderer *renderer, const conic_drawing *drawing,
+                                const conic_camera *camera, const conic_render_options *given, int samples,
+                                unsigned planes, conic_samples_receiver *receive, void *cookie) {
+  conic_render_options options;
+  conic_render_statistics sum;
+  conic_whole_drawing whole;
+  const band_taker taker = {receive, cookie};
+  memset(&sum, 0, sizeof sum);
+  conic_status status = conic_view_arguments_take(context, "render", camera, given, &options);
+  if (status != CONIC_OK)
+    return status;
+  status = conic_whole_drawing_enter(context, "render", drawing, &whole);
+  if (status == CONIC_OK)
+    status = conic_whole_drawing_scale(context, &whole, &options);
+  if (status == CONIC_OK)
+    status = draw_bands(context, renderer, &whole, camera, &options, samples, planes, &taker, &sum);
+  conic_drawing_leave(context, &whole.entered);
   return status;
 }
 

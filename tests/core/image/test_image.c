@@ -6,7 +6,8 @@
 #include "tests/support/image_fixture.h"
 
 static void test_descriptions(void) {
-  static const char *const names[] = {"rgba", "Z", "N", "albedo", "weight", "count", "id", "cluster", "P"};
+  static const char *const names[] = {"rgba", "Z",       "N", "albedo",         "weight",         "count",
+                                      "id",   "cluster", "P", "CryptoObject00", "CryptoObject01", "CryptoObject02"};
   for (int i = 0; i < CONIC_N_PLANES; i++) {
     const conic_plane_description *plane = conic_plane_describe((conic_plane)i);
     CHECK(plane && strcmp(plane->name, names[i]) == 0);

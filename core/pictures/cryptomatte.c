@@ -1,0 +1,127 @@
+#include "core/pictures/cryptomatte.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+
+enum { N_LAYERS = 3, DEPTH = 2 * N_LAYERS };
+
+static uint32_t turn_left(uint32_t bits, int n) {
+  return bits << n | bits >> (32 - n);
+}
+
+static uint32_t stir(uint32_t word) {
+  return turn_left(word * 0xcc9e2d51u, 15) * 0x1b873593u;
+}
+
+uint32_t conic_cryptomatte_hash(const char *text) {
+  const unsigned char *bytes = (const unsigned char *)text;
+  size_t n = strlen(text), rest = n % 4;
+  uint32_t hash = 0, word = 0;
+  for (size_t i = 0; i + 4 <= n; i += 4) {
+    word = bytes[i] | (uint32_t)bytes[i + 1] << 8 | (uint32_t)bytes[i + 2] << 16 | (uint32_t)bytes[i + 3] << 24;
+    hash = turn_left(hash ^ stir(word), 13) * 5 + 0xe6546b64u;
+  }
+  word = 0;
+  for (size_t i = 0; i < rest; i++)
+    word |= (uint32_t)bytes[n - rest + i] << 8 * i;
+  hash ^= stir(word); /* which of nothing is nothing */
+  hash ^= (uint32_t)n;
+  hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+  hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+  return hash ^ hash >> 16;
+}
+
+uint32_t conic_cryptomatte_bits(const char *name) {
+  uint32_t hash = conic_cryptomatte_hash(name), exponent = hash >> 23 & 0xff;
+  return exponent == 0 || exponent == 0xff ? hash ^ 1u << 23 : hash;
+}
+
+/* One of the things in a pixel. */
+typedef struct matte {
+  uint32_t bits;
+  unsigned n_samples;
+} matte;
+
+static int goes_first(const matte *a, const matte *b) {
+  return a->n_samples != b->n_samples ? a->n_samples > b->n_samples : a->bits < b->bits;
+}
+
+static unsigned count_same(const uint32_t *bits, size_t n_samples, size_t first) {
+  unsigned n = 0;
+  for (size_t i = first; i < n_samples; i++)
+    n += bits[i] == bits[first];
+  return n;
+}
+
+static int is_known(const uint32_t *bits, size_t i) {
+  size_t before = 0;
+  if (i > 0 && bits[i] == bits[i - 1])
+    return 1;
+  while (before < i && bits[before] != bits[i])
+    before++;
+  return before < i;
+}
+
+void conic_cryptomatte_rank(const uint32_t *bits, size_t n_samples, conic_image *image, size_t pixel) {
+  matte ranks[DEPTH + 1];
+  size_t n = 0;
+  for (size_t i = 0; i < n_samples; i++) {
+    if (bits[i] == 0 || is_known(bits, i))
+      continue;
+    matte here = {bits[i], count_same(bits, n_samples, i)};
+    size_t at = n;
+    for (; at > 0 && goes_first(&here, &ranks[at - 1]); at--)
+      ranks[at] = ranks[at - 1];
+    ranks[at] = here;
+    n = n < DEPTH ? n + 1 : DEPTH;
+  }
+  for (size_t i = 0; i < DEPTH; i++) {
+    float *pair = (float *)image->planes[(size_t)CONIC_PLANE_MATTE_0 + i / 2] + 4 * pixel + 2 * (i % 2);
+    pair[0] = pair[1] = 0.0f;
+    if (i >= n)
+      continue;
+    memcpy(pair, &ranks[i].bits, sizeof ranks[i].bits);
+    pair[1] = (float)((double)ranks[i].n_samples / (double)n_samples);
+  }
+}
+
+/* A byte as it stands in a JSON text; returns the bytes that takes, at most 6. */
+static size_t write_byte(unsigned char byte, char *to) {
+  char escaped[8];
+  size_t n = 1;
+  if (byte < 0x20)
+    n = (size_t)snprintf(escaped, sizeof escaped, "\\u%04x", byte);
+  else if (byte == '"' || byte == '\\')
+    n = (size_t)snprintf(escaped, sizeof escaped, "\\%c", byte);
+  else
+    escaped[0] = (char)byte;
+  memcpy(to, escaped, n);
+  return n;
+}
+
+conic_status conic_cryptomatte_name(conic_context *context, conic_cryptomatte_manifest *manifest, const char *name) {
+  size_t at = manifest->length, wanted = at + 6 * strlen(name) + 32;
+  if (wanted > manifest->room) {
+    conic_status status = conic_memory_reserve(context, &manifest->text, at, wanted, &manifest->room, 1);
+    if (status != CONIC_OK)
+      return status;
+  }
+  char *text = manifest->text;
+  if (at == 0)
+    text[at++] = '{';
+  else
+    text[at - 1] = ','; /* was the end */
+  text[at++] = '"';
+  for (const char *c = name; *c; c++)
+    at += write_byte((unsigned char)*c, text + at);
+  at += (size_t)snprintf(text + at, wanted - at, "\":\"%08x\"}", (unsigned)conic_cryptomatte_bits(name));
+  manifest->length = at;
+  return CONIC_OK;
+}
+
+void conic_cryptomatte_manifest_release(conic_context *context, conic_cryptomatte_manifest *manifest) {
+  conic_memory_release(context, manifest->text);
+  memset(manifest, 0, sizeof *manifest);
+}
