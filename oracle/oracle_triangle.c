@@ -123,7 +123,7 @@ static double cosine_between(const double a[3], const double b[3]) {
 static void find_shading_normal(const conic_triangles *set, const oracle_triangle *t, const conic_camera *camera,
                                 double x, double y, double normal[3], double *doubt) {
   double at[2], ray[3] = {(x / 256.0 - camera->cx) / camera->fx, (y / 256.0 - camera->cy) / camera->fy, 1.0};
-  double d[3], face[3];
+  double d[3], face[3], along = 1.0;
   normal_of_triangle(set, set->corners[t->index], face);
   if (!(oracle_length(face) > 0.0))
     for (int axis = 0; axis < 3; axis++)
@@ -131,19 +131,24 @@ static void find_shading_normal(const conic_triangles *set, const oracle_triangl
   memcpy(normal, face, sizeof face);
   if (set->normal[0]) {
     const uint32_t *corners = set->normal_corners ? set->normal_corners[t->index] : set->corners[t->index];
-    double mean[3];
+    double mean[3], sum[3];
     find_weights(t, x, y, at);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
+      const float *component = set->normal[axis];
       mean[axis] = blend_corners(set->normal[axis], corners, at);
+      sum[axis] = (double)component[corners[0]] + (double)component[corners[1]] + (double)component[corners[2]];
+    }
     double squared = oracle_dot(mean, mean);
+    along = cosine_between(sum, face);
     if (squared > 1e-30 && squared < 1e30)
-      memcpy(normal, mean, sizeof mean);
+      for (int axis = 0; axis < 3; axis++)
+        normal[axis] = along < 0.0 ? -mean[axis] : mean[axis];
   }
   for (int axis = 0; axis < 3; axis++)
     d[axis] = camera->cam_from_world[0][axis] * ray[0] + camera->cam_from_world[1][axis] * ray[1] +
               camera->cam_from_world[2][axis] * ray[2];
-  double behind = cosine_between(face, d), along = cosine_between(normal, face);
-  double scale = ((behind > 0.0) != (along < 0.0) ? -1.0 : 1.0) / oracle_length(normal);
+  double behind = cosine_between(face, d);
+  double scale = (behind > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] *= scale;
   double away = oracle_dot(normal, d) / oracle_dot(d, d);
@@ -217,7 +222,7 @@ static void look_at_piece(const oracle_mesh *mesh, const oracle_view *view, cons
   splat->behind = 1.0 / (1.0 + mesh->epsilon * s->iz / oracle_length(ray));
   find_color(mesh->triangles, t, x, y, splat->color);
   find_shading_normal(mesh->triangles, t, &view->camera, x, y, splat->normal, &doubt);
-  splat->is_facing_unsure = fabs(doubt) < 4.0 * ORACLE_ROUNDINGS * ORACLE_UNIT;
+  splat->is_facing_unsure = !(fabs(doubt) >= 4.0 * ORACLE_ROUNDINGS * ORACLE_UNIT);
   seen->candidate.splat = splat;
   seen->candidate.is_drawn = 1;
   seen->candidate.shape.range[0] = -INFINITY;

@@ -30,7 +30,7 @@ typedef struct samples {
   double *sorted;
 } samples;
 
-static void add_sample(samples *s, const double place[3], const double area[3]) {
+static void add_patch(samples *s, const double place[3], const double area[3]) {
   for (int axis = 0; axis < 3; axis++)
     if (place[axis] - place[axis] != 0.0 || area[axis] - area[axis] != 0.0)
       return;
@@ -54,7 +54,7 @@ static void take_splat_samples(samples *s, const conic_splats *splats) {
       place[axis] = (double)splats->position[axis][i] + splats->origin[axis];
     }
     conic_cross(u, v, area);
-    add_sample(s, place, area);
+    add_patch(s, place, area);
   }
 }
 
@@ -69,11 +69,11 @@ static void take_triangle_samples(samples *s, const conic_triangles *t) {
     conic_subtract(corner[1], corner[0], side[0]);
     conic_subtract(corner[2], corner[0], side[1]);
     conic_cross(side[0], side[1], area);
-    add_sample(s, place, area);
+    add_patch(s, place, area);
   }
 }
 
-static int compare_places(const void *a, const void *b) {
+static int compare_heights(const void *a, const void *b) {
   const double *first = a, *second = b;
   return (*first > *second) - (*first < *second);
 }
@@ -83,7 +83,7 @@ static void find_extent(const samples *s, double low[3], double high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     for (size_t i = 0; i < s->count; i++)
       s->sorted[i] = s->place[i][axis];
-    qsort(s->sorted, s->count, sizeof *s->sorted, compare_places);
+    qsort(s->sorted, s->count, sizeof *s->sorted, compare_heights);
     low[axis] = s->sorted[s->count / 100];
     high[axis] = s->sorted[s->count - 1 - s->count / 100];
   }

@@ -10,7 +10,7 @@
 enum { MOST_FRAMES = 9999 };
 
 /* A number of a frame at `*text`, and past it; 0 where there is none. */
-static int take_number(const char **text) {
+static int take_frame_number(const char **text) {
   char *end;
   long n = **text >= '0' && **text <= '9' ? strtol(*text, &end, 10) : 0;
   if (n < 1 || n > MOST_FRAMES)
@@ -22,14 +22,14 @@ static int take_number(const char **text) {
 int cli_parse_turntable(const char *text, void *value) {
   cli_render_job *job = value;
   job->is_turntable = 1;
-  job->n_frames = take_number(&text);
+  job->n_frames = take_frame_number(&text);
   return job->n_frames > 0 && *text == '\0';
 }
 
 int cli_parse_frames(const char *text, void *value) {
   int numbers[3] = {0, 0, 1}, n = 0;
   do
-    numbers[n] = take_number(&text);
+    numbers[n] = take_frame_number(&text);
   while (numbers[n++] && n < 3 && *text == ':' && *++text);
   if (n == 1)
     numbers[1] = numbers[0];

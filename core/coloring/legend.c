@@ -104,7 +104,7 @@ static int legend_text_width(const char *text) {
   return (int)strlen(text) * CONIC_GLYPH_STEP - 1;
 }
 
-static void lay_out(const conic_coloring *coloring, legend *l) {
+static void lay_out_legend(const conic_coloring *coloring, legend *l) {
   memset(l, 0, sizeof *l);
   l->coloring = coloring;
   if (!coloring->ramp)
@@ -166,7 +166,7 @@ static void draw_ramp_bar(const canvas *to, const conic_coloring *coloring) {
   }
 }
 
-static void draw(const legend *l, const canvas *to, float alpha) {
+static void draw_legend_into(const legend *l, const canvas *to, float alpha) {
   int first = MARGIN + TITLE;
   draw_box(to, 0, 0, l->width, l->height, paper, alpha);
   draw_text(to, MARGIN, MARGIN, l->coloring->field);
@@ -192,18 +192,18 @@ void conic_legend_draw(const conic_coloring *coloring, conic_image *image) {
   canvas to = {.image = image, .unit = shorter > 900 ? shorter / 450 : 1};
   if (!image->planes[CONIC_PLANE_RGBA])
     return;
-  lay_out(coloring, &l);
+  lay_out_legend(coloring, &l);
   to.x = image->width - (l.width + MARGIN) * to.unit;
   to.y = image->height - (l.height + MARGIN) * to.unit;
-  draw(&l, &to, 0.8f);
+  draw_legend_into(&l, &to, 0.8f);
 }
 
 conic_status conic_legend_make(conic_context *context, const conic_coloring *coloring, conic_image *image) {
   enum { UNIT = 2 };
   legend l;
-  lay_out(coloring, &l);
+  lay_out_legend(coloring, &l);
   conic_status status = conic_image_allocate(context, l.width * UNIT, l.height * UNIT, 1u << CONIC_PLANE_RGBA, image);
   if (status == CONIC_OK)
-    draw(&l, &(canvas){.image = image, .unit = UNIT}, 1.0f);
+    draw_legend_into(&l, &(canvas){.image = image, .unit = UNIT}, 1.0f);
   return status;
 }

@@ -196,7 +196,7 @@ static void lay_corner(const mesh_bounding *in, size_t i, conic_splats *points, 
 }
 
 /* The first of an off vertex's triangles takes its place, the others come after all vertices. */
-static void list_splats(mesh_bounding *in) {
+static void list_fan_splats(mesh_bounding *in) {
   const conic_model *model = in->model;
   double corners[3][3], normal[3];
   size_t n = model->points.count;
@@ -215,7 +215,7 @@ static void list_splats(mesh_bounding *in) {
   }
 }
 
-static conic_status make_splats(conic_context *context, const mesh_bounding *in, conic_splats *made) {
+static conic_status make_fan_splats(conic_context *context, const mesh_bounding *in, conic_splats *made) {
   size_t n_clips = 0;
   conic_status status = conic_splats_gather(context, &in->model->points, in->sources, in->n_splats, made);
   for (size_t i = 0; i < in->n_splats; i++)
@@ -257,8 +257,8 @@ static conic_status bound(conic_context *context, mesh_bounding *in, conic_splat
   conic_status status = conic_slots_for(context, n, find_off, in, 1.0, 1.0);
   if (status != CONIC_OK)
     return status;
-  list_splats(in);
-  status = make_splats(context, in, made);
+  list_fan_splats(in);
+  status = make_fan_splats(context, in, made);
   if (status == CONIC_OK)
     *n_dropped = drop_leftovers(in, made);
   return status;

@@ -26,8 +26,11 @@
 /* How often scores are spread to the neighbours. */
 #define N_MEANS 3
 
-/* Of a dot in spacings, which are the distances to the second neighbour. */
+/* Of a dot in spacings, which are the distances to the second neighbour; and where there are so few points that they
+ * tell of no surface: the corners of a cube are eight places, not a blob. */
 #define DOT_REACH 0.65
+#define LONE_REACH 0.12
+enum { FEWEST_IN_SURFACE = 12 };
 
 typedef struct scatter_work {
   conic_neighbourhood *neighbourhood;
@@ -44,7 +47,7 @@ static double trace_of(const double matrix[6]) {
 }
 
 /* By the sum of the products of two eigenvalues each, which needs none of them. */
-static int is_line(const double m[6]) {
+static int is_wire(const double m[6]) {
   double pairs = m[0] * m[3] - m[1] * m[1] + (m[0] * m[5] - m[2] * m[2]) + (m[3] * m[5] - m[4] * m[4]),
          trace = trace_of(m);
   return pairs < LINE_WIDTH2 * trace * trace;
@@ -60,7 +63,7 @@ static int is_lone_line(const conic_neighbourhood *neighbourhood, size_t slot) {
                                n < CONIC_MAX_NEIGHBOURS ? n : CONIC_MAX_NEIGHBOURS, HUGE_VAL, slots, distances2);
   conic_covariance_add(&covariance, neighbourhood, slots, n);
   conic_covariance_matrix(&covariance, matrix);
-  return is_line(matrix);
+  return is_wire(matrix);
 }
 
 static double scatter_of(const double matrix[6]) {
@@ -100,7 +103,7 @@ static double score_of(const conic_neighbourhood *neighbourhood, size_t slot) {
   conic_covariance_add(&covariance, neighbourhood, conic_neighbourhood_of(neighbourhood, slot),
                        neighbourhood->n_neighbours);
   conic_covariance_matrix(&covariance, matrix);
-  if (is_line(matrix))
+  if (is_wire(matrix))
     return is_lone_line(neighbourhood, slot) ? GREATEST_SCORE : 0.0;
   double score = least(disagreement_of(neighbourhood, slot) / FULL_DISAGREEMENT, GREATEST_SCORE);
   if (score >= LEAST_SCORE)
@@ -138,6 +141,12 @@ static conic_status find_with(conic_context *context, scatter_work *work, float 
   conic_neighbourhood *neighbourhood = work->neighbourhood;
   size_t n_slots = neighbourhood->tree.n_slots;
   work->to = scores[0];
+  if (n_slots < FEWEST_IN_SURFACE) {
+    for (size_t slot = 0; slot < n_slots; slot++)
+      if (is_listed(neighbourhood, slot))
+        neighbourhood->flags[slot] |= CONIC_SLOT_SCATTERED;
+    return CONIC_OK;
+  }
   conic_status status = conic_slots_for(context, n_slots, score_slots, work, from, to);
   for (int i = 0; i < N_MEANS && status == CONIC_OK; i++) {
     work->from = scores[i % 2];
@@ -168,11 +177,24 @@ conic_status conic_scatter_find(conic_context *context, conic_neighbourhood *nei
 
 /* --- what a dot is given --- */
 
-static double spacing_at(const conic_neighbourhood *neighbourhood, size_t slot) {
+static double spacing_about(const conic_neighbourhood *neighbourhood, size_t slot) {
   const uint32_t *list = conic_neighbourhood_of(neighbourhood, slot);
   double position[3];
   conic_neighbourhood_position(neighbourhood, slot, position);
   return sqrt(conic_neighbours_distance2(&neighbourhood->tree, list[neighbourhood->n_neighbours > 1], position));
+}
+
+/* So few points are to be seen from where all of them are: as dots of a hundredth of their extent at least. */
+static double lone_reach(const conic_neighbourhood *neighbourhood, size_t slot, double spacing) {
+  static const double least_part = 0.005;
+  double position[3], farthest2 = 0.0;
+  conic_neighbourhood_position(neighbourhood, slot, position);
+  for (uint32_t other = 0; other < neighbourhood->tree.n_slots; other++) {
+    double distance2 = conic_neighbours_distance2(&neighbourhood->tree, other, position);
+    farthest2 = distance2 > farthest2 ? distance2 : farthest2;
+  }
+  double reach = LONE_REACH * spacing, least = least_part * sqrt(farthest2);
+  return reach > least ? reach : least;
 }
 
 double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot) {
@@ -183,13 +205,14 @@ double conic_scatter_reach(const conic_neighbourhood *neighbourhood, size_t slot
     size_t other = i ? list[i - 1] : slot, at = n;
     if (!is_listed(neighbourhood, other))
       continue;
-    double value = spacing_at(neighbourhood, other);
+    double value = spacing_about(neighbourhood, other);
     for (; at > 0 && sorted[at - 1] > value; at--)
       sorted[at] = sorted[at - 1];
     sorted[at] = value;
     n++;
   }
-  return DOT_REACH * sorted[n / 2];
+  return neighbourhood->tree.n_slots < FEWEST_IN_SURFACE ? lone_reach(neighbourhood, slot, sorted[n / 2])
+                                                         : DOT_REACH * sorted[n / 2];
 }
 
 void conic_scatter_outside(const conic_neighbourhood *neighbourhood, size_t slot, double normal[3]) {

@@ -9,6 +9,7 @@
 #include "core/files/number.h"
 #include "core/splats/builder.h"
 #include "core/splats/faces.h"
+#include "core/splats/polygon.h"
 
 /* A corner of a face that names a normal. Which normal it is may be read later. */
 typedef struct obj_corner {
@@ -200,14 +201,18 @@ static conic_status add_obj_triangle(obj_reader *reader, const face_corner a, co
 static conic_status read_face(void *data) {
   obj_reader *reader = data;
   face_corner first = {0, 0, 0}, previous = {0, 0, 0}, current;
+  conic_model *model = reader->builder.model;
+  size_t n_before = model->n_triangles;
   for (uint64_t n = 0;; n++) {
     const char *word;
     size_t length;
     conic_status status = conic_input_word(reader->input, &word, &length);
     if (status != CONIC_OK)
       return status;
-    if (length == 0 || word[0] == '#')
+    if (length == 0 || word[0] == '#') {
+      conic_polygon_settle(model, n_before);
       return n < 3 ? conic_input_wrong(reader->input, "a face has at least 3 corners") : CONIC_OK;
+    }
     status = read_corner(reader, word, length, current);
     if (status == CONIC_OK && n >= 2)
       status = add_obj_triangle(reader, first, previous, current);

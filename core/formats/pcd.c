@@ -88,7 +88,7 @@ static void find_origin(pcd_reader *reader, size_t n) {
 }
 
 /* Appends the block's first n points. */
-static conic_status append_block(pcd_reader *reader, size_t n) {
+static conic_status append_rows(pcd_reader *reader, size_t n) {
   conic_splats *points = &reader->builder.model->points;
   if (conic_builder_points(&reader->builder) + n > CONIC_MAX_POINTS)
     return conic_input_wrong(reader->input, "too many points");
@@ -172,7 +172,7 @@ static conic_status read_text_rows(pcd_reader *reader) {
     if (status == CONIC_OK)
       status = conic_input_next_line(reader->input, &is_done);
     if (status == CONIC_OK && (n == BLOCK || (is_done && n))) {
-      status = append_block(reader, n);
+      status = append_rows(reader, n);
       n = 0;
     }
   }
@@ -207,7 +207,7 @@ static conic_status read_binary_rows(pcd_reader *reader) {
     n = n < BLOCK ? n : BLOCK;
     n = n < left ? n : (size_t)left;
     convert_points(reader, conic_input_bytes(input), 0, 0, n);
-    status = append_block(reader, n);
+    status = append_rows(reader, n);
     input->next += n * row_bytes;
   }
   return status;
@@ -247,7 +247,7 @@ static conic_status append_unpacked(pcd_reader *reader, const unsigned char *byt
   for (size_t first = 0; status == CONIC_OK && first < n_points; first += BLOCK) {
     size_t n = n_points - first < BLOCK ? n_points - first : BLOCK;
     convert_points(reader, bytes, n_points, first, n);
-    status = append_block(reader, n);
+    status = append_rows(reader, n);
   }
   return status;
 }

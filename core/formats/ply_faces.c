@@ -4,6 +4,7 @@
 #include "core/base/message.h"
 #include "core/formats/ply_read.h"
 #include "core/formats/ply_texture.h"
+#include "core/splats/polygon.h"
 
 /* Turns a list of vertex indices, one at a time, into triangles. */
 typedef struct triangulation {
@@ -90,6 +91,8 @@ static conic_status read_face_row(triangulation *faces, const conic_ply_property
   if (status == CONIC_OK)
     status = conic_ply_face_texture_end_row(faces->source, faces->n_seen, faces->builder->model->n_triangles - n_before,
                                             &faces->texture);
+  if (status == CONIC_OK && !faces->is_strip)
+    conic_polygon_settle(faces->builder->model, n_before);
   return status == CONIC_OK ? conic_ply_end_row(faces->source) : status;
 }
 

@@ -188,7 +188,7 @@ void conic_xyz_tell_columns(const conic_input *input, const conic_xyz_heading *h
               list);
 }
 
-static conic_status find_columns(const conic_input *input, const studied_rows *rows, conic_xyz_heading *heading) {
+static conic_status find_named_columns(const conic_input *input, const studied_rows *rows, conic_xyz_heading *heading) {
   conic_text_word words[CONIC_TEXT_MOST_COLUMNS];
   conic_text_columns *columns = &heading->columns;
   size_t n = 0, n_named = heading->names == CONIC_XYZ_UNNAMED ? 0 : columns->n;
@@ -236,5 +236,5 @@ conic_status conic_xyz_heading_read(conic_input *input, const char *columns, con
     return status;
   study(input, &rows);
   status = find_dialect(input, &rows, heading);
-  return status == CONIC_OK ? find_columns(input, &rows, heading) : status;
+  return status == CONIC_OK ? find_named_columns(input, &rows, heading) : status;
 }

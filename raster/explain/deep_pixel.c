@@ -25,7 +25,7 @@ static void shade(conic_deep_sample *samples, size_t n, const float shaded[3]) {
 }
 
 /* A sample lets through what those behind it are of the rest, so that each is seen with its share of the weights. */
-static void cover(conic_deep_sample *samples, size_t n) {
+static void cover_from(conic_deep_sample *samples, size_t n) {
   double behind = 0.0;
   for (size_t i = n; i-- > 0;) {
     conic_deep_sample *sample = &samples[i];
@@ -42,5 +42,5 @@ void conic_deep_pixel(conic_deep_sample *samples, size_t n, const float *shaded)
     shade(samples, n, shaded);
   if (n > 1)
     qsort(samples, n, sizeof *samples, compare_depths);
-  cover(samples, n);
+  cover_from(samples, n);
 }

@@ -56,15 +56,16 @@ CONIC_INLINE void find_normals(const conic_triangle_look *look, const look_place
     lanes mean[3];
     for (int axis = 0; axis < 3; axis++)
       mean[axis] = blend_corners(p->at, look->normal[0][axis], look->normal[1][axis], look->normal[2][axis]);
-    lanes squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2], scale = 1.0f / lanes_sqrt(squared);
+    lanes squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2],
+          scale = lanes_of(look->side < 0.0f ? -1.0f : 1.0f) / lanes_sqrt(squared);
     lanes_mask is_usable = lanes_less(lanes_of(1e-30f), squared) & lanes_less(squared, lanes_of(1e30f));
     for (int axis = 0; axis < 3; axis++)
       normal[axis] = lanes_select(is_usable, mean[axis] * scale, normal[axis]);
   }
   lanes zero = lanes_of(0.0f);
-  lanes_mask is_turned = lanes_less(zero, dot_of_lanes(face, ray)) ^ lanes_less(dot_of_lanes(normal, face), zero);
+  lanes_mask is_behind = lanes_less(zero, dot_of_lanes(face, ray));
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = lanes_select(is_turned, -normal[axis], normal[axis]);
+    normal[axis] = lanes_select(is_behind, -normal[axis], normal[axis]);
   lanes away = dot_of_lanes(normal, ray), part = 2.0f * away / dot_of_lanes(ray, ray);
   lanes_mask is_away = lanes_less(zero, away);
   for (int axis = 0; axis < 3; axis++)

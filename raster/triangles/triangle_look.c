@@ -108,6 +108,10 @@ void conic_triangle_look_at(const conic_triangle_frame *frame, const conic_trian
     for (int axis = 0; axis < 3; axis++)
       take_component(t->normal[axis], of_normals, &look->normal[0][axis], &look->normal[1][axis],
                      &look->normal[2][axis]);
+    float sum[3];
+    for (int axis = 0; axis < 3; axis++)
+      sum[axis] = 3.0f * look->normal[0][axis] + (look->normal[1][axis] + look->normal[2][axis]);
+    look->side = (sum[0] * look->face[0] + sum[1] * look->face[1]) + sum[2] * look->face[2];
   }
   if (t->n_materials)
     take_material(t, record, look);

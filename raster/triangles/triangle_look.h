@@ -13,6 +13,7 @@ typedef struct conic_triangle_look {
   int has_normals;              /* else the face's */
   float normal[3][3];           /* in world coordinates, of any length */
   float face[3];                /* unit, of either side */
+  float side;                   /* of the face on which the corners' normals lie, taken together: its sign */
   const conic_texture *texture; /* null: none */
   float uv[3][2];
 } conic_triangle_look;

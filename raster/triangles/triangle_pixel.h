@@ -56,9 +56,9 @@ static inline float conic_triangle_dot(const float a[3], const float b[3]) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/* The unit normal, towards the viewer, who looks along (dx, dy, 1). It lies on the side of the face that is seen, and
- * where it leans away even so, as near an outline, it is mirrored in the plane across the ray: turned round it would
- * point the other way at once, and light would jump. */
+/* The unit normal, towards the viewer, who looks along (dx, dy, 1). Corners' normals lie on the side of the face that
+ * is seen, and where their mean leans away even so, as near an outline, it is mirrored in the plane across the ray:
+ * turned round it would point the other way at once, and light would jump. */
 static inline void conic_triangle_look_normal(const conic_triangle_look *look, const conic_triangle_weights *w,
                                               const float world_from_cam[3][3], float dx, float dy, float normal[3]) {
   float ray[3];
@@ -72,14 +72,13 @@ static inline void conic_triangle_look_normal(const conic_triangle_look *look, c
     for (int axis = 0; axis < 3; axis++)
       mean[axis] = look->normal[0][axis] + (w->at[0] * look->normal[1][axis] + w->at[1] * look->normal[2][axis]);
     float squared = (mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2];
-    scale = 1.0f / sqrtf(squared);
+    scale = (look->side < 0.0f ? -1.0f : 1.0f) / sqrtf(squared);
     for (int axis = 0; axis < 3 && squared > 1e-30f && squared < 1e30f; axis++)
       normal[axis] = mean[axis] * scale;
   }
-  int is_behind = conic_triangle_dot(look->face, ray) > 0.0f,
-      is_opposite = conic_triangle_dot(normal, look->face) < 0.0f;
+  int is_behind = conic_triangle_dot(look->face, ray) > 0.0f;
   for (int axis = 0; axis < 3; axis++)
-    normal[axis] = is_behind != is_opposite ? -normal[axis] : normal[axis];
+    normal[axis] = is_behind ? -normal[axis] : normal[axis];
   float away = conic_triangle_dot(normal, ray), part = 2.0f * away / conic_triangle_dot(ray, ray);
   for (int axis = 0; axis < 3; axis++)
     normal[axis] = away > 0.0f ? normal[axis] - part * ray[axis] : normal[axis];

@@ -80,7 +80,7 @@ static void reach_of_triangles(const reach *r, size_t first, size_t end, double 
     }
 }
 
-static void measure_task(void *data, size_t i_item, int i_thread) {
+static void measure_reach_of_task(void *data, size_t i_item, int i_thread) {
   const reach *r = data;
   int is_splats = i_item < r->n_splat_tasks;
   size_t count = is_splats ? r->drawing->splats->count : r->drawing->triangles->count;
@@ -105,7 +105,7 @@ static conic_status measure_reach(conic_context *context, reach *r) {
   r->farthest = conic_memory_allocate(context, n_tasks * r->n, sizeof *r->farthest);
   if (!r->farthest)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, n_tasks, measure_task, r);
+  conic_parallel_for(context, n_tasks, measure_reach_of_task, r);
   for (size_t task = 1; task < n_tasks; task++)
     for (size_t i = 0; i < r->n; i++)
       if (r->farthest[task * r->n + i] > r->farthest[i])

@@ -272,6 +272,43 @@ static void check_real(const char *source_folder) {
   fixture_close(&f);
 }
 
+/* Corner normals that lean away from the viewer, as they do at outlines, and that point through the face, as where a
+ * file winds its faces the other way: what is seen faces the viewer and does not jump from pixel to pixel. */
+static void check_leaning_normals(void) {
+  static const double normals[3][3] = {{0.9, 0.1, -0.5}, {1.0, 0.0, 0.35}, {0.8, -0.3, -0.1}};
+  for (int is_inside_out = 0; is_inside_out < 2; is_inside_out++) {
+    fixture f = fixture_open(1);
+    fixture_camera(&f, 64, 64, 64.0);
+    conic_triangles t = triangles_make(&f, 1, 3, CONIC_TRIANGLES_NORMALS);
+    triangles_vertex(&t, 0, -1.0, -1.0, 2.0);
+    triangles_vertex(&t, 1, -0.9, 1.0, 2.0);
+    triangles_vertex(&t, 2, 1.0, 0.0, 2.0);
+    triangles_corner(&t, 0, 0, 1, 2);
+    for (size_t k = 0; k < 3; k++)
+      for (int axis = 0; axis < 3; axis++)
+        t.normal[axis][k] = (float)(is_inside_out ? -normals[k][axis] : normals[k][axis]);
+    CHECK_OK(triangles_render(&f, &t, 1));
+    const float *n = f.image.planes[CONIC_PLANE_NORMAL];
+    int n_covered = 0;
+    for (int y = 0; y < 64; y++)
+      for (int x = 1; x < 64; x++) {
+        const float *here = n + 3 * (y * 64 + x), *left = here - 3;
+        if (fixture_index(&f, CONIC_PLANE_ID, x, y) == CONIC_NO_ID)
+          continue;
+        double dx = (x + 0.5 - 32.0) / 64.0, dy = (y + 0.5 - 32.0) / 64.0;
+        n_covered++;
+        CHECK((double)here[0] * dx + (double)here[1] * dy + (double)here[2] < 1e-6);
+        CHECK_NEAR((double)(here[0] * here[0] + here[1] * here[1] + here[2] * here[2]), 1.0, 1e-5);
+        if (fixture_index(&f, CONIC_PLANE_ID, x - 1, y) != CONIC_NO_ID)
+          for (int axis = 0; axis < 3; axis++)
+            CHECK_NEAR((double)here[axis], (double)left[axis], 0.1);
+      }
+    CHECK(n_covered > 500);
+    conic_triangles_release(f.context, &t);
+    fixture_close(&f);
+  }
+}
+
 int main(int argc, char **argv) {
   check_closed();
   check_convex();
@@ -279,6 +316,7 @@ int main(int argc, char **argv) {
   check_near();
   check_hostile();
   check_attributes();
+  check_leaning_normals();
   check_real(argc > 1 ? argv[1] : ".");
   return check_result();
 }
