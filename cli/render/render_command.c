@@ -152,15 +152,24 @@ static void warn_of_empty(cli_session *session, cli_render_job *job) {
     conic_log(session->context, CONIC_LOG_WARNING, "%s: the picture is empty: all is out of sight", job->inputs[0]);
 }
 
-/* The finest that a hybrid has of one kind may not be as fine as it was asked to be. */
+/* The finest that a hybrid has of one kind may not be as fine as it was asked to be; surfels alone, of which nothing
+ * was asked, may stand out by more than a pixel. */
 static void warn_of_error(cli_session *session, cli_render_job *job) {
   double wanted = job->view.error_px, reached = conic_source_chosen(job->source)->error_px;
   const char *const kinds[] = {"--only triangles ", "--only surfels "};
-  if (!(wanted > 0.0) || reached <= wanted || job->is_error_warned)
+  int is_asked = wanted > 0.0, is_free = !is_asked && job->view.budget == 0;
+  if (job->is_error_warned || reached <= (is_asked ? wanted : 1.0))
+    return;
+  if (is_asked)
+    conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
+              job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
+  else if (is_free && job->view.only_kind == CONIC_HYBRID_SURFELS)
+    conic_log(session->context, CONIC_LOG_WARNING,
+              "%s: --only surfels stand out from the mesh: the picture is up to %.3g pixels off", job->inputs[0],
+              reached);
+  else
     return;
   job->is_error_warned = 1;
-  conic_log(session->context, CONIC_LOG_WARNING, "%s: %scannot keep --error %g: the picture is up to %.3g pixels off",
-            job->inputs[0], job->view.only_kind < 0 ? "it " : kinds[job->view.only_kind], wanted, reached);
 }
 
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,

@@ -117,6 +117,15 @@ static conic_status find_site_errors(conic_sampler *s, conic_surfels *surfels) {
   return status;
 }
 
+/* Whether a surfel stands out from the mesh by more than is allowed; places count there, and colours do not. */
+static int is_out(const conic_sampler *s) {
+  double known = s->job->most_out;
+  for (size_t i = 0; i < s->n_sites && known <= s->job->most_out; i++)
+    if (s->sites[i].is_drawn)
+      known = conic_site_off_mesh(s, &s->sites[i], known);
+  return known > s->job->most_out;
+}
+
 /* --- closer where it must be --- */
 
 /* How often sites are looked for anew, and by which factors the error grows above which they are parted. */
@@ -212,6 +221,7 @@ conic_status conic_cluster_sample(conic_sampler *s, const conic_sampling_job *jo
   for (size_t i = 0; i < s->n_sites && status == CONIC_OK; i++)
     status = emit(s, &s->sites[i], surfels);
   surfels->is_coarsest = status == CONIC_OK && is_coarsest(s);
+  surfels->is_out = status == CONIC_OK && s->job->most_out < HUGE_VAL && is_out(s);
   if (status == CONIC_OK && surfels->n <= job->useful)
     status = find_site_errors(s, surfels);
   return status;

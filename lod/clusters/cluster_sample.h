@@ -20,6 +20,7 @@ typedef struct conic_surfels {
   double error;
   double refined_error; /* the same as measured at the twenty places by which surfels are laid closer or not */
   double reach;         /* the longest half axis of an outline */
+  int is_out;           /* an outline is farther from the mesh than the job's `most_out` */
   int is_coarsest;      /* no wider spacing gives fewer */
 } conic_surfels;
 
@@ -30,6 +31,7 @@ typedef struct conic_sampling_job {
   double spacing;   /* no two surfels that face alike are nearer than this, but where the surface needs closer ones */
   double tolerance; /* surfels whose error is larger are made of closer ones, */
   size_t most;      /* as long as there are no more than these */
+  double most_out;  /* how far outlines may be from the mesh; infinite: nobody asks */
   size_t useful;    /* with more of them the caller has no use for them, and need not know how far they err */
   int is_coarser;   /* the job before was the same cluster's, at half the spacing */
   int is_off_mesh;  /* what sites stand for lies near the mesh, but not on it */

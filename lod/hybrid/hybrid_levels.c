@@ -105,6 +105,20 @@ static double first_spacing(const conic_ways_job *job, uint32_t cluster) {
 static const double tolerance = 0.5;
 enum { MOST_A_FACE = 2, MOST_A_FACE_OF_TRIANGLES = 1 };
 
+/* What surfels may stand out as built, as a part of the mesh's diagonal: a pixel where a picture of 1024 shows all of
+ * it. */
+static const double tolerance_of_mesh = 1e-3;
+
+static double find_most_out(const conic_ways_job *job) {
+  const conic_face_box *all = &job->tree.boxes[1];
+  double sides[3];
+  if (job->options->most_error <= 0.0)
+    return HUGE_VAL;
+  for (int axis = 0; axis < 3; axis++)
+    sides[axis] = (double)all->high[axis] - (double)all->low[axis];
+  return tolerance_of_mesh * conic_length(sides);
+}
+
 /* With how many surfels the next level is worth one: a fourth less than the one before has. */
 static size_t most_of_next(const conic_cluster_ways *ways) {
   return ways->n_surfels ? 3 * ways->surfels[ways->n_surfels - 1].n / 4 : SIZE_MAX;
@@ -121,7 +135,8 @@ static void keep_level(conic_context *context, conic_cluster_ways *ways) {
 
 /* Whether a cluster that was gathered is drawn as its finest surfels where no error is asked for. */
 static int is_surfels(const conic_hybrid_options *options, const conic_surfels *finest, double spacing) {
-  int is_good = options->most_error <= 0.0 || finest->refined_error <= options->most_error * spacing;
+  int is_good =
+      options->most_error <= 0.0 || (!finest->is_out && finest->refined_error <= options->most_error * spacing);
   return finest->n > 0 && (is_good || options->sampling == CONIC_SAMPLING_BOX);
 }
 
@@ -142,6 +157,8 @@ static conic_status sample_cluster(conic_ways_job *job, conic_sampler *sampler, 
     conic_surfels *surfels = &ways->surfels[ways->n_surfels];
     surfels->error = ways->n_surfels ? surfels[-1].error : 0.0; /* it has no less than what it is coarser than */
     sampling.tolerance = tolerance * sampling.spacing;
+    sampling.most_out = i == 0 && is_gathered ? job->most_out : HUGE_VAL;
+    sampling.tolerance = sampling.most_out < sampling.tolerance ? sampling.most_out : sampling.tolerance;
     sampling.useful = most_of_next(ways);
     sampling.is_coarser = i > 0;
     if (job->options->sampling == CONIC_SAMPLING_BOX)
@@ -239,6 +256,7 @@ conic_status conic_find_ways(conic_ways_job *job) {
   if (status == CONIC_OK)
     status = conic_face_tree_build(job->context, &job->mesh->mesh, job->mesh->adjacency, &job->tree);
   if (status == CONIC_OK) {
+    job->most_out = find_most_out(job);
     for (size_t i = 0; i < n; i++) {
       job->ways[i].area = cluster_area(job->mesh, (uint32_t)i);
       job->ways[i].bound = conic_cluster_bound(job->mesh, (uint32_t)i);

@@ -28,7 +28,8 @@ typedef struct conic_ways_job {
   conic_context *context;
   const conic_clustered_mesh *mesh;
   const conic_hybrid_options *options;
-  conic_face_tree tree;     /* private */
+  conic_face_tree tree;     /* private, */
+  double most_out;          /* and how far surfels as built may stand out from the mesh; infinite: by any length */
   conic_cluster_ways *ways; /* of each cluster; zero before */
   size_t n_nodes;
   conic_hybrid_node *nodes; /* over the clusters, with their points but not yet with levels; the caller's to release, */

@@ -57,6 +57,13 @@ grep -q '^conic: warning: hill.chy: --only surfels cannot keep --error 0.001: ' 
 perl -e 'exit !($ARGV[0] > 0.001)' "$(value error_px surfels.json)" || fail "the error that was reached is not there"
 run 0 render hill.chy -o s.pfm $picture --only surfels --error 1000
 [[ ! -s err ]] || fail "of an --error that is kept: $(cat err)"
+# and so are surfels that nobody asked an error of, where they stand out by more than a pixel.
+run 0 render hill.chy -o s.pfm --size 1024x1024 --only surfels
+grep -q '^conic: warning: hill.chy: --only surfels stand out from the mesh: ' err || fail "surfels stand out unsaid"
+run 0 render hill.chy -o s.pfm --size 1024x1024
+[[ ! -s err ]] || fail "as built: $(cat err)"
+run 0 render hill.chy -o s.pfm --size 64x48 --only surfels
+[[ ! -s err ]] || fail "of small surfels: $(cat err)"
 
 # Never more than the budget, and better with more of it.
 last=1000000
@@ -95,12 +102,13 @@ run 0 verify hill.chy --size 32x24 --error 2 --against exact
 grep -q '^weights  *max ' out || fail "no errors of the weights"
 
 # A pixel of both kinds: who is blended, and whose patch that is. The first on the way across the picture is taken.
+run 0 hybrid hill.obj --most-error 0 -o both.chy
 blended() { # KEY: how often, of what the pixel blends
   sed -n '/^  "blended"/,/^  \]/p' pixel.json | grep -c "\"$1\": "
 }
 for ((i = 0; i < 300; i++)); do
   # shellcheck disable=SC2086
-  run 0 explain hill.chy $view --pixel $((20 + i % 60)),$((24 + 4 * (i / 60))) --json pixel.json
+  run 0 explain both.chy $view --pixel $((20 + i % 60)),$((24 + 4 * (i / 60))) --json pixel.json
   [[ $(blended triangle) -eq 1 && $(blended splat) -gt 1 ]] && break
 done
 [[ $i -lt 300 ]] || fail "no pixel of both kinds"

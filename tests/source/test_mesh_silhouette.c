@@ -22,7 +22,7 @@ typedef struct silhouette {
 typedef enum way { POINTS, CREASES, PATCHES, SURFELS, HYBRID, N_WAYS } way;
 
 /* Of surfels alone, which a picture has to ask for, nothing is promised but their error. */
-enum { ASKED = 1 << POINTS | 1 << CREASES | 1 << PATCHES };
+enum { ASKED = 1 << POINTS | 1 << CREASES | 1 << PATCHES | 1 << HYBRID };
 
 static const char *const way_names[N_WAYS] = {"points", "creases", "patches", "surfels", "hybrid"};
 

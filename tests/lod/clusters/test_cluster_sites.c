@@ -208,6 +208,7 @@ static conic_hybrid_level finest_of_sheet(conic_context *context, int has_colors
     }
   conic_hybrid_options_init(&options);
   options.phase2 = 1e6;
+  options.most_error = 0.0; /* they may stand out at the border */
   CHECK_OK(conic_hybrid_build(context, &mesh, &options, &hybrid, NULL));
   CHECK(hybrid->n_clusters == 1 && hybrid->clusters[0].built > 0);
   if (hybrid->n_clusters == 1)

@@ -31,7 +31,7 @@ static conic_hybrid *build(conic_context *context, size_t side, double phase2, i
   }
   conic_hybrid_options_init(&options);
   options.phase2 = phase2;
-  options.most_error = phase2 < 1e6 ? options.most_error : 0.0; /* all are surfels */
+  options.most_error = 0.0; /* all that were gathered are surfels */
   CHECK_OK(conic_hybrid_build(context, &mesh, &options, &hybrid, &report));
   CHECK(mesh.count == 0 && !mesh.corners);
   CHECK(report.n_faces == 2 * side * side && report.nan + report.zero + report.crowded + report.twisted == 0);
