@@ -28,9 +28,9 @@ conic_status conic_raw_colors_scale(conic_context *context, const conic_raw_rang
 void conic_raw_colors_apply(const conic_raw_scale *scale, float *values, size_t n);
 
 /* Decodes sRGB values in place, by the largest of them: up to 1 are fractions (where `may_be_fractions`), up to 255
- * codes of 8 bits, up to 4095 of 12, beyond that of 16, as are codes of 8 that stand in both bytes. Codes of 16 bits that are all multiples of 256 are codes of 8
- * bits in the upper half, of which 255 × 256 is white. Where the largest is 0 nobody has filled them in, and they are
- * dropped: the points are white. Errors: MEMORY. */
+ * codes of 8 bits, up to 4095 of 12, beyond that of 16, as are codes of 8 that stand in both bytes. Codes of 16 bits
+ * that are all multiples of 256 are codes of 8 bits in the upper half, of which 255 × 256 is white. Where the largest
+ * is 0 nobody has filled them in, and they are dropped: the points are white. Errors: MEMORY. */
 conic_status conic_raw_colors_decode(conic_context *context, conic_splats *points, int may_be_fractions);
 
 #endif

@@ -15,7 +15,8 @@ static const size_t task_leaves = 32768, chunk_leaves = 8192;
 /* A node's error is so many times the height of its leaves' outlines over its plane, and so much of its size. */
 static const double height_weight = 2.0, size_weight = 0.25;
 
-/* Ellipses may be narrower than a splat that is estimated (core/estimate/estimate.h), for they bound and do not guess. */
+/* Ellipses may be narrower than a splat that is estimated (core/estimate/estimate.h), for they bound and do not guess.
+ */
 static const double least_ratio = 0.1;
 
 typedef struct fit_task {

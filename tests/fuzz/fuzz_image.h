@@ -1,5 +1,5 @@
-/* The pictures' targets: PFM is ours, EXR and PNG the libraries' with our layout around them. What is neither would only fuzz
- * other people's decoders and is left out. */
+/* The pictures' targets: PFM is ours, EXR and PNG the libraries' with our layout around them. What is neither would
+ * only fuzz other people's decoders and is left out. */
 #ifndef CONIC_FUZZ_IMAGE_H
 #define CONIC_FUZZ_IMAGE_H
 
