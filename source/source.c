@@ -115,6 +115,7 @@ void conic_source_close(conic_source *source) {
   if (!source)
     return;
   source->kind->close(source);
+  conic_splats_release(source->context, &source->outline);
   conic_memory_release(source->context, source);
 }
 

@@ -3,6 +3,7 @@
 
 #include "conic/source.h"
 #include "source/source_kind.h"
+#include "source/source_samples.h"
 #include "source/upright.h"
 
 /* A hierarchy's outline is known well enough from what this error leaves, in pixels of the framed picture. */
@@ -19,21 +20,33 @@ static conic_status choose_outline(conic_source *source, const conic_camera *cam
   return conic_source_choose(source, camera, &render, &view);
 }
 
+/* The same of any source: what streams is drawn instead, once. */
+static conic_status find_outline(conic_source *source, const conic_camera *camera, float cutoff,
+                                 conic_drawing *outline) {
+  static const conic_triangles no_triangles;
+  conic_status status = CONIC_OK;
+  if (!source->kind->draw) {
+    status = choose_outline(source, camera, cutoff);
+    *outline = source->choice.drawing;
+    return status;
+  }
+  if (source->outline.count == 0)
+    status = conic_source_take_samples(source, &source->outline);
+  *outline = (conic_drawing){&source->outline, &no_triangles};
+  return status;
+}
+
 conic_status conic_source_stand(conic_source *source) {
   conic_source_scale *scale = &source->scale;
   conic_camera camera;
+  conic_drawing outline;
   if (scale->up_basis != CONIC_UP_HABIT)
     return CONIC_OK;
-  conic_status status = CONIC_OK;
-  if (source->kind->draw)
-    scale->up_basis = conic_upright_box(scale->minimum, scale->maximum, 0);
-  else {
-    status = conic_source_frame(source, NULL, &camera);
-    if (status == CONIC_OK)
-      status = choose_outline(source, &camera, 1.5f);
-    if (status == CONIC_OK)
-      status = conic_upright_look(source->context, &source->choice.drawing, &scale->up_basis);
-  }
+  conic_status status = conic_source_frame(source, NULL, &camera);
+  if (status == CONIC_OK)
+    status = find_outline(source, &camera, 1.5f, &outline);
+  if (status == CONIC_OK)
+    status = conic_upright_look(source->context, &outline, &scale->up_basis);
   if (scale->up_basis != CONIC_UP_HABIT)
     memcpy(scale->up, (const double[3]){0.0, 0.0, 1.0}, sizeof scale->up);
   return status;
@@ -42,6 +55,7 @@ conic_status conic_source_stand(conic_source *source) {
 conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
                               conic_camera *camera, double *near_z) {
   conic_framing own;
+  conic_drawing outline;
   conic_framing_init(&own);
   memcpy(own.up, source->scale.up, sizeof own.up);
   if (framing)
@@ -49,13 +63,11 @@ conic_status conic_source_fit(conic_source *source, const conic_framing *framing
   double zoom = own.zoom;
   own.zoom = 1.0; /* what lies outside a picture that is zoomed into counts as well */
   conic_status status = conic_source_frame(source, &own, camera);
-  if (near_z)
-    *near_z = source->scale.near_z;
-  if (status != CONIC_OK || source->kind->draw)
-    return status == CONIC_OK ? conic_source_frame(source, framing ? framing : &own, camera) : status;
-  status = choose_outline(source, camera, cutoff);
+  if (status == CONIC_OK)
+    status = find_outline(source, camera, cutoff, &outline);
   own.zoom = zoom;
-  return status == CONIC_OK
-             ? conic_drawing_frame(source->context, &source->choice.drawing, cutoff, &own, n_turns, camera, near_z)
-             : status;
+  if (source->kind->draw)
+    cutoff = 0.0f; /* samples are places, as wide as a pixel of theirs */
+  return status == CONIC_OK ? conic_drawing_frame(source->context, &outline, cutoff, &own, n_turns, camera, near_z)
+                            : status;
 }

@@ -89,7 +89,7 @@ static void find_extent(const samples *s, double low[3], double high[3]) {
   }
 }
 
-conic_up_basis conic_upright_box(const double minimum[3], const double maximum[3], int is_mesh) {
+static conic_up_basis look_at_box(const double minimum[3], const double maximum[3], int is_mesh) {
   double extent[3];
   conic_subtract(maximum, minimum, extent);
   double across = extent[0] < extent[1] ? extent[0] : extent[1];
@@ -135,7 +135,7 @@ static conic_up_basis look_at_samples(const samples *s, int is_mesh) {
     mean[axis] /= total;
     greatest = high[axis] - low[axis] > greatest ? high[axis] - low[axis] : greatest;
   }
-  conic_up_basis flat = conic_upright_box(low, high, is_mesh);
+  conic_up_basis flat = look_at_box(low, high, is_mesh);
   int open = flat == CONIC_UP_FACING || (is_mesh && high[2] - low[2] < planar_part * greatest) ? 0 : opens_along(mean);
   if (flat != CONIC_UP_HABIT)
     return open == 1 ? CONIC_UP_HABIT : flat;

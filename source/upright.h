@@ -8,7 +8,4 @@
  * MEMORY. */
 conic_status conic_upright_look(conic_context *context, const conic_drawing *drawing, conic_up_basis *basis);
 
-/* The same of a box alone. */
-conic_up_basis conic_upright_box(const double minimum[3], const double maximum[3], int is_mesh);
-
 #endif

@@ -57,7 +57,7 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
                                         [CONIC_UP_OPEN] = "as its surface is open below",
                                         [CONIC_UP_BASE] = "as it stands on a flat base",
                                         [CONIC_UP_FACING] = "so that the drawing is seen from its front"};
-  if (job->is_plain || job->is_up_given || (job->camera_path && !job->is_turntable))
+  if (job->is_plain || job->is_up_given || job->deadline > 0.0 || (job->camera_path && !job->is_turntable))
     return CONIC_OK;
   conic_status status = conic_source_stand(job->source);
   const char *reason = reasons[conic_source_measure(job->source)->up_basis];
@@ -113,7 +113,7 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
   if (!job->is_plain && !job->is_elevation_given)
     framing.elevation_deg = elevation_for(conic_source_measure(job->source), framing.up);
   framing.azimuth_deg += 360.0 * (double)i_frame / (double)job->n_frames;
-  if (job->is_plain)
+  if (job->is_plain || job->deadline > 0.0) /* to find the outline takes time */
     return conic_source_frame(job->source, &framing, camera);
   double near_z;
   conic_status status =

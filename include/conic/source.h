@@ -135,7 +135,8 @@ CONIC_API conic_status conic_source_frame(const conic_source *source, const coni
 CONIC_API conic_status conic_source_stand(conic_source *source);
 
 /* A camera that its outline just fits: conic_drawing_frame of the source, of a hierarchy as far as a pixel shows it.
- * What was chosen before is chosen anew by the next picture. Of what streams, conic_source_frame's camera. Null
+ * What was chosen before is chosen anew by the next picture. What streams is drawn small from six
+ * sides for it, which reads its coarse parts. Null
  * `framing` as there. Errors: as conic_source_frame, conic_source_choose and conic_drawing_frame. */
 CONIC_API conic_status conic_source_fit(conic_source *source, const conic_framing *framing, float cutoff, int n_turns,
                                         conic_camera *camera, double *near_z);

@@ -59,6 +59,19 @@ for i in 1 2 3; do
   between "$width" 0.5 0.92 || fail "turn $i is $width wide"
 done
 
+# What streams is no different: it is looked at from six sides first
+if "$conic" --version | grep '^In this build:' | grep -q zstd; then
+  for shape in flat upright; do
+    run 0 layer $shape.xyz -o $shape.lpc
+    run_as_typed 0 render $shape.lpc -o layers.pfm $look
+    read -r width height soft < <(box layers.pfm)
+    between "$width" 0.86 0.93 || between "$height" 0.86 0.93 || fail "of $shape.lpc $width × $height are filled"
+    run_as_typed 0 render $shape.xyz -o points.pfm $look --json points.json
+    run_as_typed 0 render $shape.lpc -o layers.pfm $look --json layers.json
+    cmp <(grep -A1 '"up"' points.json) <(grep -A1 '"up"' layers.json) || fail "$shape.lpc stands otherwise"
+  done
+fi
+
 # The quality names samples and method; what is given goes first, and what is measured has one sample
 sample_of() { # the picture's method, and whether it has soft pixels
   run_as_typed 0 render flat.xyz -o sampled.pfm $look --json sampled.json "$@"
