@@ -32,8 +32,11 @@ conic_bridge_result fail(char *message, std::string text) {
 }
 
 // Runs `work`, turning every exception into a result.
+// OpenImageIO's own pool of threads would outlive every call: pictures are read and written one at a time.
 template <typename Work> conic_bridge_result guarded(char *message, const Work &work) {
   try {
+    static const bool is_alone = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+    (void)is_alone;
     return work();
   } catch (const std::bad_alloc &) {
     return CONIC_BRIDGE_MEMORY;
