@@ -169,7 +169,7 @@ static conic_status find_eye(conic_context *context, const conic_framing *framin
   double part = CONIC_FRAMING_PART, greatest = 0.0;
   double tangents[2] = {part * conic_framing_tangent(framing, framing->width),
                         part * conic_framing_tangent(framing, framing->height)};
-  for (int round = 0; round < N_ROUNDS; round++) {
+  for (int round = 0; round < (n_turns > 1 ? 2 : N_ROUNDS); round++) { /* of many pictures none is met exactly */
     set_turns(framing, n_turns, tangents, r);
     conic_status status = measure_reach(context, r);
     if (status != CONIC_OK)
