@@ -67,6 +67,7 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
 }
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
+  cli_deadline_open(job);
   conic_status status =
       conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
   if (status == CONIC_OK)
