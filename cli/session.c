@@ -261,6 +261,8 @@ int cli_session_open(cli_session *session) {
   options.threads = session->threads;
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
+  if (session->max_texture_mib)
+    options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));

@@ -22,7 +22,7 @@ static void default_release(void *cookie, void *pointer) {
 }
 
 void conic_context_options_init_sized(conic_context_options *options, size_t size) {
-  static const conic_context_options own = {.size = sizeof own};
+  static const conic_context_options own = {.size = sizeof own, .max_texture_bytes = (size_t)4 << 30};
   conic_options_give(options, size, &own);
 }
 

@@ -20,6 +20,8 @@ typedef struct conic_file_identity {
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
+  size_t texture_bytes;        /* of all textures that there are */
+  int reads_texture;           /* the picture that is read is to become one */
   int guards_inputs;           /* core/files/guard.h; the next are its own */
   conic_file_identity *inputs; /* which were read */
   size_t n_inputs, inputs_room;
