@@ -116,8 +116,9 @@ typedef struct conic_selection {
 } conic_selection;
 
 /* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
- * error is at most so many pixels wherever in its sphere it is projected. The kernel's cutoff must be the octree's.
- * Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not here). */
+ * error is at most so many pixels wherever in its sphere it is projected, and more where it is seen from its side. The
+ * kernel's cutoff must be the octree's. Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not
+ * here). */
 CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
                                            const conic_render_options *render, const conic_selection_options *options,
                                            conic_selection *selection);
