@@ -2,6 +2,7 @@
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
+#include <pthread.h>
 #include <stdint.h>
 
 #include "conic/context.h"
@@ -25,6 +26,8 @@ struct conic_context {
   conic_file_identity *inputs; /* which were read */
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
+  pthread_mutex_t outputs_lock;
+  struct conic_output *outputs; /* core/files/file.h: those with temporary files */
 };
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */

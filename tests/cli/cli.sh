@@ -192,6 +192,12 @@ run 0 diff a.pfm twice.pfm
 run 0 diff a.pfm again.pfm
 run 0 octree a.ply -o a.cot
 run_wrong 3 'this is a point-octree' prepare a.cot -o outputs/a.ply
+run 0 prepare a.ply --count 500 -o few.ply
+run 0 prepare a.ply --count 500 --ellipse voronoi -o named.ply
+run 0 prepare a.ply --count 500 --ellipse bounding -o bounding.ply
+cmp -s few.ply named.ply || fail "--ellipse voronoi is not the default"
+cmp -s few.ply bounding.ply && fail "--ellipse bounding changes nothing"
+run_wrong 2 'ellipse' prepare a.ply --ellipse delaunay -o outputs/a.ply
 run 0 diff b.pfm c.pfm
 run 1 diff a.pfm b.pfm
 run 1 diff a.pfm b.pfm --max-abs 0.0001
