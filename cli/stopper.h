@@ -1,7 +1,7 @@
 /* Ends a run that was asked to stop and does not: whatever it waits for or works on, a signal is obeyed within a
  * second, and nothing half-written stays. */
-#ifndef CLI_STOPPER_H
-#define CLI_STOPPER_H
+#ifndef CONIC_STOPPER_H
+#define CONIC_STOPPER_H
 
 #include "conic/conic.h"
 
