@@ -83,7 +83,7 @@ static void find_losses(convert_job *job) {
 }
 
 /* Reads the output, and compares. */
-static conic_status check_output(convert_job *job) {
+static conic_status read_again(convert_job *job) {
   conic_context *context = job->base.session->context;
   conic_gaussians_read_options options;
   conic_gaussians_read_options_init(&options);
@@ -115,7 +115,7 @@ static int convert_scene(void *cookie) {
     status = conic_gaussians_write(context, job->base.output, &job->scene, &job->write);
   start = cli_build_end_stage(&job->base.stages[WRITE], start);
   if (status == CONIC_OK && strcmp(job->base.output, "-") != 0)
-    status = check_output(job);
+    status = read_again(job);
   cli_build_end_stage(&job->base.stages[CHECK], start);
   return cli_exit_of(status);
 }
@@ -127,7 +127,7 @@ static void tell_losses(const void *cookie) {
              job->losses[0] ? job->losses : "quaternions have other lengths");
 }
 
-static uint64_t size_of_file(const char *path) {
+static uint64_t bytes_written(const char *path) {
   struct stat found;
   return stat(path, &found) == 0 && S_ISREG(found.st_mode) ? (uint64_t)found.st_size : 0;
 }
@@ -156,7 +156,7 @@ static void report_conversion(cli_json *json, const void *cookie) {
     cli_json_number(json, "color", job->differences.color);
     cli_json_number(json, "harmonics", job->differences.harmonics);
     cli_json_close(json);
-    cli_json_count(json, "bytes", size_of_file(job->base.output));
+    cli_json_count(json, "bytes", bytes_written(job->base.output));
   }
   cli_build_report_seconds(json, &job->base, "gaussians_per_s",
                            (double)scene->count / (job->base.stages[READ].seconds + job->base.stages[WRITE].seconds));
@@ -169,7 +169,7 @@ static void release_scenes(void *cookie) {
   conic_gaussians_release(job->base.session->context, &job->written);
 }
 
-static int check_arguments(convert_job *job, const char *const *inputs, int n_inputs) {
+static int check_paths(convert_job *job, const char *const *inputs, int n_inputs) {
   cli_session *session = job->base.session;
   if (n_inputs != 1)
     return cli_usage("convert: %s; see conic help convert", n_inputs ? "one input at a time" : "no input given");
@@ -207,7 +207,7 @@ static int run_convert(cli_session *session, int argc, char **argv) {
   };
   int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
   if (exit_code == CLI_DONE)
-    exit_code = check_arguments(&job, positional, n_positional);
+    exit_code = check_paths(&job, positional, n_positional);
   return cli_build_run(&job, &steps, exit_code);
 }
 

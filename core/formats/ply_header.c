@@ -84,8 +84,8 @@ static int has_keyword(const char **c, const char *end, const char *keyword) {
 }
 
 /* comment TextureFile NAME: the name is the rest of the line, and may have blanks in it. */
-static conic_status read_texture(conic_input *input, const header_line *line, const char *name, const char *end,
-                                 conic_texts *textures) {
+static conic_status read_texture_name(conic_input *input, const header_line *line, const char *name, const char *end,
+                                      conic_texts *textures) {
   const char *name_end = memchr(name, '\n', (size_t)(end - name));
   if (!name_end || name_end - name > CONIC_INPUT_LONGEST_WORD / 2)
     return wrong_header(input, line, "a texture's name is too long", NULL);
@@ -106,7 +106,7 @@ static conic_status read_comment(conic_input *input, const header_line *line, co
   while (c < end && is_blank(*c))
     c++;
   if (has_keyword(&c, end, "TextureFile"))
-    return read_texture(input, line, c, end, &header->textures);
+    return read_texture_name(input, line, c, end, &header->textures);
   if (has_keyword(&c, end, "SplatRenderMode:") && end - c >= 4)
     header->splat_mode = memcmp(c, "mip", 3) == 0    ? CONIC_PLY_MODE_MIP
                          : memcmp(c, "2dgs", 4) == 0 ? CONIC_PLY_MODE_2D

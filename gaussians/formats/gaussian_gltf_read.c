@@ -431,7 +431,7 @@ static void activate_old_scales(conic_gaussians *gaussians, size_t first, size_t
       gaussians->scale[axis][i] = conic_scale_of_log(gaussians->scale[axis][i]);
 }
 
-static conic_status take_colors(gltf_reader *reader, const gltf_primitive *primitive, size_t count) {
+static conic_status take_harmonics(gltf_reader *reader, const gltf_primitive *primitive, size_t count) {
   conic_gaussians *gaussians = reader->gaussians;
   conic_status status = CONIC_OK;
   int degree = find_primitive_degree(primitive), n = (gaussians->sh_degree + 1) * (gaussians->sh_degree + 1);
@@ -462,7 +462,7 @@ static conic_status take_primitive(gltf_reader *reader, const gltf_primitive *pr
   else if (status == CONIC_OK)
     status = take_attribute(reader, primitive, COLOR, 1, count, &gaussians->opacity, 3, 1.0, 0.0, 0);
   if (status == CONIC_OK)
-    status = take_colors(reader, primitive, count);
+    status = take_harmonics(reader, primitive, count);
   if (status == CONIC_OK)
     activate_old_scales(gaussians, reader->n_placed, count);
   return status;

@@ -369,8 +369,8 @@ static unsigned char *put_value(unsigned char *to, float value) {
   return to + sizeof value;
 }
 
-static unsigned char *put_row(const conic_gaussians *gaussians, size_t i, int is_wide, size_t n_rest,
-                              unsigned char *to) {
+static unsigned char *put_gaussian(const conic_gaussians *gaussians, size_t i, int is_wide, size_t n_rest,
+                                   unsigned char *to) {
   float room[CONIC_MOST_HARMONICS];
   const float *sh = conic_gaussians_harmonics(gaussians, i, room);
   for (int axis = 0; axis < 3; axis++) {
@@ -408,7 +408,7 @@ conic_status conic_gaussian_ply_write(const conic_gaussian_writer *writer) {
   conic_status status = CONIC_OK;
   print_header(writer, is_wide, n_rest);
   for (size_t i = 0; status == CONIC_OK && i < gaussians->count; i++) {
-    end = put_row(gaussians, i, is_wide, n_rest, end);
+    end = put_gaussian(gaussians, i, is_wide, n_rest, end);
     if (i % 64 != 63 && i + 1 < gaussians->count)
       continue;
     status = conic_gaussian_writer_put(writer, rows, (size_t)(end - rows));

@@ -131,7 +131,7 @@ static int has_text(const unsigned char *bytes, size_t n, const char *text) {
   return 0;
 }
 
-static int is_ply(const unsigned char *bytes, size_t n) {
+static int begins_as_ply(const unsigned char *bytes, size_t n) {
   return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
 }
 
@@ -169,7 +169,7 @@ static int names_gaussians(const unsigned char *bytes, size_t n) {
 }
 
 /* Of a file that is no PLY. */
-static int find_kind(const char *path, const unsigned char *bytes, size_t n, conic_gaussian_kind *kind) {
+static int find_scene_kind(const char *path, const unsigned char *bytes, size_t n, conic_gaussian_kind *kind) {
   size_t blank = n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
   while (blank < n && bytes[blank] && strchr(" \t\r\n", bytes[blank]))
     blank++;
@@ -194,7 +194,7 @@ static int find_kind(const char *path, const unsigned char *bytes, size_t n, con
 }
 
 /* The file of a folder that says what the others are. */
-static const char *resolve(const char *path, char room[4096]) {
+static const char *resolve_folder(const char *path, char room[4096]) {
   struct stat about;
   if (strcmp(path, "-") == 0 || stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
     return path;
@@ -206,12 +206,12 @@ int conic_gaussians_is_file(conic_context *context, const char *path) {
   char room[4096];
   conic_mapping file;
   conic_gaussian_kind kind;
-  const char *resolved = resolve(path, room);
+  const char *resolved = resolve_folder(path, room);
   if (strcmp(path, "-") == 0 || !conic_file_is_there(resolved) ||
       conic_mapping_open(context, resolved, &file) != CONIC_OK)
     return 0;
-  int is_one = is_ply(file.bytes, file.n_bytes) ? is_gaussian_ply(file.bytes, file.n_bytes)
-                                                : find_kind(resolved, file.bytes, file.n_bytes, &kind);
+  int is_one = begins_as_ply(file.bytes, file.n_bytes) ? is_gaussian_ply(file.bytes, file.n_bytes)
+                                                       : find_scene_kind(resolved, file.bytes, file.n_bytes, &kind);
   conic_mapping_close(context, &file);
   return is_one;
 }
@@ -223,8 +223,8 @@ void conic_gaussians_read_options_init_sized(conic_gaussians_read_options *optio
   conic_options_give(options, size, &own);
 }
 
-static conic_status read_ply(conic_input *input, const conic_gaussians_read_options *options,
-                             conic_gaussians *gaussians) {
+static conic_status read_ply_scene(conic_input *input, const conic_gaussians_read_options *options,
+                                   conic_gaussians *gaussians) {
   conic_ply_header header;
   conic_gaussian_kind kind = CONIC_GAUSSIANS_PLY;
   conic_status status = conic_ply_header_read(input, &header);
@@ -244,11 +244,11 @@ static conic_status read_ply(conic_input *input, const conic_gaussians_read_opti
   return status;
 }
 
-static conic_status read_bytes(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {
+static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {
   conic_gaussian_kind kind;
   if (file->n_bytes == 0)
     return conic_gaussian_bytes_wrong(file, 0, "the file is empty");
-  if (!find_kind(file->path, file->bytes, file->n_bytes, &kind))
+  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind))
     return conic_gaussian_bytes_wrong(
         file, 0, "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb is");
   conic_status status = kinds[kind].read(file, gaussians);
@@ -279,14 +279,14 @@ static conic_status read_input(conic_input *input, const char *path, const conic
   conic_gaussian_bytes file = {input->context, input->name, path, NULL, 0, options};
   conic_mapping mapping = {NULL, 0, 0};
   conic_status status = conic_input_fill(input, 4);
-  if (status == CONIC_OK && is_ply(conic_input_bytes(input), conic_input_available(input)))
-    return read_ply(input, options, gaussians);
+  if (status == CONIC_OK && begins_as_ply(conic_input_bytes(input), conic_input_available(input)))
+    return read_ply_scene(input, options, gaussians);
   if (status == CONIC_OK)
     status = path && input->has_size ? conic_mapping_open(input->context, path, &mapping) : read_rest(input, &mapping);
   file.bytes = mapping.bytes;
   file.n_bytes = mapping.n_bytes;
   if (status == CONIC_OK)
-    status = read_bytes(&file, gaussians);
+    status = read_scene_bytes(&file, gaussians);
   conic_mapping_close(input->context, &mapping);
   return status;
 }
@@ -296,7 +296,7 @@ conic_status conic_gaussians_read(conic_context *context, const char *path, cons
   conic_gaussians_read_options own;
   char room[4096];
   conic_input input;
-  const char *resolved = resolve(path, room);
+  const char *resolved = resolve_folder(path, room);
   memset(gaussians, 0, sizeof *gaussians);
   conic_gaussians_read_options_init(&own);
   if ((options && !conic_options_take(&own, options)) || own.most_sh_degree < 0)

@@ -9,7 +9,7 @@
 #include "gaussians/scene/harmonics.h"
 
 /* Column i is where axis i of a frame points, in one whose axes are right, up and back. */
-static int find_axes(const char *frame, double axes[3][3]) {
+static int find_frame_axes(const char *frame, double axes[3][3]) {
   static const char letters[] = "rludbf"; /* right, left; up, down; back, front */
   int is_taken[3] = {0, 0, 0};
   memset(axes, 0, 9 * sizeof(double));
@@ -25,7 +25,7 @@ static int find_axes(const char *frame, double axes[3][3]) {
 /* The rotation from one frame to another; 0 where there is none. */
 static int find_rotation(const char *from, const char *to, double rotation[3][3]) {
   double a[3][3], b[3][3], *r = rotation[0];
-  if (!find_axes(from, a) || !find_axes(to, b))
+  if (!find_frame_axes(from, a) || !find_frame_axes(to, b))
     return 0;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)

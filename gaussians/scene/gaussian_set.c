@@ -15,7 +15,7 @@ int conic_degree_of_coefficients(size_t n) {
 }
 
 /* Those of `fields` that are no mere choice; the first seven of a 2D set, eight of others, and three or four more. */
-static int list_columns(conic_gaussians *gaussians, unsigned fields, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]) {
+static int list_all_columns(conic_gaussians *gaussians, unsigned fields, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]) {
   int n = 0, n_scales = fields & CONIC_GAUSSIANS_2D ? 2 : 3;
   for (int i = 0; i < 3; i++)
     columns[n++] = &gaussians->position[i];
@@ -33,7 +33,7 @@ static int list_columns(conic_gaussians *gaussians, unsigned fields, float **col
 }
 
 int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]) {
-  return list_columns((conic_gaussians *)gaussians, conic_gaussians_fields(gaussians), columns);
+  return list_all_columns((conic_gaussians *)gaussians, conic_gaussians_fields(gaussians), columns);
 }
 
 unsigned conic_gaussians_fields(const conic_gaussians *gaussians) {
@@ -48,7 +48,7 @@ conic_status conic_gaussians_allocate(conic_context *context, size_t count, int 
   if (sh_degree < 0 || sh_degree > CONIC_MAX_SH_DEGREE || fields > 7 || count > CONIC_MOST_GAUSSIANS)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "gaussians: no set has %zu Gaussians of degree %d", count,
                       sh_degree);
-  int n = list_columns(gaussians, fields, columns), is_done = 1;
+  int n = list_all_columns(gaussians, fields, columns), is_done = 1;
   for (int i = 0; is_done && i < n; i++)
     is_done = (*columns[i] = conic_memory_allocate(context, count, sizeof **columns[i])) != NULL;
   size_t n_numbers = count * conic_harmonics_of_degree(sh_degree);
@@ -68,7 +68,7 @@ conic_status conic_gaussians_allocate(conic_context *context, size_t count, int 
 
 void conic_gaussians_release(conic_context *context, conic_gaussians *gaussians) {
   float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
-  int n = list_columns(gaussians, CONIC_GAUSSIANS_SOURCE, columns);
+  int n = list_all_columns(gaussians, CONIC_GAUSSIANS_SOURCE, columns);
   for (int i = 0; i < n; i++)
     conic_memory_release(context, *columns[i]);
   conic_memory_release(context, gaussians->sh);

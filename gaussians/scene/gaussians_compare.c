@@ -7,14 +7,14 @@
 #include "gaussians/scene/gaussian_set.h"
 
 /* 0 where both have the same bits. */
-static double difference(float a, float b) {
+static double difference_of(float a, float b) {
   if (conic_bits_of_float(a) == conic_bits_of_float(b) || a == b || (a != a && b != b))
     return 0.0;
   double apart = fabs((double)a - (double)b);
   return apart >= 0.0 ? apart : conic_double_of_bits(UINT64_C(0x7ff0000000000000));
 }
 
-static void raise(double *greatest, double value) {
+static void raise_to(double *greatest, double value) {
   *greatest = value > *greatest ? value : *greatest;
 }
 
@@ -47,8 +47,8 @@ static void compare_harmonics(const conic_gaussians *a, const conic_gaussians *b
   size_t n_a = conic_harmonics_of_degree(a->sh_degree), n_b = conic_harmonics_of_degree(b->sh_degree);
   const float *of_a = conic_gaussians_harmonics(a, i, room_a), *of_b = conic_gaussians_harmonics(b, i, room_b);
   for (size_t k = 0; k < n_a || k < n_b; k++) {
-    double apart = difference(k < n_a ? of_a[k] : 0.0f, k < n_b ? of_b[k] : 0.0f);
-    raise(k < 3 ? &found->color : &found->harmonics, k < 3 ? apart * CONIC_SH_CONSTANT : apart);
+    double apart = difference_of(k < n_a ? of_a[k] : 0.0f, k < n_b ? of_b[k] : 0.0f);
+    raise_to(k < 3 ? &found->color : &found->harmonics, k < 3 ? apart * CONIC_SH_CONSTANT : apart);
   }
   found->is_same &= n_a == n_b;
 }
@@ -58,21 +58,21 @@ static void compare_one(const conic_gaussians *a, const conic_gaussians *b, size
   for (int axis = 0; axis < 3; axis++) {
     double of_a = conic_gaussians_mean(a, axis, i), of_b = conic_gaussians_mean(b, axis, i), apart = fabs(of_a - of_b);
     if (of_a != of_b && !(of_a != of_a && of_b != of_b))
-      raise(&found->position, apart >= 0.0 ? apart : conic_double_of_bits(UINT64_C(0x7ff0000000000000)));
+      raise_to(&found->position, apart >= 0.0 ? apart : conic_double_of_bits(UINT64_C(0x7ff0000000000000)));
     if (!a->scale[axis] || !b->scale[axis])
       continue;
     double larger = fabs((double)a->scale[axis][i]), other = fabs((double)b->scale[axis][i]);
     larger = other > larger ? other : larger;
-    raise(&found->scale, difference(a->scale[axis][i], b->scale[axis][i]) / (larger > 0.0 ? larger : 1.0));
+    raise_to(&found->scale, difference_of(a->scale[axis][i], b->scale[axis][i]) / (larger > 0.0 ? larger : 1.0));
     if (a->log_scale[axis] && b->log_scale[axis])
-      found->is_same &= difference(a->log_scale[axis][i], b->log_scale[axis][i]) == 0.0;
+      found->is_same &= difference_of(a->log_scale[axis][i], b->log_scale[axis][i]) == 0.0;
   }
   for (int k = 0; k < 4; k++)
-    found->is_same &= difference(a->rotation[k][i], b->rotation[k][i]) == 0.0;
-  raise(&found->rotation_deg, find_angle_deg(a, b, i));
-  raise(&found->opacity, difference(a->opacity[i], b->opacity[i]));
+    found->is_same &= difference_of(a->rotation[k][i], b->rotation[k][i]) == 0.0;
+  raise_to(&found->rotation_deg, find_angle_deg(a, b, i));
+  raise_to(&found->opacity, difference_of(a->opacity[i], b->opacity[i]));
   if (a->logit_opacity && b->logit_opacity)
-    found->is_same &= difference(a->logit_opacity[i], b->logit_opacity[i]) == 0.0;
+    found->is_same &= difference_of(a->logit_opacity[i], b->logit_opacity[i]) == 0.0;
   compare_harmonics(a, b, i, found);
 }
 
