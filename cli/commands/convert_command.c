@@ -90,6 +90,7 @@ static conic_status read_again(convert_job *job) {
   conic_gaussians_read_options options;
   conic_gaussians_read_options_init(&options);
   options.keeps_source = 1;
+  options.is_splat = job->write.kind == CONIC_GAUSSIANS_SPLAT;
   conic_status status = conic_gaussians_read(context, job->base.output, &options, &job->written);
   memcpy(job->written.frame, job->scene.frame, sizeof job->written.frame); /* files do not say theirs */
   if (status == CONIC_OK)

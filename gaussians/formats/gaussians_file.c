@@ -248,10 +248,10 @@ static conic_status read_ply_scene(conic_input *input, const conic_gaussians_rea
 }
 
 static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {
-  conic_gaussian_kind kind;
+  conic_gaussian_kind kind = CONIC_GAUSSIANS_SPLAT;
   if (file->n_bytes == 0)
     return conic_gaussian_bytes_wrong(file, 0, "the file is empty");
-  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind))
+  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind) && !file->options->is_splat)
     return conic_gaussian_bytes_wrong(
         file, 0, "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb is");
   conic_status status = kinds[kind].read(file, gaussians);
