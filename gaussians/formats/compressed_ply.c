@@ -166,7 +166,7 @@ static conic_status read_harmonics(compressed_reader *reader, size_t n_of_file) 
   int columns[MOST_REST];
   conic_status status = CONIC_OK;
   for (int k = 0; k < (int)n_of_file; k++) {
-    char name[16];
+    char name[32];
     snprintf(name, sizeof name, "f_rest_%d", k);
     columns[k] = conic_ply_find_property(reader->header, reader->source.element, name);
   }
