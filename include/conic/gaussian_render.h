@@ -1,0 +1,49 @@
+/* Pictures of Gaussian scenes, composited by alpha: docs/reference/gaussians.md defines each profile to the bit. */
+#ifndef CONIC_GAUSSIAN_RENDER_H
+#define CONIC_GAUSSIAN_RENDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/gaussians.h"
+#include "conic/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a renderer does with a Gaussian. A profile that is named after a program draws what that version of it draws;
+ * it never changes. */
+typedef enum conic_gaussian_profile {
+  CONIC_PROFILE_EXACT = 0, /* the response along each pixel's own ray, in the order along that ray */
+  CONIC_PROFILE_INRIA_2023 = 1,
+  CONIC_PROFILE_GSPLAT_1_5 = 2,
+  CONIC_PROFILE_GSPLAT_1_5_AA = 3, /* "antialiased": faint where the dilation is large */
+  CONIC_PROFILE_GSPLAT_1_6 = 4,
+  CONIC_PROFILE_GSPLAT_1_6_AA = 5,
+  CONIC_PROFILE_2DGS_2024 = 6,   /* the 2D Gaussians of their authors' program */
+  CONIC_PROFILE_2DGS_GSPLAT = 7, /* and of gsplat's */
+  CONIC_PROFILE_KHR_2026 = 8     /* KHR_gaussian_splatting, release candidate */
+} conic_gaussian_profile;
+
+#define CONIC_N_GAUSSIAN_PROFILES 9
+
+/* "exact", "inria-2023" …; null for a number that is no profile. */
+CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile);
+
+typedef struct conic_gaussian_options {
+  size_t size; /* sizeof(conic_gaussian_options), set by the init function */
+  conic_gaussian_profile profile;
+  float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
+} conic_gaussian_options;
+
+/* Exact, black. */
+CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
+#define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
+
+#ifdef __cplusplus
+}
+#endif
+#endif
