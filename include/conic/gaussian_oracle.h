@@ -19,16 +19,16 @@ typedef enum conic_gaussian_question {
 
 typedef struct conic_gaussian_reference {
   int width, height;
-  double *rgb;         /* 3 a pixel, over the background */
+  double *rgb;          /* 3 a pixel, over the background */
   double *transparency; /* T, what is left of the light from behind */
-  double *z;           /* Σ w·z / Σ w; 0 where nothing is */
-  double *median_z;    /* of the Gaussian with which T comes to ½; 0 where it does not */
-  double *inverse_z;   /* Σ w/z */
-  double *normal;      /* 3 a pixel: Σ w·n in the world, not normalised */
-  uint32_t *count;     /* Gaussians composited */
-  uint32_t *id;        /* the one with the largest w, of equal ones the first; CONIC_NO_ID where nothing is */
-  uint32_t *last;      /* the last one composited */
-  double quadrature;   /* the largest change of rgb in the last halving of the steps; 0 for the profile's question */
+  double *z;            /* Σ w·z / Σ w; 0 where nothing is */
+  double *median_z;     /* of the Gaussian with which T comes to ½; 0 where it does not */
+  double *inverse_z;    /* Σ w/z */
+  double *normal;       /* 3 a pixel: Σ w·n in the world, not normalised */
+  uint32_t *count;      /* Gaussians composited */
+  uint32_t *id;         /* the one with the largest w, of equal ones the first; CONIC_NO_ID where nothing is */
+  uint32_t *last;       /* the last one composited */
+  double quadrature;    /* the largest change of rgb in the last halving of the steps; 0 for the profile's question */
   uint64_t reserved[8];
 } conic_gaussian_reference;
 

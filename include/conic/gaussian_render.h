@@ -37,11 +37,41 @@ typedef struct conic_gaussian_options {
   size_t size; /* sizeof(conic_gaussian_options), set by the init function */
   conic_gaussian_profile profile;
   float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;       /* as the context has it */
+  uint32_t reserved;
 } conic_gaussian_options;
 
 /* Exact, black. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
+
+/* What a picture of Gaussians consists of, each of width × height numbers times its channels. Null: not wanted. */
+typedef struct conic_gaussian_planes {
+  int width, height;
+  float *rgb;          /* 3: display values over the background, as the profile composites them */
+  float *transparency; /* T: what is left of the light from behind */
+  float *z; /* Σ w·z / Σ w, z of the mean, of the hit or of the greatest response by the profile; 0: nothing */
+  float *median_z;  /* of the Gaussian with which T comes to ½; 0 where it does not */
+  float *inverse_z; /* Σ w/z */
+  float *normal;    /* 3: Σ w·n in the world, n the shortest axis, towards the eye */
+  uint32_t *count;  /* Gaussians composited */
+  uint32_t *id;     /* the one with the largest w, of equal ones the first; CONIC_NO_ID: nothing */
+  uint32_t *last;   /* the last one composited */
+  uint64_t reserved[8];
+} conic_gaussian_planes;
+
+typedef struct conic_gaussian_statistics {
+  size_t gaussians_in, gaussians_skipped, gaussians_culled, gaussians_drawn; /* skipped: a number is not finite */
+  size_t entries;                                                            /* of tiles' lists */
+  double seconds_setup, seconds_sort, seconds_bin, seconds_composite;
+  uint64_t reserved[8];
+} conic_gaussian_statistics;
+
+/* Draws into the planes that are there. The same bits for any number of threads and every instruction set. Null options
+ * are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction set). */
+CONIC_API conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
+                                              const conic_camera *camera, const conic_gaussian_options *options,
+                                              conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);
 
 #ifdef __cplusplus
 }

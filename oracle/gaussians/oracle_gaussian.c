@@ -32,12 +32,8 @@ const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile 
                                    .is_inria = 1,
                                    .disc_cutoff = 3.0,
                                    .disc_near = 0.2},
-      [CONIC_PROFILE_2DGS_GSPLAT] = {AS_GSPLAT,
-                                     .form = ORACLE_FORM_DISC,
-                                     .near_is_left_out = 1,
-                                     .alpha_most = 0.99,
-                                     .disc_cutoff = 1.0,
-                                     .disc_extent = 3.33},
+      [CONIC_PROFILE_2DGS_GSPLAT] = {AS_GSPLAT, .form = ORACLE_FORM_DISC, .near_is_left_out = 1, .alpha_most = 0.99,
+                                     .disc_cutoff = 1.0, .disc_extent = 3.33},
       [CONIC_PROFILE_KHR_2026] = {.alpha_most = 1.0, .compensation_least = -1.0, .cutoff = 9.0, .is_by_distance = 1},
   };
   return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &rules[profile] : NULL;

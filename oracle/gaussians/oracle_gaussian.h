@@ -39,9 +39,9 @@ typedef struct oracle_gaussian {
   uint32_t index;
   float key; /* orders */
   int is_drawn, is_flat;
-  double mean[3];        /* in camera space */
-  double axes[3][3];     /* in camera space, one standard deviation long each; the third of a flat one is zero */
-  double unit[3][3];     /* the directions of the axes */
+  double mean[3];    /* in camera space */
+  double axes[3][3]; /* in camera space, one standard deviation long each; the third of a flat one is zero */
+  double unit[3][3]; /* the directions of the axes */
   double scale[3];
   double opacity, color[3], normal[3];
   double place_px[2], form[3]; /* of an ellipse: q = form₀·x² + 2·form₁·x·y + form₂·y² */

@@ -223,7 +223,8 @@ static conic_status draw(job *j) {
   find_eye(camera, &j->view);
   j->view.center_px[0] = j->view.rules->is_inria ? 0.5 * camera->width : camera->cx;
   j->view.center_px[1] = j->view.rules->is_inria ? 0.5 * camera->height : camera->cy;
-  status = conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN, set_up, j);
+  status =
+      conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN, set_up, j);
   if (status != CONIC_OK)
     return status;
   put_in_order(j);
