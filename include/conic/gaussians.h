@@ -41,8 +41,8 @@ typedef struct conic_gaussians {
   float *rotation[4]; /* quaternions w, x, y, z as the file has them, of any length: whoever draws normalises them */
   float *opacity;     /* 0 to 1 */
 
-  /* Harmonics: of Gaussian i those of all orders, lowest first, each red, green, blue, (sh_degree + 1)² × 3 numbers from
-   * sh[i × (sh_degree + 1)² × 3] on. The colour is max(0, ½ + Σ sh·Y), Y the real harmonics of 3DGS (Y₀ =
+  /* Harmonics: of Gaussian i those of all orders, lowest first, each red, green, blue, (sh_degree + 1)² × 3 numbers
+   * from sh[i × (sh_degree + 1)² × 3] on. The colour is max(0, ½ + Σ sh·Y), Y the real harmonics of 3DGS (Y₀ =
    * 0.28209…; of degree 1 −y, z, −x times 0.4886…). Either floats or, by CONIC_GAUSSIANS_HALF, binary16. */
   int sh_degree; /* 0 to CONIC_MAX_SH_DEGREE */
   float *sh;
@@ -87,7 +87,7 @@ CONIC_API void conic_gaussians_read_options_init_sized(conic_gaussians_read_opti
 #define conic_gaussians_read_options_init(options) conic_gaussians_read_options_init_sized(options, sizeof *(options))
 
 /* Whether a file, or a folder, holds a Gaussian scene: by content, a .splat by its name. */
-CONIC_API int conic_gaussians_is_file(const char *path);
+CONIC_API int conic_gaussians_is_file(conic_context *context, const char *path);
 
 /* Reads a scene; "-" is standard input. Coordinates stay those of the file, whose frame is told. On success the caller
  * owns *gaussians; on failure it is empty. Null options are the defaults. Errors: ARGUMENT, INPUT, MEMORY, CANCELLED,
@@ -99,9 +99,11 @@ typedef struct conic_gaussians_write_options {
   size_t size;              /* sizeof(conic_gaussians_write_options), set by the init function */
   conic_gaussian_kind kind; /* of conic_gaussians_find_kind */
   int sh_bits[2];           /* of .spz: of degree 1, and of those above, 1 to 8 */
+  int spz_version;          /* 3 (gzip) or 4 (zstd) */
+  int most_sh_degree;       /* higher degrees are left out */
 } conic_gaussians_write_options;
 
-/* 8 bits, and the kind PLY. */
+/* The kind PLY; 8 bits, version 4, all degrees. */
 CONIC_API void conic_gaussians_write_options_init_sized(conic_gaussians_write_options *options, size_t size);
 #define conic_gaussians_write_options_init(options) conic_gaussians_write_options_init_sized(options, sizeof *(options))
 
@@ -115,16 +117,12 @@ CONIC_API int conic_gaussian_kind_sh_degree(conic_gaussian_kind kind);
 /* Writes a scene in its own coordinates and order; what the kind cannot hold is left out or rounded. The file appears
  * under its name only when it is whole. Errors: ARGUMENT, MEMORY, IO, CANCELLED, UNSUPPORTED, INPUT (the coordinates do
  * not fit). */
-CONIC_API conic_status conic_gaussians_write(conic_context *context, const char *path,
-                                             const conic_gaussians *gaussians,
+CONIC_API conic_status conic_gaussians_write(conic_context *context, const char *path, const conic_gaussians *gaussians,
                                              const conic_gaussians_write_options *options);
 
 /* Turns a scene into another frame, harmonics too. Between rdf, rub and luf that changes signs alone, so that turning
  * back gives the same bits. Errors: ARGUMENT (no frame, or a mirrored one). */
 CONIC_API conic_status conic_gaussians_turn(conic_context *context, conic_gaussians *gaussians, const char *frame);
-
-/* Drops the harmonics above a degree. Errors: MEMORY. */
-CONIC_API conic_status conic_gaussians_limit_degree(conic_context *context, conic_gaussians *gaussians, int degree);
 
 /* Orders the Gaussians along a curve that keeps neighbours together (Morton's), as files in chunks need it. Errors:
  * MEMORY. */
@@ -145,8 +143,8 @@ typedef struct conic_gaussians_defects {
 
 CONIC_API void conic_gaussians_find_defects(const conic_gaussians *gaussians, conic_gaussians_defects *defects);
 
-/* The greatest differences between two sets of one order. Numbers of the same bits, NaN too, do not differ; a NaN and a
- * number do by infinity. */
+/* The greatest differences between two sets of one order. Two NaN do not differ, and a NaN and a number do by infinity.
+ */
 typedef struct conic_gaussians_differences {
   double position;     /* in world units */
   double scale;        /* relative to the larger */
@@ -154,7 +152,7 @@ typedef struct conic_gaussians_differences {
   double opacity;
   double color;     /* of degree 0, as displayed: 0.28209… times the coefficients' */
   double harmonics; /* coefficients above degree 0; those that one set lacks are 0 there */
-  int is_same;      /* every number has the same bits, source included where both have it, and so do all the rest */
+  int is_same;      /* all numbers are the same, of quaternions and of what was kept of files, too, and so is all else */
   int reserved_int;
   uint64_t reserved[3];
 } conic_gaussians_differences;
