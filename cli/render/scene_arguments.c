@@ -165,7 +165,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids [rgba,Z]",
+       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids; T, medianZ, inverseZ, last of "
+       "Gaussian scenes [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
