@@ -80,6 +80,8 @@ static void find_losses(convert_job *job) {
   for (size_t i = 0; i < sizeof greatest / sizeof *greatest; i++)
     if (greatest[i].value > 0.0)
       add_loss(job, greatest[i].format, greatest[i].value);
+  if (!job->losses[0])
+    add_loss(job, "quaternions have other lengths", 0.0);
 }
 
 /* Reads the output, and compares. */
@@ -88,6 +90,7 @@ static conic_status read_again(convert_job *job) {
   conic_gaussians_read_options options;
   conic_gaussians_read_options_init(&options);
   options.keeps_source = 1;
+  options.is_splat = job->write.kind == CONIC_GAUSSIANS_SPLAT;
   conic_status status = conic_gaussians_read(context, job->base.output, &options, &job->written);
   memcpy(job->written.frame, job->scene.frame, sizeof job->written.frame); /* files do not say theirs */
   if (status == CONIC_OK)
@@ -123,8 +126,7 @@ static int convert_scene(void *cookie) {
 static void tell_losses(const void *cookie) {
   const convert_job *job = cookie;
   if (job->is_checked && !job->is_lossless)
-    cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output,
-             job->losses[0] ? job->losses : "quaternions have other lengths");
+    cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output, job->losses);
 }
 
 static uint64_t bytes_written(const char *path) {

@@ -27,19 +27,27 @@ static void release_zlib(voidpf cookie, voidpf pointer) {
 }
 
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
-                     size_t n_bytes) {
+                     size_t n_bytes, int *is_whole) {
+  unsigned char rest[4096];
   z_stream stream = {.next_in = (z_const Bytef *)from, .next_out = to};
   size_t n_taken = 0, n_given = 0;
   if (inflateInit2(&stream, wrapping == CONIC_DEFLATE_GZIP ? 16 + MAX_WBITS : -MAX_WBITS) != Z_OK)
     return 0;
-  for (int code = Z_OK; code == Z_OK && n_given < n_bytes;) {
-    uInt n_in = stream.avail_in = piece(n_from - n_taken), n_out = stream.avail_out = piece(n_bytes - n_given);
+  int code = Z_OK;
+  while (code == Z_OK && (n_given < n_bytes || is_whole)) {
+    int is_rest = n_given == n_bytes;
+    uInt n_in = stream.avail_in = piece(n_from - n_taken), n_out = is_rest ? sizeof rest : piece(n_bytes - n_given);
+    stream.avail_out = n_out;
+    if (is_rest)
+      stream.next_out = rest;
     code = inflate(&stream, Z_NO_FLUSH);
     n_taken += n_in - stream.avail_in;
-    n_given += n_out - stream.avail_out;
+    n_given += is_rest ? 0 : n_out - stream.avail_out;
     if (code == Z_OK && n_in == stream.avail_in && n_out == stream.avail_out)
       break;
   }
+  if (is_whole)
+    *is_whole = code == Z_STREAM_END;
   inflateEnd(&stream);
   return n_given;
 }
@@ -78,12 +86,14 @@ int conic_inflate_is_there(void) {
 }
 
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
-                     size_t n_bytes) {
+                     size_t n_bytes, int *is_whole) {
   (void)wrapping;
   (void)from;
   (void)n_from;
   (void)to;
   (void)n_bytes;
+  if (is_whole)
+    *is_whole = 0;
   return 0;
 }
 

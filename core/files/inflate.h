@@ -13,9 +13,11 @@ static inline double conic_inflate_most_bytes(size_t n) {
   return 1032.0 * (double)n + 1032.0;
 }
 
-/* Unpacks up to n_bytes; returns how many there were, or less where the data are spoiled or zlib is not there. */
+/* Unpacks up to n_bytes; returns how many there were, or less where the data are spoiled or zlib is not there. Where
+ * is_whole is not null, it says whether the data go on to their end, past what is wanted, and have the sum that stands
+ * there. */
 size_t conic_inflate(conic_deflate_wrapping wrapping, const unsigned char *from, size_t n_from, unsigned char *to,
-                     size_t n_bytes);
+                     size_t n_bytes, int *is_whole);
 
 int conic_inflate_is_there(void);
 

@@ -97,7 +97,7 @@ static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t pa
   if (load(entry + 10, 2) == STORED)
     memcpy(to, zip->bytes + packed, n_bytes < n_packed ? n_bytes : n_packed);
   else
-    n = conic_inflate(CONIC_DEFLATE_BARE, zip->bytes + packed, n_packed, to, n_bytes);
+    n = conic_inflate(CONIC_DEFLATE_BARE, zip->bytes + packed, n_packed, to, n_bytes, NULL);
   return n == n_bytes && find_sum(to, n_bytes) == load(entry + 16, 4)
              ? CONIC_OK
              : zip_wrong(zip, "a file in it is not what its sum says", packed);

@@ -10,7 +10,7 @@ const char conic_readable_kinds[] =
 
 #define MESH_REMEDY "save it as OBJ or PLY (Blender, MeshLab, or: assimp export FILE out.obj)"
 #define SCAN_REMEDY "save it as LAS or PLY (CloudCompare, or: pdal translate FILE out.las)"
-#define GAUSSIANS_REMEDY "make a PLY of it (conic convert FILE -o out.ply)"
+#define GAUSSIANS_REMEDY "save it as PLY (conic convert FILE -o out.ply)"
 #define PACKED_REMEDY "unpack it first"
 #define PICTURE_REMEDY "give a scene; a picture is for conic diff or --texture"
 #define BYTES(text) text, sizeof(text) - 1

@@ -10,7 +10,7 @@
 #include "gaussians/formats/gaussian_formats.h"
 #include "gaussians/scene/activation.h"
 
-enum { CHUNK = 256, N_BOUNDS = 18, MOST_REST = 45 };
+enum { CHUNK = 256, N_BOUNDS = 18, MOST_REST = 45, BLOCK = 128 };
 
 /* Least and greatest mean, ln scale and colour, three each; files of before 2024 have no colours. */
 static const char *const bound_names[N_BOUNDS] = {
@@ -20,12 +20,16 @@ static const char *const packed_names[4] = {"packed_position", "packed_rotation"
 
 typedef float chunk_bounds[N_BOUNDS];
 
+/* Up to BLOCK rows of up to 45 columns. */
+typedef double packed_block[MOST_REST][BLOCK];
+
 typedef struct compressed_reader {
   conic_ply_source source;
   const conic_ply_header *header;
   conic_gaussians *gaussians;
   chunk_bounds *chunks;
   size_t n_chunks;
+  packed_block block;
 } compressed_reader;
 
 int conic_ply_has_compressed_gaussians(const conic_ply_header *header) {
@@ -46,31 +50,53 @@ static void find_packed_columns(const compressed_reader *reader, const char *con
     columns[i] = conic_ply_find_property(reader->header, reader->source.element, names[i]);
 }
 
-/* One row's values of `columns`; 0 for those that are not there. */
-static conic_status read_packed_row(compressed_reader *reader, const int *columns, int n, double *values) {
+/* The next *n rows' values of `columns`, or of as many rows as the window holds; 0 where there is no such column. */
+static conic_status read_packed_rows(compressed_reader *reader, const int *columns, int n_columns, size_t *n,
+                                     packed_block block) {
   conic_ply_source *source = &reader->source;
   const conic_ply_property *properties = reader->header->properties + source->element->first_property;
-  conic_status status = conic_ply_begin_row(source);
-  memset(values, 0, (size_t)n * sizeof *values);
-  for (size_t k = 0; status == CONIC_OK && k < source->element->n_properties; k++) {
-    double value = 0.0;
-    status = conic_ply_read_value(source, properties[k].type, &value);
-    for (int i = 0; i < n; i++)
-      if (columns[i] == (int)k)
-        values[i] = value;
+  conic_input *input = source->input;
+  size_t row_bytes = source->element->least_row_bytes;
+  conic_status status = CONIC_OK;
+  *n = *n < BLOCK ? *n : BLOCK;
+  memset(block, 0, (size_t)n_columns * sizeof *block);
+  if (source->format == CONIC_PLY_TEXT || row_bytes > CONIC_INPUT_WINDOW) {
+    *n = 1;
+    status = conic_ply_begin_row(source);
+    for (size_t k = 0; status == CONIC_OK && k < source->element->n_properties; k++) {
+      double value = 0.0;
+      status = conic_ply_read_value(source, properties[k].type, &value);
+      for (int i = 0; i < n_columns; i++)
+        if (columns[i] == (int)k)
+          block[i][0] = value;
+    }
+    return status == CONIC_OK ? conic_ply_end_row(source) : status;
   }
-  return status == CONIC_OK ? conic_ply_end_row(source) : status;
+  status = conic_input_fill(input, row_bytes);
+  if (status != CONIC_OK)
+    return status;
+  if (conic_input_available(input) < row_bytes)
+    return conic_ply_truncated(source);
+  *n = conic_input_available(input) / row_bytes < *n ? conic_input_available(input) / row_bytes : *n;
+  for (int i = 0; i < n_columns; i++)
+    if (columns[i] >= 0)
+      conic_ply_convert(conic_input_bytes(input) + properties[columns[i]].row_offset, row_bytes, *n,
+                        properties[columns[i]].type, source->format, block[i]);
+  input->next += *n * row_bytes;
+  source->i_row += *n;
+  return CONIC_OK;
 }
 
 static conic_status read_chunks(compressed_reader *reader) {
   int columns[N_BOUNDS];
-  double values[N_BOUNDS];
   conic_status status = CONIC_OK;
   find_packed_columns(reader, bound_names, N_BOUNDS, columns);
-  for (size_t i = 0; status == CONIC_OK && i < reader->n_chunks; i++) {
-    status = read_packed_row(reader, columns, N_BOUNDS, values);
-    for (int k = 0; k < N_BOUNDS; k++)
-      reader->chunks[i][k] = columns[k] >= 0 ? (float)values[k] : k < 15 ? 0.0f : 1.0f;
+  for (size_t done = 0, n; status == CONIC_OK && done < reader->n_chunks; done += n) {
+    n = reader->n_chunks - done;
+    status = read_packed_rows(reader, columns, N_BOUNDS, &n, reader->block);
+    for (size_t i = 0; i < n; i++)
+      for (int k = 0; k < N_BOUNDS; k++)
+        reader->chunks[done + i][k] = columns[k] >= 0 ? (float)reader->block[k][i] : k < 15 ? 0.0f : 1.0f;
   }
   return status;
 }
@@ -117,13 +143,17 @@ static void unpack_gaussian(const compressed_reader *reader, size_t i, const uin
 
 static conic_status read_packed(compressed_reader *reader) {
   int columns[4];
-  double values[4];
   conic_status status = CONIC_OK;
   find_packed_columns(reader, packed_names, 4, columns);
-  for (size_t i = 0; status == CONIC_OK && i < reader->gaussians->count; i++) {
-    status = read_packed_row(reader, columns, 4, values);
-    const uint32_t packed[4] = {(uint32_t)values[0], (uint32_t)values[1], (uint32_t)values[2], (uint32_t)values[3]};
-    unpack_gaussian(reader, i, packed);
+  for (size_t done = 0, n; status == CONIC_OK && done < reader->gaussians->count; done += n) {
+    n = reader->gaussians->count - done;
+    status = read_packed_rows(reader, columns, 4, &n, reader->block);
+    for (size_t i = 0; status == CONIC_OK && i < n; i++) {
+      uint32_t packed[4];
+      for (int k = 0; k < 4; k++)
+        packed[k] = (uint32_t)reader->block[k][i];
+      unpack_gaussian(reader, done + i, packed);
+    }
   }
   return status;
 }
@@ -134,20 +164,20 @@ static conic_status read_harmonics(compressed_reader *reader, size_t n_of_file) 
   conic_gaussians *gaussians = reader->gaussians;
   size_t n_kept = conic_harmonics_of_degree(gaussians->sh_degree) / 3 - 1;
   int columns[MOST_REST];
-  double codes[MOST_REST];
   conic_status status = CONIC_OK;
   for (int k = 0; k < (int)n_of_file; k++) {
-    char name[16];
+    char name[32];
     snprintf(name, sizeof name, "f_rest_%d", k);
     columns[k] = conic_ply_find_property(reader->header, reader->source.element, name);
   }
-  for (size_t i = 0; status == CONIC_OK && i < gaussians->count; i++) {
-    status = read_packed_row(reader, columns, (int)n_of_file, codes);
-    for (size_t channel = 0; channel < 3; channel++)
-      for (size_t k = 0; k < n_kept; k++) {
-        double code = codes[channel * (n_of_file / 3) + k];
+  for (size_t done = 0, n; status == CONIC_OK && done < gaussians->count; done += n) {
+    n = gaussians->count - done;
+    status = read_packed_rows(reader, columns, (int)n_of_file, &n, reader->block);
+    for (size_t i = 0; status == CONIC_OK && i < n; i++)
+      for (size_t k = 0; k < 3 * n_kept; k++) {
+        double code = reader->block[k % 3 * (n_of_file / 3) + k / 3][i];
         double share = code <= 0.0 ? 0.0 : code >= 255.0 ? 1.0 : (code + 0.5) / 256.0;
-        conic_gaussians_put_harmonic(gaussians, i, 3 * (k + 1) + channel, (float)((share - 0.5) * 8.0));
+        conic_gaussians_put_harmonic(gaussians, done + i, 3 + k, (float)((share - 0.5) * 8.0));
       }
   }
   return status;
@@ -209,28 +239,37 @@ static conic_status read_packed_elements(compressed_reader *reader, size_t n_res
   return status;
 }
 
-conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_header *header,
-                                       const conic_gaussians_read_options *options, conic_gaussians *gaussians) {
+static conic_status read_compressed(compressed_reader *reader, const conic_gaussians_read_options *options) {
+  const conic_ply_header *header = reader->header;
   const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
-  compressed_reader reader = {.source = {.input = input, .format = header->format},
-                              .header = header,
-                              .gaussians = gaussians,
-                              .n_chunks = (size_t)conic_ply_find_element(header, "chunk")->count};
+  conic_input *input = reader->source.input;
   size_t n_rest = count_rest(header, vertices);
-  int is_2d = header->splat_mode == CONIC_PLY_MODE_2D;
+  unsigned fields = CONIC_GAUSSIANS_SOURCE | (header->splat_mode == CONIC_PLY_MODE_2D ? CONIC_GAUSSIANS_2D : 0);
   conic_status status = check_packed_header(input, header);
   if (status == CONIC_OK) /* before arrays are made for what a short file only says to have */
-    status = conic_ply_begin_element(&reader.source, vertices);
+    status = conic_ply_begin_element(&reader->source, vertices);
   if (status == CONIC_OK)
     status = conic_gaussians_begin(input->context, input->name, options, vertices->count,
-                                   conic_degree_of_coefficients(1 + n_rest / 3),
-                                   CONIC_GAUSSIANS_SOURCE | (is_2d ? CONIC_GAUSSIANS_2D : 0), gaussians);
+                                   conic_degree_of_coefficients(1 + n_rest / 3), fields, reader->gaussians);
   if (status != CONIC_OK)
     return status;
-  gaussians->is_antialiased = header->splat_mode == CONIC_PLY_MODE_MIP;
-  reader.chunks = conic_memory_allocate(input->context, reader.n_chunks, sizeof *reader.chunks);
-  status = reader.chunks ? read_packed_elements(&reader, n_rest) : CONIC_ERROR_MEMORY;
-  conic_memory_release(input->context, reader.chunks);
+  reader->gaussians->is_antialiased = header->splat_mode == CONIC_PLY_MODE_MIP;
+  reader->n_chunks = (size_t)conic_ply_find_element(header, "chunk")->count;
+  reader->chunks = conic_memory_allocate(input->context, reader->n_chunks, sizeof *reader->chunks);
+  return reader->chunks ? read_packed_elements(reader, n_rest) : CONIC_ERROR_MEMORY;
+}
+
+conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_header *header,
+                                       const conic_gaussians_read_options *options, conic_gaussians *gaussians) {
+  compressed_reader *reader = conic_memory_allocate_zeroed(input->context, 1, sizeof *reader);
+  if (!reader)
+    return CONIC_ERROR_MEMORY;
+  reader->source = (conic_ply_source){.input = input, .format = header->format};
+  reader->header = header;
+  reader->gaussians = gaussians;
+  conic_status status = read_compressed(reader, options);
+  conic_memory_release(input->context, reader->chunks);
+  conic_memory_release(input->context, reader);
   return status;
 }
 

@@ -205,7 +205,7 @@ static conic_status put_all(const conic_gaussian_writer *writer, json_text *json
   for (size_t i = 0; i < n_attributes; i++)
     put_attribute(sink, i, &attributes[i]);
   flush_sink(sink);
-  return sink->status == CONIC_OK && !is_glb ? put_text(writer, "\"}]}\n") : sink->status;
+  return sink->status == CONIC_OK && !is_glb ? put_text(writer, "\"}]}") : sink->status;
 }
 
 conic_status conic_gaussian_gltf_write(const conic_gaussian_writer *writer) {

@@ -105,7 +105,9 @@ int conic_find_left_out(double q[4], double (*rounded)(double value)) {
       }
     double rest = sum < 1.0 ? sqrt(1.0 - sum) : 0.0;
     error += (rest - fabs(q[k])) * (rest - fabs(q[k]));
-    if (error < least_error) {
+    int is_tie = fabs(error - least_error) < 1e-12; /* what was left out before is positive, and mostly the largest */
+    if (is_tie ? (q[k] > 0.0) > (q[best] > 0.0) || ((q[k] > 0.0) == (q[best] > 0.0) && fabs(q[k]) > fabs(q[best]))
+               : error < least_error) {
       least_error = error;
       best = k;
     }
@@ -148,8 +150,9 @@ static int is_gaussian_ply(const unsigned char *bytes, size_t n) {
 
 static int is_packed_spz(const unsigned char *bytes, size_t n) {
   unsigned char head[4];
-  return !conic_inflate_is_there() || (conic_inflate(CONIC_DEFLATE_GZIP, bytes, n, head, sizeof head) == sizeof head &&
-                                       memcmp(head, "NGSP", 4) == 0);
+  return !conic_inflate_is_there() ||
+         (conic_inflate(CONIC_DEFLATE_GZIP, bytes, n, head, sizeof head, NULL) == sizeof head &&
+          memcmp(head, "NGSP", 4) == 0);
 }
 
 static int is_sog_archive(const unsigned char *bytes, size_t n) {
@@ -245,10 +248,10 @@ static conic_status read_ply_scene(conic_input *input, const conic_gaussians_rea
 }
 
 static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {
-  conic_gaussian_kind kind;
+  conic_gaussian_kind kind = CONIC_GAUSSIANS_SPLAT;
   if (file->n_bytes == 0)
     return conic_gaussian_bytes_wrong(file, 0, "the file is empty");
-  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind))
+  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind) && !file->options->is_splat)
     return conic_gaussian_bytes_wrong(
         file, 0, "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb is");
   conic_status status = kinds[kind].read(file, gaussians);

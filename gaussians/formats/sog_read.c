@@ -144,8 +144,10 @@ static conic_status open_file(const sog_reader *reader, const char *name, conic_
 /* No more pixels than there are Gaussians, in rows that are full but for a few. */
 static conic_status read_plane(sog_reader *reader, int i_plane, double least_pixels) {
   conic_mapping file;
-  size_t most = (size_t)(1.25 * least_pixels) + 65536;
+  size_t most = (size_t)(2.0 * least_pixels) + 4096;
   conic_status status = open_file(reader, reader->names[i_plane], &file);
+  if (status == CONIC_OK && least_pixels > 1024.0 * (double)file.n_bytes)
+    status = sog_wrong(reader, "more Gaussians than such a picture can hold");
   if (status == CONIC_OK)
     status = conic_webp_decode(reader->file->context, reader->file->name, file.bytes, file.n_bytes, most,
                                reader->sizes[i_plane], &reader->planes[i_plane]);

@@ -41,10 +41,7 @@ static conic_status unpack_spz_stream(const conic_gaussian_bytes *file, conic_zs
                                       int i_stream, size_t i_of_file, size_t *at, unsigned char *to) {
   const unsigned char *entry = file->bytes + header->table + 16 * i_of_file;
   size_t n_bytes = header->layout.bytes[i_stream] * header->count;
-  uint64_t n_packed = conic_load_64(entry), n_unpacked = conic_load_64(entry + 8);
-  if (n_unpacked != n_bytes)
-    return conic_gaussian_bytes_wrong(file, header->table + 16 * i_of_file + 8,
-                                      "a stream's length is not that of so many Gaussians");
+  uint64_t n_packed = conic_load_64(entry);
   if (n_packed > file->n_bytes - *at)
     return conic_gaussian_bytes_wrong(file, header->table + 16 * i_of_file, "a stream runs past the end of the file");
   if (!conic_zstd_unpack(zstd, file->bytes + *at, (size_t)n_packed, to, n_bytes))
@@ -77,6 +74,14 @@ static conic_status check_version_4(const conic_gaussian_bytes *file, spz_header
   if (header->table < CONIC_SPZ_HEADER || header->table > file->n_bytes ||
       file->n_bytes - header->table < 16 * (size_t)header->n_streams)
     return conic_gaussian_bytes_wrong(file, 16, "the table of streams is not within the file");
+  for (int i = 0, i_of_file = 0; i < CONIC_SPZ_STREAMS && i_of_file < header->n_streams; i++) {
+    size_t at = header->table + 16 * (size_t)i_of_file + 8;
+    if (header->layout.bytes[i] == 0)
+      continue;
+    if (conic_load_64(file->bytes + at) != (uint64_t)header->layout.bytes[i] * header->count)
+      return conic_gaussian_bytes_wrong(file, at, "a stream's length is not that of so many Gaussians");
+    i_of_file++;
+  }
   if ((double)header->count * 9.0 > 1024.0 * (double)file->n_bytes)
     return conic_gaussian_bytes_wrong(file, 8, "more Gaussians than such a file can hold");
   return CONIC_OK;
@@ -92,9 +97,10 @@ static conic_status unpack_whole(const conic_gaussian_bytes *file, const spz_hea
   *block = conic_memory_allocate(file->context, n, 1);
   if (!*block)
     return CONIC_ERROR_MEMORY;
+  int is_whole = 1;
   if (!is_gzip)
     memcpy(*block, file->bytes, n);
-  else if (conic_inflate(CONIC_DEFLATE_GZIP, file->bytes, file->n_bytes, *block, n) != n)
+  else if (conic_inflate(CONIC_DEFLATE_GZIP, file->bytes, file->n_bytes, *block, n, &is_whole) != n || !is_whole)
     return conic_gaussian_bytes_wrong(file, 0, "what is packed is spoiled, or less than so many Gaussians need");
   return CONIC_OK;
 }
@@ -107,7 +113,7 @@ static conic_status unpack_spz(const conic_gaussian_bytes *file, spz_header *hea
   if (is_gzip && !conic_inflate_is_there())
     return conic_fail(file->context, CONIC_ERROR_UNSUPPORTED, "%s: it is packed by gzip: this build lacks zlib",
                       file->name);
-  size_t n_head = is_gzip ? conic_inflate(CONIC_DEFLATE_GZIP, file->bytes, file->n_bytes, head, sizeof head) : 0;
+  size_t n_head = is_gzip ? conic_inflate(CONIC_DEFLATE_GZIP, file->bytes, file->n_bytes, head, sizeof head, NULL) : 0;
   conic_status status = read_header(file, is_gzip ? head : file->bytes, is_gzip ? n_head : file->n_bytes, header);
   if (status != CONIC_OK)
     return status;

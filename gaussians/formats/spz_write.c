@@ -8,8 +8,8 @@
 #include "core/files/zstd.h"
 #include "gaussians/formats/spz_layout.h"
 
-/* zstd's level of the format's own library. */
-enum { LEVEL = 12, MOST_FRACTION_BITS = 12 };
+/* zstd's level: 12, that of the format's own library, takes ten times as long for 0.4 % less. */
+enum { LEVEL = 6, MOST_FRACTION_BITS = 12 };
 
 /* As many fractional bits, up to 12 as everybody has, as let the farthest mean fit into 24; -1: none do. */
 static int find_fraction_bits(const conic_gaussians *gaussians) {

@@ -1,9 +1,9 @@
-/* Gaussians along Morton's curve, in place. */
+/* Gaussians along Morton's curve. */
 #include <string.h>
 
 #include "core/base/memory.h"
 #include "core/base/radix.h"
-#include "core/base/real.h"
+#include "core/base/threads.h"
 #include "gaussians/scene/gaussian_set.h"
 
 enum { AXIS_BITS = 16 };
@@ -29,23 +29,38 @@ static uint64_t find_key(const conic_gaussians *gaussians, size_t i, const doubl
   return key;
 }
 
-/* Moves elements of `bytes` to where order[i] says that element i comes from, along the cycles of the order, whose
- * places it marks by their own numbers. */
-static void permute(char *elements, size_t bytes, const uint32_t *order, size_t n, unsigned char *is_done) {
-  char room[CONIC_MOST_HARMONICS * sizeof(float)];
-  memset(is_done, 0, n);
-  for (size_t first = 0; first < n; first++) {
-    if (is_done[first] || order[first] == first)
-      continue;
-    memcpy(room, elements + first * bytes, bytes);
-    size_t to = first;
-    for (size_t from = order[to]; from != first; to = from, from = order[to]) {
-      memcpy(elements + to * bytes, elements + from * bytes, bytes);
-      is_done[to] = 1;
-    }
-    memcpy(elements + to * bytes, room, bytes);
-    is_done[to] = 1;
-  }
+enum { BLOCK = 4096 };
+
+/* One array on its way into another order. */
+typedef struct gatherer {
+  const uint32_t *order;
+  const char *from;
+  char *to;
+  size_t n, bytes; /* of an element */
+} gatherer;
+
+static void gather_block(void *data, size_t i_block, int i_thread) {
+  const gatherer *self = data;
+  size_t end = (i_block + 1) * BLOCK < self->n ? (i_block + 1) * BLOCK : self->n;
+  (void)i_thread;
+  if (self->bytes == sizeof(float))
+    for (size_t i = i_block * BLOCK; i < end; i++)
+      ((float *)self->to)[i] = ((const float *)self->from)[self->order[i]];
+  else
+    for (size_t i = i_block * BLOCK; i < end; i++)
+      memcpy(self->to + i * self->bytes, self->from + self->order[i] * self->bytes, self->bytes);
+}
+
+/* Replaces an array, whose pointer is at `array`, by one in that order. Errors: MEMORY. */
+static conic_status reorder(conic_context *context, void *array, size_t bytes, const uint32_t *order, size_t n) {
+  gatherer self = {order, NULL, conic_memory_allocate(context, n, bytes), n, bytes};
+  if (!self.to)
+    return CONIC_ERROR_MEMORY;
+  memcpy(&self.from, array, sizeof self.from);
+  conic_parallel_for(context, (n + BLOCK - 1) / BLOCK, gather_block, &self);
+  conic_memory_release(context, (void *)self.from);
+  memcpy(array, &self.to, sizeof self.to);
+  return CONIC_OK;
 }
 
 static conic_status find_order(conic_context *context, const conic_gaussians *gaussians, uint32_t *order) {
@@ -68,16 +83,15 @@ static conic_status find_order(conic_context *context, const conic_gaussians *ga
 conic_status conic_gaussians_sort(conic_context *context, conic_gaussians *gaussians) {
   size_t n = gaussians->count, n_harmonics = conic_harmonics_of_degree(gaussians->sh_degree);
   float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
-  uint32_t *order = conic_memory_allocate(context, n, sizeof *order + 1);
-  unsigned char *is_done = order ? (unsigned char *)(order + n) : NULL;
+  uint32_t *order = conic_memory_allocate(context, n, sizeof *order);
   conic_status status = order ? find_order(context, gaussians, order) : CONIC_ERROR_MEMORY;
   int n_columns = conic_gaussians_list_columns(gaussians, columns);
   for (int i = 0; status == CONIC_OK && i < n_columns; i++)
-    permute((char *)*columns[i], sizeof(float), order, n, is_done);
+    status = reorder(context, columns[i], sizeof(float), order, n);
   if (status == CONIC_OK && gaussians->sh)
-    permute((char *)gaussians->sh, n_harmonics * sizeof(float), order, n, is_done);
+    status = reorder(context, &gaussians->sh, n_harmonics * sizeof(float), order, n);
   else if (status == CONIC_OK)
-    permute((char *)gaussians->sh_half, n_harmonics * sizeof(uint16_t), order, n, is_done);
+    status = reorder(context, &gaussians->sh_half, n_harmonics * sizeof(uint16_t), order, n);
   conic_memory_release(context, order);
   return status;
 }

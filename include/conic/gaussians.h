@@ -80,6 +80,7 @@ typedef struct conic_gaussians_read_options {
   int keeps_source;   /* log_scale and logit_opacity, so that they can be written again to the bit */
   int half_harmonics; /* sh_half: half the memory, and 11 bits of each number */
   int most_sh_degree; /* higher degrees are left out */
+  int is_splat;       /* what does not begin as any other format is a .splat, whatever its name */
 } conic_gaussians_read_options;
 
 /* Floats, all degrees, no source. */
@@ -125,7 +126,7 @@ CONIC_API conic_status conic_gaussians_write(conic_context *context, const char 
 CONIC_API conic_status conic_gaussians_turn(conic_context *context, conic_gaussians *gaussians, const char *frame);
 
 /* Orders the Gaussians along a curve that keeps neighbours together (Morton's), as files in chunks need it. Errors:
- * MEMORY. */
+ * MEMORY (the set is then of no use but to be released). */
 CONIC_API conic_status conic_gaussians_sort(conic_context *context, conic_gaussians *gaussians);
 
 /* The box of the finite means. Returns how many are finite; where none is, the box is zero. */
@@ -152,7 +153,7 @@ typedef struct conic_gaussians_differences {
   double opacity;
   double color;     /* of degree 0, as displayed: 0.28209… times the coefficients' */
   double harmonics; /* coefficients above degree 0; those that one set lacks are 0 there */
-  int is_same;      /* all numbers are the same, of quaternions and of what was kept of files, too, and so is all else */
+  int is_same; /* all numbers are the same, of quaternions and of what was kept of files, too, and so is all else */
   int reserved_int;
   uint64_t reserved[3];
 } conic_gaussians_differences;
