@@ -128,18 +128,24 @@ static conic_context *quiet_context(int threads) {
   return context;
 }
 
+/* A disc or an undilated ellipse that is seen nearly from its edge is the difference of large numbers. */
+static double bound_of(int profile) {
+  int is_bare = profile == CONIC_PROFILE_2DGS_2024 || profile == CONIC_PROFILE_2DGS_GSPLAT;
+  return profile == CONIC_PROFILE_KHR_2026 ? 2e-5 : is_bare ? 4e-6 : 1e-6;
+}
+
 static void test_oracle(conic_context *context) {
   for (int degree = 0; degree <= CONIC_MAX_SH_DEGREE; degree++) {
     conic_gaussians scene = gaussians_random(context, 300, degree, 0);
     const conic_camera camera = camera_at(5.0, 70);
     for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
-      compare(context, &scene, &camera, profile, 2e-6);
+      compare(context, &scene, &camera, profile, bound_of(profile));
     conic_gaussians_release(context, &scene);
   }
   conic_gaussians flat = gaussians_random(context, 200, 1, CONIC_GAUSSIANS_2D | CONIC_GAUSSIANS_HALF);
   const conic_camera camera = camera_at(5.0, 50);
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
-    compare(context, &flat, &camera, profile, 4e-6);
+    compare(context, &flat, &camera, profile, bound_of(profile));
   conic_gaussians_release(context, &flat);
 }
 
