@@ -29,7 +29,7 @@ static int takes_gaussians(const char *path, const conic_source_options *options
 }
 
 /* A dot for every Gaussian that is not faint: what the camera frames. */
-static conic_status find_outline(gaussians_source *g) {
+static conic_status outline_means(gaussians_source *g) {
   const conic_gaussians *set = &g->gaussians;
   conic_splats *outline = &g->base.outline;
   conic_status status = conic_splats_allocate(g->base.context, set->count, CONIC_SPLATS_TANGENTS, outline);
@@ -53,7 +53,7 @@ static conic_status find_outline(gaussians_source *g) {
 }
 
 /* A frame's letters say where its axes point; up is the one that has u, or against the one that has d. */
-static void find_up(const char *frame, double up[3]) {
+static void up_of_frame(const char *frame, double up[3]) {
   for (int axis = 0; axis < 3; axis++)
     up[axis] = frame[axis] == 'u' ? 1.0 : frame[axis] == 'd' ? -1.0 : 0.0;
 }
@@ -71,9 +71,9 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
     return conic_fail(source->context, CONIC_ERROR_INPUT, "%s: there is no Gaussian that could be drawn", paths[0]);
   scale->n_splats = g->gaussians.count;
   scale->has_colors = 1;
-  find_up(g->gaussians.frame, scale->up);
+  up_of_frame(g->gaussians.frame, scale->up);
   scale->up_basis = CONIC_UP_KIND;
-  return find_outline(g);
+  return outline_means(g);
 }
 
 static void close_gaussians(conic_source *source) {
@@ -91,7 +91,7 @@ static int wants(const conic_image *image, conic_plane plane) {
   return image->planes[plane] != NULL;
 }
 
-static conic_status allocate_fine(conic_context *context, const conic_image *image, fine_picture *fine) {
+static conic_status allocate_planes(conic_context *context, const conic_image *image, fine_picture *fine) {
   conic_gaussian_planes *p = &fine->planes;
   const size_t n = (size_t)p->width * (size_t)p->height;
   const struct {
@@ -116,7 +116,7 @@ static conic_status allocate_fine(conic_context *context, const conic_image *ima
   return CONIC_OK;
 }
 
-static void release_fine(conic_context *context, fine_picture *fine) {
+static void release_planes(conic_context *context, fine_picture *fine) {
   conic_gaussian_planes *p = &fine->planes;
   void *const all[] = {p->rgb, p->transparency, p->z, p->median_z, p->inverse_z, p->normal, p->count, p->id, p->last};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -139,7 +139,7 @@ static double mean_of(const fine_picture *fine, const float *plane, size_t chann
   return sum / (double)(n * n);
 }
 
-static void take_normal(const fine_picture *fine, size_t x, size_t y, float normal[3]) {
+static void mean_normal(const fine_picture *fine, size_t x, size_t y, float normal[3]) {
   double n[3];
   for (size_t c = 0; c < 3; c++)
     n[c] = mean_of(fine, fine->planes.normal, 3, c, x, y);
@@ -181,13 +181,13 @@ static int reduce_pixel(const fine_picture *fine, size_t x, size_t y, size_t pix
     if (words[i])
       ((uint32_t *)image->planes[word_planes[i]])[pixel] = words[i][middle];
   if (p->normal)
-    take_normal(fine, x, y, (float *)image->planes[CONIC_PLANE_NORMAL] + 3 * pixel);
+    mean_normal(fine, x, y, (float *)image->planes[CONIC_PLANE_NORMAL] + 3 * pixel);
   if (p->count)
     ((uint32_t *)image->planes[CONIC_PLANE_COUNT])[pixel] = greatest_count(fine, x, y);
   return T < 1.0f;
 }
 
-static uint64_t reduce(const fine_picture *fine, const conic_image *image) {
+static uint64_t reduce_samples(const fine_picture *fine, const conic_image *image) {
   uint64_t n_covered = 0;
   for (size_t y = 0; y < (size_t)image->height; y++)
     for (size_t x = 0; x < (size_t)image->width; x++)
@@ -228,16 +228,16 @@ static conic_status draw_gaussians(conic_source *source, conic_renderer *rendere
   g->options.isa = render->isa;
   for (int c = 0; c < 3; c++)
     g->options.background[c] = render->has_background ? render->background[c] : 0.0f;
-  conic_status status = allocate_fine(source->context, image, &fine);
+  conic_status status = allocate_planes(source->context, image, &fine);
   if (status == CONIC_OK)
     status = conic_gaussians_render(source->context, &g->gaussians, &fine.camera, &g->options, &fine.planes, &g->drawn);
   if (status == CONIC_OK) {
-    uint64_t n_covered = reduce(&fine, image);
+    uint64_t n_covered = reduce_samples(&fine, image);
     image->is_display = !g->gaussians.is_linear;
     if (statistics)
       tell_drawing(g, n_covered, statistics);
   }
-  release_fine(source->context, &fine);
+  release_planes(source->context, &fine);
   return status;
 }
 

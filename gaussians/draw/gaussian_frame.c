@@ -49,7 +49,7 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
   f->n_of_run[i_run] = to - begin;
 }
 
-static conic_status set_up(frame *f) {
+static conic_status set_up_all(frame *f) {
   const size_t count = f->set->count;
   int is_done = 1;
   f->n_runs = (count + SET_UP_RUN - 1) / SET_UP_RUN;
@@ -93,7 +93,7 @@ static void move_run(void *data, size_t i_run, int i_thread) {
   }
 }
 
-static conic_status put_in_order(frame *f) {
+static conic_status order_footprints(frame *f) {
   f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
   f->ordered = conic_memory_allocate(f->context, f->n, sizeof *f->ordered);
   if (f->has_rays)
@@ -114,7 +114,7 @@ static conic_status put_in_order(frame *f) {
   return status;
 }
 
-static void begin_tile(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
+static void begin_compositing(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
   memset(tile, 0, sizeof *tile);
   for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++) {
     tile->T[i] = 1.0f;
@@ -124,7 +124,7 @@ static void begin_tile(const frame *f, size_t i_tile, conic_gaussian_tile *tile)
   tile->y = (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
 }
 
-static void put_float(float *plane, size_t pixel, float value) {
+static void put_number(float *plane, size_t pixel, float value) {
   if (plane)
     plane[pixel] = value;
 }
@@ -134,23 +134,23 @@ static void put_word(uint32_t *plane, size_t pixel, uint32_t value) {
     plane[pixel] = value;
 }
 
-static void end_tile(const frame *f, const conic_gaussian_tile *tile) {
+static void end_compositing(const frame *f, const conic_gaussian_tile *tile) {
   conic_gaussian_planes *to = f->planes;
   for (int row = 0; row < CONIC_GAUSSIAN_TILE && tile->y + row < to->height; row++)
     for (int column = 0; column < CONIC_GAUSSIAN_TILE && tile->x + column < to->width; column++) {
       size_t at = (size_t)(row * CONIC_GAUSSIAN_TILE + column);
       size_t pixel = (size_t)(tile->y + row) * (size_t)to->width + (size_t)(tile->x + column);
       float T = tile->T[at] > 0.0f ? tile->T[at] : tile->rest[at];
-      put_float(to->transparency, pixel, T);
-      put_float(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
-      put_float(to->median_z, pixel, tile->median_z[at]);
-      put_float(to->inverse_z, pixel, tile->inverse_z[at]);
+      put_number(to->transparency, pixel, T);
+      put_number(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
+      put_number(to->median_z, pixel, tile->median_z[at]);
+      put_number(to->inverse_z, pixel, tile->inverse_z[at]);
       put_word(to->count, pixel, tile->count[at]);
       put_word(to->id, pixel, tile->id[at]);
       put_word(to->last, pixel, tile->last[at]);
       for (int c = 0; c < 3; c++) {
-        put_float(to->rgb, 3 * pixel + (size_t)c, tile->rgb[c][at] + T * f->options->background[c]);
-        put_float(to->normal, 3 * pixel + (size_t)c, tile->normal[c][at]);
+        put_number(to->rgb, 3 * pixel + (size_t)c, tile->rgb[c][at] + T * f->options->background[c]);
+        put_number(to->normal, 3 * pixel + (size_t)c, tile->normal[c][at]);
       }
     }
 }
@@ -159,7 +159,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
   const conic_gaussian_planes *to = f->planes;
   conic_gaussian_tile tile;
-  begin_tile(f, i_tile, &tile);
+  begin_compositing(f, i_tile, &tile);
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->ordered,
                               .rays = f->ordered_rays,
@@ -170,7 +170,7 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .hits = f->hits ? f->hits[i_thread] : NULL};
   f->kernels.composite[f->view.rules->shape](&list, &tile);
-  end_tile(f, &tile);
+  end_compositing(f, &tile);
 }
 
 /* Room for a row of a tile, the longest list at each of its pixels. */
@@ -191,7 +191,7 @@ static conic_status make_room_for_hits(frame *f) {
   return CONIC_OK;
 }
 
-static void release(frame *f) {
+static void release_frame(frame *f) {
   void *const all[] = {f->footprints, f->ordered,          f->rays, f->ordered_rays, f->normals, f->ordered_normals,
                        f->n_of_run,   f->n_skipped_of_run, f->order};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -202,12 +202,12 @@ static void release(frame *f) {
   conic_gaussian_bins_release(f->context, &f->bins);
 }
 
-static conic_status draw(frame *f) {
+static conic_status draw_scene(frame *f) {
   double begin = conic_seconds_now(), now;
-  conic_status status = set_up(f);
+  conic_status status = set_up_all(f);
   f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
-    status = put_in_order(f);
+    status = order_footprints(f);
   f->statistics.seconds_sort = conic_seconds_now() - now;
   now = conic_seconds_now();
   if (status == CONIC_OK)
@@ -255,8 +255,8 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   f.statistics.gaussians_in = gaussians->count;
   conic_gaussian_kernels_init(&f.kernels, isa);
   look_through(camera, &f.view);
-  status = draw(&f);
-  release(&f);
+  status = draw_scene(&f);
+  release_frame(&f);
   if (statistics)
     *statistics = f.statistics;
   return status;

@@ -17,17 +17,17 @@ typedef struct placed {
   int is_flat;
 } placed;
 
-static int is_finite(double v) {
+static int is_number(double v) {
   return v - v == 0.0;
 }
 
-static int find_axes(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, placed *p) {
+static int place_axes(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, placed *p) {
   double q[4], squares = 0.0;
   for (int k = 0; k < 4; k++) {
     q[k] = (double)set->rotation[k][i];
     squares += q[k] * q[k];
   }
-  if (!(squares > 0.0) || !is_finite(squares))
+  if (!(squares > 0.0) || !is_number(squares))
     return 0;
   double one_over = view->rules->takes_rotation_as_is ? 1.0 : 1.0 / sqrt(squares);
   double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
@@ -37,7 +37,7 @@ static int find_axes(const conic_gaussian_view *view, const conic_gaussians *set
   memcpy(p->world, rows, sizeof rows);
   for (int axis = 0; axis < 3; axis++) {
     p->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
-    if (!(p->scale[axis] >= 0.0) || !is_finite(p->scale[axis]))
+    if (!(p->scale[axis] >= 0.0) || !is_number(p->scale[axis]))
       return 0;
     for (int row = 0; row < 3; row++) {
       const double *camera = view->camera->cam_from_world[row];
@@ -58,12 +58,12 @@ static int place_in_camera(const conic_gaussian_view *view, const conic_gaussian
   for (int row = 0; row < 3; row++) {
     const double *camera = view->camera->cam_from_world[row];
     p->mean[row] = camera[0] * mean[0] + camera[1] * mean[1] + camera[2] * mean[2] + camera[3];
-    if (!is_finite(p->mean[row]))
+    if (!is_number(p->mean[row]))
       return 0;
   }
   p->opacity = (double)set->opacity[i];
   p->is_flat = !set->scale[2] || view->rules->shape == CONIC_SHAPE_DISC;
-  return is_finite(p->opacity);
+  return is_number(p->opacity);
 }
 
 static double limited(double value, double least, double most) {
@@ -146,7 +146,7 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, place
   double bare = conic_dot(area, area), wide = bare + h * (xx + yy) + h * h;
   xx += h;
   yy += h;
-  if (!(wide > 0.0) || !is_finite(wide) || !is_finite(place[0]) || !is_finite(place[1]))
+  if (!(wide > 0.0) || !is_number(wide) || !is_number(place[0]) || !is_number(place[1]))
     return CONIC_GAUSSIAN_CULLED;
   if (rules->compensation_least >= 0.0)
     p->opacity *= sqrt(bare / wide > rules->compensation_least ? bare / wide : rules->compensation_least);
@@ -193,7 +193,7 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
   unit_of = conic_length(g[0]);
   for (int step = 1; step < 3; step++) /* of a plane seen from its edge, g may be zero here */
     unit_of = unit_of > conic_length(g[step]) ? unit_of : conic_length(g[step]);
-  if (!(unit_of > 0.0) || !is_finite(unit_of))
+  if (!(unit_of > 0.0) || !is_number(unit_of))
     return 0;
   for (int step = 0; step < 3; step++) {
     for (int k = 0; k < 3; k++) {
@@ -202,7 +202,7 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
     }
     ray->e[step] = (float)(e[step] / unit_of / unit_of);
   }
-  return is_finite((double)(ray->c[0][0] + ray->c[0][1] + ray->c[0][2] + ray->e[0]));
+  return is_number((double)(ray->c[0][0] + ray->c[0][1] + ray->c[0][2] + ray->e[0]));
 }
 
 /* The box of the ellipsoid at q = reach: its dual conic, ρ²Σ − ppᵀ, cut by the planes through the eye that are upright
@@ -262,7 +262,7 @@ static int find_disc_box(const conic_gaussian_view *view, const placed *p, doubl
       rows[axis][k] = focal[axis] * rows[axis][k] + view->center_px[axis] * rows[2][k];
   }
   weight = square * (rows[2][0] * rows[2][0] + rows[2][1] * rows[2][1]) - rows[2][2] * rows[2][2];
-  if (weight == 0.0 || !is_finite(weight))
+  if (weight == 0.0 || !is_number(weight))
     return 0;
   for (int axis = 0; axis < 2; axis++) {
     const double *r = rows[axis], *z = rows[2];
@@ -270,7 +270,7 @@ static int find_disc_box(const conic_gaussian_view *view, const placed *p, doubl
     double apart = place[axis] * place[axis] - (square * (r[0] * r[0] + r[1] * r[1]) - r[2] * r[2]) / weight;
     extent[axis] = sqrt(apart > 1e-4 ? apart : 1e-4);
   }
-  return is_finite(place[0]) && is_finite(place[1]);
+  return is_number(place[0]) && is_number(place[1]);
 }
 
 static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f,
@@ -303,7 +303,7 @@ static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, const pl
   return find_ray(view, p, f, ray) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
-static void find_normal(const conic_gaussian_view *view, const placed *p, float normal[3]) {
+static void choose_normal(const conic_gaussian_view *view, const placed *p, float normal[3]) {
   int axis = 2;
   for (int k = 1; k >= 0 && !p->is_flat; k--)
     axis = p->scale[k] < p->scale[axis] ? k : axis;
@@ -318,7 +318,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   const conic_gaussian_rules *rules = view->rules;
   placed p;
   double from_eye[3];
-  if (!place_in_camera(view, gaussians, i, &p, from_eye) || !find_axes(view, gaussians, i, &p))
+  if (!place_in_camera(view, gaussians, i, &p, from_eye) || !place_axes(view, gaussians, i, &p))
     return CONIC_GAUSSIAN_SKIPPED;
   double z = p.mean[2];
   if (rules->shape != CONIC_SHAPE_RAY &&
@@ -340,6 +340,6 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   f->key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)
-    find_normal(view, &p, normal);
+    choose_normal(view, &p, normal);
   return conic_harmonic_color(gaussians, i, from_eye, f->color) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_SKIPPED;
 }

@@ -5,8 +5,8 @@
 
 CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
 
-static void add_all(const conic_gaussian_list *list, uint32_t i_footprint, float z, float w, float before, float after,
-                    conic_gaussian_tile *tile, size_t at) {
+static void composite_planes(const conic_gaussian_list *list, uint32_t i_footprint, float z, float w, float before,
+                             float after, conic_gaussian_tile *tile, size_t at) {
   const conic_gaussian_rules *rules = list->rules;
   tile->sum[at] += w;
   tile->sum_of_z[at] += w * z;
@@ -24,8 +24,8 @@ static void add_all(const conic_gaussian_list *list, uint32_t i_footprint, float
 }
 
 /* Returns 0 where compositing has ended at the pixel. */
-static int add(const conic_gaussian_list *list, uint32_t i_footprint, float z, float alpha, conic_gaussian_tile *tile,
-               size_t at) {
+static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, float z, float alpha,
+                         conic_gaussian_tile *tile, size_t at) {
   const conic_gaussian_footprint *f = &list->footprints[i_footprint];
   const conic_gaussian_rules *rules = list->rules;
   float before = tile->T[at], after = before * (1.0f - alpha), w = alpha * before;
@@ -39,7 +39,7 @@ static int add(const conic_gaussian_list *list, uint32_t i_footprint, float z, f
     tile->rgb[c][at] += w * f->color[c];
   tile->T[at] = after;
   if (list->wants_all)
-    add_all(list, i_footprint, z, w, before, after, tile, at);
+    composite_planes(list, i_footprint, z, w, before, after, tile, at);
   return 1;
 }
 
@@ -59,7 +59,7 @@ void conic_gaussian_composite_hits(const conic_gaussian_list *list, conic_gaussi
                                    conic_gaussian_tile *tile, size_t pixel) {
   sort_hits(hits, n);
   for (size_t i = 0; i < n; i++)
-    if (!add(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, pixel))
+    if (!composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, pixel))
       return;
 }
 
@@ -68,7 +68,7 @@ static float alpha_of(const conic_gaussian_rules *rules, const conic_gaussian_fo
   return alpha < rules->alpha_most ? alpha : rules->alpha_most;
 }
 
-static int is_within(const conic_gaussian_footprint *f, int x, int y) {
+static int covers_pixel(const conic_gaussian_footprint *f, int x, int y) {
   return x >= f->box[0][0] && x <= f->box[1][0] && y >= f->box[0][1] && y <= f->box[1][1];
 }
 
@@ -82,8 +82,8 @@ static void composite_ellipses(const conic_gaussian_list *list, conic_gaussian_t
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
       float half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
       float alpha = alpha_of(rules, f, half_q);
-      if (is_within(f, x, y) && half_q >= 0.0f && (!(greatest > 0.0f) || greatest >= half_q) &&
-          alpha >= rules->alpha_least && !add(list, list->entries[i], f->z, alpha, tile, at))
+      if (covers_pixel(f, x, y) && half_q >= 0.0f && (!(greatest > 0.0f) || greatest >= half_q) &&
+          alpha >= rules->alpha_least && !composite_one(list, list->entries[i], f->z, alpha, tile, at))
         break;
     }
   }
@@ -98,7 +98,7 @@ static float affine(float at_reference, float by_x, float by_y, float dx, float 
 }
 
 /* The order of operations here is that of docs/reference/gaussians.md. */
-static meeting meet(const conic_gaussian_footprint *f, const conic_gaussian_ray *r, int x, int y) {
+static meeting meet_ray(const conic_gaussian_footprint *f, const conic_gaussian_ray *r, int x, int y) {
   float dx = (float)(x - f->x), dy = (float)(y - f->y), g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = affine(r->g[0][k], r->g[1][k], r->g[2][k], dx, dy);
@@ -115,9 +115,9 @@ static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile 
     size_t n = 0;
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-      if (!is_within(f, x, y))
+      if (!covers_pixel(f, x, y))
         continue;
-      meeting m = meet(f, &list->rays[list->entries[i]], x, y);
+      meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
       float alpha = alpha_of(list->rules, f, m.half_q);
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
         list->hits[n++] = (conic_gaussian_hit){m.z, alpha, list->entries[i]};
@@ -132,12 +132,12 @@ static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile
     int x = tile->x + (int)at % CONIC_GAUSSIAN_TILE, y = tile->y + (int)at / CONIC_GAUSSIAN_TILE;
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-      meeting m = meet(f, &list->rays[list->entries[i]], x, y);
+      meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy, dot = dx * dx + dy * dy;
       float half_q = m.half_q < dot ? m.half_q : dot, alpha = alpha_of(rules, f, half_q);
-      if (is_within(f, x, y) && half_q >= 0.0f && (!(rules->disc_near > 0.0f) || m.z >= rules->disc_near) &&
+      if (covers_pixel(f, x, y) && half_q >= 0.0f && (!(rules->disc_near > 0.0f) || m.z >= rules->disc_near) &&
           alpha >= rules->alpha_least &&
-          !add(list, list->entries[i], rules->disc_near > 0.0f ? m.z : f->z, alpha, tile, at))
+          !composite_one(list, list->entries[i], rules->disc_near > 0.0f ? m.z : f->z, alpha, tile, at))
         break;
     }
   }

@@ -7,7 +7,7 @@
 enum { MOST_HARMONICS = (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) };
 
 /* The harmonics of a unit direction, up to the degree; the constants are those of 3D Gaussian splatting. */
-static void evaluate(float x, float y, float z, int degree, float *h) {
+static void evaluate_harmonics(float x, float y, float z, int degree, float *h) {
   float xx = x * x, yy = y * y, zz = z * z;
   h[0] = 0.28209479177387814f;
   if (degree < 1)
@@ -49,8 +49,8 @@ int conic_harmonic_color(const conic_gaussians *set, size_t i, const double from
   float h[MOST_HARMONICS];
   double squares = from_eye[0] * from_eye[0] + from_eye[1] * from_eye[1] + from_eye[2] * from_eye[2];
   double one_over = squares > 0.0 ? 1.0 / sqrt(squares) : 0.0;
-  evaluate((float)(from_eye[0] * one_over), (float)(from_eye[1] * one_over), (float)(from_eye[2] * one_over),
-           set->sh_degree, h);
+  evaluate_harmonics((float)(from_eye[0] * one_over), (float)(from_eye[1] * one_over), (float)(from_eye[2] * one_over),
+                     set->sh_degree, h);
   float sum[3] = {0.0f, 0.0f, 0.0f};
   if (set->sh)
     for (size_t k = 0; k < n; k++)

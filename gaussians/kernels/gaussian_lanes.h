@@ -31,8 +31,8 @@ CONIC_INLINE void lanes_accumulate(float *to, lanes_mask mask, lanes value) {
 }
 
 /* What is wanted beside colour. */
-CONIC_INLINE void add_planes(const scene *s, uint32_t i_footprint, lanes_mask goes, lanes z, lanes w, lanes before,
-                             lanes after, size_t at) {
+CONIC_INLINE void composite_planes_in_lanes(const scene *s, uint32_t i_footprint, lanes_mask goes, lanes z, lanes w,
+                                            lanes before, lanes after, size_t at) {
   const conic_gaussian_list *list = s->list;
   conic_gaussian_tile *tile = s->tile;
   index_lanes index = lanes_of_index(list->footprints[i_footprint].index);
@@ -71,7 +71,7 @@ CONIC_INLINE void composite_lanes(const scene *s, uint32_t i_footprint, lanes_ma
   for (int c = 0; c < 3; c++)
     lanes_accumulate(tile->rgb[c] + at, goes, w * f->color[c]);
   if (s->list->wants_all)
-    add_planes(s, i_footprint, goes, z, w, before, after, at);
+    composite_planes_in_lanes(s, i_footprint, goes, z, w, before, after, at);
   if (lanes_any(ends))
     end_pixels(tile, ends, before, at);
 }
@@ -89,18 +89,18 @@ typedef struct part {
   int first_row, last_row, first_column, last_column;
 } part;
 
-CONIC_INLINE int lesser(int a, int b) {
+CONIC_INLINE int lesser_of(int a, int b) {
   return a < b ? a : b;
 }
 
-CONIC_INLINE int greater(int a, int b) {
+CONIC_INLINE int greater_of(int a, int b) {
   return a > b ? a : b;
 }
 
-CONIC_INLINE part part_of(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
-  return (part){greater(f->box[0][1] - tile->y, 0), lesser(f->box[1][1] - tile->y, CONIC_GAUSSIAN_TILE - 1),
-                greater(f->box[0][0] - tile->x, 0) / CONIC_LANES * CONIC_LANES,
-                lesser(f->box[1][0] - tile->x, CONIC_GAUSSIAN_TILE - 1)};
+CONIC_INLINE part part_in_tile(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
+  return (part){greater_of(f->box[0][1] - tile->y, 0), lesser_of(f->box[1][1] - tile->y, CONIC_GAUSSIAN_TILE - 1),
+                greater_of(f->box[0][0] - tile->x, 0) / CONIC_LANES * CONIC_LANES,
+                lesser_of(f->box[1][0] - tile->x, CONIC_GAUSSIAN_TILE - 1)};
 }
 
 static int is_over(const conic_gaussian_tile *tile) {
@@ -116,7 +116,7 @@ static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_g
   const scene s = scene_of(list, tile);
   for (size_t i = 0; i < list->n; i++) {
     const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-    const part p = part_of(tile, f);
+    const part p = part_in_tile(tile, f);
     if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
       return;
     for (int column = p.first_column; column <= p.last_column; column += CONIC_LANES) {
@@ -158,7 +158,7 @@ static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaus
   const float near_z = list->rules->disc_near;
   for (size_t i = 0; i < list->n; i++) {
     const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-    const part p = part_of(tile, f);
+    const part p = part_in_tile(tile, f);
     if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
       return;
     for (int column = p.first_column; column <= p.last_column; column += CONIC_LANES) {
@@ -197,7 +197,7 @@ static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gauss
     size_t n_hits[CONIC_GAUSSIAN_TILE] = {0};
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-      const part p = part_of(tile, f);
+      const part p = part_in_tile(tile, f);
       float y = (float)(tile->y + row - f->y);
       if (row < p.first_row || row > p.last_row)
         continue;

@@ -25,7 +25,7 @@ double conic_oracle_erf(double x) {
   return x < 0.0 ? -value : value;
 }
 
-static int compare_places(const void *a, const void *b) {
+static int compare_places_along(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
@@ -49,7 +49,7 @@ static void emitted(const oracle_cloud *clouds, size_t n, double z, double color
     color[c] = sum[c] * seen;
 }
 
-static void add_step(const oracle_cloud *clouds, size_t n, double from, double to, double color[3]) {
+static void add_interval(const oracle_cloud *clouds, size_t n, double from, double to, double color[3]) {
   static const double at[3] = {0.23861918608319690863, 0.66120938646626451366, 0.93246951420315202781};
   static const double weight[3] = {0.46791393457269104739, 0.36076157304813860757, 0.17132449237917034504};
   double middle = 0.5 * (from + to), half = 0.5 * (to - from), here[3];
@@ -67,7 +67,7 @@ double conic_oracle_integrate(const oracle_cloud *clouds, size_t n, double *plac
     for (int k = 0; k < ORACLE_PLACES; k++)
       places[n_places++] =
           clouds[i].z + (k - ORACLE_PLACES / 2) * (2.0 * REACH / (ORACLE_PLACES - 1)) * clouds[i].width;
-  qsort(places, n_places, sizeof *places, compare_places);
+  qsort(places, n_places, sizeof *places, compare_places_along);
   for (int halving = 0; halving < MOST_HALVINGS; halving++) {
     int n_steps = 1 << halving;
     color[0] = color[1] = color[2] = 0.0;
@@ -75,7 +75,7 @@ double conic_oracle_integrate(const oracle_cloud *clouds, size_t n, double *plac
       for (int k = 0; k < n_steps; k++) {
         double width = places[i + 1] - places[i];
         if (width > 0.0)
-          add_step(clouds, n, places[i] + width * k / n_steps, places[i] + width * (k + 1) / n_steps, color);
+          add_interval(clouds, n, places[i] + width * k / n_steps, places[i] + width * (k + 1) / n_steps, color);
       }
     change = 0.0;
     for (int c = 0; c < 3; c++) {

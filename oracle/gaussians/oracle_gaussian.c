@@ -39,7 +39,7 @@ const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile 
   return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &rules[profile] : NULL;
 }
 
-static void rotation_of(const double q[4], double r[3][3]) {
+static void rotation_of_quaternion(const double q[4], double r[3][3]) {
   double w = q[0], x = q[1], y = q[2], z = q[3];
   double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
                        {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
@@ -48,7 +48,7 @@ static void rotation_of(const double q[4], double r[3][3]) {
 }
 
 /* The axes in the world and in camera space. Returns 0 where there are none. */
-static int find_axes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, double world[3][3],
+static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, double world[3][3],
                      oracle_gaussian *g) {
   double q[4], length = 0.0;
   for (int k = 0; k < 4; k++) {
@@ -58,7 +58,7 @@ static int find_axes(const oracle_gaussian_view *view, const conic_gaussians *se
   length = view->rules->is_inria ? 1.0 : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
-  rotation_of(q, world);
+  rotation_of_quaternion(q, world);
   int is_good = 1;
   for (int axis = 0; axis < 3; axis++) {
     g->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
@@ -74,7 +74,7 @@ static int find_axes(const oracle_gaussian_view *view, const conic_gaussians *se
 }
 
 /* The direction of the shortest axis, of a disc the third, turned towards the eye. */
-static void find_normal(const oracle_gaussian_view *view, const double world[3][3], oracle_gaussian *g) {
+static void pick_normal(const oracle_gaussian_view *view, const double world[3][3], oracle_gaussian *g) {
   int axis = 2;
   if (view->rules->form != ORACLE_FORM_DISC && !g->is_flat)
     for (int k = 1; k >= 0; k--)
@@ -180,14 +180,18 @@ static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
 
 static double number_of_half(uint16_t half) {
   int exponent = half >> 10 & 31, fraction = half & 1023;
-  double size = exponent == 31 ? (fraction ? NAN : INFINITY)
-                : exponent     ? ldexp(1024.0 + fraction, exponent - 25)
-                               : ldexp(fraction, -24);
+  double size = exponent ? 1024.0 + fraction : fraction;
+  if (exponent == 31)
+    return fraction ? NAN : half & 0x8000 ? -INFINITY : INFINITY;
+  for (int k = exponent ? exponent : 1; k < 25; k++)
+    size *= 0.5;
+  for (int k = 25; k < exponent; k++)
+    size *= 2.0;
   return half & 0x8000 ? -size : size;
 }
 
-static void find_color(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3], size_t i,
-                       oracle_gaussian *g) {
+static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3],
+                              size_t i, oracle_gaussian *g) {
   const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1) * 3;
   double sh[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) * 3], direction[3];
   for (size_t k = 0; k < n; k++)
@@ -219,11 +223,11 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
       return;
   }
   int is_near = g->mean[2] < rules->near_z || (rules->near_is_left_out && g->mean[2] == rules->near_z);
-  if (!oracle_is_finite(g->opacity) || !find_axes(view, set, i, world, g) ||
+  if (!oracle_is_finite(g->opacity) || !turn_axes(view, set, i, world, g) ||
       (rules->form != ORACLE_FORM_RAY && (is_near || !(g->mean[2] > 0.0))))
     return;
-  find_normal(view, world, g);
-  find_color(view, set, mean, i, g);
+  pick_normal(view, world, g);
+  color_towards_eye(view, set, mean, i, g);
   g->key = (float)(rules->is_by_distance ? oracle_length(g->mean) : g->mean[2]);
   g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
   if (rules->form == ORACLE_FORM_ELLIPSE)

@@ -20,11 +20,11 @@ typedef struct covering {
   double alpha, z;
 } covering;
 
-typedef struct worker {
+typedef struct gaussian_worker {
   covering *coverings;
   oracle_cloud *clouds;
   double *places, quadrature;
-} worker;
+} gaussian_worker;
 
 typedef struct job {
   conic_context *context;
@@ -34,25 +34,25 @@ typedef struct job {
   oracle_gaussian_view view;
   oracle_gaussian *gaussians;
   size_t n;
-  worker *workers;
+  gaussian_worker *workers;
   conic_gaussian_reference *reference;
 } job;
 
-static int compare_keys(float a, float b, uint32_t i, uint32_t j) {
+static int compare_order(float a, float b, uint32_t i, uint32_t j) {
   return a != b ? (a > b ? 1 : -1) : (i > j) - (i < j);
 }
 
 static int compare_gaussians(const void *a, const void *b) {
   const oracle_gaussian *x = a, *y = b;
-  return compare_keys(x->key, y->key, x->index, y->index);
+  return compare_order(x->key, y->key, x->index, y->index);
 }
 
 static int compare_coverings(const void *a, const void *b) {
   const covering *x = a, *y = b;
-  return compare_keys(x->key, y->key, x->gaussian->index, y->gaussian->index);
+  return compare_order(x->key, y->key, x->gaussian->index, y->gaussian->index);
 }
 
-static void set_up(void *data, size_t i_run, int i_thread) {
+static void place_gaussians(void *data, size_t i_run, int i_thread) {
   job *j = data;
   (void)i_thread;
   for (size_t i = i_run * SET_UP_RUN; i < (i_run + 1) * SET_UP_RUN && i < j->set->count; i++)
@@ -60,7 +60,7 @@ static void set_up(void *data, size_t i_run, int i_thread) {
 }
 
 /* In the order that all pixels share, without what is never drawn. */
-static void put_in_order(job *j) {
+static void sort_gaussians(job *j) {
   j->n = 0;
   for (size_t i = 0; i < j->set->count; i++)
     if (j->gaussians[i].is_drawn)
@@ -100,7 +100,7 @@ static void composite(const job *j, const covering *coverings, size_t n, size_t 
 }
 
 /* The profile's picture at a pixel. */
-static void composite_pixel(const job *j, worker *w, double x, double y, size_t pixel) {
+static void composite_pixel(const job *j, gaussian_worker *w, double x, double y, size_t pixel) {
   size_t n = 0;
   for (size_t i = 0; i < j->n; i++) {
     covering *c = &w->coverings[n];
@@ -115,7 +115,7 @@ static void composite_pixel(const job *j, worker *w, double x, double y, size_t 
 }
 
 /* A Gaussian's optical depth along the ray; docs/reference/gaussians.md, Truth. */
-static double depth_of(const job *j, const oracle_gaussian *g, double q, double width, double x, double y) {
+static double optical_depth(const job *j, const oracle_gaussian *g, double q, double width, double x, double y) {
   const conic_camera *camera = j->view.camera;
   double response = conic_oracle_exp(-0.5 * q);
   if (j->question == CONIC_GAUSSIAN_OVERLAP)
@@ -126,7 +126,7 @@ static double depth_of(const job *j, const oracle_gaussian *g, double q, double 
   return -conic_oracle_log(1.0 - oracle_min(g->opacity, 1.0 - 1e-12)) * width * length / radius * response;
 }
 
-static void integrate_pixel(const job *j, worker *w, double x, double y, size_t pixel) {
+static void integrate_pixel(const job *j, gaussian_worker *w, double x, double y, size_t pixel) {
   conic_gaussian_reference *r = j->reference;
   size_t n = 0;
   double q, z, width, depth = 0.0, greatest = 0.0;
@@ -134,7 +134,7 @@ static void integrate_pixel(const job *j, worker *w, double x, double y, size_t 
     const oracle_gaussian *g = &j->gaussians[i];
     if (!conic_oracle_gaussian_along(&j->view, g, x, y, &q, &z, &width))
       continue;
-    double own = depth_of(j, g, q, width, x, y);
+    double own = optical_depth(j, g, q, width, x, y);
     if (!(own > 1e-15))
       continue;
     w->clouds[n++] = (oracle_cloud){own, z, oracle_max(width, z * 1e-9), {g->color[0], g->color[1], g->color[2]}};
@@ -150,7 +150,7 @@ static void integrate_pixel(const job *j, worker *w, double x, double y, size_t 
   r->count[pixel] = (uint32_t)n;
 }
 
-static void draw_row(void *data, size_t row, int i_thread) {
+static void draw_row_again(void *data, size_t row, int i_thread) {
   job *j = data;
   conic_gaussian_reference *r = j->reference;
   for (int column = 0; column < r->width; column++) {
@@ -166,7 +166,7 @@ static void draw_row(void *data, size_t row, int i_thread) {
   }
 }
 
-static conic_status allocate(job *j, int width, int height) {
+static conic_status allocate_job(job *j, int width, int height) {
   conic_gaussian_reference *r = j->reference;
   const size_t n = (size_t)width * (size_t)height, threads = (size_t)conic_context_threads(j->context);
   double **const singles[] = {&r->transparency, &r->z, &r->median_z, &r->inverse_z};
@@ -183,7 +183,7 @@ static conic_status allocate(job *j, int width, int height) {
   is_done &= (j->gaussians = conic_memory_allocate(j->context, j->set->count, sizeof *j->gaussians)) != NULL;
   is_done &= (j->workers = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->workers)) != NULL;
   for (size_t k = 0; is_done && k < threads; k++) {
-    worker *w = &j->workers[k];
+    gaussian_worker *w = &j->workers[k];
     if (j->question == CONIC_GAUSSIAN_PROFILE) {
       is_done = (w->coverings = conic_memory_allocate(j->context, j->set->count + 1, sizeof *w->coverings)) != NULL;
       continue;
@@ -195,7 +195,7 @@ static conic_status allocate(job *j, int width, int height) {
   return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
 }
 
-static void release(job *j) {
+static void release_job(job *j) {
   for (int k = 0; j->workers && k < conic_context_threads(j->context); k++) {
     conic_memory_release(j->context, j->workers[k].coverings);
     conic_memory_release(j->context, j->workers[k].clouds);
@@ -206,7 +206,7 @@ static void release(job *j) {
 }
 
 /* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */
-static void find_eye(const conic_camera *camera, oracle_gaussian_view *view) {
+static void eye_of_profile(const conic_camera *camera, oracle_gaussian_view *view) {
   for (int axis = 0; axis < 3; axis++) {
     double eye = 0.0;
     for (int row = 0; row < 3; row++)
@@ -215,20 +215,20 @@ static void find_eye(const conic_camera *camera, oracle_gaussian_view *view) {
   }
 }
 
-static conic_status draw(job *j) {
+static conic_status draw_gaussians_again(job *j) {
   const conic_camera *camera = j->view.camera;
-  conic_status status = allocate(j, camera->width, camera->height);
+  conic_status status = allocate_job(j, camera->width, camera->height);
   if (status != CONIC_OK)
     return status;
-  find_eye(camera, &j->view);
+  eye_of_profile(camera, &j->view);
   j->view.center_px[0] = j->view.rules->is_inria ? 0.5 * camera->width : camera->cx;
   j->view.center_px[1] = j->view.rules->is_inria ? 0.5 * camera->height : camera->cy;
-  status =
-      conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN, set_up, j);
+  status = conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN,
+                               place_gaussians, j);
   if (status != CONIC_OK)
     return status;
-  put_in_order(j);
-  status = conic_parallel_told(j->context, "verify", 0.05, 1.0, (size_t)camera->height, draw_row, j);
+  sort_gaussians(j);
+  status = conic_parallel_told(j->context, "verify", 0.05, 1.0, (size_t)camera->height, draw_row_again, j);
   for (int k = 0; k < conic_context_threads(j->context); k++)
     j->reference->quadrature = oracle_max(j->reference->quadrature, j->workers[k].quadrature);
   return status;
@@ -248,8 +248,8 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
   j.view.camera = camera;
   j.view.rules = conic_oracle_gaussian_rules(question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT);
-  conic_status status = draw(&j);
-  release(&j);
+  conic_status status = draw_gaussians_again(&j);
+  release_job(&j);
   if (status != CONIC_OK)
     conic_gaussian_reference_release(context, reference);
   return status;

@@ -33,7 +33,7 @@ static conic_gaussians make_row(conic_context *context, size_t n, const double *
 }
 
 /* Seen on the axis: alpha is the opacity, but for half a pixel. */
-static void test_one(conic_context *context) {
+static void test_one_gaussian(conic_context *context) {
   const double z = 0.0, opacity = 0.6, color[1][3] = {{0.7, 0.2, 0.4}};
   const conic_camera camera = camera_at(4.0, 33);
   conic_gaussians scene = make_row(context, 1, &z, &opacity, color, 0.3);
@@ -66,7 +66,7 @@ static void test_one(conic_context *context) {
 }
 
 /* The nearer one first, whichever comes first in the file; of equal depth, the first in the file. */
-static void test_two(conic_context *context) {
+static void test_two_gaussians(conic_context *context) {
   static const double places[3][2] = {{-0.5, 0.5}, {0.5, -0.5}, {0.0, 0.0}}, opacity[2] = {0.6, 0.5};
   static const double color[2][3] = {{0.9, 0.1, 0.3}, {0.2, 0.8, 0.4}};
   const conic_camera camera = camera_at(4.0, 33);
@@ -89,8 +89,8 @@ static void test_two(conic_context *context) {
     }
 }
 
-static void compare(conic_context *context, const conic_gaussians *scene, const conic_camera *camera, int profile,
-                    double bound) {
+static void compare_profile(conic_context *context, const conic_gaussians *scene, const conic_camera *camera,
+                            int profile, double bound) {
   const size_t n = (size_t)camera->width * (size_t)camera->height;
   conic_gaussian_profile name = (conic_gaussian_profile)profile;
   conic_gaussian_reference r = picture_reference(context, scene, camera, name, CONIC_GAUSSIAN_PROFILE);
@@ -134,22 +134,22 @@ static double bound_of(int profile) {
   return profile == CONIC_PROFILE_KHR_2026 ? 2e-5 : is_bare ? 4e-6 : 1e-6;
 }
 
-static void test_oracle(conic_context *context) {
+static void test_profiles_by_oracle(conic_context *context) {
   for (int degree = 0; degree <= CONIC_MAX_SH_DEGREE; degree++) {
     conic_gaussians scene = gaussians_random(context, 300, degree, 0);
     const conic_camera camera = camera_at(5.0, 70);
     for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
-      compare(context, &scene, &camera, profile, bound_of(profile));
+      compare_profile(context, &scene, &camera, profile, bound_of(profile));
     conic_gaussians_release(context, &scene);
   }
   conic_gaussians flat = gaussians_random(context, 200, 1, CONIC_GAUSSIANS_2D | CONIC_GAUSSIANS_HALF);
   const conic_camera camera = camera_at(5.0, 50);
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++)
-    compare(context, &flat, &camera, profile, bound_of(profile));
+    compare_profile(context, &flat, &camera, profile, bound_of(profile));
   conic_gaussians_release(context, &flat);
 }
 
-static void test_threads(conic_context *context) {
+static void test_profile_threads(conic_context *context) {
   conic_context *one = quiet_context(1);
   conic_gaussians scene = gaussians_random(context, 5000, 2, 0);
   const conic_camera camera = camera_at(5.0, 90);
@@ -242,7 +242,7 @@ typedef struct archive {
 } archive;
 
 /* The numbers of an array of 4 or 8 bytes each, which the caller frees. */
-static double *array_of(const archive *a, const char *name, size_t n) {
+static double *array_named(const archive *a, const char *name, size_t n) {
   unsigned char *contents;
   size_t n_bytes;
   double *values = malloc(n * sizeof *values);
@@ -264,7 +264,7 @@ static double *array_of(const archive *a, const char *name, size_t n) {
 }
 
 static void take_columns(const archive *a, const char *name, size_t n, size_t n_columns, float **columns) {
-  double *values = array_of(a, name, n * n_columns);
+  double *values = array_named(a, name, n * n_columns);
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < n_columns; k++)
       columns[k][i] = (float)values[i * n_columns + k];
@@ -282,7 +282,7 @@ static void open_archive(conic_context *context, const char *path, archive *a) {
     exit(1);
 }
 
-static void test_others(conic_context *context, const char *path) {
+static void test_what_others_draw(conic_context *context, const char *path) {
   static const struct {
     const char *name;
     conic_gaussian_profile profile;
@@ -300,11 +300,11 @@ static void test_others(conic_context *context, const char *path) {
   take_columns(&a, "quats.npy", N, 4, scene.rotation);
   take_columns(&a, "opac.npy", N, 1, &scene.opacity);
   take_columns(&a, "sh.npy", (size_t)N * 48, 1, &scene.sh);
-  double *view = array_of(&a, "viewmat.npy", 16), *K = array_of(&a, "K.npy", 4);
+  double *view = array_named(&a, "viewmat.npy", 16), *K = array_named(&a, "K.npy", 4);
   memcpy(camera.cam_from_world, view, sizeof camera.cam_from_world);
   camera.fx = K[0], camera.fy = K[1], camera.cx = K[2], camera.cy = K[3];
   for (size_t i = 0; i < sizeof drawn / sizeof *drawn; i++) {
-    double *wanted = array_of(&a, drawn[i].name, SIDE * SIDE * 3);
+    double *wanted = array_named(&a, drawn[i].name, SIDE * SIDE * 3);
     conic_gaussian_planes p = picture_draw(context, &scene, &camera, drawn[i].profile, CONIC_ISA_AUTO);
     conic_gaussian_reference r = picture_reference(context, &scene, &camera, drawn[i].profile, CONIC_GAUSSIAN_PROFILE);
     double of_float = picture_difference(p.rgb, wanted, SIDE * SIDE * 3), of_double = 0.0;
@@ -325,14 +325,14 @@ static void test_others(conic_context *context, const char *path) {
 int main(int argc, char **argv) {
   conic_context *context = check_context(2), *quiet = quiet_context(2);
   const char *path = check_data(argc > 1 ? argv[1] : ".", "gaussians/random200.npz");
-  test_one(context);
-  test_two(context);
-  test_oracle(quiet);
-  test_threads(context);
+  test_one_gaussian(context);
+  test_two_gaussians(context);
+  test_profiles_by_oracle(quiet);
+  test_profile_threads(context);
   test_permuted(context);
   test_hard(context);
   if (path)
-    test_others(context, path);
+    test_what_others_draw(context, path);
   conic_context_destroy(quiet);
   conic_context_destroy(context);
   return check_result();
