@@ -2,6 +2,7 @@
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "conic/context.h"
@@ -16,11 +17,17 @@ typedef struct conic_file_identity {
   uint64_t device, number;
 } conic_file_identity;
 
+/* What begins a block of memory that lasts as long as the context. */
+typedef struct conic_lasting {
+  struct conic_lasting *next;
+} conic_lasting;
+
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
-  int guards_inputs;           /* core/files/guard.h; the next are its own */
-  conic_file_identity *inputs; /* which were read */
+  _Atomic(conic_lasting *) lasting; /* the newest first */
+  int guards_inputs;                /* core/files/guard.h; the next are its own */
+  conic_file_identity *inputs;      /* which were read */
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
 };
