@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/splats/clip.h"
+#include "oracle/oracle_profile.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */
@@ -230,7 +231,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
   scene->n = 0;
   scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
   scene->splats = conic_memory_allocate(context, splats->count, sizeof *scene->splats);
-  conic_status status = scene->splats ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = scene->splats ? conic_oracle_profile_create(context, &scene->view) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK && !(median > 0.0))
     status = median_length(context, splats, &median);
   for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
@@ -246,6 +247,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
 }
 
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene) {
+  conic_oracle_profile_release(context, &scene->view);
   conic_memory_release(context, scene->splats);
   scene->splats = NULL;
   scene->n = 0;

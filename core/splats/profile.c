@@ -35,18 +35,24 @@ static double plain_kernel(const conic_kernel *kernel, double r) {
   return power < 1.0 ? conic_gaussian_exp(-(double)kernel->a * power / (1.0 - power)) : 0.0;
 }
 
-/* The normal distribution (Abramowitz and Stegun 26.2.17, error 7.5e-8) and its integral, at multiples of 1/64. */
+/* The normal distribution and its integral, at multiples of 1/64. */
 typedef struct normal_table {
   double distribution[N_NORMAL + 1], integral[N_NORMAL + 1];
 } normal_table;
 
+static double normal_density(double z) {
+  return 0.3989422804014326779 * conic_gaussian_exp(-0.5 * z * z);
+}
+
 static void fill_normal(normal_table *table) {
+  double distribution = 0.5, before = normal_density(0.0);
   for (int i = 0; i <= N_NORMAL; i++) {
-    double z = (double)i / NORMAL_STEPS, t = 1.0 / (1.0 + 0.2316419 * z);
-    double density = 0.3989422804014327 * conic_gaussian_exp(-0.5 * z * z);
-    double tail = t * (0.31938153 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
-    table->distribution[i] = 1.0 - density * tail;
-    table->integral[i] = z * table->distribution[i] + density;
+    double z = (double)i / NORMAL_STEPS, density = normal_density(z);
+    if (i > 0) /* Simpson's rule */
+      distribution += (before + 4.0 * normal_density(z - 0.5 / NORMAL_STEPS) + density) / (6.0 * NORMAL_STEPS);
+    table->distribution[i] = distribution;
+    table->integral[i] = z * distribution + density;
+    before = density;
   }
 }
 

@@ -23,6 +23,7 @@ enum { CONIC_PROFILE_SLICE = CONIC_PROFILE_TERMS * CONIC_PROFILE_RADII };
 enum { CONIC_PROFILE_FLOATS = CONIC_PROFILE_LEVELS * CONIC_PROFILE_LEVELS * CONIC_PROFILE_SLICE };
 
 #define CONIC_PROFILE_PLACES 16384.0f
+#define CONIC_PROFILE_ROUND 0x1p-12f     /* of what is nearly round, no rounding is to choose the direction */
 #define CONIC_PROFILE_LAST 0x1.dffffep3f /* the last place between the radii */
 #define CONIC_PROFILE_BEND 0.007f        /* added to the shares of a bent direction */
 
@@ -75,6 +76,8 @@ static inline conic_aim conic_aim_of(const conic_profile *profile, float xx, flo
   aim.d_xx = aim.n_xx + by_high * (high - xx);
   aim.d_xy = aim.n_xy - by_high * (2.0f * xy);
   aim.d_yy = aim.n_yy + by_high * (high - yy);
+  aim.d_xx += CONIC_PROFILE_ROUND * share[1];
+  aim.d_yy += CONIC_PROFILE_ROUND * share[1];
   aim.peak = 1.0f / sqrtf((1.0f + profile->narrowing * share[0]) * (1.0f + profile->narrowing * share[1]));
   for (int i = 0; i < 2; i++)
     conic_profile_level(share[i], &aim.level[i], &aim.part[i]);
