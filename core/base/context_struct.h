@@ -2,6 +2,7 @@
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdint.h>
 
@@ -26,10 +27,14 @@ struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
   _Atomic(conic_lasting *) lasting; /* the newest first */
+  size_t texture_bytes;             /* of all textures that there are */
+  int reads_texture;                /* the picture that is read is to become one */
   int guards_inputs;                /* core/files/guard.h; the next are its own */
   conic_file_identity *inputs;      /* which were read */
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
+  pthread_mutex_t outputs_lock;
+  struct conic_output *outputs; /* core/files/file.h: those with temporary files */
 };
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */
