@@ -49,6 +49,8 @@ typedef struct conic_aim {
 
 /* The share of the prefilter as a level; what is no number counts as all. */
 static inline void conic_profile_level(float share, int *level, float *part) {
+  share = share < 1.0f ? share : 1.0f;
+  share = share > 0.0f ? share : 0.0f;
   float place = share / (4.0f - 3.0f * share) * CONIC_PROFILE_PLACES + 1.0f;
   uint32_t bits;
   place = place < 0x1.fffffep13f ? place : 0x1.fffffep13f;
