@@ -21,7 +21,7 @@ typedef struct workshop {
 } workshop;
 
 static double level_share(int level) {
-  double s = (ldexp(1.0, level) - 1.0) / 16384.0;
+  double s = ((double)(1 << level) - 1.0) / 16384.0;
   return 4.0 * s / (1.0 + 3.0 * s);
 }
 
@@ -43,9 +43,9 @@ static void tabulate_normal(workshop *w) {
   }
 }
 
-static double normal_integral(const workshop *w, double z) {
+static double integrate_normal(const workshop *w, double z) {
   if (z < 0.0)
-    return normal_integral(w, -z) + z;
+    return integrate_normal(w, -z) + z;
   if (z >= 7.0)
     return z;
   int i = (int)(z * 32.0 + 0.5);
@@ -56,12 +56,12 @@ static double normal_integral(const workshop *w, double z) {
 
 /* The mean, over half widths from a to b, of boxes about 0 as a Gaussian at y sees them. */
 static double mean_box(const workshop *w, double a, double b, double y, double blur) {
-  double sum = normal_integral(w, (b + y) / blur) - normal_integral(w, (a + y) / blur) +
-               normal_integral(w, (b - y) / blur) - normal_integral(w, (a - y) / blur);
+  double sum = integrate_normal(w, (b + y) / blur) - integrate_normal(w, (a + y) / blur) +
+               integrate_normal(w, (b - y) / blur) - integrate_normal(w, (a - y) / blur);
   return sum * blur / (b - a) - 1.0;
 }
 
-static double blur_line(const workshop *w, const double *places, const double *values, double y, double blur) {
+static double blur_even(const workshop *w, const double *places, const double *values, double y, double blur) {
   double hair = 1e-6 * blur;
   double sum = values[PARTS] * mean_box(w, places[PARTS], places[PARTS] + hair, y, blur);
   for (int i = 0; i < PARTS; i++)
@@ -80,7 +80,7 @@ static double round_kernel(const workshop *w, double r) {
   return w->known[i] * (i + 1 - place) + w->known[i + 1] * (place - i);
 }
 
-static void cut(const workshop *w, double x, double *places, double *values) {
+static void cut_exactly(const workshop *w, double x, double *places, double *values) {
   double steep = w->blur > 0.0 ? oracle_max(w->end - 3.0 * w->blur, 0.0) : 0.75 * w->end;
   double first = sqrt(oracle_max(steep * steep - x * x, 0.0)),
          last = sqrt(oracle_max(w->reach * w->reach - x * x, 0.0));
@@ -92,20 +92,20 @@ static void cut(const workshop *w, double x, double *places, double *values) {
 }
 
 /* From the plain kernel, which the workshop has. */
-static void blur_round(workshop *w, double blur) {
+static void blur_all_round(workshop *w, double blur) {
   double places[PARTS + 1], values[PARTS + 1], row_places[PARTS + 1], rows[PARTS + 1];
   w->blur = 0.0;
   w->reach = w->end;
   for (int i = 0; i <= PARTS; i++) {
     double rest = 1.0 - (double)i / PARTS;
     row_places[i] = w->end * (1.0 - rest * rest);
-    cut(w, row_places[i], places, values);
-    rows[i] = i < PARTS ? blur_line(w, places, values, 0.0, blur) : 0.0;
+    cut_exactly(w, row_places[i], places, values);
+    rows[i] = i < PARTS ? blur_even(w, places, values, 0.0, blur) : 0.0;
   }
   w->blur = blur;
   w->reach = w->end + 5.0 * blur;
   for (int i = 0; i <= KNOWN; i++)
-    w->known[i] = blur_line(w, row_places, rows, w->reach * i / KNOWN, blur);
+    w->known[i] = blur_even(w, row_places, rows, w->reach * i / KNOWN, blur);
 }
 
 static double node(const workshop *w, const double share[2], double narrowing, double radius, double direction) {
@@ -118,8 +118,8 @@ static double node(const workshop *w, const double share[2], double narrowing, d
     peak *= sqrt((1.0 - share[i]) / (1.0 + narrowing * share[i]));
   if (share[0] == share[1])
     return round_kernel(w, sqrt(x * x + y * y)) / peak;
-  cut(w, x, places, values);
-  return blur_line(w, places, values, y, sqrt(more)) / peak;
+  cut_exactly(w, x, places, values);
+  return blur_even(w, places, values, y, sqrt(more)) / peak;
 }
 
 static double narrowing_of(const workshop *w) {
@@ -148,7 +148,7 @@ conic_status conic_oracle_profile_create(conic_context *context, oracle_view *vi
   profile->narrowing = narrowing_of(&w);
   for (int low = 0; low < LEVELS; low++) {
     if (low > 0)
-      blur_round(&w, sqrt(level_share(low) / (1.0 - level_share(low))));
+      blur_all_round(&w, sqrt(level_share(low) / (1.0 - level_share(low))));
     for (int high = low; high < LEVELS; high++)
       for (int i = 0; i < RADII * NODES; i++) {
         const double share[2] = {level_share(low), level_share(high)};
@@ -180,7 +180,7 @@ static double along_direction(const struct oracle_profile *p, int first, int sec
 }
 
 double conic_oracle_direction(const oracle_view *view, const double share[2], double n, double m, double round) {
-  double d = n + bend_of(view, share) * m + ldexp(share[1], -12) * round;
+  double d = n + bend_of(view, share) * m + share[1] / 4096.0 * round;
   return d > 0.0 ? oracle_min(oracle_max(n / d, 0.0), 1.0) : 0.0;
 }
 
@@ -193,9 +193,9 @@ double conic_oracle_response(const oracle_view *view, const double share[2], dou
   int i_radius = (int)oracle_min(place, RADII - 2.0), level[2];
   for (int i = 0; i < 2; i++) {
     double s = 1.0 + 16384.0 * share[i] / (4.0 - 3.0 * share[i]);
-    for (level[i] = 0; level[i] < LEVELS - 2 && s >= ldexp(2.0, level[i]); level[i]++)
+    for (level[i] = 0; level[i] < LEVELS - 2 && s >= (double)(2 << level[i]); level[i]++)
       ;
-    level_part[i] = s / ldexp(1.0, level[i]) - 1.0;
+    level_part[i] = s / (double)(1 << level[i]) - 1.0;
     peak *= 1.0 + p->narrowing * share[i];
   }
   for (int corner = 0; corner < 8; corner++) {

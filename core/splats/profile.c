@@ -136,7 +136,7 @@ static void blur_round(const round_kernel *plain, round_kernel *blurred) {
 }
 
 /* What conic_profile_level makes a whole number of. */
-static double share_of(int level) {
+static double share_of_level(int level) {
   double place = (double)((1 << level) - 1) / (double)CONIC_PROFILE_PLACES;
   return 4.0 * place / (1.0 + 3.0 * place);
 }
@@ -189,7 +189,7 @@ static void write_polynomial(const double nodes[TERMS], int is_turned, int i_rad
     slice[term * RADII + i_radius] = (float)terms[term];
 }
 
-static double end_of(const conic_kernel *kernel) {
+static double end_of_kernel(const conic_kernel *kernel) {
   double cutoff = (double)kernel->cutoff, end = kernel->type == CONIC_KERNEL_CONFETTI ? (double)kernel->b : cutoff;
   return end < 4.0 * cutoff ? end : 4.0 * cutoff;
 }
@@ -197,7 +197,7 @@ static double end_of(const conic_kernel *kernel) {
 static conic_profile reading(const conic_kernel *kernel, const float *table) {
   enum { N_RINGS = 1024 };
   float by_q = 1.0f / conic_kernel_support(kernel);
-  double end = end_of(kernel), integral = 0.0;
+  double end = end_of_kernel(kernel), integral = 0.0;
   for (int i = 0; i < N_RINGS; i++) {
     double r = end * ((double)i + 0.5) / (double)N_RINGS;
     integral += plain_kernel(kernel, r) * r * (end / (double)N_RINGS);
@@ -216,25 +216,25 @@ static void fill_level(void *data, size_t i_level, int i_thread) {
   (void)i_thread;
   const conic_profile profile = reading(kernel, NULL);
   normal_table normal;
-  round_kernel plain = {.kernel = kernel, .normal = &normal, .end = end_of(kernel)}, blurred;
+  round_kernel plain = {.kernel = kernel, .normal = &normal, .end = end_of_kernel(kernel)}, blurred;
   plain.reach = plain.end;
   fill_normal(&normal);
   blurred = plain;
   if (low > 0) {
-    blurred.blur = sqrt(filter_of(share_of(low)));
+    blurred.blur = sqrt(filter_of(share_of_level(low)));
     blurred.reach = plain.end + 5.0 * blurred.blur;
     blur_round(&plain, &blurred);
   }
   for (int high = low; high < LEVELS; high++)
     for (int i = 0; i < RADII; i++) {
-      double share[2] = {share_of(low), share_of(high)}, nodes[TERMS];
+      double share[2] = {share_of_level(low), share_of_level(high)}, nodes[TERMS];
       find_nodes(&blurred, &profile, share, i, nodes);
       write_polynomial(nodes, 0, i, table->values + (low * LEVELS + high) * CONIC_PROFILE_SLICE);
       write_polynomial(nodes, 1, i, table->values + (high * LEVELS + low) * CONIC_PROFILE_SLICE);
     }
 }
 
-static int is_same(const conic_kernel *a, const conic_kernel *b) {
+static int is_same_kernel(const conic_kernel *a, const conic_kernel *b) {
   return a->type == b->type && a->cutoff == b->cutoff &&
          (a->type != CONIC_KERNEL_CONFETTI || (a->a == b->a && a->b == b->b && a->n == b->n));
 }
@@ -243,7 +243,7 @@ conic_status conic_profile_make(conic_context *context, const conic_kernel *kern
   conic_lasting *first = context->lasting;
   for (const conic_lasting *block = first; block; block = block->next) {
     const profile_table *table = (const profile_table *)block;
-    if (is_same(&table->kernel, kernel)) {
+    if (is_same_kernel(&table->kernel, kernel)) {
       *profile = reading(kernel, table->values);
       return CONIC_OK;
     }

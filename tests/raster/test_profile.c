@@ -52,7 +52,7 @@ static void fill_axis(const conic_kernel *kernel, double sigma_px, double offset
   }
 }
 
-static double convolve(const conic_kernel *kernel, const double sigma_px[2], const double offset_px[2]) {
+static double convolve_kernel(const conic_kernel *kernel, const double sigma_px[2], const double offset_px[2]) {
   double places[2][N_STEPS], weights[2][N_STEPS], sum = 0.0;
   for (int axis = 0; axis < 2; axis++)
     fill_axis(kernel, sigma_px[axis], offset_px[axis], places[axis], weights[axis]);
@@ -65,7 +65,7 @@ static double convolve(const conic_kernel *kernel, const double sigma_px[2], con
 static const double center_px[2] = {0.5 * SIZE + 0.3, 0.5 * SIZE - 0.1}, turn = 0.4;
 
 /* Draws a splat of so many pixels, tilted about its longer axis. */
-static void draw(fixture *f, double sigma_px, double cosine) {
+static void draw_splat(fixture *f, double sigma_px, double cosine) {
   const double focal = 2e5, c = cos(turn), s = sin(turn), size = sigma_px / focal;
   const double p[3] = {(center_px[0] - 0.5 * SIZE) / focal, (center_px[1] - 0.5 * SIZE) / focal, 1.0};
   const double u[3] = {c * size, s * size, 0.0};
@@ -80,7 +80,7 @@ static void draw(fixture *f, double sigma_px, double cosine) {
 /* The largest error over the peak. */
 static double error_of(const fixture *f, const kind *k, double sigma_px, double cosine) {
   const double sigma[2] = {sigma_px, sigma_px * cosine}, origin[2] = {0.0, 0.0};
-  double worst = 0.0, peak = convolve(&k->kernel, sigma, origin);
+  double worst = 0.0, peak = convolve_kernel(&k->kernel, sigma, origin);
   int n = 0, i_covered = 0, stride;
   const float *weights = f->image.planes[CONIC_PLANE_WEIGHT];
   for (int i = 0; i < SIZE * SIZE; i++)
@@ -92,7 +92,7 @@ static double error_of(const fixture *f, const kind *k, double sigma_px, double 
       continue;
     double dx = i % SIZE + 0.5 - center_px[0], dy = i / SIZE + 0.5 - center_px[1];
     const double offset[2] = {cos(turn) * dx + sin(turn) * dy, cos(turn) * dy - sin(turn) * dx};
-    double error = fabs((double)weights[i] - convolve(&k->kernel, sigma, offset)) / peak;
+    double error = fabs((double)weights[i] - convolve_kernel(&k->kernel, sigma, offset)) / peak;
     worst = error > worst ? error : worst;
   }
   return worst;
@@ -106,7 +106,7 @@ static void test_against_convolution(fixture *f, const kind *k) {
   for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
     for (size_t j = 0; j < sizeof cosines / sizeof *cosines; j++) {
       f->options.method = methods[(i + j) % 4];
-      draw(f, sigmas[i], cosines[j]);
+      draw_splat(f, sigmas[i], cosines[j]);
       double error = error_of(f, k, sigmas[i], cosines[j]);
       if (!(error <= k->bound))
         printf("%s, σ %g px, cosine %g: %.4f of the peak\n", k->name, sigmas[i], cosines[j], error);
@@ -117,12 +117,12 @@ static void test_against_convolution(fixture *f, const kind *k) {
 }
 
 /* Without a prefilter and without end, it is the kernel itself. */
-static void test_plain(fixture *f, const kind *k) {
+static void test_plain_kernel(fixture *f, const kind *k) {
   for (int is_wide = 0; is_wide < 2; is_wide++) {
     f->options.kernel = k->kernel;
     f->options.method = CONIC_METHOD_CONIC;
     f->options.prefilter = is_wide ? 1e-6f : 0.0f;
-    draw(f, 16.0, 0.7);
+    draw_splat(f, 16.0, 0.7);
     const float *weights = f->image.planes[CONIC_PLANE_WEIGHT];
     double worst = 0.0;
     for (int i = 0; i < SIZE * SIZE; i++) {
@@ -141,7 +141,7 @@ int main(void) {
   fixture f = fixture_open(2);
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     test_against_convolution(&f, &kinds[i]);
-    test_plain(&f, &kinds[i]);
+    test_plain_kernel(&f, &kinds[i]);
   }
   fixture_close(&f);
   return check_result();
