@@ -11,7 +11,7 @@ void cli_stopper_begin(conic_context *context, const char *command);
 /* Stops watching; before the context ends. */
 void cli_stopper_end(void);
 
-/* Grants the run another half second, or, asked again, none. Whether somebody watches. For signal handlers. */
+/* Grants the run another third of a second, or, asked again, none. Whether somebody watches. For signal handlers. */
 int cli_stopper_ask(void);
 
 #endif
