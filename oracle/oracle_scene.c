@@ -192,10 +192,10 @@ static void set_appearance(const oracle_view *view, const conic_render_options *
   double scale = (oracle_dot(splat->placed.p, turned) > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
   for (int c = 0; c < 3; c++)
     splat->normal[c] = normal[c] * scale;
-  double epsilon = options->epsilon;
-  if (!(epsilon >= 0.0)) /* automatic, with c = 1 */
-    epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
-  splat->behind = 1.0 / (1.0 + epsilon / oracle_length(splat->placed.p));
+  splat->epsilon = options->epsilon;
+  if (!(splat->epsilon >= 0.0)) /* automatic, with c = 1 */
+    splat->epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
+  splat->behind = 1.0 / (1.0 + splat->epsilon / oracle_length(splat->placed.p));
 }
 
 /* Places a splat; 0 where it can't show. */

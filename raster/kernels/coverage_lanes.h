@@ -89,6 +89,11 @@ CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprin
   f->scale = at.scale;
 }
 
+/* conic_hides_behind, lane by lane. */
+CONIC_INLINE lanes hides_behind(float epsilon, lanes iz, lanes ray_x, lanes ray_y) {
+  return iz * (1.0f / (1.0f + epsilon * iz / lanes_sqrt((ray_x * ray_x + ray_y * ray_y) + 1.0f)));
+}
+
 /* conic_clip_keeps, lane by lane. */
 CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lanes dy) {
   lanes zero = lanes_of(0.0f);

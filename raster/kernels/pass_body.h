@@ -73,22 +73,11 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
   }
 }
 
-/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
-CONIC_INLINE unsigned pass_part(lanes nearness, const fragments *f, conic_kept *kept, size_t place, size_t at,
-                                int is_special) {
-  lanes offset_iz = lanes_keep(f->covered, nearness * lanes_min(f->plane_iz, f->iz));
-  lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
-  lanes_store(kept->fragments[place].q + at, f->q);
-  lanes_store(kept->fragments[place].seen_iz + at,
-              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
-  if (is_special)
-    lanes_store(kept->scale[place] + at, f->scale);
-  return lanes_count(f->covered);
-}
-
 /* The state of the first pass along a band, a copy of its own like `sources`. */
 typedef struct pass {
   conic_kept *kept;
+  const conic_tile_rays *rays;
+  const float *ray_y;
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
 } pass;
@@ -102,6 +91,28 @@ typedef struct passing {
   splat_rows rows;
 } passing;
 
+/* conic_hiding_iz at a part of a block's pixels. */
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, const fragments *f, uint32_t block, size_t at,
+                             int is_special) {
+  lanes iz = lanes_min(f->plane_iz, f->iz);
+  if (is_special && conic_is_wide(splat->footprint))
+    return hides_behind(-splat->footprint->nearness, lanes_max(iz, lanes_of(0.0f)),
+                        lanes_load(p->rays->block_x[block] + at), lanes_load(p->ray_y + at));
+  return splat->nearness * iz;
+}
+
+/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
+CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                                int is_special) {
+  lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
+  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].seen_iz + at,
+              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
+  if (is_special)
+    lanes_store(kept->scale[place] + at, f->scale);
+  return lanes_count(f->covered);
+}
+
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
                              int is_special) {
   conic_kept *kept = &p->kept[block];
@@ -111,7 +122,8 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
-    n_covered += pass_part(splat->nearness, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
+    lanes hides = hiding_iz(p, splat, &f, block, (size_t)part * CONIC_LANES, is_special);
+    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
   }
   p->n_fragments += n_covered;
   if (place < p->room)
@@ -135,7 +147,10 @@ CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_
 
 static void visibility(conic_band *band) {
   const sources from = sources_of(band);
-  pass p = {.kept = band->kept, .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
+  pass p = {.kept = band->kept,
+            .rays = band->rays,
+            .ray_y = conic_band_ray_y(band),
+            .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
   int has_special = 0;
   sites s;
   find_sites(band, &s);
@@ -145,12 +160,14 @@ static void visibility(conic_band *band) {
   }
   for (size_t i = 0; i < from.n; i++) {
     prefetch_splat(&from, i);
-    if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
+    const conic_footprint *footprint = &from.footprints[from.indices[i]];
+    const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
+    if (__builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1))
       pass_splat(&p, &from, &s, i, 0);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
       pass_splat(&p, &from, &s, i, 1);
-      has_special = 1;
+      has_special |= !is_ellipse;
     }
   }
   memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);
