@@ -42,7 +42,7 @@ __kernel void gather_triangles(TRIANGLE_LISTS, __global float *thresholds, __glo
   nearest[at] = i_nearest;
   if (frame.has_splats && !frame.is_single_pass)
     thresholds[at] =
-        n_covered ? conic_hides_behind(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
+        n_covered ? conic_triangle_hides(frame.triangle_epsilon, iz_of_nearest, columns[p.x], rows[p.y]) : 0.0f;
   if (n_covered)
     gather_count(n_fragments + 2 * p.tile, n_covered);
 }

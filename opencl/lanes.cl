@@ -78,7 +78,7 @@ static lanes lanes_hiding_iz(const conic_footprint *footprint, const fragments *
   if (!conic_is_wide(footprint))
     return footprint->nearness * iz;
   lanes_directions(columns, rows, x, y, &ray_x, &ray_y);
-  return hides_behind(-footprint->nearness, lanes_max(iz, (lanes)0.0f), ray_x, ray_y);
+  return wide_hiding(footprint, iz, ray_lengths(ray_x, ray_y));
 }
 
 /* Pass 1. Of each reference it also notes in which blocks the splat may be seen, as far as those before it and itself

@@ -33,7 +33,7 @@ static void describe_triangle(const conic_contributions *c, const conic_triangle
   to->verdict = CONIC_CONTRIBUTION_HIDDEN;
   to->inverse_depth = iz;
   to->depth = 1.0f / iz;
-  to->hides = conic_hides_behind(c->triangles.epsilon, iz, ray[0], ray[1]);
+  to->hides = conic_triangle_hides(c->triangles.epsilon, iz, ray[0], ray[1]);
   see(c, record, x, y, &sight);
   memcpy(to->color, sight.color, sizeof to->color);
   memcpy(to->normal, sight.normal, sizeof to->normal);
@@ -122,7 +122,7 @@ void conic_contribution_triangle_line(const conic_contributions *c, int y, conic
   for (int x = 0; x < width; x++) {
     float ray[2];
     conic_contribution_ray(&c->view, x, y, ray);
-    line[x].hides = line[x].iz > 0.0f ? conic_hides_behind(frame->epsilon, line[x].iz, ray[0], ray[1]) : 0.0f;
+    line[x].hides = line[x].iz > 0.0f ? conic_triangle_hides(frame->epsilon, line[x].iz, ray[0], ray[1]) : 0.0f;
   }
 }
 

@@ -89,9 +89,14 @@ CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprin
   f->scale = at.scale;
 }
 
-/* conic_hides_behind, lane by lane. */
-CONIC_INLINE lanes hides_behind(float epsilon, lanes iz, lanes ray_x, lanes ray_y) {
-  return iz * (1.0f / (1.0f + epsilon * iz / lanes_sqrt((ray_x * ray_x + ray_y * ray_y) + 1.0f)));
+CONIC_INLINE lanes ray_lengths(lanes ray_x, lanes ray_y) {
+  return lanes_sqrt((ray_x * ray_x + ray_y * ray_y) + 1.0f);
+}
+
+/* conic_hiding_iz of a wide splat, lane by lane. */
+CONIC_INLINE lanes wide_hiding(const conic_footprint *footprint, lanes iz, lanes ray_length) {
+  lanes before = lanes_max(iz, lanes_of(0.0f));
+  return before * (ray_length / (ray_length - footprint->nearness * before));
 }
 
 /* conic_clip_keeps, lane by lane. */

@@ -76,11 +76,33 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
 /* The state of the first pass along a band, a copy of its own like `sources`. */
 typedef struct pass {
   conic_kept *kept;
-  const conic_tile_rays *rays;
-  const float *ray_y;
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
+  lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* from the first wide splat on */
+  int has_lengths;
 } pass;
+
+CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
+  p->kept = band->kept;
+  p->room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  p->n_fragments = 0;
+  p->has_lengths = 0;
+  memset(p->n_kept, 0, sizeof p->n_kept);
+  for (int block = 0; block < band->n_blocks; block++) {
+    p->not_kept[block] = band->n;
+    memset(p->kept[block].threshold, 0, sizeof p->kept[block].threshold);
+  }
+}
+
+static __attribute__((noinline)) void find_lengths(const conic_band *band, pass *p) {
+  const float *ray_y = conic_band_ray_y(band);
+  for (int i = 0; i < (CONIC_BAND_BLOCKS + 1) * CONIC_PARTS; i++) {
+    const float *ray_x = band->rays->block_x[i / CONIC_PARTS];
+    size_t at = (size_t)(i % CONIC_PARTS) * CONIC_LANES;
+    p->ray_length[i] = ray_lengths(lanes_load(ray_x + at), lanes_load(ray_y + at));
+  }
+  p->has_lengths = 1;
+}
 
 /* One splat, and what of it is the same in all blocks. */
 typedef struct passing {
@@ -91,13 +113,14 @@ typedef struct passing {
   splat_rows rows;
 } passing;
 
-/* conic_hiding_iz at a part of a block's pixels. */
-CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, const fragments *f, uint32_t block, size_t at,
-                             int is_special) {
+/* What a loop over splats is made for: ellipses without clip lines that are not wide or are wide, and all else. */
+typedef enum splat_kind { SPLAT_USUAL, SPLAT_WIDE, SPLAT_SPECIAL } splat_kind;
+
+/* conic_hiding_iz in a part of a block. */
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, const fragments *f, uint32_t part, splat_kind kind) {
   lanes iz = lanes_min(f->plane_iz, f->iz);
-  if (is_special && conic_is_wide(splat->footprint))
-    return hides_behind(-splat->footprint->nearness, lanes_max(iz, lanes_of(0.0f)),
-                        lanes_load(p->rays->block_x[block] + at), lanes_load(p->ray_y + at));
+  if (kind == SPLAT_WIDE || (kind == SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
+    return wide_hiding(splat->footprint, iz, p->ray_length[part]);
   return splat->nearness * iz;
 }
 
@@ -114,16 +137,16 @@ CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kep
 }
 
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
-                             int is_special) {
+                             splat_kind kind) {
   conic_kept *kept = &p->kept[block];
   size_t place = p->n_kept[block];
   unsigned n_covered = 0;
   fragments f;
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
-    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], is_special, &f);
-    lanes hides = hiding_iz(p, splat, &f, block, (size_t)part * CONIC_LANES, is_special);
-    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, is_special);
+    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind == SPLAT_SPECIAL, &f);
+    lanes hides = hiding_iz(p, splat, &f, block * CONIC_PARTS + part, kind);
+    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind == SPLAT_SPECIAL);
   }
   p->n_fragments += n_covered;
   if (place < p->room)
@@ -134,40 +157,40 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
 
 /* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
  * splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, int is_special) {
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
   const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_rows(footprint, s->y)};
-  pass_block(p, from, s, &splat, first, is_special);
-  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, is_special);
+  pass_block(p, from, s, &splat, first, kind);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
   for (uint32_t block = first + 2; block <= last; block++)
-    pass_block(p, from, s, &splat, block, is_special);
+    pass_block(p, from, s, &splat, block, kind);
 }
 
 static void visibility(conic_band *band) {
   const sources from = sources_of(band);
-  pass p = {.kept = band->kept,
-            .rays = band->rays,
-            .ray_y = conic_band_ray_y(band),
-            .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
+  pass p;
   int has_special = 0;
   sites s;
   find_sites(band, &s);
-  for (int block = 0; block < band->n_blocks; block++) {
-    p.not_kept[block] = from.n;
-    memset(p.kept[block].threshold, 0, sizeof p.kept[block].threshold);
-  }
+  begin_pass(band, &p);
   for (size_t i = 0; i < from.n; i++) {
     prefetch_splat(&from, i);
     const conic_footprint *footprint = &from.footprints[from.indices[i]];
     const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
-    if (__builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1))
-      pass_splat(&p, &from, &s, i, 0);
+    if (__builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
+      continue;
+    }
+    if (!p.has_lengths)
+      find_lengths(band, &p);
+    if (is_ellipse)
+      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
-      pass_splat(&p, &from, &s, i, 1);
-      has_special |= !is_ellipse;
+      pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
+      has_special = 1;
     }
   }
   memcpy(band->n_kept, p.n_kept, sizeof band->n_kept);

@@ -105,7 +105,7 @@ static void triangles_hide(conic_band *band, const conic_tile_rays *rays) {
       int at = part * CONIC_LANES;
       lanes iz = lanes_load(row->blocks[block].iz + at), threshold = lanes_load(band->kept[block].threshold + at);
       lanes dx = lanes_load(rays->block_x[block] + at), dy = lanes_load(rays->block_y[i_row] + at);
-      lanes hides = hides_behind(epsilon, iz, dx, dy);
+      lanes hides = iz * (1.0f / (1.0f + epsilon * iz / lanes_sqrt((dx * dx + dy * dy) + 1.0f)));
       visible |= lanes_bits(lanes_at_least(iz, threshold)) << at;
       lanes_store(band->kept[block].threshold + at, lanes_max(hides, threshold)); /* 0 where there is no triangle */
     }

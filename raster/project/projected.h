@@ -2,7 +2,6 @@
 #ifndef CONIC_PROJECTED_H
 #define CONIC_PROJECTED_H
 
-#include <math.h>
 #include <stdint.h>
 
 #include "raster/view/view.h"
@@ -42,11 +41,6 @@ static inline int conic_is_laplace(const conic_footprint *footprint) {
 
 static inline int conic_is_wide(const conic_footprint *footprint) {
   return footprint->nearness < 0.0f;
-}
-
-/* The inverse depth that hides what lies farther behind iz than ε, along the ray (dx, dy, 1). */
-static inline float conic_hides_behind(float epsilon, float iz, float dx, float dy) {
-  return iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
 }
 
 /* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. It is rounded

@@ -229,8 +229,8 @@ CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, co
   lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * longer), lanes_of(view->epsilon_cap));
   lanes from_eye = lanes_narrow(&distance);
   r->footprint[14] = lanes_keep(lanes_less(lanes_of(0.0f), from_eye), 1.0f / (1.0f + epsilon / from_eye));
-  lanes_mask is_wide = are_wide(view, g, s, r) & lanes_less(lanes_of(0.0f), epsilon) &
-                    lanes_less(epsilon, lanes_of(HUGE_VALF));
+  lanes_mask is_wide =
+      are_wide(view, g, s, r) & lanes_less(lanes_of(0.0f), epsilon) & lanes_less(epsilon, lanes_of(HUGE_VALF));
   r->footprint[14] = lanes_select(is_wide, -epsilon, r->footprint[14]);
 }
 

@@ -67,7 +67,8 @@ static inline float conic_hiding_iz(const conic_footprint *footprint, const coni
   float iz = fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz;
   if (!conic_is_wide(footprint))
     return footprint->nearness * iz;
-  return conic_hides_behind(-footprint->nearness, iz > 0.0f ? iz : 0.0f, ray_x, ray_y);
+  float ray_length = sqrtf((ray_x * ray_x + ray_y * ray_y) + 1.0f), before = iz > 0.0f ? iz : 0.0f;
+  return before * (ray_length / (ray_length - footprint->nearness * before));
 }
 
 static inline float conic_seen_iz(const conic_fragment *fragment) {

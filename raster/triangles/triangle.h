@@ -167,4 +167,9 @@ static inline int conic_triangle_sample(const conic_triangle_record *record, con
   return 1;
 }
 
+/* The inverse depth that hides what lies farther behind a triangle than ε, along the ray (dx, dy, 1). */
+static inline float conic_triangle_hides(float epsilon, float iz, float dx, float dy) {
+  return iz * (1.0f / (1.0f + epsilon * iz / sqrtf((dx * dx + dy * dy) + 1.0f)));
+}
+
 #endif

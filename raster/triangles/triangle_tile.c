@@ -59,7 +59,7 @@ void conic_triangles_hide(conic_band *band, const conic_tile_rays *rays) {
       if (!(row->covered[block] >> l & 1))
         continue;
       float iz = row->blocks[block].iz[l], dx = rays->block_x[block][l], dy = rays->block_y[i_row][l];
-      float hides = conic_hides_behind(epsilon, iz, dx, dy);
+      float hides = conic_triangle_hides(epsilon, iz, dx, dy);
       if (!(iz >= threshold[l]))
         row->visible[block] &= ~(1u << l);
       threshold[l] = hides > threshold[l] ? hides : threshold[l];
