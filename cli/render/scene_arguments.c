@@ -181,7 +181,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     return answer;
   choose_quality(&raw, job, &method);
   job->is_patch = method == CONIC_N_METHODS;
-  o->method = job->is_patch ? CONIC_METHOD_CONIC : (conic_method)method;
+  if (!job->is_patch)
+    o->method = (conic_method)method;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;

@@ -10,6 +10,7 @@ static const double rotation_tolerance = 1e-3;
 
 void conic_render_options_init_sized(conic_render_options *options, size_t size) {
   static const conic_render_options own = {.size = sizeof own,
+                                           .method = CONIC_METHOD_AUTO,
                                            .kernel = {.cutoff = 1.5f, .a = 4.0f, .b = 1.5f, .n = 5},
                                            .prefilter = 1.0f,
                                            .epsilon = -1.0,

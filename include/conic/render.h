@@ -110,7 +110,7 @@ typedef struct conic_render_options {
   conic_lighting lighting; /* in the place of has_light and light */
 } conic_render_options;
 
-/* conic, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
+/* auto, Gaussian with cutoff 1.5, prefilter 1, automatic ε, 3 passes, no culling, Phong with a headlight, no
  * background. */
 CONIC_API void conic_render_options_init_sized(conic_render_options *options, size_t size);
 #define conic_render_options_init(options) conic_render_options_init_sized(options, sizeof *(options))

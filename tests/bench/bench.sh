@@ -27,14 +27,14 @@ grep -q '"wrong_pictures": 0' old.json || fail "no count of wrong pictures"
 run 0 make sphere -n 2k -o sphere.ply
 run 0 bench sphere.ply --scenes sphere-2k --threads 1 "${small[@]}" --json -
 lines 2 out
-run 0 render sphere.ply -o sphere.pfm --size 64x48 --json render.json
+run 0 render sphere.ply -o sphere.pfm --method conic --size 64x48 --json render.json
 run 0 bench sphere.ply --threads 1 "${small[@]}" --json -
 grep -qF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" out || fail "bench draws a file otherwise than render"
 cat > camera.json << 'END'
 {"width": 90, "height": 90, "fx": 80, "fy": 75, "cx": 44, "cy": 36,
  "world_to_camera": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 3], [0, 0, 0, 1]]}
 END
-run 0 render sphere.ply -o sphere.pfm --camera camera.json --cull back --json render.json
+run 0 render sphere.ply -o sphere.pfm --method conic --camera camera.json --cull back --json render.json
 run 0 bench sphere.ply --camera camera.json --cull back --size 90x90 --repeat 1 --threads 1 --json -
 grep -qF "$(grep -o '"rgba": "[0-9a-f]*"' render.json)" out || fail "bench takes the camera otherwise than render"
 

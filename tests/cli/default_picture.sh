@@ -80,7 +80,7 @@ sample_of() { # the picture's method, and whether it has soft pixels
 }
 for pair in ':auto 1' '--quality draft:conic 0' '--quality good:auto 1' '--quality final:auto 1' \
   '--quality draft --samples 2:conic 1' '--quality final --samples 1:auto 0' '--quality final --method disc:disc 1' \
-  '--repeat 2:auto 0' '--plain:conic 0' '--plain --quality good:auto 1'; do
+  '--repeat 2:auto 0' '--plain:auto 0' '--plain --quality draft:conic 0'; do
   # shellcheck disable=SC2086
   got=$(sample_of ${pair%:*})
   [[ $got == "${pair#*:}" ]] || fail "${pair%:*}: $got"

@@ -265,6 +265,23 @@ static void test_interleaved_triangles(fixture *f) {
   free(records);
 }
 
+/* Who says nothing of the method draws by auto, also where the options end before it; 0 stays conic. */
+static void test_method(fixture *f) {
+  uint64_t hashes[CONIC_N_DRAWN_PLANES];
+  const conic_render_options whole = f->options;
+  CHECK(whole.method == CONIC_METHOD_AUTO && CONIC_METHOD_CONIC == 0);
+  conic_render_options_init(&f->options);
+  CHECK_OK(draw(f, &f->splats, NULL));
+  keep_hashes(&f->image, hashes);
+  f->options.method = CONIC_METHOD_CONIC;
+  CHECK_OK(draw(f, &f->splats, NULL));
+  CHECK(!same_pictures(&f->image, hashes));
+  f->options.size = sizeof(size_t);
+  CHECK_OK(draw(f, &f->splats, NULL));
+  CHECK(same_pictures(&f->image, hashes));
+  f->options = whole;
+}
+
 int main(void) {
   fixture f = fixture_open(2);
   fixture_scene(&f, CONIC_SCENE_SPHERE, COUNT);
@@ -272,6 +289,7 @@ int main(void) {
   test_broken_splats(&f);
   test_broken_triangles(&f);
   test_unusable_cameras(&f);
+  test_method(&f);
   test_interleaved_splats(&f);
   test_interleaved_triangles(&f);
   fixture_close(&f);

@@ -69,7 +69,7 @@ static void test_single_disc(void) {
   const double p[3] = {0, 1.0, -0.5}, tu[3] = {40, 0, 0}, tv[3] = {0, 0, -40}; /* the centre is behind the eye */
   fixture_set(&f, 0, p, tu, tv, 1, 1, 1);
   fixture_render(&f);
-  CHECK(f.statistics.splats_drawn == 1 && f.statistics.splats_fallback == 1);
+  CHECK(f.statistics.splats_drawn == 1 && f.statistics.splats_by_method[CONIC_METHOD_RAY] == 1);
   int n_wrong = 0;
   for (int y = 0; y < 100; y++)
     for (int x = 0; x < 100; x++) {

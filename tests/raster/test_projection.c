@@ -88,6 +88,7 @@ static void set_tilted(fixture *f, const double p[3], double tilt, double roll, 
 
 int main(void) {
   fixture f = fixture_open(1);
+  f.options.method = CONIC_METHOD_CONIC;
   uint64_t state = 7;
   int n_projected = 0;
   double worst_q = 0.0, worst_box = 0.0, worst_edge_on = 0.0;

@@ -196,7 +196,7 @@ static void test_oracle(fixture *f, int n, conic_method method) {
   CHECK_OK(conic_oracle_compare(f->context, &reference, &f->image, &verdict));
   CHECK(!verdict.pass);
   conic_reference_release(f->context, &reference);
-  f->options.method = CONIC_METHOD_CONIC;
+  f->options.method = CONIC_METHOD_AUTO;
 }
 
 static void test_threads(fixture *f) {

@@ -202,7 +202,7 @@ static void test_patches(fixture *f) {
   fixture_scene(f, CONIC_SCENE_TORUS, 1000);
   CHECK_OK(conic_splats_length(f->context, &f->splats, &length));
   CHECK_OK(conic_patches_create(f->context, &f->splats, NULL, &patches));
-  f->options.method = CONIC_METHOD_CONIC;
+  f->options.method = CONIC_METHOD_AUTO;
   f->options.epsilon = (double)f->options.kernel.cutoff * length;
   stability_look(f, eye, forward, 0.0);
   check_frames(f, "a torus, panned", "patch", pan, 9, 1.0 / 16, (run){0.04, 0.001, 0.005});

@@ -409,7 +409,7 @@ int main(void) {
     test_isas(&f, (conic_method)method, 3);
     test_isas(&f, (conic_method)method, 1);
   }
-  f.options.method = CONIC_METHOD_CONIC;
+  f.options.method = CONIC_METHOD_AUTO;
   test_overlap(&f);
   test_far(&f);
   test_solids(&f);
