@@ -479,6 +479,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else if (outcome == CONIC_SKIPPED) {
     chunk->n_skipped++;
   } else {
+    chunk->n_laplaces += (size_t)conic_is_laplace(s.footprint);
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first_ray + chunk->n_rays++);
     chunk->n_fallback += (size_t)is_fallback(view->method, outcome);

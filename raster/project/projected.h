@@ -96,6 +96,7 @@ typedef struct conic_projected_surface {
 typedef struct conic_chunk {
   size_t first, n_drawn;    /* its splats are at first … first + n_drawn in the arrays below */
   size_t first_ray, n_rays; /* its rays likewise in rays */
+  size_t n_laplaces;        /* of them */
   size_t n_culled, n_skipped, n_fallback;
 } conic_chunk;
 
