@@ -2,7 +2,7 @@
  * Visible, Planes), in double: every pixel of a picture full of them is what the page says. */
 #include "tests/support/fixture.h"
 
-enum { SIZE = 128, N_DISCS = 150, N_ANGLES = 4096 };
+enum { SIZE = 128, N_DISCS = 150, N_ANGLES = 1024 };
 
 static const double cutoff = 1.5, near_z = 0.05, epsilon = 0.2, prefilter = 1.0;
 
@@ -82,8 +82,12 @@ static int find_ends(const conic_camera *c, const disc *d, const double trace[2]
       before = crossing(c, d, trace, before, at);
     if (!(outline_at(c, d, trace, after).z > near_z))
       after = crossing(c, d, trace, after, at);
+    int is_at_near = before != at - step || after != at + step;
+    double along = outline_at(c, d, trace, at).along, from = along - outline_at(c, d, trace, before).along,
+           to = along - outline_at(c, d, trace, after).along;
     for (int side = -1; side <= 1; side += 2)
-      consider(turning(c, d, trace, before, after, side), &s->a, &s->b, &n);
+      if (is_at_near || (side * from >= 0.0 && side * to >= 0.0))
+        consider(turning(c, d, trace, before, after, side), &s->a, &s->b, &n);
   }
   return n > 0;
 }

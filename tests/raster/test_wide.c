@@ -225,13 +225,15 @@ static void test_hall(fixture *f) {
       CHECK_NEAR(o.verdict.planes[i].max_abs, 0.0, o.verdict.planes[i].bound);
     CHECK(o.verdict.compared_pixels > 9000 && 20 * o.verdict.unstable_pixels < o.verdict.covered_pixels);
     conic_reference_release(f->context, &o.reference);
-    const uint64_t hash = conic_image_hash(&f->image, CONIC_PLANE_ALBEDO);
+    const uint64_t hash = conic_image_hash(&f->image, CONIC_PLANE_ALBEDO), by_laplace = f->statistics.splats_by_laplace;
+    CHECK((by_laplace > 0) == (method == CONIC_METHOD_AUTO));
     for (int isa = CONIC_ISA_SCALAR; isa < CONIC_N_ISAS; isa++)
       for (int tile = 8; tile <= 64 && conic_isa_is_here((conic_isa)isa); tile *= 8) {
         f->options.isa = (conic_isa)isa;
         f->options.tile = tile;
         fixture_render(f);
         CHECK(conic_image_hash(&f->image, CONIC_PLANE_ALBEDO) == hash);
+        CHECK(f->statistics.splats_by_laplace == by_laplace);
       }
     f->options.isa = CONIC_ISA_AUTO;
     f->options.tile = 64;
