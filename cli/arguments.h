@@ -36,6 +36,13 @@ typedef struct cli_option {
 int cli_parse(cli_session *session, const cli_option *options, int n_options, int argc, char **argv,
               const char **positional, int *n_positional);
 
+/* For commands that read textures. */
+#define CLI_TEXTURE_BOUND(session)                                                                                     \
+  {                                                                                                                    \
+    "max-texture", CLI_INT, &(session)->max_texture_mib, "MiB",                                                        \
+        "what textures may take in memory together; one more is refused before it is decoded [4096]", 1, 1 << 20       \
+  }
+
 /* A length: in world units, or with an x behind it ("0.5x") in median sample spacings of the scene. */
 typedef struct cli_length {
   double value;

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/stopper.h"
 #include "core/base/clock.h"
 #include "core/files/guard.h"
 
@@ -216,14 +217,18 @@ static void on_log(void *cookie, conic_log_level level, const char *message) {
  * its group, and so reach it twice. Nobody's fingers are that fast. */
 static const long long one_wish_ms = 250;
 
-/* The first signal asks the work to stop, so that it removes what it has half written; a later one kills. */
+/* The first signal asks the work to stop, so that it removes what it has half written; a later one ends it at once. */
 static void on_interrupt(int signal_number) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   long long now_ms = (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000 + 1, first_ms = 0;
   int none = 0;
   atomic_compare_exchange_strong(&first_signal, &none, signal_number);
-  if (atomic_compare_exchange_strong(&interrupted_at_ms, &first_ms, now_ms) || now_ms - first_ms < one_wish_ms)
+  if (atomic_compare_exchange_strong(&interrupted_at_ms, &first_ms, now_ms)) {
+    cli_stopper_ask();
+    return;
+  }
+  if (now_ms - first_ms < one_wish_ms || cli_stopper_ask())
     return;
   signal(signal_number, SIG_DFL);
   raise(signal_number); /* takes effect when the handler returns */
@@ -256,11 +261,14 @@ int cli_session_open(cli_session *session) {
   options.threads = session->threads;
   options.large_pages = session->draws_many_frames;
   options.isa = session->isa;
+  if (session->max_texture_mib)
+    options.max_texture_bytes = (size_t)session->max_texture_mib << 20;
   conic_status status = conic_context_create(&options, &session->context);
   if (status != CONIC_OK)
     return cli_error(cli_exit_of(status), "%s: cannot start: %s", session->command, conic_status_string(status));
   conic_guard_inputs(session->context, session->replaced_path);
   session->has_bar = !session->is_quiet && can_draw_bar();
+  cli_stopper_begin(session->context, session->command);
   const int wishes[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
   for (size_t i = 0; i < sizeof wishes / sizeof *wishes; i++)
     catch_signal(wishes[i], on_interrupt);
@@ -271,6 +279,7 @@ int cli_session_open(cli_session *session) {
 
 void cli_session_close(cli_session *session) {
   erase_bar();
+  cli_stopper_end();
   conic_context_destroy(session->context);
   session->context = NULL;
 }

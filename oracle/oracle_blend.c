@@ -36,20 +36,26 @@ static int are_level(const oracle_fragment *a, const oracle_fragment *b) {
   return first[0] == first[1] && second[0] == second[1] && first[0] == second[0];
 }
 
+int conic_oracle_are_as_near(const oracle_fragment *a, const oracle_fragment *b) {
+  return are_copies(a, b) || are_level(a, b);
+}
+
+int conic_oracle_is_rival(const oracle_fragment *f, const oracle_fragment *nearest) {
+  return f != nearest && !conic_oracle_are_as_near(f, nearest) &&
+         f->iz + together(f->iz_error, nearest->iz_error) >= nearest->iz;
+}
+
 /* What is exactly equal is settled by the order in the file, in any precision; what is nearly so is in doubt. A rival
- * for the id changes nothing else, unless there is one pass only: it is noted and accepted. */
+ * for the id changes nothing else, unless there is one pass only. */
 static unsigned doubt_ties(const oracle_fragment *f, size_t n, size_t nearest, size_t heaviest, int passes,
                            int is_exact, oracle_pixel *pixel) {
   unsigned doubt = 0;
-  pixel->tied_id = CONIC_NO_ID;
   for (size_t i = 0; i < n; i++) {
     if (!f[i].is_visible)
       continue;
-    double depth_error = together(f[i].iz_error, f[nearest].iz_error);
-    if (i != nearest && !are_copies(&f[i], &f[nearest]) && !are_level(&f[i], &f[nearest]) &&
-        f[i].iz + depth_error >= f[nearest].iz) {
+    if (conic_oracle_is_rival(&f[i], &f[nearest])) {
       doubt |= passes == 1 ? 1u << CONIC_UNSTABLE_DEPTH_TIE : 0u;
-      pixel->tied_id = pixel->tied_id == CONIC_NO_ID ? f[i].candidate->splat->index : CONIC_ANY_ID;
+      pixel->has_rivals = 1;
     }
     double weight_error = is_exact ? 0.0 : together(f[i].weight_error, f[heaviest].weight_error);
     if (passes != 1 && i != heaviest && !are_copies(&f[i], &f[heaviest]) &&

@@ -29,9 +29,6 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
     if (candidate->is_disturbed[i] && candidate->shape.change < INFINITY)
       candidate->shape.change_error += fabs(candidate->disturbed[i].change - candidate->shape.change);
   }
-  for (int i = 0; i < splat->n_others; i++)
-    candidate->is_other[i] = splat->others[i] != ORACLE_NOT_DRAWN &&
-                             conic_oracle_shape(view, &splat->placed, splat->others[i], &candidate->others[i]);
 }
 
 /* What the inputs' rounding and the evaluation's own may add up to: every disturbed splat the worst way at once. For
@@ -125,62 +122,109 @@ static void set_weight(const oracle_splat *splat, double weight, double error, d
   fragment->weight_spread = spread * fabs(splat->opacity);
 }
 
-/* What another formula would make of the pixel: if it covers it, the splat's coverage and depth are in doubt. */
-static int doubt_formula(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+/* What weight, iz and z may be of the formula itself. No splat weighs four times its opacity. */
+static void set_ranges(const oracle_splat *splat, const oracle_shape *shape, oracle_fragment *f) {
+  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, floor_weight = 0x1p-60;
+  double most = oracle_max(4.0 * splat->opacity, floor_weight);
+  f->weights = around(f->weight, f->weight_error);
+  f->weights.low = oracle_min(oracle_max(f->weights.low, floor_weight), most);
+  f->weights.high = oracle_min(oracle_max(f->weights.high, floor_weight), most);
+  f->nearness = around(f->iz, f->iz_error);
+  f->depths = around(f->z, f->z_error);
+  f->depths.low = oracle_max(f->depths.low, (1.0 - slack) / shape->range[1]);
+  f->depths.high = oracle_min(f->depths.high, (1.0 + slack) / shape->range[0]);
+}
+
+static void include(oracle_interval *range, const oracle_interval *other) {
+  range->low = oracle_min(range->low, other->low);
+  range->high = oracle_max(range->high, other->high);
+}
+
+/* The splat at the pixel by its own formula; 0 where it surely does not cover. */
+static int look_at_formula(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
+                           oracle_fragment *fragment) {
+  double errors[ORACLE_N_VALUES], spread = 0.0;
+  fragment->covers = 0;
+  fragment->doubt = 0;
+  if (!candidate->is_drawn)
+    return 0;
+  conic_oracle_evaluate(view, &candidate->shape, x, y, fragment->values);
+  /* Twice the cutoff's square away nothing is in doubt. */
+  if (!(fragment->values[ORACLE_MARGIN_Q] > -view->support))
+    return 0;
+  fragment->covers = conic_oracle_covers(fragment->values);
+  find_fragment_errors(view, candidate, x, y, fragment->values, errors, &spread);
+  fragment->doubt = doubt_coverage(fragment->values, errors);
+  if (!fragment->covers && !fragment->doubt)
+    return 0;
+  fragment->may_miss = fragment->doubt != 0;
+  set_depths(candidate->splat, &candidate->shape, fragment->values, errors, fragment);
+  set_weight(candidate->splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], spread, fragment);
+  set_ranges(candidate->splat, &candidate->shape, fragment);
+  return 1;
+}
+
+/* What other formulas would make of the pixel: if one covers it, the splat's coverage, weight and depth are in doubt.
+ * Returns whether one may. */
+static int doubt_formula(const oracle_view *view, const oracle_candidate *candidate, double x, double y, int may_cover,
                          oracle_fragment *fragment) {
-  int may_cover = 0;
+  int may_other = 0, may_miss = !may_cover;
   for (int i = 0; i < candidate->splat->n_others; i++) {
-    double values[ORACLE_N_VALUES], errors[ORACLE_N_VALUES] = {0.0};
+    oracle_splat as_other = *candidate->splat;
+    oracle_candidate set_up;
     oracle_fragment other;
-    if (!candidate->is_other[i])
+    as_other.formula = as_other.others[i];
+    conic_oracle_candidate(view, &as_other, &set_up);
+    if (!look_at_formula(view, &set_up, x, y, &other)) {
+      may_miss = 1;
       continue;
-    conic_oracle_evaluate(view, &candidate->others[i], x, y, values);
-    if (!conic_oracle_covers(values))
-      continue;
-    set_depths(candidate->splat, &candidate->others[i], values, errors, &other);
-    if (!fragment->covers && !may_cover)
+    }
+    may_miss |= other.may_miss;
+    may_other = 1;
+    if (!may_cover) {
       *fragment = other;
-    fragment->seen.low = oracle_min(fragment->seen.low, other.seen.low);
-    fragment->seen.high = oracle_max(fragment->seen.high, other.seen.high);
-    fragment->hides.low = oracle_min(fragment->hides.low, other.hides.low);
-    fragment->hides.high = oracle_max(fragment->hides.high, other.hides.high);
-    may_cover = 1;
+      fragment->covers = 0; /* of its own formula */
+      may_cover = 1;
+      continue;
+    }
+    include(&fragment->seen, &other.seen);
+    include(&fragment->hides, &other.hides);
+    include(&fragment->weights, &other.weights);
+    include(&fragment->nearness, &other.nearness);
+    include(&fragment->depths, &other.depths);
   }
-  return may_cover;
+  if (may_other)
+    fragment->may_miss |= may_miss;
+  return may_other;
 }
 
 int conic_oracle_fragment(const oracle_view *view, const oracle_candidate *candidate, double x, double y,
                           oracle_fragment *fragment) {
   const oracle_splat *splat = candidate->splat;
-  double errors[ORACLE_N_VALUES], spread = 0.0, clip_error;
-  double reach_px = (splat->box[1][0] - splat->box[0][0]) + (splat->box[1][1] - splat->box[0][1]);
+  double clip_error, reach_px = (splat->box[1][0] - splat->box[0][0]) + (splat->box[1][1] - splat->box[0][1]);
+  if (!splat->is_anywhere &&
+      (x < splat->box[0][0] || x > splat->box[1][0] || y < splat->box[0][1] || y > splat->box[1][1]))
+    return 0;
   double kept = conic_oracle_clip_margin(&splat->clip, x, y, reach_px, &clip_error);
-  int covers = 0;
-  unsigned doubt = 0;
   if (kept < -clip_error)
     return 0;
-  if (candidate->is_drawn) {
-    conic_oracle_evaluate(view, &candidate->shape, x, y, fragment->values);
-    /* Twice the cutoff's square away nothing is in doubt. */
-    if (fragment->values[ORACLE_MARGIN_Q] > -view->support) {
-      covers = conic_oracle_covers(fragment->values);
-      find_fragment_errors(view, candidate, x, y, fragment->values, errors, &spread);
-      doubt = doubt_coverage(fragment->values, errors);
-    }
+  int may_cover = look_at_formula(view, candidate, x, y, fragment);
+  unsigned doubt = fragment->doubt;
+  if (splat->n_others) {
+    int may_other = doubt_formula(view, candidate, x, y, may_cover, fragment);
+    if (may_other || fragment->covers)
+      doubt |= 1u << CONIC_UNSTABLE_FORMULA;
+    if (!may_other) /* drawn by this formula or not at all */
+      fragment->may_miss = 1;
+    may_cover |= may_other;
   }
-  if (covers || doubt) {
-    set_depths(splat, &candidate->shape, fragment->values, errors, fragment);
-    set_weight(splat, fragment->values[ORACLE_WEIGHT], errors[ORACLE_WEIGHT], spread, fragment);
-  }
-  fragment->covers = covers;
-  if (splat->n_others && (doubt_formula(view, candidate, x, y, fragment) || covers))
-    doubt |= 1u << CONIC_UNSTABLE_FORMULA;
-  if ((covers || doubt) && !(kept > clip_error))
+  if (may_cover && !(kept > clip_error)) {
     doubt |= 1u << CONIC_UNSTABLE_CLIP;
-  covers = covers && kept >= 0.0;
-  fragment->covers = covers;
+    fragment->may_miss = 1;
+  }
+  fragment->covers = fragment->covers && kept >= 0.0;
   fragment->doubt = doubt;
   fragment->candidate = candidate;
   fragment->is_visible = 0;
-  return covers || doubt;
+  return may_cover;
 }

@@ -1,148 +1,150 @@
 /* The oracle's pixel of N × N samples: docs/reference/picture.md, "Samples". */
-#include "conic/oracle.h"
-
 #include <string.h>
 
-#include "core/base/message.h"
-#include "oracle/oracle_pixel.h"
+#include "oracle/oracle_bounds.h"
 
 /* A mean normal shorter than this makes more of the samples' rounding than the bound of a normal allows. */
 static const double shortest_mean = 0.1;
 
-typedef struct fine_pixel {
-  const conic_reference *fine;
-  size_t n, left, top; /* N, and its first sample */
-} fine_pixel;
-
-static size_t sample_at(const fine_pixel *p, size_t column, size_t row) {
-  return (p->top + row) * (size_t)p->fine->width + p->left + column;
-}
-
-/* How far a sample is from the centre, in half samples, squared. */
-static double distance(const fine_pixel *p, size_t column, size_t row) {
-  double dx = (double)(2 * column + 1) - (double)p->n, dy = (double)(2 * row + 1) - (double)p->n;
+/* How far sample i is from the centre, in half samples, squared. */
+static double distance(int i, int n) {
+  double dx = 2 * (i % n) + 1 - n, dy = 2 * (i / n) + 1 - n;
   return dx * dx + dy * dy;
 }
 
-static double mean_of(const fine_pixel *p, conic_plane plane, size_t channel) {
-  size_t n_channels = (size_t)conic_plane_describe(plane)->n_channels;
-  double sum = 0.0;
-  for (size_t row = 0; row < p->n; row++)
-    for (size_t column = 0; column < p->n; column++)
-      sum += p->fine->planes[plane][n_channels * sample_at(p, column, row) + channel];
-  return sum / (double)(p->n * p->n);
+static int is_averaged(int channel) {
+  return channel < ORACLE_AT_Z || (channel >= ORACLE_AT_ALBEDO && channel <= ORACLE_AT_WEIGHT);
 }
 
-static double greatest_count(const fine_pixel *p) {
-  double greatest = 0.0;
-  for (size_t row = 0; row < p->n; row++)
-    for (size_t column = 0; column < p->n; column++)
-      greatest = oracle_max(greatest, p->fine->planes[CONIC_PLANE_COUNT][sample_at(p, column, row)]);
-  return greatest;
+/* Means of rgba, albedo and weight, the greatest count, and Z and id of the sample in the middle. */
+static void reduce_values(const oracle_sample *samples, int n, int middle, oracle_sample *pixel) {
+  for (int c = 0; c < CONIC_N_ALTERNATIVE_VALUES; c++) {
+    double sum = 0.0, greatest = 0.0;
+    for (int i = 0; i < n * n; i++) {
+      sum += samples[i].values[c];
+      greatest = oracle_max(greatest, samples[i].values[c]);
+    }
+    if (is_averaged(c))
+      pixel->values[c] = sum / (double)(n * n);
+    else
+      pixel->values[c] = c == ORACLE_AT_COUNT ? greatest : samples[middle].values[c];
+  }
+  pixel->id = samples[middle].id;
 }
 
 /* The normalised mean over what is covered; the reasons why it is in doubt. */
-static unsigned mean_normal(const fine_pixel *p, double normal[3]) {
-  double sum[3] = {0.0, 0.0, 0.0}, n_covered = 0.0, least = 0.0;
-  const double *central = NULL;
-  for (size_t row = 0; row < p->n; row++)
-    for (size_t column = 0; column < p->n; column++) {
-      size_t at = sample_at(p, column, row);
-      const double *sample = p->fine->planes[CONIC_PLANE_NORMAL] + 3 * at;
-      if (p->fine->planes[CONIC_PLANE_COUNT][at] == 0.0)
-        continue;
-      if (!central || distance(p, column, row) < least) {
-        central = sample;
-        least = distance(p, column, row);
-      }
-      for (int axis = 0; axis < 3; axis++)
-        sum[axis] += sample[axis];
-      n_covered += 1.0;
-    }
+static unsigned reduce_normal(const oracle_sample *samples, int n, double normal[3]) {
+  double sum[3] = {0.0, 0.0, 0.0}, n_covered = 0.0;
+  const oracle_sample *central = NULL;
+  for (int i = 0; i < n * n; i++) {
+    if (samples[i].values[ORACLE_AT_COUNT] == 0.0)
+      continue;
+    if (!central || distance(i, n) < distance((int)(central - samples), n))
+      central = &samples[i];
+    for (int axis = 0; axis < 3; axis++)
+      sum[axis] += samples[i].values[ORACLE_AT_NORMAL + axis];
+    n_covered += 1.0;
+  }
   double length = oracle_length(sum);
-  for (int axis = 0; axis < 3 && central; axis++)
-    normal[axis] = length > 0.0 ? sum[axis] / length : central[axis];
+  for (int axis = 0; axis < 3; axis++)
+    normal[axis] = length > 0.0 ? sum[axis] / length : central ? central->values[ORACLE_AT_NORMAL + axis] : 0.0;
   return length < shortest_mean * n_covered ? 1u << CONIC_UNSTABLE_PRECISION : 0u;
 }
 
-static void reduce_pixel(const fine_pixel *p, size_t at, conic_reference *r) {
-  static const conic_plane averaged[] = {CONIC_PLANE_RGBA, CONIC_PLANE_ALBEDO, CONIC_PLANE_WEIGHT};
-  size_t middle = p->n % 2 ? p->n / 2 : p->n / 2 - 1, center = sample_at(p, middle, middle);
-  unsigned doubt = 0;
-  for (size_t i = 0; i < sizeof averaged / sizeof averaged[0]; i++) {
-    size_t n_channels = (size_t)conic_plane_describe(averaged[i])->n_channels;
-    for (size_t c = 0; c < n_channels; c++)
-      r->planes[averaged[i]][n_channels * at + c] = mean_of(p, averaged[i], c);
-  }
-  doubt |= mean_normal(p, r->planes[CONIC_PLANE_NORMAL] + 3 * at);
-  for (size_t row = 0; row < p->n; row++)
-    for (size_t column = 0; column < p->n; column++)
-      doubt |= p->fine->unstable[sample_at(p, column, row)];
-  r->planes[CONIC_PLANE_COUNT][at] = greatest_count(p);
-  r->planes[CONIC_PLANE_Z][at] = p->fine->planes[CONIC_PLANE_Z][center];
-  r->planes[CONIC_PLANE_ID][at] = p->fine->planes[CONIC_PLANE_ID][center];
-  r->tied_id[at] = p->fine->tied_id[center];
-  r->unstable[at] = (uint8_t)doubt;
-  r->unstable_pixels += doubt != 0;
-  r->covered_pixels += r->planes[CONIC_PLANE_COUNT][at] > 0.0;
-  r->undecided_ids += r->tied_id[at] == CONIC_ANY_ID;
-}
-
-/* Takes what was counted over the samples from the fine reference. */
-static void reduce_all(const conic_reference *fine, int samples, conic_reference *r) {
-  r->question = fine->question;
-  r->white = fine->white;
-  r->samples = samples;
-  r->covered_samples = fine->covered_samples;
-  r->unstable_samples = fine->unstable_samples;
-  r->weight_error = fine->weight_error;
-  memcpy(r->unstable_by_reason, fine->unstable_by_reason, sizeof r->unstable_by_reason);
-  fine_pixel p = {.fine = fine, .n = (size_t)samples};
-  for (size_t y = 0; y < (size_t)r->height; y++)
-    for (size_t x = 0; x < (size_t)r->width; x++) {
-      p.left = x * p.n;
-      p.top = y * p.n;
-      reduce_pixel(&p, y * (size_t)r->width + x, r);
+/* All that a sample's alternatives allow together. */
+static void take_together(const oracle_sample *sample, const oracle_doubts *from, conic_alternative *range) {
+  memcpy(range->low, sample->values, sizeof range->low);
+  memcpy(range->high, sample->values, sizeof range->high);
+  for (size_t i = 0; i < sample->n_alternatives; i++)
+    for (int c = 0; c < CONIC_N_ALTERNATIVE_VALUES; c++) {
+      const conic_alternative *next = &from->alternatives[sample->first_alternative + i];
+      range->low[c] = i ? oracle_min(range->low[c], next->low[c]) : next->low[c];
+      range->high[c] = i ? oracle_max(range->high[c], next->high[c]) : next->high[c];
     }
 }
 
-conic_status conic_oracle_render_drawing(conic_context *context, const conic_drawing *drawing,
-                                         const conic_camera *camera, const conic_render_options *options,
-                                         conic_oracle_question question, int samples, conic_reference *reference) {
-  conic_reference fine_reference;
-  if (samples == 1)
-    return conic_oracle_draw(context, drawing, camera, options, question, reference);
-  memset(reference, 0, sizeof *reference);
-  if (!camera || samples < 1 || samples > CONIC_MAX_SAMPLES || camera->width > 65535 / samples ||
-      camera->height > 65535 / samples)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "samples: 1 to %d, and that times the picture's size at most %d",
-                      CONIC_MAX_SAMPLES, 65535);
-  conic_camera fine = *camera;
-  fine.width *= samples;
-  fine.height *= samples;
-  fine.fx *= samples;
-  fine.fy *= samples;
-  fine.cx *= samples;
-  fine.cy *= samples;
-  conic_status status = conic_oracle_draw(context, drawing, &fine, options, question, &fine_reference);
-  if (status != CONIC_OK)
-    return status;
-  reference->width = camera->width;
-  reference->height = camera->height;
-  status = conic_oracle_allocate(context, reference);
-  if (status == CONIC_OK)
-    reduce_all(&fine_reference, samples, reference);
-  else
-    conic_reference_release(context, reference);
-  conic_reference_release(context, &fine_reference);
+/* Adds a sample to the sums that reduce_values and reduce_normal make of samples; each of its normals' components may
+ * be off by its bound. */
+static void add_sample_range(const conic_alternative *sample, int n, conic_alternative *sum) {
+  for (int c = 0; c < CONIC_N_ALTERNATIVE_VALUES; c++) {
+    int is_normal = c >= ORACLE_AT_NORMAL && c<ORACLE_AT_ALBEDO, is_covered = sample->high[ORACLE_AT_COUNT]> 0.0;
+    double share = is_averaged(c) ? 1.0 / (double)(n * n) : 1.0;
+    double error = is_normal && is_covered ? ORACLE_NORMAL_BOUND : 0.0;
+    if (c == ORACLE_AT_COUNT) {
+      sum->low[c] = oracle_max(sum->low[c], sample->low[c]);
+      sum->high[c] = oracle_max(sum->high[c], sample->high[c]);
+    } else if (c != ORACLE_AT_Z) {
+      sum->low[c] += share * sample->low[c] - error;
+      sum->high[c] += share * sample->high[c] + error;
+    }
+  }
+}
+
+/* The pixel's alternative for one of the middle sample's. */
+static conic_status add_alternative(const conic_alternative *others, const conic_alternative *middle, int n,
+                                    uint32_t number, oracle_doubts *to) {
+  conic_alternative pixel = *others;
+  double box[2][3];
+  add_sample_range(middle, n, &pixel);
+  pixel.pixel = number;
+  pixel.low[ORACLE_AT_Z] = middle->low[ORACLE_AT_Z];
+  pixel.high[ORACLE_AT_Z] = middle->high[ORACLE_AT_Z];
+  memcpy(box[0], pixel.low + ORACLE_AT_NORMAL, sizeof box[0]);
+  memcpy(box[1], pixel.high + ORACLE_AT_NORMAL, sizeof box[1]);
+  if (pixel.high[ORACLE_AT_COUNT] > 0.0)
+    conic_oracle_direction_range((const double(*)[3])box, pixel.low + ORACLE_AT_NORMAL, pixel.high + ORACLE_AT_NORMAL);
+  return conic_oracle_doubts_add(to, &pixel);
+}
+
+/* One alternative for each of the middle sample's: of the others, all that they may be goes into the sums. */
+static conic_status reduce_doubts(const oracle_sample *samples, int n, int middle, const oracle_doubts *from,
+                                  uint32_t number, oracle_doubts *to) {
+  conic_alternative others = {.pixel = number}, one;
+  const oracle_sample *central = &samples[middle];
+  conic_status status = CONIC_OK;
+  for (int i = 0; i < n * n; i++) {
+    if (i == middle)
+      continue;
+    take_together(&samples[i], from, &one);
+    add_sample_range(&one, n, &others);
+  }
+  if (!central->n_alternatives) {
+    take_together(central, from, &one);
+    return add_alternative(&others, &one, n, number, to);
+  }
+  for (size_t i = 0; i < central->n_alternatives && status == CONIC_OK; i++)
+    status = add_alternative(&others, &from->alternatives[central->first_alternative + i], n, number, to);
   return status;
 }
 
-conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                         const conic_render_options *options, conic_oracle_question question,
-                                         int samples, conic_reference *reference) {
-  const conic_drawing alone = {.splats = splats};
-  if (samples == 1 || !splats)
-    return conic_oracle_render(context, splats, camera, options, question, reference);
-  return conic_oracle_render_drawing(context, &alone, camera, options, question, samples, reference);
+conic_status conic_oracle_reduce(const oracle_sample *samples, int n, const oracle_doubts *from, uint32_t number,
+                                 oracle_doubts *to, oracle_sample *pixel) {
+  int middle = (n - 1) / 2 * n + (n - 1) / 2, has_alternatives = 0;
+  conic_status status = CONIC_OK;
+  memset(pixel, 0, sizeof *pixel);
+  reduce_values(samples, n, middle, pixel);
+  if (n > 1)
+    pixel->doubt = reduce_normal(samples, n, pixel->values + ORACLE_AT_NORMAL);
+  for (int i = 0; i < n * n; i++) {
+    pixel->doubt |= samples[i].doubt;
+    pixel->is_unbounded |= samples[i].is_unbounded;
+    has_alternatives |= samples[i].n_alternatives > 0;
+  }
+  pixel->first_alternative = to->n;
+  pixel->first_id = to->n_ids;
+  if (n == 1)
+    for (size_t i = 0; i < samples->n_alternatives && status == CONIC_OK; i++) {
+      conic_alternative one = from->alternatives[samples->first_alternative + i];
+      one.pixel = number;
+      status = conic_oracle_doubts_add(to, &one);
+    }
+  else if (has_alternatives || pixel->doubt)
+    status = reduce_doubts(samples, n, middle, from, number, to);
+  if (to->n > pixel->first_alternative && !samples[middle].n_alternatives && status == CONIC_OK)
+    status = conic_oracle_doubts_admit(to, pixel->first_id, number, pixel->id);
+  for (size_t i = 0; i < samples[middle].n_ids && status == CONIC_OK; i++)
+    status = conic_oracle_doubts_admit(to, pixel->first_id, number, from->ids[samples[middle].first_id + i].id);
+  pixel->n_alternatives = to->n - pixel->first_alternative;
+  pixel->n_ids = to->n_ids - pixel->first_id;
+  return status;
 }

@@ -1,7 +1,9 @@
 #include "oracle/oracle_scene.h"
 
+#include <string.h>
+
 #include "core/base/memory.h"
-#include "core/base/message.h"
+#include "core/base/threads.h"
 #include "core/splats/clip.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
@@ -190,27 +192,40 @@ static void set_appearance(const oracle_view *view, const conic_render_options *
   oracle_cross(world->tu, world->tv, normal);
   rotate_to_camera(&view->camera, normal, turned);
   double scale = (oracle_dot(splat->placed.p, turned) > 0.0 ? -1.0 : 1.0) / oracle_length(normal);
-  for (int c = 0; c < 3; c++)
+  for (int c = 0; c < 3; c++) {
     splat->normal[c] = normal[c] * scale;
+    double size = fabs(splat->normal[c]);
+    splat->normals[0][c] = splat->is_facing_unsure ? -size : splat->normal[c];
+    splat->normals[1][c] = splat->is_facing_unsure ? size : splat->normal[c];
+  }
+  splat->color_error = 0.0;
   splat->epsilon = options->epsilon;
   if (!(splat->epsilon >= 0.0)) /* automatic, with c = 1 */
     splat->epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
   splat->behind = 1.0 / (1.0 + splat->epsilon / oracle_length(splat->placed.p));
 }
 
-/* Places a splat; 0 where it can't show. */
-static int place_splat(const oracle_view *view, const conic_splats *splats, const conic_render_options *options,
-                       size_t i, double longest, oracle_splat *splat) {
-  oracle_placed world;
-  if (!read_splat(splats, i, &world, splat))
+/* Reads a splat and puts it before the camera; 0 where picture.md leaves it out. */
+static int stand(const oracle_scene *scene, size_t i, oracle_placed *world, oracle_splat *splat) {
+  const conic_camera *camera = &scene->view.camera;
+  if (!read_splat(scene->splats, i, world, splat))
     return 0;
   for (int c = 0; c < 3; c++)
-    world.p[c] += splats->origin[c];
-  rotate_to_camera(&view->camera, world.p, splat->placed.p);
+    world->p[c] += scene->splats->origin[c];
+  rotate_to_camera(camera, world->p, splat->placed.p);
   for (int c = 0; c < 3; c++)
-    splat->placed.p[c] += view->camera.cam_from_world[c][3];
-  rotate_to_camera(&view->camera, world.tu, splat->placed.tu);
-  rotate_to_camera(&view->camera, world.tv, splat->placed.tv);
+    splat->placed.p[c] += camera->cam_from_world[c][3];
+  rotate_to_camera(camera, world->tu, splat->placed.tu);
+  rotate_to_camera(camera, world->tv, splat->placed.tv);
+  return 1;
+}
+
+int conic_oracle_scene_place(const oracle_scene *scene, size_t i, oracle_splat *splat) {
+  const oracle_view *view = &scene->view;
+  const conic_splats *splats = scene->splats;
+  oracle_placed world;
+  if (!stand(scene, i, &world, splat))
+    return 0;
   size_t i_clip = conic_clip_find(splats, i);
   int has_clip = i_clip < splats->n_clips && splats->clips[i_clip].splat == i;
   double extent = oracle_length(world.p);
@@ -220,33 +235,89 @@ static int place_splat(const oracle_view *view, const conic_splats *splats, cons
   choose_splats(view, splat);
   if (splat->formula == ORACLE_NOT_DRAWN && !splat->n_others)
     return 0;
-  set_appearance(view, options, &world, longest, splat);
+  set_appearance(view, scene->options, &world, scene->longest, splat);
+  splat->is_anywhere = scene->is_brute;
   return bound(view, splat);
 }
 
-conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                       const conic_render_options *options, oracle_scene *scene) {
-  double median = options->splat_length; /* of all splats, where these are some that were chosen of them */
-  scene->n = 0;
-  scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
-  scene->splats = conic_memory_allocate(context, splats->count, sizeof *scene->splats);
-  conic_status status = scene->splats ? CONIC_OK : CONIC_ERROR_MEMORY;
-  if (status == CONIC_OK && !(median > 0.0))
-    status = median_length(context, splats, &median);
-  for (size_t i = 0; i < splats->count && status == CONIC_OK; i++) {
-    if (place_splat(&scene->view, splats, options, i, median, &scene->splats[scene->n]))
-      scene->n++;
-    if (i % 65536 == 0)
-      status = conic_progress(context, "verify", 0.0);
+/* A box from the sphere about a disc that is far before the eye, in which all formulas' boxes lie: the sphere's own,
+ * that of an axis under the Jacobian at p, and the circle of `disc`. 0 where it is not so far. */
+static int reach_of_sphere(const oracle_view *view, const oracle_placed *s, double box[2][2]) {
+  const conic_camera *c = &view->camera;
+  const double focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};
+  double z = s->p[2], radius = view->cutoff * sqrt(oracle_dot(s->tu, s->tu) + oracle_dot(s->tv, s->tv));
+  if (!(z - 2.0 * radius > view->near_z) || !(z < 1e30))
+    return 0;
+  double circle = oracle_max(0.5, radius / z * oracle_max(focal[0], focal[1]));
+  for (int axis = 0; axis < 2; axis++) {
+    double p = s->p[axis], at = focal[axis] * p / z + principal[axis];
+    double low = oracle_min((p - radius) / (z - radius), (p - radius) / (z + radius));
+    double high = oracle_max((p + radius) / (z - radius), (p + radius) / (z + radius));
+    double linear = focal[axis] * radius / z * sqrt(1.0 + p / z * (p / z));
+    double half = oracle_max(circle, linear) + view->reach_px;
+    box[0][axis] = oracle_min(focal[axis] * low + principal[axis] - view->reach_px, at - half);
+    box[1][axis] = oracle_max(focal[axis] * high + principal[axis] + view->reach_px, at + half);
+    double margin = 1.0 + 1e-3 * (box[1][axis] - box[0][axis]); /* as that of the splat itself */
+    box[0][axis] -= margin;
+    box[1][axis] += margin;
   }
-  scene->longest = status == CONIC_OK ? median : 0.0;
+  return 1;
+}
+
+/* As a float, rounded outwards. */
+static float outwards(double x, double sign) {
+  x = oracle_min(oracle_max(x, -1e9), 1e9);
+  return (float)(x + sign * (0.01 + 1e-6 * fabs(x)));
+}
+
+static oracle_reach find_reach(const oracle_scene *scene, size_t i) {
+  oracle_reach reach = {{{1.0f, 1.0f}, {-1.0f, -1.0f}}};
+  oracle_placed world;
+  oracle_splat splat;
+  double box[2][2] = {{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
+  if (!stand(scene, i, &world, &splat))
+    return reach;
+  if (!scene->is_brute && !reach_of_sphere(&scene->view, &splat.placed, box)) {
+    if (!conic_oracle_scene_place(scene, i, &splat))
+      return reach;
+    memcpy(box, splat.box, sizeof box);
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    reach.box[0][axis] = outwards(box[0][axis], -1.0);
+    reach.box[1][axis] = outwards(box[1][axis], 1.0);
+  }
+  return reach;
+}
+
+enum { A_RUN = 1024 };
+
+static void find_reaches(void *data, size_t i_item, int i_thread) {
+  oracle_scene *scene = data;
+  (void)i_thread;
+  for (size_t i = i_item * A_RUN; i < (i_item + 1) * A_RUN && i < scene->splats->count; i++)
+    scene->reaches[i] = find_reach(scene, i);
+}
+
+conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
+                                       const conic_render_options *options, int is_brute, oracle_scene *scene) {
+  scene->longest = options->splat_length; /* of all splats, where these are some that were chosen of them */
+  scene->view = conic_oracle_view(camera, options, options->near_z > 0.0 ? options->near_z : default_near(splats));
+  scene->splats = splats;
+  scene->options = options;
+  scene->is_brute = is_brute;
+  scene->reaches = conic_memory_allocate(context, splats->count, sizeof *scene->reaches);
+  conic_status status = scene->reaches ? CONIC_OK : CONIC_ERROR_MEMORY;
+  if (status == CONIC_OK && !(scene->longest > 0.0))
+    status = median_length(context, splats, &scene->longest);
+  if (status == CONIC_OK)
+    status = conic_parallel_runs(context, "verify", 0.0, 0.05, (splats->count + A_RUN - 1) / A_RUN, 256, find_reaches,
+                                 scene);
   if (status != CONIC_OK)
     conic_oracle_scene_release(context, scene);
   return status;
 }
 
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene) {
-  conic_memory_release(context, scene->splats);
-  scene->splats = NULL;
-  scene->n = 0;
+  conic_memory_release(context, scene->reaches);
+  scene->reaches = NULL;
 }

@@ -1,4 +1,4 @@
-/* The oracle's scene: every splat that may be drawn, in camera space, and what is in doubt about it. */
+/* The oracle's scene: where every splat may show, and any of them in camera space, with what is in doubt about it. */
 #ifndef CONIC_ORACLE_SCENE_H
 #define CONIC_ORACLE_SCENE_H
 
@@ -18,23 +18,38 @@ typedef struct oracle_splat {
   uint32_t index;
   int is_facing_unsure;
   double box[2][2]; /* what any of the formulas may cover lies within, amply */
+  int is_anywhere;  /* … but is not trusted to: for tests */
   oracle_clip clip;
   double epsilon;
   double behind; /* 1/(1 + ε/‖p‖): s unless the splat is wide */
   double opacity, color[3];
   double normal[3]; /* world, unit, towards the viewer */
+  /* What rounding may make of the two: */
+  double color_error, normals[2][3]; /* of any component; least and greatest of each */
 } oracle_splat;
+
+/* All that a splat may cover lies within this box of the screen: minimum and maximum in x, y; none where empty. */
+typedef struct oracle_reach {
+  float box[2][2];
+} oracle_reach;
 
 typedef struct oracle_scene {
   oracle_view view;
-  size_t n;
-  oracle_splat *splats;
-  double longest; /* the median of the splats' longer axes, which caps the automatic ε */
+  const conic_splats *splats;
+  const conic_render_options *options;
+  oracle_reach *reaches; /* one for each splat: they are placed where they are needed, and again elsewhere */
+  double longest;        /* the median of the splats' longer axes, which caps the automatic ε */
+  int is_brute;          /* every reach is the whole plane */
 } oracle_scene;
 
+/* Looks through the splats. With is_brute nothing is left out anywhere, which is for tests. The scene refers to splats
+ * and options. Errors: MEMORY, CANCELLED. */
 conic_status conic_oracle_scene_create(conic_context *context, const conic_splats *splats, const conic_camera *camera,
-                                       const conic_render_options *options, oracle_scene *scene);
+                                       const conic_render_options *options, int is_brute, oracle_scene *scene);
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene);
+
+/* Splat i of the input; 0 where it can't show. */
+int conic_oracle_scene_place(const oracle_scene *scene, size_t i, oracle_splat *splat);
 
 /* The splat with one of its inputs as far off as single precision may put it: the components of the axes, that is. The
  * centre is projected in double precision (docs/reference/picture.md, Numbers). */

@@ -34,10 +34,23 @@ void conic_oracle_mesh_release(conic_context *context, oracle_mesh *mesh);
 typedef struct oracle_seen_triangle {
   oracle_splat splat;
   oracle_candidate candidate;
+  int is_precise; /* colour and normal are held to their bounds */
 } oracle_seen_triangle;
 
-/* The nearest of the pieces `which` at a pixel: 0 where there is none. */
+/* The nearest of the pieces `which` at a pixel: 0 where there is none. `*doubt` says why it may be another, or none. */
 int conic_oracle_mesh_at(const oracle_mesh *mesh, const oracle_view *view, const uint32_t *which, size_t n, int column,
-                         int row, oracle_seen_triangle *seen, oracle_fragment *fragment);
+                         int row, oracle_seen_triangle *seen, oracle_fragment *fragment, unsigned *doubt);
+
+enum { ORACLE_MAX_RIVALS = 16 };
+
+/* The pieces that may be the nearest there, once rounding has decided; *may_be_none where none of them may be. Of more
+ * than ORACLE_MAX_RIVALS the first are given, and *is_crowded is set. */
+typedef struct oracle_rivals {
+  int n, may_be_none, is_crowded;
+  oracle_seen_triangle seen[ORACLE_MAX_RIVALS];
+  oracle_fragment fragments[ORACLE_MAX_RIVALS];
+} oracle_rivals;
+void conic_oracle_mesh_rivals(const oracle_mesh *mesh, const oracle_view *view, const uint32_t *which, size_t n,
+                              int column, int row, oracle_rivals *rivals);
 
 #endif

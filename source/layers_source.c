@@ -62,6 +62,7 @@ static conic_status draw_layers(conic_source *source, conic_renderer *renderer, 
   options.samples = view->samples;
   options.may_be_coarser = view->may_be_coarser;
   options.seconds = view->seconds;
+  options.tolerates_damage = view->tolerates_damage;
   conic_status status = conic_layers_draw(l->layers, renderer, camera, render, &options, image, statistics, &l->drawn);
   source->choice = (conic_source_choice){
       .error_px = l->drawn.error_px, .n_culled = l->drawn.n_clouds_culled, .n_levels = l->drawn.n_levels};
@@ -73,8 +74,8 @@ static void tell_layers_rest(const conic_source *source, conic_facts *facts) {
   CONIC_ADD_FACTS(facts, CONIC_OBJECT("layers"), CONIC_COUNT("clouds", ((const layers_source *)source)->n_clouds),
                   CONIC_COUNT("clouds_drawn", d->n_clouds), CONIC_COUNT("clouds_grazing", d->n_clouds_grazing),
                   CONIC_COUNT("clouds_read", d->n_clouds_read), CONIC_COUNT("clouds_missing", d->n_clouds_missing),
-                  CONIC_COUNT("places", d->n_places), CONIC_COUNT("places_hidden", d->n_places_hidden),
-                  CONIC_COUNT("places_grazing", d->n_places_grazing),
+                  CONIC_COUNT("clouds_damaged", d->n_clouds_damaged), CONIC_COUNT("places", d->n_places),
+                  CONIC_COUNT("places_hidden", d->n_places_hidden), CONIC_COUNT("places_grazing", d->n_places_grazing),
                   CONIC_COUNT("places_coarser", d->n_places_coarser), CONIC_NUMBER("coarser_px", d->missing_error_px),
                   CONIC_COUNT("splats_hidden", d->n_splats_left), CONIC_COUNT("levels", d->n_levels),
                   CONIC_COUNT("bands", d->n_bands), CONIC_COUNT("bytes_received", d->n_bytes_received));

@@ -141,6 +141,7 @@ static int run_hybrid(cli_session *session, int argc, char **argv) {
       {"sampling", CLI_CHOICE, &sampling, "HOW",
        "blue (blue noise, ellipses) or box (three grids, circles: for comparison) [blue]", .choices = sampling_words},
       {"texture", CLI_TEXT, &job.texture, "FILE", "the picture on the mesh [its materials']"},
+      CLI_TEXTURE_BOUND(session),
       {"cutoff", CLI_NUMBER, &cutoff, "F", "standard deviations at which a surfel ends; that of the pictures [1.5]",
        0.25, 5},
       {"single", CLI_FLAG, &job.options.has_single_levels, NULL,

@@ -23,6 +23,12 @@ typedef struct prepare_job {
 
 enum { READ, WORK, WRITE };
 
+static int parse_ellipse(const char *text, void *value) {
+  conic_ellipse_rule *rule = value;
+  *rule = strcmp(text, "bounding") == 0 ? CONIC_ELLIPSE_BOUNDING : CONIC_ELLIPSE_VORONOI;
+  return *rule == CONIC_ELLIPSE_BOUNDING || strcmp(text, "voronoi") == 0;
+}
+
 /* Makes normals of a set's axes, so that its sizes can be found anew. */
 static void forget_axes(conic_context *context, conic_splats *splats) {
   splats->n_clips = 0; /* lines in units of the old axes */
@@ -156,6 +162,10 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
       CLI_IN_PLACE(job.base),
       {"k", CLI_INT, &job.estimate.n_neighbours, "K", "neighbours that a point's ellipse comes from, 6 to 64 [20]", 6,
        64},
+      {"ellipse", CLI_PARSED, &job.estimate.ellipse, "RULE",
+       "what a point's ellipse goes around: its voronoi cell, or bounding all K neighbours, as Confetti has it "
+       "[voronoi]",
+       .parse = parse_ellipse},
       {"features", CLI_NUMBER, &job.estimate.feature_angle_deg, "ANGLE",
        "creases sharper than ANGLE degrees become sharp, by clip lines [none]", 0, 90},
       {"count", CLI_COUNT, &job.count, "N", "keep N of the points, chosen at random, and fit the sizes to them", 1,
@@ -173,6 +183,6 @@ static int run_prepare(cli_session *session, int argc, char **argv) {
 const cli_command cli_prepare = {
     .name = "prepare",
     .summary = "turns points or a mesh into splats: normals, sizes, thinning",
-    .usage = "conic prepare IN -o OUT.ply [-k K] [--features ANGLE] [--count N --seed S] [--plain]",
+    .usage = "conic prepare IN -o OUT.ply [-k K] [--ellipse RULE] [--features ANGLE] [--count N --seed S] [--plain]",
     .run = run_prepare,
 };

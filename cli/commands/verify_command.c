@@ -11,7 +11,8 @@
 typedef struct verify_job {
   cli_render_job scene;
   int question;
-  const char *image_path; /* null: drawn here */
+  const char *image_path;      /* null: drawn here */
+  unsigned long long n_pixels; /* 0: all */
 
   conic_image image;
   conic_reference reference;
@@ -48,14 +49,14 @@ static void name_reference(verify_job *job) {
   const conic_source_choice *choice = conic_source_chosen(job->scene.source);
   const uint32_t *names = choice->ids;
   size_t n_names = choice->drawing.splats->count;
-  double *ids = job->reference.planes[CONIC_PLANE_ID];
-  uint32_t *tied = job->reference.tied_id;
-  for (size_t i = 0; names && i < (size_t)job->reference.width * (size_t)job->reference.height; i++) {
+  conic_reference *r = &job->reference;
+  double *ids = r->planes[CONIC_PLANE_ID];
+  for (size_t i = 0; names && i < r->n_pixels; i++)
     if (ids[i] < (double)n_names)
       ids[i] = (double)names[(size_t)ids[i]];
-    if (tied[i] < n_names)
-      tied[i] = names[tied[i]];
-  }
+  for (size_t i = 0; names && i < r->n_ids; i++)
+    if (r->ids[i].id < n_names)
+      r->ids[i].id = names[r->ids[i].id];
 }
 
 static conic_status compare(cli_session *session, verify_job *job) {
@@ -73,9 +74,9 @@ static conic_status compare(cli_session *session, verify_job *job) {
     options.splat_length = 0.0; /* the oracle sees all splats, and measures them by itself */
   double start = cli_seconds();
   if (status == CONIC_OK)
-    status =
-        conic_oracle_render_drawing(session->context, &choice->drawing, &camera, &options,
-                                    (conic_oracle_question)job->question, job->scene.view.samples, &job->reference);
+    status = conic_oracle_render_pixels(session->context, &choice->drawing, &camera, &options,
+                                        (conic_oracle_question)job->question, job->scene.view.samples,
+                                        (size_t)job->n_pixels, &job->reference);
   job->oracle_ms = 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK && job->image_path)
     name_reference(job);
@@ -92,6 +93,8 @@ static void report_planes(cli_json *json, const verify_job *job) {
     cli_json_object(json, conic_plane_describe((conic_plane)i)->name);
     cli_json_number(json, "max_abs", job->verdict.planes[i].max_abs);
     cli_json_number(json, "p999", job->verdict.planes[i].p999);
+    if (i != CONIC_PLANE_ID && job->question == CONIC_ORACLE_METHOD)
+      cli_json_number(json, "widest", conic_reference_width(&job->reference, (conic_plane)i));
     cli_json_close(json);
   }
   cli_json_close(json);
@@ -102,21 +105,39 @@ static void report_planes(cli_json *json, const verify_job *job) {
   cli_json_close(json);
 }
 
+static void report_worst(cli_json *json, const conic_oracle_fault *worst) {
+  cli_json_object(json, "worst");
+  cli_json_count(json, "x", (uint64_t)worst->x);
+  cli_json_count(json, "y", (uint64_t)worst->y);
+  cli_json_text(json, "plane", conic_plane_describe((conic_plane)worst->plane)->name);
+  cli_json_count(json, "channel", (uint64_t)worst->channel);
+  cli_json_number(json, "found", worst->found);
+  cli_json_number(json, "low", worst->low);
+  cli_json_number(json, "high", worst->high);
+  cli_json_close(json);
+}
+
 static void report_pixels(cli_json *json, const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
+  const conic_reference *reference = &job->reference;
+  cli_json_count(json, "judged_pixels", reference->n_pixels);
   cli_json_count(json, "compared_pixels", verdict->compared_pixels);
   cli_json_count(json, "unstable_pixels", verdict->unstable_pixels);
   cli_json_count(json, "covered_pixels", verdict->covered_pixels);
   if (job->scene.view.samples > 1) {
-    cli_json_count(json, "unstable_samples", job->reference.unstable_samples);
-    cli_json_count(json, "covered_samples", job->reference.covered_samples);
+    cli_json_count(json, "unstable_samples", reference->unstable_samples);
+    cli_json_count(json, "covered_samples", reference->covered_samples);
   }
-  cli_json_count(json, "undecided_ids", job->reference.undecided_ids);
-  cli_json_number(json, "unstable_limit", verdict->unstable_limit);
+  cli_json_count(json, "undecided_ids", reference->undecided_ids);
+  cli_json_count(json, "unbounded_pixels", reference->unbounded_pixels);
+  cli_json_number(json, "unbounded_limit", verdict->unbounded_limit);
   cli_json_object(json, "unstable_by_reason");
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
-    cli_json_count(json, conic_unstable_reason_name((conic_unstable_reason)i), job->reference.unstable_by_reason[i]);
+    cli_json_count(json, conic_unstable_reason_name((conic_unstable_reason)i), reference->unstable_by_reason[i]);
   cli_json_close(json);
+  cli_json_count(json, "wrong_pixels", verdict->wrong_pixels);
+  if (verdict->wrong_pixels)
+    report_worst(json, &verdict->worst);
 }
 
 static void report_weights(cli_json *json, const conic_weight_error *error) {
@@ -152,31 +173,40 @@ static int write_statistics(cli_session *session, const verify_job *job) {
   return cli_json_finish(file);
 }
 
-/* Too much is in doubt for the rest to say anything. */
-static int is_too_unstable(const verify_job *job) {
-  const conic_oracle_verdict *verdict = &job->verdict;
-  int has_samples = job->scene.view.samples > 1;
-  size_t unstable = has_samples ? job->reference.unstable_samples : verdict->unstable_pixels;
-  size_t covered = has_samples ? job->reference.covered_samples : verdict->covered_pixels;
-  return job->question == CONIC_ORACLE_METHOD && (double)unstable > verdict->unstable_limit * (double)covered;
-}
-
 static void print_unstable(const verify_job *job) {
   const conic_oracle_verdict *verdict = &job->verdict;
+  const conic_reference *reference = &job->reference;
   double covered = verdict->covered_pixels ? (double)verdict->covered_pixels : 1.0;
   printf("unstable  %zu of %zu covered pixels (%.3f %%)", verdict->unstable_pixels, verdict->covered_pixels,
          100.0 * (double)verdict->unstable_pixels / covered);
   if (job->scene.view.samples > 1)
-    printf(", %zu of %zu samples", job->reference.unstable_samples, job->reference.covered_samples);
+    printf(", %zu of %zu samples", reference->unstable_samples, reference->covered_samples);
   const char *separator = ": ";
   for (int i = 0; i < CONIC_N_UNSTABLE_REASONS; i++)
-    if (job->reference.unstable_by_reason[i]) {
+    if (reference->unstable_by_reason[i]) {
       printf("%s%s %zu", separator, conic_unstable_reason_name((conic_unstable_reason)i),
-             job->reference.unstable_by_reason[i]);
+             reference->unstable_by_reason[i]);
       separator = ", ";
     }
-  if (is_too_unstable(job))
-    printf("; at most %g %% may be  FAILED", 100.0 * verdict->unstable_limit);
+  putchar('\n');
+  if (reference->unbounded_pixels)
+    printf("unbounded %zu of %zu judged pixels; at most %g %% may be\n", reference->unbounded_pixels,
+           reference->n_pixels, 100.0 * verdict->unbounded_limit);
+}
+
+static void print_pixels(const verify_job *job) {
+  const conic_oracle_verdict *verdict = &job->verdict;
+  const conic_reference *reference = &job->reference;
+  size_t n_pixels = (size_t)reference->width * (size_t)reference->height;
+  printf("judged    %zu of %zu pixels, %zu wrong\n", reference->n_pixels, n_pixels, verdict->wrong_pixels);
+  print_unstable(job);
+  if (!verdict->wrong_pixels || job->question == CONIC_ORACLE_EXACT)
+    return;
+  const conic_oracle_fault *worst = &verdict->worst;
+  printf("worst     pixel %d,%d: %s[%d] is %.9g; it may be %.9g", worst->x, worst->y,
+         conic_plane_describe((conic_plane)worst->plane)->name, worst->channel, worst->found, worst->low);
+  if (worst->high > worst->low)
+    printf(" to %.9g", worst->high);
   putchar('\n');
 }
 
@@ -185,12 +215,16 @@ static void print_result(const verify_job *job) {
     const conic_oracle_plane_verdict *plane = &job->verdict.planes[i];
     if (!plane->is_compared)
       continue;
-    printf("%-9s max %-12.4g p99.9 %-12.4g", conic_plane_describe((conic_plane)i)->name, plane->max_abs, plane->p999);
-    if (plane->bound == plane->bound)
+    printf("%-9s max %-11.4g p99.9 %-11.4g", conic_plane_describe((conic_plane)i)->name, plane->max_abs, plane->p999);
+    if (plane->bound == plane->bound) {
+      double width = conic_reference_width(&job->reference, (conic_plane)i);
+      if (width > 0.0)
+        printf("doubt %-9.3g ", width);
       printf("bound %-8.4g%s", plane->bound, plane->max_abs <= plane->bound ? "" : "  FAILED");
+    }
     putchar('\n');
   }
-  print_unstable(job);
+  print_pixels(job);
   if (job->question == CONIC_ORACLE_EXACT) {
     const conic_weight_error *error = &job->reference.weight_error;
     printf("weights   max %-12.4g p99.9 %-12.4g of the peak: max %.4g, p99.9 %.4g (%zu weights, integrals to %.1g)\n",
@@ -236,6 +270,8 @@ static int run(cli_session *session, int argc, char **argv) {
        "method: its own formula in double precision; exact: the kernel itself, projected and filtered [method]",
        .choices = questions},
       {"image", CLI_TEXT, &job.image_path, "FILE", "the picture to verify, of whatever renderer [drawn anew]"},
+      {"pixels", CLI_COUNT, &job.n_pixels, "N", "judge this many pixels, spread evenly; always the same ones [all]",
+       .minimum = 1, .maximum = 4294836225.0},
   };
   int exit_code = cli_scene_parse(session, own, (int)(sizeof own / sizeof own[0]), argc, argv, &job.scene);
   if (exit_code == CLI_DONE && job.scene.planes & ~CONIC_DRAWN_PLANES)
@@ -253,6 +289,6 @@ static int run(cli_session *session, int argc, char **argv) {
 const cli_command cli_verify = {
     .name = "verify",
     .summary = "measures pictures against a slow, exact reference",
-    .usage = "conic verify IN… [--against method|exact] [--image FILE] [camera and render options]",
+    .usage = "conic verify IN… [--against method|exact] [--image FILE] [--pixels N] [camera and render options]",
     .run = run,
 };

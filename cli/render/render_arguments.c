@@ -38,8 +38,8 @@ static int check_deep(const cli_render_job *job) {
 static int check_streaming(const cli_render_job *job, int is_given) {
   int streams = (job->abilities & CONIC_SOURCE_STREAMS) != 0;
   if ((job->progressive_path || job->deadline > 0.0 || is_given) && !streams)
-    return cli_usage("render: --progressive, --deadline, --memory, --timeout and --occlusion are for a single .lpc, or "
-                     "the URL of one");
+    return cli_usage("render: --progressive, --deadline, --tolerate, --memory, --timeout and --occlusion are for a "
+                     "single .lpc, or the URL of one");
   if (streams && job->deep_path)
     return cli_usage("render: --deep lists the splats of inputs that are read whole, not of an .lpc");
   if (job->progressive_path && (job->is_turntable || job->repeat > 1))
@@ -117,6 +117,9 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},
       {"deadline", CLI_NUMBER, &job->deadline, "S",
        "of an .lpc, no more is read after so many seconds; what is missing is drawn coarser", 0.001, 1e6},
+      {"tolerate", CLI_FLAG, &job->view.tolerates_damage, NULL,
+       "of an .lpc, what is damaged or does not come is drawn coarser, with a warning",
+       .is_given = &is_streaming_given},
       {"memory", CLI_INT, &memory_mib, "MiB", "of an .lpc, what clouds and splats may take [512]", 1, 1 << 20,
        .is_given = &is_streaming_given},
       {"occlusion", CLI_CHOICE, &occlusion, "HOW",
@@ -133,7 +136,7 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
   job->access.memory_bytes = (uint64_t)memory_mib << 20;
   job->access.connect_seconds = job->access.stall_seconds;
   job->view.occlusion = (conic_occlusion)occlusion;
-  job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0;
+  job->view.may_be_coarser = job->progressive_path || job->deadline > 0.0 || job->view.tolerates_damage;
   if (job->deep_path)
     job->unwritten_planes |= ~job->planes & 1u << CONIC_PLANE_RGBA; /* which its samples make */
   if (job->planes & 1u << CONIC_PLANE_POSITION)

@@ -112,7 +112,8 @@ conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *ca
 /* --progressive: a picture of each level, of which the last stays in `image`. */
 conic_status cli_render_levels(cli_session *session, cli_render_job *job, const conic_camera *camera,
                                conic_image *image, conic_render_statistics *statistics);
-/* One picture, within what is left of the deadline. */
+/* Opening, and one picture, within what is left of the deadline. */
+void cli_deadline_open(cli_render_job *job);
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics);
 

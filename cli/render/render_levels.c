@@ -7,15 +7,19 @@
 
 /* The deadline counts from the start of the program's work, not of this picture. */
 static double seconds_left(const cli_render_job *job) {
-  return job->start_seconds + job->deadline - cli_seconds();
+  double left = job->start_seconds + job->deadline - cli_seconds();
+  return left > 1e-3 ? left : 1e-3; /* 0 would be no limit */
+}
+
+void cli_deadline_open(cli_render_job *job) {
+  if (job->deadline > 0.0)
+    job->access.seconds = seconds_left(job);
 }
 
 conic_status cli_render_picture(cli_render_job *job, const conic_camera *camera, conic_image *image,
                                 conic_render_statistics *statistics) {
-  if (job->deadline > 0.0) {
-    double left = seconds_left(job);
-    job->view.seconds = left > 1e-3 ? left : 1e-3;
-  }
+  if (job->deadline > 0.0)
+    job->view.seconds = seconds_left(job);
   conic_status status =
       conic_source_draw(job->source, job->renderer, camera, &job->options, &job->view, image, statistics);
   if (status == CONIC_OK)
@@ -49,7 +53,7 @@ conic_status cli_render_levels(cli_session *session, cli_render_job *job, const 
     status = cli_render_picture(job, camera, image, statistics);
     if (status == CONIC_OK)
       status = write_progress(session, job, level, image);
-    if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && seconds_left(job) < 0.0))
+    if (conic_source_chosen(job->source)->n_levels < level || (job->deadline > 0.0 && seconds_left(job) <= 1e-3))
       break;
   }
   return status;

@@ -2,10 +2,10 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "core/files/file.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
   return job->view.error_px > 0.0 || job->budget > 0;
@@ -19,8 +19,9 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   const char *texture_path = job->opening.texture_path;
   if (cli_isa_check(session, job->options.isa) != CLI_DONE)
     return CONIC_ERROR_UNSUPPORTED;
-  if (texture_path && access(texture_path, R_OK) != 0) {
-    cli_error(CLI_INPUT, "%s: cannot read: %s", texture_path, strerror(errno));
+  errno = 0;
+  if (texture_path && !conic_file_is_there(texture_path)) {
+    cli_error(CLI_INPUT, "%s: cannot read: %s", texture_path, errno ? strerror(errno) : "it is no regular file");
     return CONIC_ERROR_INPUT;
   }
   conic_status status = cli_device_open(session, &job->device, &job->renderer);
@@ -67,6 +68,7 @@ static conic_status stand_upright(cli_session *session, cli_render_job *job) {
 }
 
 conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
+  cli_deadline_open(job);
   conic_status status =
       conic_source_open(session->context, job->inputs, (size_t)job->n_inputs, &job->opening, &job->source);
   if (status == CONIC_OK)

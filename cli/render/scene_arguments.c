@@ -108,6 +108,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "what a mesh is drawn as: auto (triangles), points (splats of the vertices), mesh or hybrid (both) [auto]",
        .choices = as_words, .is_given = &raw.is_as_given},
       {"texture", CLI_TEXT, &job->opening.texture_path, "FILE", "the picture on a mesh's triangles [its materials']"},
+      CLI_TEXTURE_BOUND(session),
       {"smooth", CLI_FLAG, &job->opening.is_smooth, NULL,
        "of a mesh's triangles: normals that are the means of the faces', in place of the file's"},
       {"crease", CLI_NUMBER, &job->opening.crease_deg, "DEG",

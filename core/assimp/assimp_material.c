@@ -11,6 +11,7 @@
 #include "core/files/file.h"
 #include "core/files/scratch.h"
 #include "core/image/image_common.h"
+#include "core/image/texture_levels.h"
 #include "core/pictures/image_samples.h"
 
 enum { LONGEST_PATH = 2 * CONIC_INPUT_LONGEST_WORD };
@@ -39,17 +40,12 @@ static conic_status read_texture_file(const conic_input *input, const char *path
   conic_image image;
   told.options.log = warn_of_picture;
   told.options.log_cookie = &log;
-  conic_status status = conic_image_read(&told, path, &image);
+  conic_status status = conic_texture_read_image(&told, path, &image);
   if (status == CONIC_ERROR_MEMORY || status == CONIC_ERROR_CANCELLED)
     return status;
   if (status != CONIC_OK)
     return CONIC_OK;
-  if (image.planes[CONIC_PLANE_RGBA])
-    status = conic_texture_create(context, &image, wrap, texture);
-  else
-    warn_of_picture(&log, CONIC_LOG_WARNING, "the image has no colour");
-  conic_image_release(context, &image);
-  return status;
+  return conic_texture_take(context, &image, wrap, texture);
 }
 
 /* A name as files have it: of a URI, with %20 and the like; of Windows, with \. */
@@ -121,9 +117,7 @@ static conic_status make_from_texels(conic_context *context, const conic_assimp_
   if (status != CONIC_OK)
     return status;
   conic_samples_to_rgba(context, texels, image.width, image.height, layout, image.planes[CONIC_PLANE_RGBA]);
-  status = conic_texture_create(context, &image, wrap, texture);
-  conic_image_release(context, &image);
-  return status;
+  return conic_texture_take(context, &image, wrap, texture);
 }
 
 static conic_status take_embedded(const conic_input *input, conic_assimp_process *process,
@@ -138,6 +132,8 @@ static conic_status take_embedded(const conic_input *input, conic_assimp_process
                       record->width, record->height);
   if (record->n_bytes > SIZE_MAX / 2)
     return conic_fail(input->context, CONIC_ERROR_INPUT, "%s: a texture is too large", input->name);
+  if (is_texels && conic_texture_check_room(input->context, input->name, (int)record->width, (int)record->height))
+    return CONIC_ERROR_INPUT;
   void *bytes = conic_memory_allocate(input->context, (size_t)record->n_bytes, 1);
   if (!bytes)
     return CONIC_ERROR_MEMORY;

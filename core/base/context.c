@@ -22,7 +22,7 @@ static void default_release(void *cookie, void *pointer) {
 }
 
 void conic_context_options_init_sized(conic_context_options *options, size_t size) {
-  static const conic_context_options own = {.size = sizeof own};
+  static const conic_context_options own = {.size = sizeof own, .max_texture_bytes = (size_t)4 << 30};
   conic_options_give(options, size, &own);
 }
 
@@ -53,8 +53,10 @@ conic_status conic_context_create(const conic_context_options *options, conic_co
     return CONIC_ERROR_MEMORY;
   memset(made, 0, sizeof *made);
   made->options = settings;
+  pthread_mutex_init(&made->outputs_lock, NULL);
   conic_status status = conic_pool_create(made, &made->pool);
   if (status != CONIC_OK) {
+    pthread_mutex_destroy(&made->outputs_lock);
     settings.release(settings.allocator_cookie, made);
     return status;
   }
@@ -67,6 +69,7 @@ void conic_context_destroy(conic_context *context) {
     return;
   conic_pool_destroy(context, context->pool);
   conic_memory_release(context, context->inputs);
+  pthread_mutex_destroy(&context->outputs_lock);
   context->options.release(context->options.allocator_cookie, context);
 }
 

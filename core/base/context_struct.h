@@ -2,6 +2,7 @@
 #ifndef CONIC_CONTEXT_STRUCT_H
 #define CONIC_CONTEXT_STRUCT_H
 
+#include <pthread.h>
 #include <stdint.h>
 
 #include "conic/context.h"
@@ -19,10 +20,14 @@ typedef struct conic_file_identity {
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
+  size_t texture_bytes;        /* of all textures that there are */
+  int reads_texture;           /* the picture that is read is to become one */
   int guards_inputs;           /* core/files/guard.h; the next are its own */
   conic_file_identity *inputs; /* which were read */
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
+  pthread_mutex_t outputs_lock;
+  struct conic_output *outputs; /* core/files/file.h: those with temporary files */
 };
 
 /* Starts the threads beside the calling one; fewer where the system gives fewer, and counts them. Errors: MEMORY. */

@@ -258,7 +258,7 @@ static conic_status estimate_model(conic_context *context, const conic_estimate_
 static conic_status estimate_plain(conic_context *context, const conic_estimate_options *options, conic_model *model,
                                    conic_repairs *repairs) {
   conic_repairs counted = {0};
-  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL, INFINITY};
+  conic_estimate estimate = {model, (double)options->cutoff, NULL, {NULL}, {NULL}, NULL, options->ellipse, INFINITY};
   if (options->stays_at_mesh || options->feature_angle_deg > 0.0)
     estimate.tolerance = conic_mesh_tolerance(&model->points);
   estimate.states = conic_memory_allocate(context, model->points.count, sizeof *estimate.states);
@@ -310,10 +310,13 @@ conic_status conic_model_to_splats(conic_context *context, const conic_estimate_
   conic_estimate_options_init(options);
   if (!model || !conic_options_take(options, given) || options->n_neighbours < 6 ||
       options->n_neighbours > CONIC_MAX_NEIGHBOURS || !(options->cutoff > 0.0f) || !conic_is_finite(options->cutoff) ||
-      !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT,
-                      "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90)",
-                      CONIC_MAX_NEIGHBOURS);
+      !(options->feature_angle_deg >= 0.0 && options->feature_angle_deg <= 90.0) ||
+      (options->ellipse != CONIC_ELLIPSE_VORONOI && options->ellipse != CONIC_ELLIPSE_BOUNDING))
+    return conic_fail(
+        context, CONIC_ERROR_ARGUMENT,
+        "estimate: wrong options (6 to %d neighbours, a cutoff above 0, a feature angle of 0 to 90, a rule "
+        "for ellipses)",
+        CONIC_MAX_NEIGHBOURS);
   if (model->n_triangles && !model->triangles)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "estimate: the model has no triangles");
   conic_status status = conic_splats_check_own(context, "estimate", &model->points);

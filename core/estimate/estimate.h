@@ -24,7 +24,8 @@ typedef struct conic_estimate {
   uint8_t *states;     /* conic_point_state of each point */
   float *tangent_u[3]; /* of each point, beside the model's own: valid where FACED, SPREAD or ISOLATED */
   float *tangent_v[3];
-  float *dot;       /* of each point; null: none are looked for */
+  float *dot; /* of each point; null: none are looked for */
+  conic_ellipse_rule rule;
   double tolerance; /* no outline of a vertex grows, for blending, farther than this from its faces */
 } conic_estimate;
 

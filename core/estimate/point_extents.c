@@ -150,6 +150,19 @@ static conic_ellipse circle(double radius) {
   return ellipse;
 }
 
+/* Confetti's own (§4.3): around all neighbours, seen along the normal, whatever surface they are on. */
+static conic_ellipse bound_neighbours(const tangent_origin *p, const double u[3], const double v[3]) {
+  double points[CONIC_MAX_NEIGHBOURS][2];
+  int n = (int)p->neighbourhood->n_neighbours;
+  for (int i = 0; i < n; i++) {
+    double d[3], distance2;
+    view_neighbour(p, p->list[i], d, &distance2);
+    points[i][0] = conic_dot(d, u);
+    points[i][1] = conic_dot(d, v);
+  }
+  return conic_ellipse_bound((const double(*)[2])points, n, CONIC_OUTLINE_RATIO);
+}
+
 /* The outline at a place, and what it means for the point. */
 static conic_point_state outline(const tangent_origin *p, size_t slot, const double *spacings, const double u[3],
                                  const double v[3], conic_ellipse *ellipse) {
@@ -212,6 +225,8 @@ static void spread_point(const spread_work *work, size_t point, size_t slot) {
     p.normal[axis] = own[axis];
   conic_tangent_basis(p.normal, u, v);
   conic_point_state state = outline(&p, slot, work->spacings, u, v, &ellipse);
+  if (estimate->rule == CONIC_ELLIPSE_BOUNDING && state == CONIC_POINT_SPREAD)
+    ellipse = bound_neighbours(&p, u, v);
   if (estimate->dot && state == CONIC_POINT_ISOLATED)
     estimate->dot[point] = 1.0f;
   else if (estimate->dot && work->neighbourhood->flags[slot] & CONIC_SLOT_SCATTERED) {

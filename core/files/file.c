@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/files/guard.h"
@@ -20,6 +21,7 @@ struct conic_output {
   char *path;           /* for messages */
   char *target;         /* what the path leads to */
   char *temporary_path; /* null for standard output and for what is no regular file */
+  conic_output *next;   /* of the context's */
 };
 
 static char *copy_text(conic_context *context, const char *text) {
@@ -89,19 +91,55 @@ static char *temporary_name(conic_context *context, const char *path, int attemp
   return temporary;
 }
 
+/* Makes the temporary file if nothing has its name. An output that has one is on the context's list. */
+static int begin_temporary(conic_output *output) {
+  conic_context *context = output->context;
+  pthread_mutex_lock(&context->outputs_lock); /* whoever gives up keeps it for good */
+  int descriptor = open(output->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666), error = errno;
+  if (descriptor >= 0) {
+    output->next = context->outputs;
+    context->outputs = output;
+  }
+  pthread_mutex_unlock(&context->outputs_lock);
+  errno = error;
+  return descriptor;
+}
+
+/* Renames the temporary file, where that is wanted, or removes it. Whether it is now under the output's name. */
+static int end_temporary(conic_output *output, int is_wanted) {
+  conic_context *context = output->context;
+  pthread_mutex_lock(&context->outputs_lock);
+  int is_renamed = is_wanted && rename(output->temporary_path, output->target) == 0, error = errno;
+  if (!is_renamed)
+    unlink(output->temporary_path);
+  conic_output **at = &context->outputs;
+  while (*at != output)
+    at = &(*at)->next;
+  *at = output->next;
+  pthread_mutex_unlock(&context->outputs_lock);
+  errno = error;
+  return is_renamed;
+}
+
+void conic_outputs_give_up(conic_context *context) {
+  pthread_mutex_lock(&context->outputs_lock);
+  for (conic_output *output = context->outputs; output; output = output->next)
+    unlink(output->temporary_path);
+}
+
 static conic_status open_temporary(conic_output *output) {
   for (int attempt = 0; attempt < 100; attempt++) {
     conic_memory_release(output->context, output->temporary_path);
     output->temporary_path = temporary_name(output->context, output->target, attempt);
     if (!output->temporary_path)
       return CONIC_ERROR_MEMORY;
-    int descriptor = open(output->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    int descriptor = begin_temporary(output);
     if (descriptor >= 0) {
       output->stream = fdopen(descriptor, "wb");
       if (output->stream)
         return CONIC_OK;
       close(descriptor);
-      unlink(output->temporary_path);
+      end_temporary(output, 0);
       break;
     }
     if (errno != EEXIST)
@@ -173,14 +211,11 @@ conic_status conic_output_commit(conic_output *output) {
   int is_wrong = ferror(output->stream) || fflush(output->stream) != 0;
   if (output->stream != stdout && fclose(output->stream) != 0)
     is_wrong = 1;
-  if (!is_wrong && output->temporary_path && rename(output->temporary_path, output->target) != 0)
+  if (output->temporary_path && !end_temporary(output, !is_wrong))
     is_wrong = 1;
-  if (is_wrong) {
+  if (is_wrong)
     status = conic_fail(output->context, CONIC_ERROR_IO, "%s: cannot write: %s", output->path,
                         errno ? strerror(errno) : "the device failed");
-    if (output->temporary_path)
-      unlink(output->temporary_path);
-  }
   release_output(output);
   return status;
 }
@@ -191,7 +226,7 @@ void conic_output_abandon(conic_output *output) {
   if (output->stream != stdout)
     fclose(output->stream);
   if (output->temporary_path)
-    unlink(output->temporary_path);
+    end_temporary(output, 0);
   release_output(output);
 }
 

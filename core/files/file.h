@@ -25,6 +25,10 @@ conic_status conic_output_end(conic_output *output, conic_status status);
 /* Removes what was written and releases `output`; null is allowed. */
 void conic_output_abandon(conic_output *output);
 
+/* Removes the temporary files of all outputs, for a program that ends now, whatever its other threads do: no output can
+ * be committed, abandoned or opened after this. */
+void conic_outputs_give_up(conic_context *context);
+
 /* Removes what programs that were killed have left beside PATH of their outputs to it: hidden files named after
  * processes that are no more, untouched for a minute, since others may write to the same disk from elsewhere. For
  * outputs that are too large to be left lying about. */

@@ -1,11 +1,14 @@
 #include "conic/image.h"
 
+#include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/image/image_common.h"
+#include "core/image/texture_levels.h"
 
 static const conic_plane_description descriptions[CONIC_N_PLANES] = {
     [CONIC_PLANE_RGBA] = {"rgba", 4, 0, {"R", "G", "B", "A"}},
@@ -39,10 +42,22 @@ conic_status conic_image_check_size(conic_context *context, const char *path, in
                                     size_t pixel_bytes) {
   struct stat found;
   uint64_t image_bytes = (uint64_t)width * (uint64_t)height * pixel_bytes;
+  if (context->reads_texture && conic_texture_check_room(context, path, width, height) != CONIC_OK)
+    return CONIC_ERROR_INPUT;
   if (stat(path, &found) != 0 || !S_ISREG(found.st_mode) || image_bytes >> 16 <= (uint64_t)found.st_size)
     return CONIC_OK;
   return conic_fail(context, CONIC_ERROR_INPUT, "%s: %d × %d pixels cannot be in a file of %lld bytes (at byte %lld)",
                     path, width, height, (long long)found.st_size, (long long)found.st_size);
+}
+
+int conic_image_most_mib(conic_context *context, const char *path) {
+  struct stat found;
+  uint64_t most = INT_MAX;
+  if (stat(path, &found) == 0 && found.st_size >= 0)
+    most = 1 + ((uint64_t)found.st_size >> 4);
+  if (context->reads_texture && context->options.max_texture_bytes)
+    most = most <= context->options.max_texture_bytes >> 20 ? most : 1 + (context->options.max_texture_bytes >> 20);
+  return most < INT_MAX ? (int)most : INT_MAX;
 }
 
 conic_status conic_image_allocate(conic_context *context, int width, int height, unsigned planes, conic_image *image) {

@@ -24,9 +24,12 @@ static inline int conic_same_bits(float a, float b) {
 
 /* Refuses a picture that takes more than 2¹⁶ bytes of memory for each byte of its file, so that memory is bounded by
  * what there really is: compression that is lossless stays under 2¹¹ for all but flat pictures, and far under 2¹⁶ for
- * those, too. A pipe's size is not known, and nothing is refused. Errors: INPUT. */
+ * those, too; or one that is to become a texture for which there is no room. Errors: INPUT. */
 conic_status conic_image_check_size(conic_context *context, const char *path, int width, int height,
                                     size_t pixel_bytes);
+
+/* The same as a bound on all samples of the file's picture, for who checks it where the size is not known yet. */
+int conic_image_most_mib(conic_context *context, const char *path);
 
 /* 64-bit FNV-1a. */
 uint64_t conic_hash_bytes(const void *bytes, size_t n_bytes);

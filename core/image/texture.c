@@ -1,7 +1,11 @@
 #include "core/image/texture_levels.h"
 
+#include <string.h>
+
+#include "core/base/context_struct.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/image/image_common.h"
 
 /* What an old row or column of `n` texels gives to texel i of a new one of `m`: the overlaps of the old texels with the
  * new one's place, which add up to 1. Returns how many there are, 2 or 3; *first is the first. */
@@ -38,48 +42,74 @@ static void reduce_level(const conic_texture_level *from, conic_texture_level *t
   }
 }
 
-static conic_status add_level(conic_texture *texture, int width, int height) {
+static size_t level_bytes(int width, int height) {
+  return (size_t)width * (size_t)height * 4 * sizeof(conic_texel);
+}
+
+/* Of all levels. */
+static size_t pyramid_bytes(int width, int height) {
+  size_t n = level_bytes(width, height);
+  while (width > 1 || height > 1) {
+    width = (width + 1) / 2;
+    height = (height + 1) / 2;
+    n += level_bytes(width, height);
+  }
+  return n;
+}
+
+conic_status conic_texture_check_room(conic_context *context, const char *name, int width, int height) {
+  size_t most = context->options.max_texture_bytes, n = pyramid_bytes(width, height), there = context->texture_bytes;
+  if (most == 0 || (there <= most && n <= most - there))
+    return CONIC_OK;
+  return conic_fail(
+      context, CONIC_ERROR_INPUT,
+      "%s: a texture of %d × %d pixels takes %zu MiB; there are %zu left of the %zu MiB that textures may "
+      "take (--max-texture)",
+      name, width, height, (n + 0xfffff) >> 20, there <= most ? (most - there) >> 20 : 0, most >> 20);
+}
+
+static conic_status add_level(conic_texture *texture, int width, int height, float *texels) {
   conic_texture_level *level = &texture->levels[texture->n_levels];
   level->width = width;
   level->height = height;
-  level->texels = conic_memory_allocate(texture->context, (size_t)width * (size_t)height, 4 * sizeof(float));
+  level->texels =
+      texels ? texels
+             : conic_memory_allocate(texture->context, (size_t)width * (size_t)height, 4 * sizeof(conic_texel));
   if (!level->texels)
     return CONIC_ERROR_MEMORY;
   texture->n_levels++;
+  texture->context->texture_bytes += level_bytes(width, height);
   return CONIC_OK;
 }
 
 /* Colour without its alpha; what is no usable number is black. */
-static void fill_first(const conic_image *image, const conic_texture_level *level) {
-  const float *rgba = image->planes[CONIC_PLANE_RGBA];
+static void make_texels(const conic_texture_level *level) {
   for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
-    float alpha = rgba[4 * i + 3];
+    float *texel = level->texels + 4 * i, alpha = texel[3];
     for (int channel = 0; channel < 3; channel++) {
-      float value = alpha > 0.0f ? rgba[4 * i + (size_t)channel] / alpha : 0.0f;
-      level->texels[4 * i + (size_t)channel] = value >= -1e6f && value <= 1e6f ? value : 0.0f;
+      float value = alpha > 0.0f ? texel[channel] / alpha : 0.0f;
+      texel[channel] = value >= -1e6f && value <= 1e6f ? value : 0.0f;
     }
-    level->texels[4 * i + 3] = 0.0f;
+    texel[3] = 0.0f;
   }
 }
 
-conic_status conic_texture_create(conic_context *context, const conic_image *image, conic_texture_wrap wrap,
-                                  conic_texture **texture) {
-  *texture = NULL;
-  if (!image->planes[CONIC_PLANE_RGBA] || (wrap != CONIC_WRAP_REPEAT && wrap != CONIC_WRAP_CLAMP))
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "a texture needs an image with colour, and a known wrap");
+/* `texels`, the image's colour, becomes the first level, on failure, too. */
+static conic_status make_texture(conic_context *context, float *texels, int width, int height, conic_texture_wrap wrap,
+                                 conic_texture **texture) {
   conic_texture *made = conic_memory_allocate_zeroed(context, 1, sizeof *made);
-  if (!made)
+  if (!made) {
+    conic_memory_release(context, texels);
     return CONIC_ERROR_MEMORY;
+  }
   made->context = context;
   made->wrap = wrap;
-  int width = image->width, height = image->height;
-  conic_status status = add_level(made, width, height);
-  if (status == CONIC_OK)
-    fill_first(image, &made->levels[0]);
+  conic_status status = add_level(made, width, height, texels);
+  make_texels(&made->levels[0]);
   while (status == CONIC_OK && (width > 1 || height > 1)) {
     width = (width + 1) / 2;
     height = (height + 1) / 2;
-    status = add_level(made, width, height);
+    status = add_level(made, width, height, NULL);
     if (status == CONIC_OK)
       reduce_level(&made->levels[made->n_levels - 2], &made->levels[made->n_levels - 1]);
   }
@@ -90,26 +120,55 @@ conic_status conic_texture_create(conic_context *context, const conic_image *ima
   return status;
 }
 
+conic_status conic_texture_create(conic_context *context, const conic_image *image, conic_texture_wrap wrap,
+                                  conic_texture **texture) {
+  *texture = NULL;
+  if (!image->planes[CONIC_PLANE_RGBA] || (wrap != CONIC_WRAP_REPEAT && wrap != CONIC_WRAP_CLAMP))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "a texture needs an image with colour, and a known wrap");
+  size_t n_pixels = conic_image_pixels(image);
+  float *texels = conic_memory_allocate(context, n_pixels, 4 * sizeof *texels);
+  if (!texels)
+    return CONIC_ERROR_MEMORY;
+  memcpy(texels, image->planes[CONIC_PLANE_RGBA], n_pixels * 4 * sizeof *texels);
+  return make_texture(context, texels, image->width, image->height, wrap, texture);
+}
+
+conic_status conic_texture_take(conic_context *context, conic_image *image, conic_texture_wrap wrap,
+                                conic_texture **texture) {
+  float *texels = image->planes[CONIC_PLANE_RGBA];
+  int width = image->width, height = image->height;
+  image->planes[CONIC_PLANE_RGBA] = NULL;
+  conic_image_release(context, image);
+  *texture = NULL;
+  return make_texture(context, texels, width, height, wrap, texture);
+}
+
+conic_status conic_texture_read_image(conic_context *context, const char *path, conic_image *image) {
+  context->reads_texture = 1;
+  conic_status status = conic_image_read(context, path, image);
+  context->reads_texture = 0;
+  if (status != CONIC_OK || image->planes[CONIC_PLANE_RGBA])
+    return status;
+  conic_image_release(context, image);
+  return conic_fail(context, CONIC_ERROR_INPUT, "%s: the image has no colour", path);
+}
+
 conic_status conic_texture_read(conic_context *context, const char *path, conic_texture_wrap wrap,
                                 conic_texture **texture) {
   conic_image image;
   *texture = NULL;
-  conic_status status = conic_image_read(context, path, &image);
-  if (status != CONIC_OK)
-    return status;
-  if (image.planes[CONIC_PLANE_RGBA])
-    status = conic_texture_create(context, &image, wrap, texture);
-  else
-    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the image has no colour", path);
-  conic_image_release(context, &image);
-  return status;
+  conic_status status = conic_texture_read_image(context, path, &image);
+  return status == CONIC_OK ? conic_texture_take(context, &image, wrap, texture) : status;
 }
 
 void conic_texture_destroy(conic_texture *texture) {
   if (!texture)
     return;
-  for (int i = 0; i < CONIC_TEXTURE_LEVELS; i++)
-    conic_memory_release(texture->context, texture->levels[i].texels);
+  for (int i = 0; i < texture->n_levels; i++) {
+    const conic_texture_level *level = &texture->levels[i];
+    texture->context->texture_bytes -= level_bytes(level->width, level->height);
+    conic_memory_release(texture->context, level->texels);
+  }
   conic_memory_release(texture->context, texture);
 }
 

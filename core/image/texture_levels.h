@@ -27,4 +27,16 @@ struct conic_texture {
   conic_texture_level levels[CONIC_TEXTURE_LEVELS];
 };
 
+/* Whether a texture of a file has room beside those that there are. Errors: INPUT. */
+conic_status conic_texture_check_room(conic_context *context, const char *name, int width, int height);
+
+/* Makes a texture of the image's rgba plane, which is the texture's from then on; on failure, too, the image is
+ * released. Errors: as conic_texture_create. */
+conic_status conic_texture_take(conic_context *context, conic_image *image, conic_texture_wrap wrap,
+                                conic_texture **texture);
+
+/* conic_image_read of a picture that is to become a texture: its size is checked before it is decoded. Errors: as
+ * there, and INPUT (no colour; too large). */
+conic_status conic_texture_read_image(conic_context *context, const char *path, conic_image *image);
+
 #endif

@@ -29,6 +29,7 @@ typedef struct exr_writer {
   const conic_image_options *options;
   exr_context_t file;
   exr_chunk *chunks;
+  conic_status status; /* whether it is to go on */
 } exr_writer;
 
 static exr_compression_t compression_of(const conic_image_options *options) {
@@ -137,6 +138,9 @@ static exr_result_t write_chunks(conic_context *context, exr_writer *writer, siz
   exr_result_t result = EXR_ERR_SUCCESS;
   for (int y = 0; y < writer->image->height && result == EXR_ERR_SUCCESS;) {
     size_t n = 0;
+    writer->status = conic_progress(context, "write", (double)y / (double)writer->image->height);
+    if (writer->status != CONIC_OK)
+      break;
     for (; n < n_chunks && y < writer->image->height && result == EXR_ERR_SUCCESS; n++) {
       result = exr_write_scanline_chunk_info(writer->file, 0, y, &writer->chunks[n].info);
       y = writer->chunks[n].info.start_y + writer->chunks[n].info.height;
@@ -176,6 +180,8 @@ static conic_status write_stream(conic_context *context, const char *path, FILE 
   conic_memory_release(context, writer.chunks);
   if (result == EXR_ERR_SUCCESS)
     result = finish;
+  if (writer.status != CONIC_OK)
+    return writer.status;
   return result == EXR_ERR_SUCCESS ? CONIC_OK : conic_exr_fail(&stream, result, "write", CONIC_ERROR_ARGUMENT);
 }
 

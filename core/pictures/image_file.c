@@ -114,10 +114,13 @@ conic_status conic_image_read(conic_context *context, const char *path, conic_im
   if (!path || !image)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "image: no file name, or no place for the image");
   memset(image, 0, sizeof *image);
+  struct stat found;
+  if (stat(path, &found) == 0 && !S_ISREG(found.st_mode)) /* which might not end, or never begin */
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: it is %s", path,
+                      S_ISDIR(found.st_mode) ? "a directory" : "no regular file");
   FILE *file = fopen(path, "rb");
   if (!file)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-  struct stat found;
   conic_status status = fstat(fileno(file), &found) == 0 ? conic_guard_note(context, &found) : CONIC_OK;
   errno = 0;
   size_t n = fread(start, 1, sizeof start, file);

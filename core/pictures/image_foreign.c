@@ -143,7 +143,12 @@ static conic_status read_samples(conic_context *context, const char *path, conic
     return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "%s: cannot read: %s", path, message);
   if (!bridge)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: cannot read: no image of a known format", path);
-  conic_bridge_result result = bridge->read(path, picture, make_room_for_picture, work, message);
+  int most_mib = conic_image_most_mib(context, path), width, height;
+  if (conic_foreign_size(path, &width, &height))
+    work->status = conic_image_check_size(context, path, width, height, 4);
+  if (work->status != CONIC_OK)
+    return work->status;
+  conic_bridge_result result = bridge->read(path, most_mib, picture, make_room_for_picture, work, message);
   if (result == CONIC_BRIDGE_OK)
     return CONIC_OK;
   if (work->status != CONIC_OK)

@@ -21,4 +21,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
 /* Errors: INPUT, UNSUPPORTED, MEMORY. */
 conic_status conic_foreign_read(conic_context *context, const char *path, conic_image *image);
 
+/* What size a JPEG, GIF or WebP says that it has: 1, or 0 where the file is none, or damaged. */
+int conic_foreign_size(const char *path, int *width, int *height);
+
 #endif

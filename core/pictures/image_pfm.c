@@ -190,7 +190,9 @@ static conic_status read_pfm(conic_context *context, const char *path, FILE *fil
   if (!is_long_enough(file, size[0], size[1], is_grey ? 1 : 3))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the file is too short for %d × %d pixels (at byte %lld)", path,
                       size[0], size[1], (long long)ftello(file));
-  conic_status status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
+  conic_status status = conic_image_check_size(context, path, size[0], size[1], 16);
+  if (status == CONIC_OK)
+    status = conic_image_allocate(context, size[0], size[1], 1u << CONIC_PLANE_RGBA, image);
   if (status != CONIC_OK)
     return status;
   image->lacks_alpha = 1;

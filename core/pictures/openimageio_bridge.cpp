@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <vector>
@@ -148,13 +149,21 @@ conic_bridge_result write(const char *format, const conic_bridge_picture *pictur
   });
 }
 
-conic_bridge_result read(const char *path, conic_bridge_picture *picture,
+// Some readers decode where they open. What they may open is a setting of the whole process.
+std::unique_ptr<OIIO::ImageInput> open_within(const char *path, int most_mib) {
+  static std::mutex settings;
+  const std::lock_guard<std::mutex> lock(settings);
+  OIIO::ImageSpec wish;
+  wish.attribute("oiio:UnassociatedAlpha", 1); // straight colour stays straight
+  OIIO::attribute("limits:imagesize_MB", most_mib);
+  return OIIO::ImageInput::open(path, &wish);
+}
+
+conic_bridge_result read(const char *path, int most_mib, conic_bridge_picture *picture,
                          void *(*make_room)(void *cookie, const conic_bridge_picture *picture), void *cookie,
                          char *message) {
   return guarded(message, [&] {
-    OIIO::ImageSpec wish;
-    wish.attribute("oiio:UnassociatedAlpha", 1); // straight colour stays straight
-    auto input = OIIO::ImageInput::open(path, &wish);
+    auto input = open_within(path, most_mib);
     if (!input)
       return fail(message, OIIO::geterror());
     const OIIO::ImageSpec &spec = input->spec();

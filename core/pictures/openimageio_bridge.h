@@ -55,9 +55,9 @@ typedef struct conic_bridge {
                                int (*take)(void *cookie, const void *bytes, size_t n_bytes), void *cookie,
                                char message[CONIC_BRIDGE_MESSAGE]);
 
-  /* Reads the first picture of a file. When its size is known `make_room` is asked once for room for all its samples;
-   * where it returns null the call ends with CONIC_BRIDGE_MEMORY. */
-  conic_bridge_result (*read)(const char *path, conic_bridge_picture *picture,
+  /* Reads the first picture of a file, of up to so many MiB of samples. When its size is known `make_room` is asked
+   * once for room for all its samples; where it returns null the call ends with CONIC_BRIDGE_MEMORY. */
+  conic_bridge_result (*read)(const char *path, int most_mib, conic_bridge_picture *picture,
                               void *(*make_room)(void *cookie, const conic_bridge_picture *picture), void *cookie,
                               char message[CONIC_BRIDGE_MESSAGE]);
 } conic_bridge;

@@ -57,9 +57,13 @@ typedef struct conic_context_options {
   /* Of all loops, but those of calls whose own options name another. One that is not here makes these calls fail with
    * UNSUPPORTED. */
   conic_isa isa;
+
+  /* The textures of files take no more memory than this together; one more makes the call that reads it fail with
+   * INPUT before it is decoded. 0: no limit. */
+  size_t max_texture_bytes;
 } conic_context_options;
 
-/* malloc and free, no messages, no progress, all threads, no limit, the widest instructions. */
+/* malloc and free, no messages, no progress, all threads, no limit but 4 GiB of textures, the widest instructions. */
 CONIC_API void conic_context_options_init_sized(conic_context_options *options, size_t size);
 #define conic_context_options_init(options) conic_context_options_init_sized(options, sizeof *(options))
 

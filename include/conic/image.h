@@ -151,7 +151,7 @@ CONIC_API conic_status conic_image_check_output_as(conic_context *context, const
 CONIC_API conic_status conic_image_check_output(conic_context *context, const char *path, unsigned planes);
 
 /* Reads an image; channels map to planes by name (EXR), else to rgba, decoded to linear. On success the caller owns
- * *image. Errors: INPUT, UNSUPPORTED, MEMORY. */
+ * *image. Errors: INPUT (also where it is no regular file), UNSUPPORTED, MEMORY. */
 CONIC_API conic_status conic_image_read(conic_context *context, const char *path, conic_image *image);
 
 /* How two images differ. See docs/reference/diff.md for the definitions. */

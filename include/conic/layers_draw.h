@@ -20,7 +20,7 @@ extern "C" {
 /* A file that is open for drawing: its index, and a cache of its clouds. One thread at a time. */
 typedef struct conic_layers conic_layers;
 
-/* How a file is read. The last five are of URLs alone. */
+/* How a file is read. All but the first and the last are of URLs alone. */
 typedef struct conic_layers_access {
   size_t size;            /* sizeof(conic_layers_access), set by the init function */
   uint64_t memory_bytes;  /* what clouds, read and gathered, may take along with what is drawn of them; index, image and
@@ -30,9 +30,10 @@ typedef struct conic_layers_access {
   int n_retries;          /* so often, with growing pauses, before a cloud is given up */
   double pause_seconds;   /* the first pause */
   int n_connections;      /* at a time, 1 to 16 */
+  double seconds;         /* opening fails after so many from the call; 0: no limit */
 } conic_layers_access;
 
-/* 512 MiB; 10 s, 15 s, 4 retries from 0.2 s on, 4 connections. */
+/* 512 MiB; 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, no limit. */
 CONIC_API void conic_layers_access_init_sized(conic_layers_access *access, size_t size);
 #define conic_layers_access_init(access) conic_layers_access_init_sized(access, sizeof *(access))
 
@@ -41,8 +42,8 @@ CONIC_API int conic_layers_is_url(const char *name);
 
 /* Opens a path or a URL: reads and checks header and index. Null `access` is the defaults. On success the caller owns
  * *layers, which must not outlive the context. With a libcurl older than 7.84 the first URL has to be opened while no
- * other thread of the program uses libcurl. Errors: INPUT, IO (network, server), UNSUPPORTED (built without zstd, or,
- * for URLs, libcurl), MEMORY, CANCELLED. */
+ * other thread of the program uses libcurl. Errors: INPUT (it is damaged, or the server answers wrongly), IO (network,
+ * server, time), UNSUPPORTED (built without zstd, or, for URLs, libcurl), MEMORY, CANCELLED. */
 CONIC_API conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,
                                          conic_layers **layers);
 /* Null is allowed. */
@@ -76,8 +77,9 @@ typedef struct conic_layers_draw_options {
   int most_levels;           /* no cloud below so many levels is drawn; 0: all */
   conic_occlusion occlusion; /* leave out what is hidden; changes no bit of the image */
   int samples;               /* N × N a pixel, as conic_render_samples */
-  int may_be_coarser;        /* what cannot be read, or not in time, is drawn coarser in place of an error */
+  int may_be_coarser;        /* what does not come, or not in time, is drawn coarser in place of an error */
   double seconds;            /* with that: no more is read after so many seconds from the call; 0: no limit */
+  int tolerates_damage;      /* with that: so is what is damaged, and a warning names the first of it */
 } conic_layers_draw_options;
 
 /* Full resolution, one sample, automatic occlusion. */
@@ -101,14 +103,16 @@ typedef struct conic_layers_drawn {
   uint64_t n_bytes_received; /* over the network, since the picture before or the opening */
   int n_bands;               /* the picture was drawn in so many */
   int n_levels;              /* of the deepest cloud drawn, plus 1 */
-  uint64_t reserved[8];
+  uint64_t n_clouds_damaged; /* of those missing, what came and was wrong */
+  uint64_t reserved[7];
 } conic_layers_drawn;
 
 /* Draws into the planes that `image` has, as conic_render does; `id` is the number of the sample in the file (modulo
  * 2³²). near_z and splat_length, where 0 in `render`, are the file's. The picture depends on file, camera and options
  * alone: not on memory, cache, order of arrival, occlusion, or where the file lies; with may_be_coarser, on what there
  * is in time, too. `statistics` and `drawn` may be null. Errors: ARGUMENT (a budget below the coarsest cloud, too),
- * INPUT (damaged), IO (network), UNSUPPORTED (bands on another device), MEMORY, CANCELLED. */
+ * INPUT (damaged; a server that answers wrongly), IO (network), UNSUPPORTED (bands on another device), MEMORY,
+ * CANCELLED. */
 CONIC_API conic_status conic_layers_draw(conic_layers *layers, conic_renderer *renderer, const conic_camera *camera,
                                          const conic_render_options *render, const conic_layers_draw_options *options,
                                          conic_image *image, conic_render_statistics *statistics,

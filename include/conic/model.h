@@ -116,6 +116,12 @@ typedef struct conic_repairs {
   uint64_t reserved[7];
 } conic_repairs;
 
+/* What the ellipse of a point without faces goes around. */
+typedef enum conic_ellipse_rule {
+  CONIC_ELLIPSE_VORONOI = 0, /* the part of the tangent plane that is nearer to the point than to its neighbours */
+  CONIC_ELLIPSE_BOUNDING = 1 /* all k neighbours, seen along the normal, as Confetti §4.3 has it */
+} conic_ellipse_rule;
+
 typedef struct conic_estimate_options {
   size_t size;      /* sizeof(conic_estimate_options), set by the init function */
   int n_neighbours; /* k, 6 to 64 */
@@ -132,9 +138,11 @@ typedef struct conic_estimate_options {
    * for each of its triangles. Vertices of no triangle, if they are less than a tenth, are leftovers and get no splat.
    * With creases all of this is so anyway. */
   int stays_at_mesh;
+
+  conic_ellipse_rule ellipse;
 } conic_estimate_options;
 
-/* 20 neighbours, cutoff 1.5, no creases, no dots, a splat a vertex. */
+/* 20 neighbours, cutoff 1.5, no creases, no dots, a splat a vertex, Voronoi cells. */
 CONIC_API void conic_estimate_options_init_sized(conic_estimate_options *options, size_t size);
 #define conic_estimate_options_init(options) conic_estimate_options_init_sized(options, sizeof *(options))
 

@@ -28,7 +28,8 @@ typedef enum conic_oracle_question {
 /* "method", "exact"; null for a number that is no question. */
 CONIC_API const char *conic_oracle_question_name(conic_oracle_question question);
 
-/* Why a pixel is unstable: a decision there is so close that a renderer in single precision may take it either way. */
+/* Why a pixel is unstable: a decision there is so close that a renderer in single precision may take it either way. Its
+ * planes may be any of some alternatives. */
 typedef enum conic_unstable_reason {
   CONIC_UNSTABLE_CUTOFF = 0,     /* whether a splat's footprint covers the pixel */
   CONIC_UNSTABLE_CLIP = 1,       /* whether the ray formula's range of depths or its box does, or a clip line */
@@ -55,15 +56,29 @@ typedef struct conic_weight_error {
   size_t n_weights;
 } conic_weight_error;
 
+/* Where more ids are admissible than are told one by one. */
 #define CONIC_ANY_ID 0xFFFFFFFEu
+
+/* What an unstable pixel's planes may hold at once, if its decisions fall in one way: the least and the greatest value
+ * of the channels of rgba, Z, N, albedo, weight and count, one after another. */
+#define CONIC_N_ALTERNATIVE_VALUES 13
+typedef struct conic_alternative {
+  uint32_t pixel, number; /* in the order of the reference's planes; the number among the pixel's alternatives */
+  double low[CONIC_N_ALTERNATIVE_VALUES], high[CONIC_N_ALTERNATIVE_VALUES];
+} conic_alternative;
+
+/* An id that is as good as the reference's: of a splat that is as near but for rounding, or CONIC_ANY_ID. */
+typedef struct conic_admissible_id {
+  uint32_t pixel, id;
+} conic_admissible_id;
 
 typedef struct conic_reference {
   int width, height;
   conic_oracle_question question;
   double *planes[CONIC_MAX_PLANES]; /* laid out like an image's planes; count and id are whole numbers */
   uint8_t *unstable;                /* a pixel's reasons, as bits 1 << conic_unstable_reason; 0: stable */
-  uint32_t *tied_id;                /* CONIC_NO_ID; or the splat that is as near as the id's but for rounding, which is
-                                       as good an id; or CONIC_ANY_ID where there are several */
+  uint32_t *pixels;                 /* null; or, where only some are judged, which, in ascending order: planes and
+                                       `unstable` hold these alone, one after another */
   double white;                     /* 2^exposure, by which rgba is multiplied */
   size_t covered_pixels, unstable_pixels;
   int samples;                              /* N × N a pixel; what follows counts samples */
@@ -71,7 +86,13 @@ typedef struct conic_reference {
   size_t undecided_ids;                     /* pixels with CONIC_ANY_ID: their ids are not compared */
   size_t unstable_by_reason[CONIC_MAX_UNSTABLE_REASONS];
   conic_weight_error weight_error; /* for the exact question; else zero */
-  uint64_t reserved[8];
+  size_t n_pixels;                 /* that are judged */
+  size_t unbounded_pixels;         /* unstable ones of which the alternatives don't say enough */
+  conic_alternative *alternatives; /* of all unstable pixels, pixel by pixel; none for the exact question */
+  size_t n_alternatives;
+  conic_admissible_id *ids; /* beside those of the plane, pixel by pixel; of unstable pixels, all */
+  size_t n_ids;
+  uint64_t reserved[2];
 } conic_reference;
 
 /* Computes the reference picture of `splats` (with tangent axes); `options` as for conic_render, `tile` and
@@ -84,7 +105,7 @@ CONIC_API conic_status conic_oracle_render(conic_context *context, const conic_s
                                            conic_oracle_question question, conic_reference *reference);
 
 /* The same with samples × samples samples a pixel (docs/reference/picture.md), 1 to 16. A pixel is as unstable as its
- * samples are together. All samples are kept until they are reduced: some 120 bytes each. */
+ * samples are together. */
 CONIC_API conic_status conic_oracle_render_samples(conic_context *context, const conic_splats *splats,
                                                    const conic_camera *camera, const conic_render_options *options,
                                                    conic_oracle_question question, int samples,
@@ -97,26 +118,46 @@ CONIC_API conic_status conic_oracle_render_drawing(conic_context *context, const
                                                    conic_oracle_question question, int samples,
                                                    conic_reference *reference);
 
+/* The same of `n_pixels` of the picture's pixels alone, as docs/reference/oracle.md chooses them; 0: of all. */
+CONIC_API conic_status conic_oracle_render_pixels(conic_context *context, const conic_drawing *drawing,
+                                                  const conic_camera *camera, const conic_render_options *options,
+                                                  conic_oracle_question question, int samples, size_t n_pixels,
+                                                  conic_reference *reference);
+
+/* The widest range of a channel of the plane among the alternatives, by the measure of conic_oracle_plane_verdict; 0
+ * where there are none, and for id. */
+CONIC_API double conic_reference_width(const conic_reference *reference, conic_plane plane);
+
 CONIC_API void conic_reference_release(conic_context *context, conic_reference *reference);
 
-/* How an image compares with a reference, on the stable pixels. */
+/* How an image compares with a reference. */
 typedef struct conic_oracle_plane_verdict {
   int is_compared;      /* the image has the plane */
   double max_abs, p999; /* Z's is relative; that of rgba (before its exposure), albedo and weight is relative where
-                           they are above 1. The percentile is over covered pixels. NaN counts as infinite */
+                           they are above 1. An unstable pixel differs by what it is outside of the alternative that it
+                           fits best. The percentile is over covered, stable pixels. NaN counts as infinite */
   double bound;         /* what max_abs may be; NaN where there is none */
 } conic_oracle_plane_verdict;
 
+/* The pixel that is most wrong: where, in which plane and channel, and what its value may be. */
+typedef struct conic_oracle_fault {
+  int x, y, plane, channel;
+  double found, low, high;
+} conic_oracle_fault;
+
 typedef struct conic_oracle_verdict {
   conic_oracle_plane_verdict planes[CONIC_MAX_PLANES];
-  size_t compared_pixels, unstable_pixels, covered_pixels;
-  double unstable_limit; /* share of the covered pixels, or samples, that may be unstable */
-  int pass;              /* every bound and the limit are kept */
-  uint64_t reserved[8];
+  size_t compared_pixels, unstable_pixels, covered_pixels; /* compared: with one value, as the stable ones are */
+  double unbounded_limit;                                  /* share of the judged pixels that may be unbounded */
+  int pass;                                                /* every bound and the limit are kept */
+  size_t wrong_pixels;                                     /* outside of the bounds */
+  conic_oracle_fault worst;                                /* where there are any */
+  uint64_t reserved[2];
 } conic_oracle_verdict;
 
 /* Compares `image`, of the reference's size, with it: against the bounds of docs/reference/oracle.md where the question
- * was the method's; the exact question has no bounds, and everything passes. Errors: ARGUMENT, MEMORY. */
+ * was the method's; the exact question has no bounds, everything passes, and unstable pixels are left out. Errors:
+ * ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_oracle_compare(conic_context *context, const conic_reference *reference,
                                             const conic_image *image, conic_oracle_verdict *verdict);
 

@@ -156,6 +156,7 @@ typedef struct conic_source_view {
   conic_occlusion occlusion; /* leave out what is hidden */
   int may_be_coarser;        /* what cannot be read, or not in time, is drawn coarser */
   double seconds;            /* with that: no more is read after so many; 0: no limit */
+  int tolerates_damage;      /* with that: so is what is damaged */
 } conic_source_view;
 
 /* Full detail, either kind, one sample. */

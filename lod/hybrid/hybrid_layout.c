@@ -4,6 +4,7 @@
 
 #include "core/base/color.h"
 #include "core/base/memory.h"
+#include "core/image/texture_levels.h"
 
 /* The records are in the file as they are in memory. */
 _Static_assert(sizeof(conic_hybrid_level) == 48, "levels of 48 bytes");
@@ -101,9 +102,7 @@ static conic_status make_texture(conic_hybrid *hybrid, const conic_chy_material 
       rgba[4 * i + channel] = linear[codes[3 * i + channel]];
     rgba[4 * i + 3] = 1.0f;
   }
-  status = conic_texture_create(hybrid->context, &image, (conic_texture_wrap)from->wrap, texture);
-  conic_image_release(hybrid->context, &image);
-  return status;
+  return conic_texture_take(hybrid->context, &image, (conic_texture_wrap)from->wrap, texture);
 }
 
 conic_status conic_chy_make_materials(conic_hybrid *hybrid) {

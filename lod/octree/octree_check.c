@@ -134,8 +134,8 @@ conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defe
     conic_memory_release(octree->context, job.chunks);
     return status;
   }
-  conic_parallel_for(octree->context, n_chunks, check_task, &job);
-  for (size_t i = 0; i < n_chunks; i++) {
+  status = conic_parallel_told(octree->context, "check", 0.0, 1.0, n_chunks, check_task, &job);
+  for (size_t i = 0; i < n_chunks && status == CONIC_OK; i++) {
     defects->ellipses += job.chunks[i].ellipses;
     defects->spheres += job.chunks[i].spheres;
     defects->cones += job.chunks[i].cones;
@@ -143,5 +143,5 @@ conic_status conic_octree_check(conic_octree *octree, conic_octree_defects *defe
   }
   defects->splats = count_lost(octree);
   conic_memory_release(octree->context, job.chunks);
-  return CONIC_OK;
+  return status;
 }

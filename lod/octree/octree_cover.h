@@ -40,15 +40,26 @@ typedef struct conic_block_list {
   size_t count;
 } conic_block_list;
 
-/* The blocks that a few nodes close together need to look at, nearly always, and room to work with one node. */
-enum { CONIC_FLAT_NUMBERS = 12 };
+/* The blocks that a few nodes close together need to look at, nearly always, and room to work with one node. Where all
+ * discs lie on one another, all would be near all: no more than so many blocks are looked at beside those of the nodes'
+ * own discs. What is left out makes errors larger than they are, which breaks no promise. */
+enum { CONIC_FLAT_NUMBERS = 12, CONIC_MOST_NEAR_BLOCKS = 512 };
 typedef struct conic_near_discs {
   float center[3], half[3]; /* a box: whatever reaches into it is in these blocks */
+  size_t begin, end;        /* the nodes' own discs */
+  int is_full;              /* some that reach into the box are left out, and nothing outside is looked at */
   conic_block_list blocks, of_node;
   float (*flat)[CONIC_FLAT_NUMBERS][CONIC_DISC_BLOCK]; /* the node's blocks as it sees them */
 } conic_near_discs;
 
-/* Finds the blocks that reach into the box about near->center. */
+/* Whether there is room in the list for one more that reaches into the box. */
+static inline int conic_near_has_room(const conic_near_discs *near) {
+  size_t n_own = (near->end + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK - near->begin / CONIC_DISC_BLOCK;
+  return near->blocks.count < n_own + CONIC_MOST_NEAR_BLOCKS;
+}
+
+/* Lists the blocks that reach into the box, in order; where these are too many, from the block of blocks on that
+ * near->begin is in. */
 typedef void conic_find_near_function(const conic_discs *discs, conic_near_discs *near);
 
 /* The disc of a node. */

@@ -368,7 +368,7 @@ static float find_cover(const conic_disc_samples *samples, const conic_discs *di
     is_listed = 1;
     search s = begin_search(&c, worst);
     search_near(&c, discs, near, &s);
-    if (s.nearest > c.enough && !is_all_near(near, &s))
+    if (s.nearest > c.enough && !near->is_full && !is_all_near(near, &s))
       search_all(&c, discs, &s);
     c.nearest[worst] = s.nearest;
     c.enough = s.nearest > c.enough ? s.nearest : c.enough;
@@ -377,17 +377,30 @@ static float find_cover(const conic_disc_samples *samples, const conic_discs *di
   }
 }
 
-static void find_near(const conic_discs *discs, conic_near_discs *near) {
+/* From chunk `first` on, and then those before, until the list is full. */
+static void list_near(const conic_discs *discs, size_t first, conic_near_discs *near) {
+  const size_t n_chunks = (discs->count + CHUNK - 1) / CHUNK;
   middle_box box;
   memcpy(box.center, near->center, sizeof box.center);
   memcpy(box.half, near->half, sizeof box.half);
   begin_list(&near->blocks);
-  for (size_t chunk = 0; chunk * CHUNK < discs->count; chunk++) {
+  near->is_full = 0;
+  for (size_t i = 0; i < n_chunks && !near->is_full; i++) {
+    size_t chunk = first + i < n_chunks ? first + i : first + i - n_chunks;
     unsigned bits = find_in_block(discs->block_center, discs->block_half, chunk, &box);
     for (; bits; bits &= bits - 1) {
       size_t block = chunk * CONIC_DISC_BLOCK + (size_t)__builtin_ctz(bits);
+      near->is_full = !conic_near_has_room(near);
+      if (near->is_full)
+        break;
       add_to_list(discs->block_center, discs->block_half, block, (uint32_t)block, &near->blocks);
     }
   }
   end_list(&near->blocks);
+}
+
+static void find_near(const conic_discs *discs, conic_near_discs *near) {
+  list_near(discs, 0, near);
+  if (near->is_full)
+    list_near(discs, near->begin / CHUNK, near);
 }

@@ -26,6 +26,7 @@ typedef struct error_pass {
   uint32_t *tasks; /* roots */
   conic_status *statuses;
   size_t n_tasks;
+  double from, to; /* of the progress */
 } error_pass;
 
 typedef struct error_box {
@@ -240,25 +241,6 @@ static void list_members(neighbourhood *around, size_t root) {
   }
 }
 
-/* Finds what the members begin … end look at: what is within the way that the least error that matters lets a point be
- * off the surface. */
-static void find_near(neighbourhood *around, size_t begin, size_t end) {
-  conic_near_discs *near = &around->near;
-  for (int axis = 0; axis < 3; axis++) {
-    error_box b = {{0}, {0}};
-    b.low[axis] = HUGE_VALF;
-    b.high[axis] = -HUGE_VALF;
-    for (size_t k = begin; k < end; k++) {
-      const conic_node_disc *disc = &around->members[k].disc;
-      float extent = sqrtf(disc->u[axis] * disc->u[axis] + disc->v[axis] * disc->v[axis]);
-      add_to_box(disc->center[axis], extent + disc->enough * (1.1f / CONIC_COVER_WEIGHT), axis, &b);
-    }
-    near->center[axis] = 0.5f * b.low[axis] + 0.5f * b.high[axis];
-    near->half[axis] = 0.5f * b.high[axis] - 0.5f * b.low[axis];
-  }
-  around->pass->kernels.find_near(&around->discs, near);
-}
-
 /* The first of the subtree's discs whose leaves begin at `leaf` or later. */
 static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
   size_t begin = 0, end = around->n_own, guess = leaf - around->first_leaf[0]; /* right where all discs are leaves */
@@ -272,6 +254,29 @@ static size_t find_disc(const neighbourhood *around, uint32_t leaf) {
       end = middle;
   }
   return begin;
+}
+
+/* Finds what the members begin … end look at: what is within the way that the least error that matters lets a point be
+ * off the surface. */
+static void find_near(neighbourhood *around, size_t begin, size_t end) {
+  const conic_octree *octree = around->pass->octree;
+  conic_near_discs *near = &around->near;
+  uint32_t root = around->members[begin].i_node; /* the others are below it */
+  near->begin = find_disc(around, octree->first_leaf[root]);
+  near->end = find_disc(around, octree->first_leaf[octree->end[root]]);
+  for (int axis = 0; axis < 3; axis++) {
+    error_box b = {{0}, {0}};
+    b.low[axis] = HUGE_VALF;
+    b.high[axis] = -HUGE_VALF;
+    for (size_t k = begin; k < end; k++) {
+      const conic_node_disc *disc = &around->members[k].disc;
+      float extent = sqrtf(disc->u[axis] * disc->u[axis] + disc->v[axis] * disc->v[axis]);
+      add_to_box(disc->center[axis], extent + disc->enough * (1.1f / CONIC_COVER_WEIGHT), axis, &b);
+    }
+    near->center[axis] = 0.5f * b.low[axis] + 0.5f * b.high[axis];
+    near->half[axis] = 0.5f * b.high[axis] - 0.5f * b.low[axis];
+  }
+  around->pass->kernels.find_near(&around->discs, near);
 }
 
 static void find_error(neighbourhood *around, const member *m) {
@@ -434,7 +439,7 @@ static conic_status run_pass(error_pass *pass) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     list_tasks(pass, pass->tasks);
-    conic_parallel_for(context, pass->n_tasks, run_task, pass);
+    status = conic_parallel_told(context, "octree", pass->from, pass->to, pass->n_tasks, run_task, pass);
   }
   for (size_t i = 0; i < pass->n_tasks && status == CONIC_OK; i++)
     status = pass->statuses[i];
@@ -444,15 +449,15 @@ static conic_status run_pass(error_pass *pass) {
 }
 
 conic_status conic_octree_find_errors(conic_octree *octree) {
-  error_pass pass = {.octree = octree, .sizes = {1, 64, 1, 8192}};
+  error_pass pass = {.octree = octree, .sizes = {1, 64, 1, 8192}, .from = 0.6, .to = 0.9};
   conic_isa isa;
   conic_status status = conic_isa_choose(octree->context, CONIC_ISA_AUTO, &isa);
   conic_octree_kernels_init(&pass.kernels, isa);
   conic_disc_samples_init(&pass.samples);
   while (status == CONIC_OK && pass.sizes.above < octree->n_leaves) {
-    status = conic_progress(octree->context, "octree", pass.sizes.above == 1 ? 0.7 : 0.95);
-    if (status == CONIC_OK)
-      status = run_pass(&pass);
+    status = run_pass(&pass);
+    pass.from = pass.to;
+    pass.to = 0.5 + 0.5 * pass.to;
     size_t most = 8 * pass.sizes.most;
     pass.sizes = (size_class){pass.sizes.most, most, pass.sizes.most / 8, 8 * most};
   }

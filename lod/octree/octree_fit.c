@@ -54,6 +54,9 @@ static conic_status scan_leaves(const fitter *f, size_t begin, size_t end, const
   size_t n_chunks = (end - begin + chunk_leaves - 1) / chunk_leaves;
   conic_context *context = f->octree->context;
   scan s = {f, frame, begin, end, NULL};
+  conic_status status = conic_progress(context, "octree", 0.6);
+  if (status != CONIC_OK)
+    return status;
   s.chunks = conic_memory_allocate(context, n_chunks, sizeof *s.chunks);
   if (!s.chunks)
     return CONIC_ERROR_MEMORY;
@@ -202,11 +205,9 @@ conic_status conic_octree_fit(conic_octree *octree) {
   if (!f.tasks)
     return CONIC_ERROR_MEMORY;
   list_tasks(octree, f.tasks);
-  status = conic_progress(octree->context, "octree", 0.4);
-  if (status == CONIC_OK) {
-    conic_parallel_for(octree->context, f.n_tasks, run_task, &f);
+  status = conic_parallel_told(octree->context, "octree", 0.4, 0.6, f.n_tasks, run_task, &f);
+  if (status == CONIC_OK)
     status = fit_top(&f, 0, &root);
-  }
   conic_memory_release(octree->context, f.tasks);
   if (status == CONIC_OK)
     status = conic_octree_find_errors(octree);

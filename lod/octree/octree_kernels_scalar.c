@@ -1,5 +1,5 @@
 /* The octree's kernels in plain C: the reference. They look at boxes as the lanes do, where that saves most of the
- * work, but keep no lists of what is near. */
+ * work, but keep no lists of what is near, unless these are full. */
 #include <math.h>
 #include <string.h>
 
@@ -70,12 +70,14 @@ static float error_of_sample(const flat_node *node, const conic_discs *discs, si
 }
 
 /* The error of the sample at (x, y), or what is `enough`, over all discs that can lower it below `nearest`. */
-static float lower_sample(const flat_node *node, const conic_discs *discs, float x, float y, float nearest,
-                          float enough) {
+static float lower_sample(const flat_node *node, const conic_discs *discs, const conic_near_discs *near, float x,
+                          float y, float nearest, float enough) {
+  size_t n = near->is_full ? near->blocks.count : (discs->count + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK;
   reach_box box;
   for (int axis = 0; axis < 3; axis++)
     box.center[axis] = node->disc->center[axis] + (x * node->u[axis] + y * node->v[axis]);
-  for (size_t block = 0; block * CONIC_DISC_BLOCK < discs->count && nearest > enough; block++) {
+  for (size_t i = 0; i < n && nearest > enough; i++) {
+    size_t block = near->is_full ? near->blocks.block[i] : i;
     box.half[0] = box.half[1] = box.half[2] = nearest * (1.0f / CONIC_COVER_WEIGHT);
     if (!reaches_into(discs->block_center, discs->block_half, block, &box))
       continue;
@@ -92,7 +94,6 @@ static float plain_cover(const conic_disc_samples *samples, const conic_discs *d
                          conic_near_discs *near, const conic_node_disc *disc) {
   float x[CONIC_DISC_SAMPLES], y[CONIC_DISC_SAMPLES], nearest[CONIC_DISC_SAMPLES], enough = disc->enough;
   flat_node node = {.disc = disc};
-  (void)near;
   node.major = unit_of(disc->u, node.u);
   node.minor = unit_of(disc->v, node.v);
   node.gap = (float)CONIC_DISC_GAP * (node.major > node.minor ? node.major : node.minor);
@@ -111,20 +112,27 @@ static float plain_cover(const conic_disc_samples *samples, const conic_discs *d
       worst = nearest[i] > nearest[worst] ? i : worst;
     if (!(nearest[worst] > enough))
       return enough;
-    nearest[worst] = lower_sample(&node, discs, x[worst], y[worst], nearest[worst], enough);
+    nearest[worst] = lower_sample(&node, discs, near, x[worst], y[worst], nearest[worst], enough);
     enough = nearest[worst] > enough ? nearest[worst] : enough;
   }
 }
 
-static void plain_find_near(const conic_discs *discs, conic_near_discs *near) {
+/* From block `first` on, and then those before, until the list is full. */
+static void plain_list_near(const conic_discs *discs, size_t first, conic_near_discs *near) {
+  const size_t n_blocks = (discs->count + CONIC_DISC_BLOCK - 1) / CONIC_DISC_BLOCK;
   conic_block_list *list = &near->blocks;
   reach_box box;
   memcpy(box.center, near->center, sizeof box.center);
   memcpy(box.half, near->half, sizeof box.half);
   list->count = 0;
-  for (size_t block = 0; block * CONIC_DISC_BLOCK < discs->count; block++) {
+  near->is_full = 0;
+  for (size_t i = 0; i < n_blocks && !near->is_full; i++) {
+    size_t block = first + i < n_blocks ? first + i : first + i - n_blocks;
     if (!reaches_into(discs->block_center, discs->block_half, block, &box))
       continue;
+    near->is_full = !conic_near_has_room(near);
+    if (near->is_full)
+      break;
     for (int axis = 0; axis < 3; axis++) {
       list->center[axis][list->count] = discs->block_center[axis][block];
       list->half[axis][list->count] = discs->block_half[axis][block];
@@ -136,6 +144,12 @@ static void plain_find_near(const conic_discs *discs, conic_near_discs *near) {
       list->center[axis][i] = HUGE_VALF;
       list->half[axis][i] = 0.0f;
     }
+}
+
+static void plain_find_near(const conic_discs *discs, conic_near_discs *near) {
+  plain_list_near(discs, 0, near);
+  if (near->is_full)
+    plain_list_near(discs, near->begin / (CONIC_DISC_BLOCK * CONIC_DISC_BLOCK) * CONIC_DISC_BLOCK, near);
 }
 
 /* A leaf in a node's frame. */

@@ -28,8 +28,8 @@ void conic_octree_destroy(conic_octree *octree) {
   conic_memory_release(context, octree->owned_leaf_codes);
   conic_memory_release(context, octree->drawn);
   conic_memory_release(context, octree->drawn_leaves);
-  float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,   octree->error,
-                     octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2]};
+  float *arrays[] = {octree->center[0], octree->center[1], octree->center[2], octree->radius,    octree->error,
+                     octree->cone,      octree->normal[0], octree->normal[1], octree->normal[2], octree->excess};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
     conic_memory_release(context, arrays[i]);
   conic_memory_release(context, octree->end);
@@ -107,6 +107,15 @@ conic_status conic_octree_lay_out(conic_octree *octree, const char **wrong) {
   return CONIC_OK;
 }
 
+/* The square of how many times the error is what the size of the disc alone makes it, 1 at least: a quarter of the
+ * major axis, or what lies between the places that were looked at, and a step of the code. */
+static float excess_of(const conic_code_scale *scale, const conic_node *node) {
+  const float *u = node->tangent_u;
+  float length = sqrtf((u[0] * u[0] + u[1] * u[1]) + u[2] * u[2]);
+  float times = node->error / (0.28f * (float)scale->cutoff * length);
+  return times > 1.0f ? times * times : 1.0f;
+}
+
 static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
   conic_octree *octree = data;
   size_t begin = i_chunk * chunk_nodes,
@@ -132,13 +141,14 @@ static void decode_chunk(void *data, size_t i_chunk, int i_thread) {
     octree->radius[i] = node.radius;
     octree->error[i] = node.error;
     octree->cone[i] = node.cone;
+    octree->excess[i] = excess_of(&octree->scale, &node);
   }
 }
 
 static conic_status allocate_decoded(conic_octree *octree) {
   conic_context *context = octree->context;
-  float **arrays[] = {&octree->center[0], &octree->center[1], &octree->center[2], &octree->radius,   &octree->error,
-                      &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2]};
+  float **arrays[] = {&octree->center[0], &octree->center[1], &octree->center[2], &octree->radius,    &octree->error,
+                      &octree->cone,      &octree->normal[0], &octree->normal[1], &octree->normal[2], &octree->excess};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
     conic_memory_release(context, *arrays[i]); /* of an attempt that failed */
     *arrays[i] = conic_memory_allocate_zeroed(context, octree->n_nodes + CONIC_OCTREE_GROUP, sizeof(float));

@@ -45,6 +45,7 @@ struct conic_octree {
   conic_drawn_node *drawn;
   conic_drawn_node *drawn_leaves; /* the n_leaves again, for they are chosen one here, one there; only for choosing */
   float *center[3], *radius, *error, *normal[3], *cone; /* what choosing looks at, apart from the rest */
+  float *excess;                                        /* the square of the error over what its size asks for */
   uint32_t *end;                                        /* the node after the subtree */
   uint32_t *first_leaf;                                 /* n_nodes + 1 */
   int n_levels;

@@ -157,7 +157,7 @@ static conic_status split_top(conic_context *context, splitter *s, size_t begin,
   top_item item = {.begin = begin, .end = end, .depth = depth};
   if (end - begin <= task_points)
     return add_top(context, s, &item);
-  conic_status status = conic_progress(context, "octree", 0.3 * (double)begin / (double)s->split->n);
+  conic_status status = conic_progress(context, "octree", 0.1 * (double)begin / (double)s->split->n);
   if (status != CONIC_OK)
     return status;
   split_node(s, begin, end, depth, &p);
@@ -205,10 +205,10 @@ conic_status conic_octree_split(conic_context *context, conic_split *split) {
     status = CONIC_ERROR_MEMORY;
   if (status == CONIC_OK)
     status = split_top(context, &s, 0, split->n, 0);
-  if (status == CONIC_OK) {
-    conic_parallel_for(context, s.n_top, split_task, &s);
+  if (status == CONIC_OK)
+    status = conic_parallel_told(context, "octree", 0.1, 0.3, s.n_top, split_task, &s);
+  if (status == CONIC_OK)
     join_tasks(&s);
-  }
   for (int axis = 0; axis < 3; axis++)
     conic_memory_release(context, s.scratch[axis]);
   conic_memory_release(context, s.scratch_index);

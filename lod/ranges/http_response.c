@@ -88,6 +88,8 @@ int conic_http_header(conic_http_response *response, const char *line, size_t n_
     take_range(response, value);
   else if ((value = value_of(text, "Content-Length")))
     take_length(response, value);
+  else if ((value = value_of(text, "Content-Encoding")))
+    response->is_packed = *value != '\0' && strcasecmp(value, "identity") != 0;
   else if ((value = value_of(text, "ETag")))
     take_tag(response, value);
   return 1;

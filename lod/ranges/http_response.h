@@ -14,6 +14,7 @@ typedef struct conic_http_response {
   uint64_t first, last, size;
   int has_length; /* Content-Length */
   uint64_t length;
+  int is_packed;            /* Content-Encoding: other than identity */
   char tag[CONIC_HTTP_TAG]; /* ETag; empty where there is none, or it is too long or weak */
 } conic_http_response;
 

@@ -1,5 +1,6 @@
 #include "lod/ranges/ranges.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/base/message.h"
@@ -13,6 +14,7 @@ void conic_ranges_options_init(conic_ranges_options *options) {
   options->pause_seconds = 0.2;
   options->n_connections = 4;
   options->most_whole_bytes = (uint64_t)512 << 20;
+  options->until_s = HUGE_VAL;
 }
 
 int conic_ranges_is_url(const char *name) {

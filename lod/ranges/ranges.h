@@ -20,17 +20,18 @@ typedef struct conic_ranges_options {
   double pause_seconds;      /* the first pause; each is twice the one before */
   int n_connections;         /* at a time */
   uint64_t most_whole_bytes; /* of a server without ranges, a file up to this size is fetched as a whole */
+  double until_s;            /* by conic_seconds_now, opening ends; infinite: it takes as long as it takes */
 } conic_ranges_options;
 
-/* 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, 512 MiB. */
+/* 10 s, 15 s, 4 retries from 0.2 s on, 4 connections, 512 MiB, no end. */
 void conic_ranges_options_init(conic_ranges_options *options);
 
 /* Whether a name is a URL. */
 int conic_ranges_is_url(const char *name);
 
 /* Opens a path, or an http:// or https:// URL, and finds out its size. "-" is standard input. On success the caller
- * owns *ranges. Errors: INPUT (it is not there, or not to be had), IO (the network or the server fails), UNSUPPORTED
- * (a URL, and this build has no libcurl), MEMORY, CANCELLED. */
+ * owns *ranges. Errors: INPUT (it is not there, or not to be had, or the server answers wrongly), IO (the network or
+ * the server fails, or not in time), UNSUPPORTED (a URL, and this build has no libcurl), MEMORY, CANCELLED. */
 conic_status conic_ranges_open(conic_context *context, const char *name, const conic_ranges_options *options,
                                conic_ranges **ranges);
 
@@ -55,7 +56,7 @@ conic_status conic_ranges_request(conic_ranges *ranges, const conic_range *range
 
 typedef struct conic_range_answer {
   uint32_t id;
-  conic_status status;        /* CONIC_OK, or IO: given up */
+  conic_status status;        /* CONIC_OK; given up: IO, what did not come; INPUT, what came and was wrong */
   const unsigned char *bytes; /* as many as were asked for */
   size_t n_bytes;
   const char *reason; /* where given up: why, in a few words; until the next call */

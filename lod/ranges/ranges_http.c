@@ -15,6 +15,7 @@ conic_status conic_ranges_open_url(conic_context *context, const char *url, cons
 #else
 
 #include <curl/curl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -39,6 +40,22 @@ typedef struct body {
   int n_holders;
 } body;
 
+/* Why a request failed, and what comes of it: `fates` says. */
+typedef enum fault {
+  FAULT_SILENCE, /* the server is not there, slow or busy, or ends early: there may be more in a while */
+  FAULT_WRONG,   /* what it sends is not what was asked for */
+  FAULT_LASTING, /* nor will it ever be */
+  FAULT_BOUND    /* it is more than there is memory for */
+} fault;
+
+static const struct {
+  conic_status status;
+  int most_repeats; /* of the request, if the options do not say less */
+} fates[] = {[FAULT_SILENCE] = {CONIC_ERROR_IO, INT_MAX},
+             [FAULT_WRONG] = {CONIC_ERROR_INPUT, 1},
+             [FAULT_LASTING] = {CONIC_ERROR_INPUT, 0},
+             [FAULT_BOUND] = {CONIC_ERROR_IO, 0}};
+
 typedef struct transfer {
   struct http_ranges *owner;
   CURL *easy;
@@ -52,14 +69,15 @@ typedef struct transfer {
   conic_http_response response;
   double window_s; /* when it was last looked at whether it stalls, */
   size_t window_n; /* and what it had then */
-  int is_final;    /* its failure: trying again is of no use */
-  char reason[160];
+  fault fault;     /* of its failure, which the reason describes: empty, where there is none yet */
+  char reason[CURL_ERROR_SIZE];
+  char words[CURL_ERROR_SIZE]; /* libcurl's own */
 } transfer;
 
 /* An answer that waits to be fetched. */
 typedef struct ready_answer {
   conic_range_answer answer;
-  char reason[160];
+  char reason[CURL_ERROR_SIZE];
 } ready_answer;
 
 typedef struct http_ranges {
@@ -75,7 +93,8 @@ typedef struct http_ranges {
   size_t first_ready, n_ready, ready_room; /* those from first_ready on wait */
   int n_failures;                          /* of requests, since one succeeded */
   int is_dead;                             /* the server is given up, until nothing is asked for any more */
-  char reason[160];                        /* of the last answer, or of the server's end */
+  fault fault;                             /* of which it died */
+  char reason[CURL_ERROR_SIZE];            /* of the last answer, or of the server's end */
 } http_ranges;
 
 static void let_go(http_ranges *http, body *held) {
@@ -100,9 +119,9 @@ static int keep_received(http_ranges *http, body *to, const char *data, size_t n
   return 1;
 }
 
-static int refuse_answer(transfer *t, int is_final, const char *reason) {
+static int refuse_answer(transfer *t, fault why, const char *reason) {
   snprintf(t->reason, sizeof t->reason, "%s", reason);
-  t->is_final = is_final;
+  t->fault = why;
   return 0;
 }
 
@@ -114,7 +133,7 @@ static int accept_whole(transfer *t) {
     snprintf(t->reason, sizeof t->reason,
              "the server sends no ranges, and the whole file of %llu MiB is over the memory bound",
              (unsigned long long)(t->response.length >> 20));
-    t->is_final = 1;
+    t->fault = FAULT_BOUND;
     return 0;
   }
   t->is_whole = 1;
@@ -124,7 +143,10 @@ static int accept_whole(transfer *t) {
 
 static int refuse_status(transfer *t, int status) {
   snprintf(t->reason, sizeof t->reason, "the server answers with status %d", status);
-  t->is_final = status >= 400 && status < 500 && status != 408 && status != 429;
+  if (status >= 500 || status == 408 || status == 429)
+    t->fault = FAULT_SILENCE;
+  else
+    t->fault = status >= 400 ? FAULT_LASTING : FAULT_WRONG;
   return 0;
 }
 
@@ -132,30 +154,36 @@ static int refuse_status(transfer *t, int status) {
 static int accept_response(transfer *t) {
   const conic_http_response *r = &t->response;
   http_ranges *http = t->owner;
+  if (r->is_packed)
+    return refuse_answer(t, FAULT_WRONG, "the server sends the file compressed, which nobody asked for");
   if (t->is_probe && r->status == 200)
     return accept_whole(t);
   if (r->status == 200)
-    return refuse_answer(t, 0, "the server sends the whole file for a range");
+    return refuse_answer(t, FAULT_WRONG, "the server sends the whole file for a range");
   if (r->status != 206)
     return refuse_status(t, r->status);
   if (!r->has_range)
-    return refuse_answer(t, 0, "the server does not say which range it sends");
+    return refuse_answer(t, FAULT_WRONG, "the server does not say which range it sends");
   if (t->is_probe) {
     http->base.size = r->size;
     t->n_expected = r->size < PROBE_BYTES ? (size_t)r->size : PROBE_BYTES;
     memcpy(http->tag, r->tag, sizeof http->tag);
   }
   if (r->size != http->base.size || (r->tag[0] && http->tag[0] && strcmp(r->tag, http->tag) != 0))
-    return refuse_answer(t, 1, "the file on the server has changed");
+    return refuse_answer(t, FAULT_LASTING, "the file on the server has changed");
   if (r->first != t->offset || r->last != t->offset + t->n_expected - 1)
-    return refuse_answer(t, 0, "the server sends another range than was asked for");
+    return refuse_answer(t, FAULT_WRONG, "the server sends another range than was asked for");
+  if (r->has_length && r->length != t->n_expected)
+    return refuse_answer(t, FAULT_WRONG,
+                         r->length > t->n_expected ? "the server sends more than was asked for"
+                                                   : "the server sends less than was asked for");
   return 1;
 }
 
 static size_t on_header(char *line, size_t one, size_t n, void *cookie) {
   transfer *t = cookie;
   if (!conic_http_header(&t->response, line, one * n)) {
-    refuse_answer(t, 0, "the server's headers do not end");
+    refuse_answer(t, FAULT_WRONG, "the server's headers do not end");
     return 0;
   }
   return one * n;
@@ -167,14 +195,14 @@ static size_t on_body(char *data, size_t one, size_t n, void *cookie) {
   if (t->body->n == 0 && !accept_response(t))
     return 0;
   if (n > t->n_expected - t->body->n) {
-    refuse_answer(t, t->is_whole,
+    refuse_answer(t, t->is_whole ? FAULT_BOUND : FAULT_WRONG,
                   t->is_whole && !t->response.has_length
                       ? "the server sends no ranges, and the whole file is over the memory bound"
                       : "the server sends more than was asked for");
     return 0;
   }
   if (!keep_received(t->owner, t->body, data, n, t->n_expected)) {
-    refuse_answer(t, 1, "out of memory");
+    refuse_answer(t, FAULT_BOUND, "out of memory");
     return 0;
   }
   return n;
@@ -194,6 +222,9 @@ static int set_up(http_ranges *http, transfer *t) {
   failed |= curl_easy_setopt(easy, CURLOPT_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_REDIR_PROTOCOLS, CURLPROTO_HTTP | CURLPROTO_HTTPS) != CURLE_OK;
 #endif
+#if LIBCURL_VERSION_NUM >= 0x075700 /* else giving up waits for a name server that does not answer */
+  failed |= curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L) != CURLE_OK;
+#endif
   failed |= curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 1L) != CURLE_OK;
@@ -203,6 +234,7 @@ static int set_up(http_ranges *http, transfer *t) {
   failed |= curl_easy_setopt(easy, CURLOPT_HEADERDATA, t) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, on_body) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_WRITEDATA, t) != CURLE_OK;
+  failed |= curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, t->words) != CURLE_OK;
   failed |= curl_easy_setopt(easy, CURLOPT_PRIVATE, t) != CURLE_OK;
   return !failed;
 }
@@ -216,8 +248,8 @@ static conic_status begin_transfer(transfer *t) {
     return CONIC_ERROR_MEMORY;
   t->body->n_holders = 1;
   memset(&t->response, 0, sizeof t->response);
-  t->reason[0] = '\0';
-  t->is_final = t->is_whole = 0;
+  t->reason[0] = t->words[0] = '\0';
+  t->is_whole = 0;
   snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)t->offset,
            (unsigned long long)(t->offset + t->n_expected - 1));
   if (curl_easy_setopt(t->easy, CURLOPT_RANGE, range) != CURLE_OK ||
@@ -247,7 +279,7 @@ static int is_stalled(transfer *t) {
   if (elapsed < t->owner->options.stall_seconds)
     return 0;
   if ((double)(t->body->n - t->window_n) < LEAST_BYTES_PER_SECOND * elapsed) {
-    refuse_answer(t, 0, "the server sends nothing more");
+    refuse_answer(t, FAULT_SILENCE, "the server sends nothing more");
     return 1;
   }
   t->window_s = now;
@@ -278,15 +310,20 @@ static int answer_from(http_ranges *http, body *from, uint64_t body_offset, cons
   return 1;
 }
 
-static void give_up(http_ranges *http, const conic_range *range, const char *reason) {
+static void give_up(http_ranges *http, const conic_range *range, fault why, const char *reason) {
   ready_answer *ready = add_ready(http);
   if (!ready) {
     http->base.n_pending--; /* the message about memory is logged; the caller will find nothing pending */
     return;
   }
   ready->answer.id = range->id;
-  ready->answer.status = CONIC_ERROR_IO;
+  ready->answer.status = fates[why].status;
   snprintf(ready->reason, sizeof ready->reason, "%s", reason);
+}
+
+static int most_repeats(const http_ranges *http, fault why) {
+  int most = fates[why].most_repeats, allowed = http->options.n_retries;
+  return most < allowed ? most : allowed;
 }
 
 /* A part of a failed request: once more after a pause, or never again. */
@@ -296,28 +333,47 @@ static void put_off(http_ranges *http, const transfer *t, conic_queued_range *pa
     pause *= 2.0;
   part->not_before_s = conic_seconds_now() + pause;
   part->n_failures++;
-  int is_last = part->n_failures > http->options.n_retries;
-  if (is_last && http->n_failures > http->options.n_retries && !http->is_dead) {
+  int n_repeats = most_repeats(http, t->fault), is_last = part->n_failures > n_repeats;
+  if (n_repeats > 0 && is_last && http->n_failures > n_repeats && !http->is_dead) {
     http->is_dead = 1;
+    http->fault = t->fault;
     snprintf(http->reason, sizeof http->reason, "%s", t->reason);
   }
-  if (t->is_final || is_last || http->is_dead ||
-      conic_range_queue_push(http->base.context, &http->base.queue, part) != CONIC_OK)
-    give_up(http, &part->range, t->reason);
+  if (is_last || http->is_dead || conic_range_queue_push(http->base.context, &http->base.queue, part) != CONIC_OK)
+    give_up(http, &part->range, t->fault, t->reason);
+}
+
+/* libcurl's reason, unless there is one already. */
+static int refuse_code(transfer *t, CURLcode code) {
+  long system_error = 0;
+  int redirects = t->response.status >= 300 && t->response.status < 400;
+  if (t->reason[0])
+    return 0;
+  if (t->body->n == 0 && t->response.n_bytes > 0 && code == CURLE_OUT_OF_MEMORY) /* of a line's room, not of memory */
+    return refuse_answer(t, FAULT_WRONG, "the server's headers do not end");
+  if (code == CURLE_UNSUPPORTED_PROTOCOL && !redirects)
+    return refuse_answer(t, FAULT_WRONG, "the server sends what is no answer, or more than it said in the one before");
+  if (curl_easy_getinfo(t->easy, CURLINFO_OS_ERRNO, &system_error) != CURLE_OK)
+    system_error = 0;
+  int is_lasting = code == CURLE_TOO_MANY_REDIRECTS || code == CURLE_UNSUPPORTED_PROTOCOL ||
+                   code == CURLE_URL_MALFORMAT || code == CURLE_PEER_FAILED_VERIFICATION;
+  int is_wrong =
+      code == CURLE_WEIRD_SERVER_REPLY || code == CURLE_WRITE_ERROR || (code == CURLE_RECV_ERROR && system_error == 0);
+  return refuse_answer(t,
+                       is_lasting ? FAULT_LASTING
+                       : is_wrong ? FAULT_WRONG
+                                  : FAULT_SILENCE,
+                       t->words[0] ? t->words : curl_easy_strerror(code));
 }
 
 /* Whether the transfer brought what it should. If not, its reason says why. */
 static int is_complete(transfer *t, CURLcode code) {
-  if (code != CURLE_OK) {
-    if (!t->reason[0])
-      snprintf(t->reason, sizeof t->reason, "%s", curl_easy_strerror(code));
-    t->is_final |= code == CURLE_TOO_MANY_REDIRECTS || code == CURLE_UNSUPPORTED_PROTOCOL;
-    return 0;
-  }
+  if (code != CURLE_OK)
+    return refuse_code(t, code);
   if (t->body->n == 0 && !accept_response(t)) /* it had no body, so nobody has looked at it yet */
     return 0;
   if (t->is_whole ? t->response.has_length && t->body->n != t->n_expected : t->body->n != t->n_expected)
-    return refuse_answer(t, 0, "the server sends less than was asked for");
+    return refuse_answer(t, FAULT_SILENCE, "the server ends before all was sent");
   return 1;
 }
 
@@ -348,7 +404,7 @@ static int gather_parts(http_ranges *http, transfer *t, double *wait_s) {
     }
     if (conic_memory_reserve(http->base.context, &t->parts, t->n_parts, t->n_parts + 1, &t->parts_room,
                              sizeof *t->parts) != CONIC_OK) {
-      give_up(http, &item.range, "out of memory");
+      give_up(http, &item.range, FAULT_BOUND, "out of memory");
       break;
     }
     if (t->n_parts == 0)
@@ -375,7 +431,7 @@ static void send_requests(http_ranges *http, double *wait_s) {
       return;
     if (begin_transfer(t) != CONIC_OK) {
       for (size_t k = 0; k < t->n_parts; k++)
-        give_up(http, &t->parts[k].range, "out of memory");
+        give_up(http, &t->parts[k].range, FAULT_BOUND, "out of memory");
       t->n_parts = 0;
     }
   }
@@ -399,7 +455,7 @@ static void take_finished(http_ranges *http) {
 /* The server is given up: so is all that waits. */
 static void give_up_all(http_ranges *http) {
   for (size_t i = 0; i < http->base.queue.n; i++)
-    give_up(http, &http->base.queue.items[i].range, http->reason);
+    give_up(http, &http->base.queue.items[i].range, http->fault, http->reason);
   http->base.queue.n = 0;
 }
 
@@ -478,6 +534,19 @@ static void close_url(conic_ranges *ranges) {
 
 static const conic_ranges_backend backend = {next, release_answer, cancel, close_url};
 
+/* Whether opening may go on; waits a little for what comes. */
+static conic_status go_on_opening(http_ranges *http, int wait_ms) {
+  conic_status status = conic_progress(http->base.context, "connect", 0.0);
+  double left = http->options.until_s - conic_seconds_now();
+  if (status != CONIC_OK)
+    return status;
+  if (!(left > 0.0))
+    return conic_fail(http->base.context, CONIC_ERROR_IO, "%s: cannot read: nothing came in time", http->url);
+  wait_ms = left < 1e-3 * wait_ms ? 1 + (int)(1e3 * left) : wait_ms;
+  curl_multi_poll(http->multi, NULL, 0, wait_ms, NULL);
+  return CONIC_OK;
+}
+
 /* The first request, once. */
 static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
   conic_status status;
@@ -497,10 +566,9 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
       status = CONIC_OK;
       break;
     }
-    status = conic_progress(http->base.context, "connect", 0.0);
+    status = go_on_opening(http, 100);
     if (status != CONIC_OK || is_stalled(t))
       break;
-    curl_multi_poll(http->multi, NULL, 0, 100, NULL);
   }
   if (*is_good) {
     if (t->is_whole)
@@ -515,13 +583,10 @@ static conic_status probe(http_ranges *http, transfer *t, int *is_good) {
 
 static conic_status pause_between(http_ranges *http, double seconds) {
   double until = conic_seconds_now() + seconds;
-  while (conic_seconds_now() < until) {
-    conic_status status = conic_progress(http->base.context, "connect", 0.0);
-    if (status != CONIC_OK)
-      return status;
-    curl_multi_poll(http->multi, NULL, 0, 50, NULL);
-  }
-  return CONIC_OK;
+  conic_status status = CONIC_OK;
+  while (conic_seconds_now() < until && status == CONIC_OK)
+    status = go_on_opening(http, 50);
+  return status;
 }
 
 /* Finds the file's size, and takes its beginning along. */
@@ -530,16 +595,14 @@ static conic_status look_at_file(http_ranges *http) {
   double pause = http->options.pause_seconds;
   int is_good = 0;
   conic_status status = probe(http, t, &is_good);
-  for (int i = 0; i < http->options.n_retries && status == CONIC_OK && !is_good && !t->is_final; i++, pause *= 2.0) {
+  for (int i = 0; status == CONIC_OK && !is_good && i < most_repeats(http, t->fault); i++, pause *= 2.0) {
     status = pause_between(http, pause);
     if (status == CONIC_OK)
       status = probe(http, t, &is_good);
   }
   if (status != CONIC_OK || is_good)
     return status;
-  int is_missing = t->response.status >= 400 && t->response.status < 500 && t->is_final;
-  return conic_fail(http->base.context, is_missing ? CONIC_ERROR_INPUT : CONIC_ERROR_IO, "%s: cannot read: %s",
-                    http->url, t->reason);
+  return conic_fail(http->base.context, fates[t->fault].status, "%s: cannot read: %s", http->url, t->reason);
 }
 
 static conic_status start(http_ranges *http, const char *url) {

@@ -46,8 +46,7 @@ static conic_status project_all(conic_contributions *c) {
     if (!projected->clips)
       return CONIC_ERROR_MEMORY;
   }
-  conic_parallel_for(c->context, projected->n_chunks, project_task, c);
-  return CONIC_OK;
+  return conic_parallel_told(c->context, "deep", 0.0, 0.0, projected->n_chunks, project_task, c);
 }
 
 /* Adds one to `next` for every band that the footprint touches; with references, enters it at that place. */

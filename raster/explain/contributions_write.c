@@ -180,7 +180,9 @@ static conic_status do_lines(lines *all, size_t n_lines, conic_deep_writer *writ
     size_t left = (size_t)(c->view.height - y), n = left < n_lines ? left : n_lines;
     for (size_t i = 0; i < n; i++)
       all->lines[i].y = y + (int)i;
-    conic_parallel_for(c->context, n, work_out, all);
+    double from = (double)y / (double)c->view.height, to = (double)(y + (int)n) / (double)c->view.height;
+    status = conic_parallel_told(c->context, "deep", writer ? 0.4 + 0.6 * from : 0.4 * from,
+                                 writer ? 0.4 + 0.6 * to : 0.4 * to, n, work_out, all);
     for (size_t i = 0; i < n && status == CONIC_OK; i++) {
       for (int x = 0; x < c->view.width; x++)
         *most = all->lines[i].counts[x] > *most ? all->lines[i].counts[x] : *most;
@@ -188,9 +190,6 @@ static conic_status do_lines(lines *all, size_t n_lines, conic_deep_writer *writ
         status =
             all->lines[i].status == CONIC_OK ? conic_deep_append(writer, &all->lines[i].packed) : all->lines[i].status;
     }
-    double done = (double)(y + (int)n) / (double)c->view.height;
-    if (status == CONIC_OK)
-      status = conic_progress(c->context, "deep", writer ? 0.4 + 0.6 * done : 0.4 * done);
   }
   return status;
 }

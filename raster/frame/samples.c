@@ -184,10 +184,11 @@ static conic_status count_whole(conic_context *context, const conic_whole_drawin
   c.chunks = conic_memory_allocate_zeroed(context, n_tasks, sizeof *c.chunks);
   if (!c.chunks)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, n_tasks, count_splats, &c);
-  conic_chunks_count(c.chunks, n_tasks, options->method, s);
+  status = conic_parallel_told(context, "render", 1.0, 1.0, n_tasks, count_splats, &c);
+  if (status == CONIC_OK)
+    conic_chunks_count(c.chunks, n_tasks, options->method, s);
   conic_memory_release(context, c.chunks);
-  return conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s);
+  return status == CONIC_OK ? conic_whole_drawing_count(context, drawing, &c.view, camera, options->isa, s) : status;
 }
 
 /* The planes of the fine picture, which the renderer fills whole: unlike conic_image_allocate's they are not cleared,

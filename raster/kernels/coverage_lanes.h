@@ -51,14 +51,22 @@ CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes
   f->scale = lanes_of(1.0f);
 }
 
+/* The plane's inverse depth, and where that and the box let a ray cover pixels. */
+CONIC_INLINE lanes_mask ray_reaches(const conic_footprint *footprint, const conic_ray *ray, lanes dx, lanes dy,
+                                    lanes *inverse_depth) {
+  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
+  *inverse_depth = iz;
+  return lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
+         lanes_at_least(lanes_of(ray->iz_high), iz) & lanes_at_least(dx, lanes_of(ray->dx_low)) &
+         lanes_at_least(lanes_of(ray->dx_high), dx) & lanes_at_least(dy, lanes_of(ray->dy_low)) &
+         lanes_at_least(lanes_of(ray->dy_high), dy);
+}
+
 /* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
 CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
                                 lanes dx, lanes dy, fragments *f) {
-  lanes iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;
-  f->covered = lanes_less(lanes_of(0.0f), iz) & lanes_at_least(iz, lanes_of(ray->iz_low)) &
-               lanes_at_least(lanes_of(ray->iz_high), iz);
-  f->covered &= lanes_at_least(dx, lanes_of(ray->dx_low)) & lanes_at_least(lanes_of(ray->dx_high), dx) &
-                lanes_at_least(dy, lanes_of(ray->dy_low)) & lanes_at_least(lanes_of(ray->dy_high), dy);
+  lanes iz;
+  f->covered = ray_reaches(footprint, ray, dx, dy, &iz);
   lanes r = 1.0f / iz;
   lanes u = ((ray->u0 + ray->u_dy * dy) + ray->u_dx * dx) * r;
   lanes v = ((ray->v0 + ray->v_dy * dy) + ray->v_dx * dx) * r;

@@ -2,7 +2,7 @@
 #ifndef CONIC_PASS_BODY_H
 #define CONIC_PASS_BODY_H
 
-#include "raster/kernels/coverage_lanes.h"
+#include "raster/kernels/crowd_body.h"
 
 /* The pixels of a band: the rows are the same in every part, the columns those of the first part and so on. NaN
  * outside the image: what is compared with it is not covered. */
@@ -79,6 +79,7 @@ typedef struct pass {
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
   lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* from the first wide splat on */
+  float greatest_length;
   int has_lengths;
 } pass;
 
@@ -96,10 +97,13 @@ CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
 
 static __attribute__((noinline)) void find_lengths(const conic_band *band, pass *p) {
   const float *ray_y = conic_band_ray_y(band);
+  p->greatest_length = 1.0f;
   for (int i = 0; i < (CONIC_BAND_BLOCKS + 1) * CONIC_PARTS; i++) {
     const float *ray_x = band->rays->block_x[i / CONIC_PARTS];
     size_t at = (size_t)(i % CONIC_PARTS) * CONIC_LANES;
     p->ray_length[i] = ray_lengths(lanes_load(ray_x + at), lanes_load(ray_y + at));
+    for (int lane = 0; lane < CONIC_LANES; lane++)
+      p->greatest_length = p->ray_length[i][lane] > p->greatest_length ? p->ray_length[i][lane] : p->greatest_length;
   }
   p->has_lengths = 1;
 }
@@ -117,8 +121,7 @@ typedef struct passing {
 typedef enum splat_kind { SPLAT_USUAL, SPLAT_WIDE, SPLAT_SPECIAL } splat_kind;
 
 /* conic_hiding_iz in a part of a block. */
-CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, const fragments *f, uint32_t part, splat_kind kind) {
-  lanes iz = lanes_min(f->plane_iz, f->iz);
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
   if (kind == SPLAT_WIDE || (kind == SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
     return wide_hiding(splat->footprint, iz, p->ray_length[part]);
   return splat->nearness * iz;
@@ -145,7 +148,7 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind == SPLAT_SPECIAL, &f);
-    lanes hides = hiding_iz(p, splat, &f, block * CONIC_PARTS + part, kind);
+    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, kind);
     n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind == SPLAT_SPECIAL);
   }
   p->n_fragments += n_covered;
@@ -168,8 +171,88 @@ CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_
     pass_block(p, from, s, &splat, block, kind);
 }
 
+/* A ray's pixels in a block, by their inverse depth alone. Returns 0, and does nothing, where they must be evaluated:
+ * where it does not tell whether they are covered, or where there is room to keep them. */
+CONIC_INLINE int glance_at_block(pass *p, const sources *from, const sites *s, const passing *splat, float sure,
+                                 uint32_t block) {
+  const splat_rows *rows = &splat->rows;
+  float *thresholds = p->kept[block].threshold;
+  lanes raised[CONIC_PARTS];
+  unsigned n_covered = 0;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
+    lanes iz, dx = (s->x[block * CONIC_PARTS + part] - rows->x) + rows->dx0;
+    lanes_mask covered = ray_reaches(splat->footprint, &from->rays[splat->footprint->i_ray], dx, rows->dy, &iz);
+    if (lanes_any(covered & lanes_less(iz, lanes_of(sure))))
+      return 0;
+    lanes clamped = lanes_min(lanes_max(iz, rows->iz_far), rows->iz_near);
+    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, SPLAT_SPECIAL);
+    raised[part] = lanes_max(lanes_keep(covered, hides), lanes_load(thresholds + (size_t)part * CONIC_LANES));
+    n_covered += lanes_count(covered);
+  }
+  if (n_covered > 0 && p->n_kept[block] < p->room)
+    return 0;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++)
+    lanes_store(thresholds + (size_t)part * CONIC_LANES, raised[part]);
+  if (n_covered > 0 && p->not_kept[block] > splat->i)
+    p->not_kept[block] = splat->i;
+  p->n_fragments += n_covered;
+  return 1;
+}
+
+/* What is known of a crowded band. */
+typedef struct crowd {
+  uint32_t n_pixels;
+  float threshold; /* no pixel's is below it */
+  int is_full;     /* every block leaves out some that cover it */
+} crowd;
+
+static __attribute__((noinline)) void look_at_crowd(const conic_band *band, const size_t *not_kept, crowd *c) {
+  const int n_columns = lesser_end(band->n_blocks * CONIC_BLOCK_EDGE, band->view->width - band->x);
+  const int n_rows = lesser_end(CONIC_BLOCK_EDGE, band->view->height - band->y);
+  *c = (crowd){(uint32_t)(n_columns * n_rows), HUGE_VALF, 1};
+  for (int block = 0; block < band->n_blocks; block++)
+    c->is_full &= not_kept[block] < band->n;
+  for (int x = 0; x < n_columns; x++)
+    for (int y = 0; y < n_rows; y++) {
+      const conic_kept *kept = &band->kept[x / CONIC_BLOCK_EDGE];
+      float threshold = kept->threshold[x % CONIC_BLOCK_EDGE * CONIC_BLOCK_EDGE + y];
+      c->threshold = threshold < c->threshold ? threshold : c->threshold;
+    }
+}
+
+/* Whether a ray that covers all of the band does nothing else there: no place is left for it, and it raises no
+ * threshold. */
+CONIC_INLINE int only_counts(const pass *p, const crowd *c, const conic_footprint *f, const crowd_depths *depths) {
+  float most = most_seen(f, depths), length = p->greatest_length;
+  float hides = f->nearness * most;
+  if (conic_is_wide(f)) /* and what rounding adds: it grows with the length in exact arithmetic */
+    hides = (1.0f + 0x1p-20f) * (most * (length / (length - hides)));
+  return c->is_full && hides <= c->threshold;
+}
+
+static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *from, const sites *s,
+                                                        const conic_band *band, const crowd *c, size_t i) {
+  const uint32_t i_footprint = from->indices[i], word = from->words[i];
+  const conic_footprint *f = &from->footprints[i_footprint];
+  const conic_ray *ray = &from->rays[f->i_ray];
+  const crowd_span span = span_of(band, f);
+  const crowd_depths depths = depths_of(f, &span);
+  const float sure = sure_iz(from->view, f, ray, &span);
+  if (covers_span(ray, &span, &depths, sure) && only_counts(p, c, f, &depths)) {
+    p->n_fragments += c->n_pixels;
+    return;
+  }
+  const passing splat = {f, i, i_footprint, lanes_of(f->nearness), begin_rows(f, s->y)};
+  for (uint32_t block = conic_word_first(word); block <= conic_word_last(word); block++)
+    if (!(sure < HUGE_VALF) || !glance_at_block(p, from, s, &splat, sure, block))
+      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL);
+}
+
 static void visibility(conic_band *band) {
+  enum { LOOK_EVERY = 32 };
   const sources from = sources_of(band);
+  const int is_crowd = from.n > CONIC_KEPT_SPLATS;
+  crowd c = {0, 0.0f, 0};
   pass p;
   int has_special = 0;
   sites s;
@@ -179,6 +262,8 @@ static void visibility(conic_band *band) {
     prefetch_splat(&from, i);
     const conic_footprint *footprint = &from.footprints[from.indices[i]];
     const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
+    if (is_crowd && has_special && i % LOOK_EVERY == 0)
+      look_at_crowd(band, p.not_kept, &c);
     if (__builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
       pass_splat(&p, &from, &s, i, SPLAT_USUAL);
       continue;
@@ -189,7 +274,10 @@ static void visibility(conic_band *band) {
       pass_splat(&p, &from, &s, i, SPLAT_WIDE);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
-      pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
+      if (is_crowd && is_plain_ray(footprint))
+        pass_ray_in_crowd(&p, &from, &s, band, &c, i);
+      else
+        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
       has_special = 1;
     }
   }
@@ -249,29 +337,83 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
   }
 }
 
-/* What was not kept is evaluated again. */
-CONIC_INLINE void blend_rest(const conic_band *band, const sites *s, int block, int part, kernel_kind kind,
-                             part_sums *to) {
-  const sources from = sources_of(band);
-  int at = block * CONIC_PARTS + part;
-  lanes threshold = lanes_load(band->kept[block].threshold + (size_t)part * CONIC_LANES);
+/* A ray's fragments, evaluated only where they are seen and its inverse depth is below `flat`. Returns whether one may
+ * be visible. */
+CONIC_INLINE int glance_at_ray(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
+                               lanes threshold, float flat, fragments *f) {
+  lanes dx = (x - rows->x) + rows->dx0;
+  f->covered = ray_reaches(footprint, &from->rays[footprint->i_ray], dx, rows->dy, &f->plane_iz);
+  f->iz = lanes_min(lanes_max(f->plane_iz, rows->iz_far), rows->iz_near);
+  f->covered &= lanes_at_least(lanes_max(f->plane_iz, f->iz), threshold);
+  if (!lanes_any(f->covered))
+    return 0;
+  f->q = lanes_of(0.0f);
+  f->scale = lanes_of(1.0f);
+  if (lanes_any(f->covered & lanes_less(f->plane_iz, lanes_of(flat))))
+    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+  return 1;
+}
+
+/* A fragment that was not kept is evaluated again. */
+CONIC_INLINE void blend_again(const conic_band *band, const sources *from, const splat_rows *rows, lanes x,
+                              lanes threshold, float flat, size_t i, kernel_kind kind, part_sums *to) {
+  const uint32_t i_footprint = from->indices[i];
+  const conic_footprint *footprint = &from->footprints[i_footprint];
   fragments f;
-  for (size_t i = band->not_kept[block]; i < from.n; i++) {
-    if (!conic_word_has(from.words[i], (uint32_t)block))
+  if (flat < HUGE_VALF) {
+    if (!glance_at_ray(from, footprint, rows, x, threshold, flat, &f))
+      return;
+  } else
+    evaluate(from, footprint, rows, x, !(footprint->s3 > 0.0f), &f);
+  lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
+  if (!lanes_any(visible))
+    return;
+  blend(&from->surfaces[i_footprint], i_footprint, weigh(from->view, footprint->amplitude, f.q, f.scale, visible, kind),
+        to);
+  if (!band->keeps_indices)
+    return;
+  to->count = lanes_increment(visible, to->count);
+  keep_better(&to->nearest_iz, &to->nearest, visible & lanes_less(to->nearest_iz, f.iz), f.iz, i_footprint);
+}
+
+/* The inverse depth from which on a plain ray's q and scale are known: infinite for what is no plain ray, and finite
+ * but never reached by one whose are never. */
+CONIC_INLINE float flat_in(const sources *from, const conic_footprint *footprint, const crowd_span *span,
+                           kernel_kind kind) {
+  if (!is_plain_ray(footprint))
+    return HUGE_VALF;
+  float flat = flat_iz(from->view, footprint, &from->rays[footprint->i_ray], span);
+  return kind != KERNEL_OTHER && flat < FLT_MAX ? flat : FLT_MAX;
+}
+
+/* Whether all of the band hides the plain ray. */
+CONIC_INLINE int band_hides(const crowd *c, const conic_footprint *footprint, const crowd_span *span) {
+  const crowd_depths depths = depths_of(footprint, span);
+  return is_plain_ray(footprint) && most_seen(footprint, &depths) < c->threshold;
+}
+
+/* The sums of a band's parts, in memory: what was not kept goes splat by splat, which fetches each once. */
+typedef part_sums band_sums[CONIC_BAND_BLOCKS * CONIC_PARTS];
+
+CONIC_INLINE void blend_rest(const conic_band *band, const sources *from, const sites *s, kernel_kind kind,
+                             size_t first, band_sums to) {
+  crowd c;
+  look_at_crowd(band, band->not_kept, &c);
+  for (size_t i = first; i < from->n; i++) {
+    const conic_footprint *footprint = &from->footprints[from->indices[i]];
+    const splat_rows rows = begin_rows(footprint, s->y);
+    const crowd_span span = span_of(band, footprint);
+    const uint32_t last = conic_word_last(from->words[i]);
+    const float flat = flat_in(from, footprint, &span, kind);
+    prefetch_splat(from, i);
+    if (band_hides(&c, footprint, &span))
       continue;
-    const conic_footprint *footprint = &from.footprints[from.indices[i]];
-    splat_rows rows = begin_rows(footprint, s->y);
-    evaluate(&from, footprint, &rows, s->x[at], !(footprint->s3 > 0.0f), &f);
-    lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
-    if (!lanes_any(visible))
-      continue;
-    uint32_t i_footprint = from.indices[i];
-    blend(&from.surfaces[i_footprint], i_footprint, weigh(from.view, footprint->amplitude, f.q, f.scale, visible, kind),
-          to);
-    if (!band->keeps_indices)
-      continue;
-    to->count = lanes_increment(visible, to->count);
-    keep_better(&to->nearest_iz, &to->nearest, visible & lanes_less(to->nearest_iz, f.iz), f.iz, i_footprint);
+    for (uint32_t block = conic_word_first(from->words[i]); block <= last; block++)
+      for (size_t part = 0; part < CONIC_PARTS && i >= band->not_kept[block]; part++) {
+        size_t at = block * CONIC_PARTS + part;
+        lanes threshold = lanes_load(band->kept[block].threshold + part * CONIC_LANES);
+        blend_again(band, from, &rows, s->x[at], threshold, flat, i, kind, &to[at]);
+      }
   }
 }
 
@@ -286,23 +428,34 @@ CONIC_INLINE void store_sums(const part_sums *from, size_t at, conic_block_sums 
   lanes_store_indices(to->count + at, from->count);
 }
 
-CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
-  const sources from = sources_of(band);
+CONIC_INLINE void finish_rest(conic_band *band, const sources *from, kernel_kind kind, size_t first, band_sums rest) {
   sites s;
   find_sites(band, &s);
+  blend_rest(band, from, &s, kind, first, rest);
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int part = 0; part < CONIC_PARTS && band->not_kept[block] < band->n; part++)
+      store_sums(&rest[block * CONIC_PARTS + part], (size_t)part * CONIC_LANES, &band->sums[block]);
+}
+
+CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
+  const sources from = sources_of(band);
+  size_t first = band->n;
+  band_sums rest;
   for (int block = 0; block < band->n_blocks; block++) {
-    if (conic_block_is_empty(band, block))
-      continue;
-    for (int part = 0; part < CONIC_PARTS; part++) {
+    first = band->not_kept[block] < first ? band->not_kept[block] : first;
+    for (int part = 0; part < CONIC_PARTS && !conic_block_is_empty(band, block); part++) {
       size_t at = (size_t)part * CONIC_LANES;
       part_sums of_part;
       clear_sums(&of_part);
       blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
       if (band->not_kept[block] < band->n)
-        blend_rest(band, &s, block, part, kind, &of_part);
-      store_sums(&of_part, at, &band->sums[block]);
+        rest[block * CONIC_PARTS + part] = of_part;
+      else
+        store_sums(&of_part, at, &band->sums[block]);
     }
   }
+  if (first < band->n)
+    finish_rest(band, &from, kind, first, rest);
 }
 
 static void accumulate(conic_band *band) {

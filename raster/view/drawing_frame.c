@@ -107,12 +107,12 @@ static conic_status measure_reach(conic_context *context, reach *r) {
   r->farthest = conic_memory_allocate(context, n_tasks * r->n, sizeof *r->farthest);
   if (!r->farthest)
     return CONIC_ERROR_MEMORY;
-  conic_parallel_for(context, n_tasks, measure_reach_of_task, r);
-  for (size_t task = 1; task < n_tasks; task++)
+  conic_status status = conic_parallel_told(context, "frame", 0.0, 1.0, n_tasks, measure_reach_of_task, r);
+  for (size_t task = 1; task < n_tasks && status == CONIC_OK; task++)
     for (size_t i = 0; i < r->n; i++)
       if (r->farthest[task * r->n + i] > r->farthest[i])
         r->farthest[i] = r->farthest[task * r->n + i];
-  return CONIC_OK;
+  return status;
 }
 
 /* A point (x, y, z) of camera axes about the centre, seen from z = -d, is left of the side of tangent t where

@@ -104,6 +104,16 @@ for command in 'render -o outputs/a.pfm' verify 'explain --pixel 1,1' bench; do
   run_wrong 3 'absent.json' $command absent.ply --camera absent.json
 done
 run_wrong 3 'absent.png' render absent.obj -o outputs/a.pfm --as mesh --texture absent.png
+# Nor is anything read that may never end
+mkfifo pipe.png
+run_wrong 3 'pipe.png: cannot read: it is no regular file' render absent.obj -o outputs/a.pfm --as mesh --texture pipe.png
+run_wrong 3 '/dev/zero: cannot read: it is no regular file' render absent.obj -o outputs/a.pfm --as mesh --texture /dev/zero
+run_wrong 3 'pipe.png: cannot read: it is no regular file' diff pipe.png pipe.png
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'vt 0 0' 'f 1/1 2/1 3/1' > one.obj
+"$conic" render --plain one.obj -o large.pfm --size 512x512
+run_wrong 3 '512 × 512 pixels takes 6 MiB' render one.obj -o outputs/a.pfm --as mesh --texture large.pfm --max-texture 5
+run_wrong 3 '512 × 512 pixels takes 6 MiB' hybrid one.obj -o outputs/a.chy --texture large.pfm --max-texture 5
+"$conic" render --plain one.obj -o b.pfm --size 64x64 --as mesh --texture large.pfm --max-texture 6 || fail "a texture that fits"
 # A file has many names: none of the outputs is another one, or what the work begins with
 mkdir linked
 : > linked/there.pfm
@@ -182,6 +192,12 @@ run 0 diff a.pfm twice.pfm
 run 0 diff a.pfm again.pfm
 run 0 octree a.ply -o a.cot
 run_wrong 3 'this is a point-octree' prepare a.cot -o outputs/a.ply
+run 0 prepare a.ply --count 500 -o few.ply
+run 0 prepare a.ply --count 500 --ellipse voronoi -o named.ply
+run 0 prepare a.ply --count 500 --ellipse bounding -o bounding.ply
+cmp -s few.ply named.ply || fail "--ellipse voronoi is not the default"
+cmp -s few.ply bounding.ply && fail "--ellipse bounding changes nothing"
+run_wrong 2 'ellipse' prepare a.ply --ellipse delaunay -o outputs/a.ply
 run 0 diff b.pfm c.pfm
 run 1 diff a.pfm b.pfm
 run 1 diff a.pfm b.pfm --max-abs 0.0001

@@ -29,7 +29,7 @@ fi
 write() {
   local name=$1 definition=$2 exit_code=0
   shift 2
-  if [[ $name == diff* ]]; then
+  if [[ $name == diff* || $name == *-wrong ]]; then
     exit_code=1
   fi
   run $exit_code "$@" --json -
@@ -64,9 +64,9 @@ declare -A wanted=(
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"
-  [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z compared_pixels
-    unstable_pixels covered_pixels undecided_ids unstable_limit unstable_by_reason.cutoff unstable_by_reason.visibility
-    ms.render ms.oracle pass"
+  [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z judged_pixels
+    compared_pixels unstable_pixels covered_pixels undecided_ids unbounded_pixels unbounded_limit wrong_pixels
+    unstable_by_reason.cutoff unstable_by_reason.visibility ms.render ms.oracle pass"
   [explain]="method pixel? planes.rgba planes.weight planes.id threshold counts.visible counts.hidden contributions"
   [explain-hybrid]="method pixel? planes.rgba planes.cluster threshold contributions blended? triangles?"
   [chart]="scenes methods points seconds"
@@ -118,6 +118,8 @@ write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
 write verify verify verify thinner.ply --size 160x120
 write verify-samples verify verify thinner.ply --size 40x30 --samples 2
+write render-prefiltered render render thinner.ply --size 160x120 --prefilter 1.01 -o prefiltered.exr
+write verify-wrong verify verify thinner.ply --size 160x120 --pixels 500 --image prefiltered.exr
 write make-one make make plane -n 1 -o one.ply
 write verify-exact verify verify one.ply --size 12x9 --against exact
 write explain explain explain one.ply --size 64x48 --pixel 30,20

@@ -62,6 +62,7 @@ run 0 diff steps/"$(printf %04d "$n")".exr whole.exr
 run 2 render knot.ply -o x.pfm --memory 10
 run 2 render knot.ply -o x.pfm --progressive x
 run 2 render knot.ply -o x.pfm --deadline 1
+run 2 render knot.ply -o x.pfm --tolerate
 run 2 render knot.lpc -o x.pfm --deep x.exr
 run 2 render knot.lpc -o x.pfm --error 1 --budget 5000
 run 2 render knot.lpc -o x.pfm --budget 1
@@ -69,7 +70,18 @@ run 4 render knot.lpc --progressive /nowhere/x
 head -c 30000 knot.lpc > cut.lpc
 run 3 render cut.lpc -o x.pfm
 run 4 render http://127.0.0.1:9/x.lpc -o x.pfm --timeout 1
+
+# A byte that is wrong is no lateness.
+cp knot.lpc flipped.lpc
+last=$(tail -c 1 knot.lpc | od -An -tu1)
+printf "\\x$(printf %02x $((last ^ 1)))" | dd of=flipped.lpc bs=1 seek=$(($(stat -c %s knot.lpc) - 1)) conv=notrunc 2> err
+run 3 render flipped.lpc -o x.pfm --deadline 100
+run 3 render flipped.lpc --progressive x
+[[ $(grep -c '^conic: error: flipped.lpc: cannot read cloud ' err) -eq 1 ]] || fail "damage is not named: $(cat err)"
 [[ ! -e x.pfm && -z $(find . -name '.x*') ]] || fail "a failed run left its output"
+run 0 render flipped.lpc -o tolerated.pfm $picture --tolerate --json tolerated.json
+[[ $(value clouds_damaged tolerated.json) == 1 && $(value places_coarser tolerated.json) -gt 0 ]] || fail "--tolerate"
+grep -q '^conic: warning: flipped.lpc: cloud [0-9]*: .*sum' err || fail "--tolerate does not say what: $(cat err)"
 
 if [[ -z $nginx ]]; then
   echo "skipped in part: nginx is not there (scripts/install-packages nginx-light)" >&2

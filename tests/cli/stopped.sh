@@ -47,21 +47,22 @@ for input in pipe -; do
   exec 9>&-
 done
 
-# A later one ends a run that does not listen: here, to points at one place, where it is slow to build
-yes '1 1 1' | head -n 60000 > slow.xyz
-"$conic" octree slow.xyz -o outputs/a.cot > out 2> err &
-process=$!
-sleep 1
-kill -INT $process
-sleep 0.5
-if kill -0 $process 2> /dev/null; then
-  kill -INT $process
+# A run that does not listen, as where all splats lie in one tile, is ended all the same, by itself or by a later signal
+yes '1 1 1' | head -n 2000000 > slow.xyz
+for signals in INT "INT INT"; do
+  "$conic" render slow.xyz --up y -o outputs/a.png > out 2> err &
+  process=$!
+  sleep 2
+  for name in $signals; do
+    kill -"$name" $process 2> /dev/null
+    sleep 0.3
+  done
   wait $process
   got=$?
-  [[ $got -eq 130 ]] || fail "a run that a second signal ends: exit code $got"
-else
-  echo "skipped: nothing is slow to stop"
-fi
+  [[ $got -eq 130 ]] || fail "a run that does not listen to $signals: exit code $got"
+  [[ $(wc -l < err) -eq 1 ]] || fail "a run that does not listen to $signals: not one line: $(cat err)"
+  [[ -z $(ls -A outputs) ]] || fail "a run that does not listen to $signals leaves $(ls -A outputs)"
+done
 set +m
 
 # What has no reader is no longer written

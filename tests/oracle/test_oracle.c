@@ -236,14 +236,15 @@ static void test_planted(fixture *f) {
   conic_reference_release(f->context, &o.reference);
 }
 
-/* Too many unstable pixels are a failure. */
+/* Too many pixels of which nothing can be said are a failure. */
 static void test_limit(fixture *f) {
   outcome o = examine(f);
-  size_t limit = (size_t)(o.verdict.unstable_limit * (double)o.reference.covered_pixels);
-  o.reference.unstable_pixels = limit;
+  size_t limit = (size_t)(o.verdict.unbounded_limit * (double)o.reference.n_pixels);
+  CHECK(o.reference.unbounded_pixels == 0 && limit > 0);
+  o.reference.unbounded_pixels = limit;
   CHECK_OK(conic_oracle_compare(f->context, &o.reference, &f->image, &o.verdict));
   CHECK(o.verdict.pass);
-  o.reference.unstable_pixels = limit + 1;
+  o.reference.unbounded_pixels = limit + 1;
   CHECK_OK(conic_oracle_compare(f->context, &o.reference, &f->image, &o.verdict));
   CHECK(!o.verdict.pass);
   conic_reference_release(f->context, &o.reference);

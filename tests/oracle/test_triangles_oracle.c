@@ -12,6 +12,10 @@ static void check(fixture *f, const conic_triangles *t, const char *what, int sa
   printf("%s: %zu covered, %zu unstable, rgba %.1e, Z %.1e, N %.1e\n", what, verdict.covered_pixels,
          verdict.unstable_pixels, verdict.planes[CONIC_PLANE_RGBA].max_abs, verdict.planes[CONIC_PLANE_Z].max_abs,
          verdict.planes[CONIC_PLANE_NORMAL].max_abs);
+  if (!verdict.pass)
+    fprintf(stderr, "%s: pixel %d,%d, %s: %g, not %g to %g; %zu unbounded\n", what, verdict.worst.x, verdict.worst.y,
+            conic_plane_describe((conic_plane)verdict.worst.plane)->name, verdict.worst.found, verdict.worst.low,
+            verdict.worst.high, reference.unbounded_pixels);
   CHECK(verdict.pass);
   CHECK(verdict.covered_pixels > 1000);
   conic_reference_release(f->context, &reference);

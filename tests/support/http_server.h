@@ -15,13 +15,16 @@
 #include <time.h>
 #include <unistd.h>
 
+enum { HTTP_MENDED = 4096 };
+
 typedef struct http_server {
   int listener, port;
   const unsigned char *bytes;
   size_t n_bytes;
   pthread_t thread;
   atomic_int n_requests, n_connections, n_busy, is_stopping;
-  atomic_int n_good; /* so many answers are good before it misbehaves */
+  atomic_char is_mended[HTTP_MENDED]; /* a place that was wrong once */
+  atomic_int n_good;                  /* so many answers are good before it misbehaves */
 } http_server;
 
 typedef struct http_connection {
@@ -130,15 +133,16 @@ static inline int http_hang(const http_server *server, int socket) {
   return 0;
 }
 
-/* The range with a byte that is wrong. */
-static inline int http_answer_wrongly(const http_server *server, int socket, const http_request *r) {
+/* The range with bytes that are wrong; `is_mending`: each is right from the second time on. */
+static inline int http_answer_wrongly(http_server *server, int socket, const http_request *r, int is_mending) {
   size_t n = r->last - r->first + 1;
   unsigned char *copy = malloc(n);
   if (!copy)
     return 0;
   memcpy(copy, server->bytes + r->first, n);
-  for (size_t i = 0; i < n; i += 997)
-    copy[i] ^= 0x55;
+  for (size_t at = (r->first + 996) / 997 * 997; at <= r->last; at += 997)
+    if (!is_mending || !atomic_exchange(&server->is_mended[at / 997 % HTTP_MENDED], 1))
+      copy[at - r->first] ^= 0x55;
   int is_sent = http_head(server, socket, r, n, 0, "a") && http_send(socket, copy, n);
   free(copy);
   return is_sent;
@@ -180,6 +184,19 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
     return http_say(socket, "HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\nContent-Length: 0\r\n\r\n");
   if (strcmp(mode, "headers") == 0)
     return http_say(socket, "HTTP/1.1 206 Partial Content\r\n") && http_repeat(server, socket, "X-More: yes\r\n", 0);
+  if (strcmp(mode, "header") == 0)
+    return http_say(socket, "HTTP/1.1 206 Partial Content\r\nX-More: ") && http_repeat(server, socket, "and more, ", 0);
+  if (strcmp(mode, "packed") == 0) {
+    snprintf(text, sizeof text,
+             "HTTP/1.1 206 Partial Content\r\nContent-Encoding: gzip\r\nContent-Range: bytes %zu-%zu/%zu\r\n"
+             "Content-Length: %zu\r\n\r\n",
+             r->first, r->last, server->n_bytes, n);
+    return http_say(socket, text) && http_send(socket, server->bytes + r->first, n);
+  }
+  if (strcmp(mode, "drops") == 0) /* 1.5 KB/s */
+    return http_head(server, socket, r, n, 0, "a") &&
+           http_repeat(server, socket, "0123456789012345678901234567890123456789012345678901234567890123456789012345",
+                       50);
   if (strcmp(mode, "garbage") == 0)
     return http_repeat(server, socket, "\x01\xff garbage\n", 0);
   if (strcmp(mode, "stalled") == 0)
@@ -190,9 +207,9 @@ static inline int http_misbehave(http_server *server, int socket, const http_req
   if (strcmp(mode, "trickle") == 0)
     return http_head(server, socket, r, n, 0, "a") && http_repeat(server, socket, "x", 50);
   if (strcmp(mode, "damaged") == 0)
-    return http_answer_wrongly(server, socket, r);
+    return http_answer_wrongly(server, socket, r, 0);
   if (strcmp(mode, "mended") == 0) /* wrong, then right */
-    return i_request % 2 ? http_answer_wrongly(server, socket, r) : http_answer_well(server, socket, r);
+    return http_answer_wrongly(server, socket, r, 1);
   if (strcmp(mode, "flaky") == 0)
     return i_request % 2 ? http_say(socket, "HTTP/1.1 503 Busy\r\nContent-Length: 0\r\n\r\n")
                          : http_answer_well(server, socket, r);

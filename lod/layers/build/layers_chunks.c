@@ -119,17 +119,19 @@ static conic_status grow_chunks(growing *g) {
   for (size_t first = 0, n; first < g->n_chunks && status == CONIC_OK; first += n) {
     n = g->n_chunks - first < 4 * (size_t)g->n_workers ? g->n_chunks - first : 4 * (size_t)g->n_workers;
     g->first_chunk = first;
-    conic_parallel_for(context, n, grow_task, g);
+    uint64_t n_now = 0;
+    for (size_t i = first; i < first + n; i++)
+      n_now += g->chunks[i].n_samples;
+    status = conic_parallel_told(context, "build", (double)n_done / (double)n_all,
+                                 (double)(n_done + n_now) / (double)n_all, n, grow_task, g);
+    n_done += n_now;
     for (size_t i = first; i < first + n && status == CONIC_OK; i++) {
       status = g->chunks[i].status;
       if (status == CONIC_OK)
         status = collect_chunk(g, &g->chunks[i]);
-      n_done += g->chunks[i].n_samples;
     }
-    if (status == CONIC_OK)
-      status = conic_progress(context, "build", (double)n_done / (double)n_all);
   }
-  return status;
+  return status == CONIC_OK ? conic_progress(context, "build", 1.0) : status;
 }
 
 /* The first of some chunks in a row that is past the middle of the place they share. */

@@ -68,15 +68,18 @@ static conic_status make_do(layers_drawing *d, double until_s) {
       d->held[n++] = i;
   if (n == 0)
     return CONIC_OK;
-  d->holding = (conic_layers_loading){.clouds = d->held, .until_s = until_s, .may_miss = 1};
+  d->holding = (conic_layers_loading){
+      .clouds = d->held, .until_s = until_s, .may_miss = 1, .tolerates_damage = d->options->tolerates_damage};
   d->holding.n = conic_layers_store_fit(layers, d->held, n, conic_layers_cache_bytes(layers));
   conic_status status = conic_layers_store_load(layers, &d->holding);
   if (status != CONIC_OK) {
     d->holding.n = 0;
     return status;
   }
+  d->drawn.n_clouds_damaged = d->holding.n_damaged;
   if (!layers->store.slots[0].block)
-    return conic_fail(layers->context, CONIC_ERROR_IO, "%s: not even the coarsest cloud could be read%s", layers->name,
+    return conic_fail(layers->context, d->holding.n_damaged > 0 ? CONIC_ERROR_INPUT : CONIC_ERROR_IO,
+                      "%s: not even the coarsest cloud could be read%s", layers->name,
                       d->options->seconds > 0.0 ? " in time" : "");
   for (uint32_t i = 0; i < layers->header.n_clouds; i++) {
     int is_in = layers->store.slots[i].block != NULL;
@@ -84,6 +87,15 @@ static conic_status make_do(layers_drawing *d, double until_s) {
     d->needed[i] = (unsigned char)(!d->needed[i] || is_in);
   }
   return choose_clouds(d, d->needed);
+}
+
+/* What is late is no error, and still not what was asked for. */
+static void tell_of_missing(const layers_drawing *d) {
+  unsigned long long n_late = d->drawn.n_clouds_missing - d->drawn.n_clouds_damaged;
+  if (n_late)
+    conic_log(d->layers->context, CONIC_LOG_WARNING, "%s: %llu clouds are missing%s: %llu places are drawn coarser",
+              d->layers->name, n_late, d->options->seconds > 0.0 ? " when the time is up" : "",
+              (unsigned long long)d->cut.n_coarser);
 }
 
 static int wants_hiding(const layers_drawing *d) {
@@ -120,6 +132,8 @@ static conic_status draw_layers(layers_drawing *d, conic_renderer *renderer, con
   conic_status status = choose_first(d);
   if (status == CONIC_OK && d->options->may_be_coarser)
     status = make_do(d, d->options->seconds > 0.0 ? start + d->options->seconds : HUGE_VAL);
+  if (status == CONIC_OK)
+    tell_of_missing(d);
   if (status == CONIC_OK && wants_hiding(d))
     status = conic_layers_hide(d->layers, renderer, &d->view, d->camera, &d->render, HUGE_VAL, &d->cut, d->set);
   if (status != CONIC_OK)

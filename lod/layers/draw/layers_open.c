@@ -1,9 +1,12 @@
 /* Opening layered point clouds: header and index, from wherever they lie. */
+#include <math.h>
 #include <string.h>
 
+#include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/options.h"
+#include "core/files/mapping.h"
 #include "lod/layers/draw/layers_gather.h"
 
 /* The index is asked for in pieces, so that memory grows with what comes and not with what is claimed. */
@@ -40,6 +43,8 @@ static conic_status read_piece(conic_layers *layers, uint64_t offset, unsigned c
       return CONIC_ERROR_MEMORY;
     if (layers->is_remote)
       status = conic_progress(layers->context, "fetch", 0.0);
+    if (status == CONIC_OK && conic_seconds_now() > layers->until_s)
+      status = conic_fail(layers->context, CONIC_ERROR_IO, "%s: not even the index came in time", layers->name);
   }
   if (status != CONIC_OK) {
     conic_ranges_cancel(layers->ranges);
@@ -71,48 +76,6 @@ static conic_status read_bytes(conic_layers *layers, uint64_t offset, uint64_t n
   return status;
 }
 
-/* Of a file that a server sends, damage is the network's. */
-static conic_status as_read(const conic_layers *layers, conic_status status) {
-  return layers->is_remote && status == CONIC_ERROR_INPUT ? CONIC_ERROR_IO : status;
-}
-
-static conic_status read_layers_header(conic_layers *layers) {
-  unsigned char *bytes;
-  uint64_t size = conic_ranges_size(layers->ranges);
-  uint64_t n_bytes = size < CONIC_LAYERS_HEADER_BYTES ? size : CONIC_LAYERS_HEADER_BYTES;
-  conic_status status = n_bytes ? read_bytes(layers, 0, n_bytes, &bytes) : CONIC_OK;
-  if (!n_bytes)
-    return conic_fail(layers->context, CONIC_ERROR_INPUT, "%s: the file is empty", layers->name);
-  if (status == CONIC_OK)
-    status = conic_layers_read_header(layers->context, layers->name, bytes, (size_t)n_bytes, &layers->header);
-  conic_memory_release(layers->context, bytes);
-  if (status == CONIC_OK && layers->header.file_bytes != size)
-    status = conic_fail(layers->context, CONIC_ERROR_INPUT, "%s: the file has %llu bytes, and should have %llu",
-                        layers->name, (unsigned long long)size, (unsigned long long)layers->header.file_bytes);
-  return status;
-}
-
-static conic_status read_index(conic_layers *layers) {
-  conic_context *context = layers->context;
-  const conic_layers_header *header = &layers->header;
-  unsigned char *bytes;
-  conic_status status = read_bytes(layers, CONIC_LAYERS_HEADER_BYTES, conic_layers_index_bytes(header), &bytes);
-  if (status == CONIC_OK) {
-    layers->entries = conic_memory_allocate(context, header->n_clouds, sizeof *layers->entries);
-    layers->first_sample = conic_memory_allocate(context, header->n_clouds, sizeof *layers->first_sample);
-    status = layers->entries && layers->first_sample ? CONIC_OK : CONIC_ERROR_MEMORY;
-  }
-  if (status == CONIC_OK)
-    status = as_read(layers, conic_layers_read_index(context, layers->name, header, bytes, layers->entries));
-  conic_memory_release(context, bytes);
-  uint64_t first = 0;
-  for (uint32_t i = 0; status == CONIC_OK && i < header->n_clouds; i++) {
-    layers->first_sample[i] = first;
-    first += layers->entries[i].n_samples;
-  }
-  return status;
-}
-
 static conic_status open_ranges(conic_layers *layers) {
   conic_ranges_options options;
   conic_ranges_options_init(&options);
@@ -122,7 +85,84 @@ static conic_status open_ranges(conic_layers *layers) {
   options.pause_seconds = layers->access.pause_seconds;
   options.n_connections = layers->access.n_connections;
   options.most_whole_bytes = layers->access.memory_bytes / 2;
+  options.until_s = layers->until_s;
   return conic_ranges_open(layers->context, layers->name, &options, &layers->ranges);
+}
+
+/* Header and index as they came. */
+typedef struct layers_start {
+  unsigned char header[CONIC_LAYERS_HEADER_BYTES];
+  size_t n_header;
+  unsigned char *index; /* null where the header is not whole */
+  int is_whole;         /* by their sums */
+} layers_start;
+
+static conic_status read_start(conic_layers *layers, layers_start *start) {
+  conic_layers_header *header = &layers->header;
+  conic_status status = open_ranges(layers);
+  if (status != CONIC_OK)
+    return status;
+  uint64_t size = conic_ranges_size(layers->ranges);
+  start->n_header = size < sizeof start->header ? (size_t)size : sizeof start->header;
+  if (size == 0)
+    return conic_fail(layers->context, CONIC_ERROR_INPUT, "%s: the file is empty", layers->name);
+  status = read_piece(layers, 0, start->header, start->n_header);
+  start->is_whole = start->n_header == sizeof start->header && conic_layers_header_is_whole(start->header);
+  if (status != CONIC_OK || !start->is_whole)
+    return status;
+  status = conic_layers_read_header(layers->context, layers->name, start->header, start->n_header, header);
+  if (status == CONIC_OK && header->file_bytes != size)
+    status = conic_fail(layers->context, CONIC_ERROR_INPUT, "%s: the file has %llu bytes, and should have %llu",
+                        layers->name, (unsigned long long)size, (unsigned long long)header->file_bytes);
+  if (status == CONIC_OK)
+    status = read_bytes(layers, CONIC_LAYERS_HEADER_BYTES, conic_layers_index_bytes(header), &start->index);
+  if (status == CONIC_OK)
+    start->is_whole = conic_checksum(start->index, (size_t)conic_layers_index_bytes(header)) == header->index_sum;
+  return status;
+}
+
+static void drop_start(conic_layers *layers, layers_start *start) {
+  conic_memory_release(layers->context, start->index);
+  memset(start, 0, sizeof *start);
+}
+
+static conic_status take_index(conic_layers *layers, const unsigned char *bytes) {
+  const conic_layers_header *header = &layers->header;
+  layers->entries = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->entries);
+  layers->first_sample = conic_memory_allocate(layers->context, header->n_clouds, sizeof *layers->first_sample);
+  if (!layers->entries || !layers->first_sample)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_layers_read_index(layers->context, layers->name, header, bytes, layers->entries);
+  uint64_t first = 0;
+  for (uint32_t i = 0; status == CONIC_OK && i < header->n_clouds; i++) {
+    layers->first_sample[i] = first;
+    first += layers->entries[i].n_samples;
+  }
+  return status;
+}
+
+/* Whether the part that is damaged, header or index, is yet to be asked for again. */
+static int is_to_repeat(const conic_layers *layers, const layers_start *start, int n_repeats[2]) {
+  return !start->is_whole && layers->is_remote && layers->access.n_retries > 0 && n_repeats[!start->index]++ == 0;
+}
+
+/* What comes damaged from a server is asked for once again. */
+static conic_status read_header_and_index(conic_layers *layers) {
+  layers_start start = {.n_header = 0};
+  int n_repeats[2] = {0, 0};
+  conic_status status = read_start(layers, &start);
+  while (status == CONIC_OK && is_to_repeat(layers, &start, n_repeats)) {
+    conic_ranges_close(layers->ranges);
+    layers->ranges = NULL;
+    drop_start(layers, &start);
+    status = read_start(layers, &start);
+  }
+  if (status == CONIC_OK && !start.index) /* which says what is wrong with it */
+    status = conic_layers_read_header(layers->context, layers->name, start.header, start.n_header, &layers->header);
+  else if (status == CONIC_OK)
+    status = take_index(layers, start.index);
+  drop_start(layers, &start);
+  return status;
 }
 
 conic_status conic_layers_open(conic_context *context, const char *name, const conic_layers_access *access,
@@ -137,17 +177,14 @@ conic_status conic_layers_open(conic_context *context, const char *name, const c
     return CONIC_ERROR_MEMORY;
   made->context = context;
   made->access = own;
+  made->until_s = own.seconds > 0.0 ? conic_seconds_now() + own.seconds : HUGE_VAL;
   made->is_remote = conic_ranges_is_url(name);
   made->name = conic_memory_allocate(context, strlen(name) + 1, 1);
   conic_status status = made->name ? CONIC_OK : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK) {
     memcpy(made->name, name, strlen(name) + 1);
-    status = open_ranges(made);
+    status = read_header_and_index(made);
   }
-  if (status == CONIC_OK)
-    status = read_layers_header(made);
-  if (status == CONIC_OK)
-    status = read_index(made);
   if (status == CONIC_OK)
     status = conic_layers_store_open(made);
   if (status != CONIC_OK) {

@@ -11,6 +11,7 @@ struct conic_layers {
   conic_context *context;
   char *name;
   conic_layers_access access;
+  double until_s; /* by conic_seconds_now, opening ends */
   int is_remote;
   conic_ranges *ranges;
   uint64_t n_told; /* bytes received that a picture's statistics have told of */

@@ -120,7 +120,7 @@ static void keep_cloud(conic_layers *layers, arrival *one) {
   conic_layers_slot *slot = &store->slots[one->answer.id];
   slot->block = one->block;
   slot->cloud = one->cloud;
-  slot->n_damaged = 0;
+  slot->is_doubted = 0;
   link_newest(store, one->answer.id);
   slot->n_pins++;
   store->n_bytes += bytes_of(layers, one->answer.id);
@@ -128,23 +128,26 @@ static void keep_cloud(conic_layers *layers, arrival *one) {
   one->block = NULL;
 }
 
-/* What becomes of a cloud that did not arrive as it should: asked for again, missed, or an error. */
+/* What becomes of a cloud that did not arrive as it should: asked for once again, missed, or an error. */
 static conic_status take_failure(conic_layers *layers, const arrival *one, conic_layers_loading *loading) {
   uint32_t cloud = one->answer.id;
   conic_layers_slot *slot = &layers->store.slots[cloud];
   unsigned long long offset = layers->entries[cloud].offset;
-  if (one->wrong && layers->is_remote && slot->n_damaged < layers->access.n_retries) {
-    slot->n_damaged++;
+  if (one->wrong && layers->is_remote && !slot->is_doubted && layers->access.n_retries > 0) {
+    slot->is_doubted = 1;
     return request(layers, cloud);
   }
+  conic_status status = one->wrong ? CONIC_ERROR_INPUT : one->answer.status;
+  const char *reason = one->wrong ? one->wrong : one->answer.reason;
   loading->n_missing++;
-  if (loading->may_miss)
-    return CONIC_OK;
-  if (one->wrong)
-    return conic_fail(layers->context, layers->is_remote ? CONIC_ERROR_IO : CONIC_ERROR_INPUT,
-                      "%s: cloud %u: %s (at byte %llu)", layers->name, cloud, one->wrong, offset);
-  return conic_fail(layers->context, one->answer.status, "%s: cannot read cloud %u: %s (at byte %llu)", layers->name,
-                    cloud, one->answer.reason, offset);
+  loading->n_damaged += status == CONIC_ERROR_INPUT;
+  if (status == CONIC_ERROR_INPUT ? !loading->tolerates_damage : !loading->may_miss)
+    return conic_fail(layers->context, status, "%s: cannot read cloud %u: %s (at byte %llu)", layers->name, cloud,
+                      reason, offset);
+  if (status == CONIC_ERROR_INPUT && loading->n_damaged == 1)
+    conic_log(layers->context, CONIC_LOG_WARNING, "%s: cloud %u: %s (at byte %llu); what is damaged is drawn coarser",
+              layers->name, cloud, reason, offset);
+  return CONIC_OK;
 }
 
 /* Fetches what has come by now, or within the wait. */
@@ -215,7 +218,7 @@ static conic_status take_all(conic_layers *layers, size_t n_asked, conic_layers_
 conic_status conic_layers_store_load(conic_layers *layers, conic_layers_loading *loading) {
   conic_status status = CONIC_OK;
   size_t n_asked = 0;
-  loading->n_missing = 0;
+  loading->n_missing = loading->n_damaged = 0;
   for (size_t i = 0; i < loading->n; i++)
     if (layers->store.slots[loading->clouds[i]].block)
       pin(&layers->store, loading->clouds[i]);

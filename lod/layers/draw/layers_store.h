@@ -10,7 +10,7 @@ typedef struct conic_layers_slot {
   conic_layers_cloud cloud;
   uint32_t newer, older; /* neighbours by last use: clouds, or CONIC_NO_CLOUD */
   uint16_t n_pins;       /* it must stay */
-  uint8_t n_damaged;     /* times that its bytes were wrong */
+  uint8_t is_doubted;    /* its bytes were wrong once */
 } conic_layers_slot;
 
 #define CONIC_NO_CLOUD UINT32_MAX
@@ -30,9 +30,11 @@ void conic_layers_store_close(conic_layers *layers);
 typedef struct conic_layers_loading {
   const uint32_t *clouds; /* ascending */
   size_t n;
-  double until_s;     /* by conic_seconds_now; infinite: as long as it takes */
-  int may_miss;       /* what cannot be had is left out */
-  uint64_t n_missing; /* set: so many were */
+  double until_s;       /* by conic_seconds_now; infinite: as long as it takes */
+  int may_miss;         /* what does not come is left out, */
+  int tolerates_damage; /* and so is what is wrong, after a warning */
+  uint64_t n_missing;   /* set: so many were, */
+  uint64_t n_damaged;   /* and of these, wrong */
 } conic_layers_loading;
 
 /* Brings clouds into memory, where they stay until conic_layers_store_unpin. On failure none is held. Errors: INPUT

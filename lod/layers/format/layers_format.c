@@ -86,6 +86,10 @@ static int is_zero(const unsigned char *bytes, size_t n) {
   return 1;
 }
 
+int conic_layers_header_is_whole(const unsigned char *bytes) {
+  return conic_file_get(bytes + AT_HEADER_SUM, 8) == conic_checksum(bytes, AT_HEADER_SUM);
+}
+
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,
                                       size_t n_bytes, conic_layers_header *header) {
   size_t used = sizeof magic + conic_file_fields_bytes(header_fields, N_HEADER_FIELDS);
@@ -97,7 +101,7 @@ conic_status conic_layers_read_header(conic_context *context, const char *name, 
   if (header->version != CONIC_LAYERS_VERSION)
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: version %u of .lpc; this program reads version %d (at byte 8)",
                       name, header->version, CONIC_LAYERS_VERSION);
-  if (conic_file_get(bytes + AT_HEADER_SUM, 8) != conic_checksum(bytes, AT_HEADER_SUM))
+  if (!conic_layers_header_is_whole(bytes))
     return conic_fail(context, CONIC_ERROR_INPUT, "%s: the header is damaged: its sum is another (at byte %d)", name,
                       AT_HEADER_SUM);
   const char *wrong = check_counts(header);

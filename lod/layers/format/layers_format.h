@@ -60,6 +60,9 @@ typedef struct conic_layers_entry {
   float axis[3], cone;     /* unit; the least cosine of a normal of its place to it; -1: no bound */
 } conic_layers_entry;
 
+/* Whether a header of CONIC_LAYERS_HEADER_BYTES is as it was written, by its sum. */
+int conic_layers_header_is_whole(const unsigned char *bytes);
+
 /* Bytes to header: checks sum and ranges. `name` is for messages; `n_bytes` at least CONIC_LAYERS_HEADER_BYTES, or what
  * there is. Errors: INPUT. */
 conic_status conic_layers_read_header(conic_context *context, const char *name, const unsigned char *bytes,

@@ -173,7 +173,7 @@ static void check_coverage(void) {
   layers_close(&coarse);
 }
 
-/* A damaged cloud is an error; or, where that is allowed, drawn coarser and said so. */
+/* A damaged cloud is an error; or, where that is tolerated, drawn coarser and said so. */
 static void check_damage(conic_context *context) {
   const char *damaged = files_path("damaged.lpc");
   size_t n_bytes;
@@ -186,8 +186,11 @@ static void check_damage(conic_context *context) {
   frame.draw.occlusion = CONIC_OCCLUSION_OFF; /* or the cloud may never be looked at */
   CHECK(layers_draw(&frame) == CONIC_ERROR_INPUT);
   frame.draw.may_be_coarser = 1;
+  CHECK(layers_draw(&frame) == CONIC_ERROR_INPUT); /* what is wrong is not late */
+  frame.draw.tolerates_damage = 1;
   CHECK_OK(layers_draw(&frame));
-  CHECK(frame.drawn.n_clouds_missing == 1 && frame.drawn.n_places_coarser == 1 && frame.drawn.missing_error_px > 0.0);
+  CHECK(frame.drawn.n_clouds_missing == 1 && frame.drawn.n_clouds_damaged == 1);
+  CHECK(frame.drawn.n_places_coarser == 1 && frame.drawn.missing_error_px > 0.0);
   CHECK_OK(layers_draw(&sound));
   CHECK(frame.f.statistics.pixels_covered + 20 > sound.f.statistics.pixels_covered);
   frame.draw.error_px = 20.0; /* coarse enough not to need it */

@@ -1,5 +1,6 @@
 /* The access layer: ranges of a file from a map and from web servers, good and hostile. Never wrong bytes, never a
  * hang: that it ends at all, within the test's time, is part of what is tested. */
+#include "core/base/clock.h"
 #include "lod/ranges/ranges.h"
 #include "tests/support/files.h"
 #include "tests/support/http_server.h"
@@ -22,13 +23,13 @@ static conic_ranges_options quick(void) {
 
 /* What came of asking for many ranges. */
 typedef struct outcome {
-  size_t n_good, n_given_up;
+  size_t n_good, n_given_up, n_wrong; /* the last of those given up: not late, but wrong */
   char reason[256];
 } outcome;
 
 /* Asks for ranges all over the file and takes all answers; whatever is good must be right. */
 static outcome take_all(conic_ranges *ranges, uint64_t seed) {
-  outcome o = {0, 0, ""};
+  outcome o = {0, 0, 0, ""};
   conic_range asked[N_RANGES];
   int is_answered[N_RANGES] = {0};
   uint64_t state = seed;
@@ -45,7 +46,8 @@ static outcome take_all(conic_ranges *ranges, uint64_t seed) {
     CHECK(answer.id < N_RANGES && !is_answered[answer.id]);
     is_answered[answer.id] = 1;
     if (answer.status != CONIC_OK) {
-      CHECK(answer.status == CONIC_ERROR_IO && answer.reason && *answer.reason);
+      CHECK((answer.status == CONIC_ERROR_IO || answer.status == CONIC_ERROR_INPUT) && answer.reason && *answer.reason);
+      o.n_wrong += answer.status == CONIC_ERROR_INPUT;
       snprintf(o.reason, sizeof o.reason, "%s", answer.reason);
       o.n_given_up++;
       continue;
@@ -176,23 +178,27 @@ static void check_hopeless(conic_context *context) {
     const char *words;
   } cases[] = {{"404", CONIC_ERROR_INPUT, "404"},
                {"500", CONIC_ERROR_IO, "500"},
-               {"short", CONIC_ERROR_IO, "artial"},
-               {"less", CONIC_ERROR_IO, "another range"},
-               {"shifted", CONIC_ERROR_IO, "another range"},
-               {"unsaid", CONIC_ERROR_IO, "which range"},
-               {"redirect", CONIC_ERROR_IO, "redirect"},
-               {"elsewhere", CONIC_ERROR_IO, "rotocol"},
-               {"headers", CONIC_ERROR_IO, "headers"},
-               {"garbage", CONIC_ERROR_IO, ""},
+               {"short", CONIC_ERROR_IO, "remaining"},
+               {"less", CONIC_ERROR_INPUT, "another range"},
+               {"shifted", CONIC_ERROR_INPUT, "another range"},
+               {"unsaid", CONIC_ERROR_INPUT, "which range"},
+               {"redirect", CONIC_ERROR_INPUT, "redirect"},
+               {"elsewhere", CONIC_ERROR_INPUT, "rotocol"},
+               {"headers", CONIC_ERROR_INPUT, "headers"},
+               {"header", CONIC_ERROR_INPUT, "headers"},
+               {"more", CONIC_ERROR_INPUT, "more than"},
+               {"packed", CONIC_ERROR_INPUT, "compressed"},
+               {"garbage", CONIC_ERROR_INPUT, "no answer"},
                {"stalled", CONIC_ERROR_IO, ""},
                {"silent", CONIC_ERROR_IO, ""},
                {"dead", CONIC_ERROR_IO, ""}};
   conic_ranges_options options = quick();
-  options.n_retries = 1;
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     http_server server;
     http_server_start(&server, bytes, N_BYTES, 0);
     CHECK(!open_mode(context, &server, cases[i].mode, &options, cases[i].status));
+    if (cases[i].status == CONIC_ERROR_INPUT && strcmp(cases[i].mode, "redirect") != 0)
+      CHECK(atomic_load(&server.n_requests) <= 2); /* what is wrong is asked for once again */
     if (!strstr(files_message, cases[i].words)) {
       fprintf(stderr, "%s: %s\n", cases[i].mode, files_message);
       check_failures++;
@@ -206,10 +212,11 @@ static void check_hopeless(conic_context *context) {
 static void check_turning(conic_context *context) {
   const struct {
     const char *mode;
-    int is_fatal; /* all is given up */
-  } cases[] = {{"500", 1},     {"404", 1},    {"short", 1},   {"less", 1},    {"more", 1},
-               {"shifted", 1}, {"unsaid", 1}, {"changed", 1}, {"headers", 1}, {"garbage", 1},
-               {"forgets", 1}, {"dead", 1},   {"stalled", 1}, {"trickle", 1}, {"flaky", 0}};
+    int is_fatal; /* all is given up, */
+    int is_wrong; /* and not for want of answers */
+  } cases[] = {{"500", 1, 0},     {"404", 1, 1},    {"short", 1, 0},   {"less", 1, 1},    {"more", 1, 1},
+               {"shifted", 1, 1}, {"unsaid", 1, 1}, {"changed", 1, 1}, {"headers", 1, 1}, {"garbage", 1, 1},
+               {"forgets", 1, 1}, {"dead", 1, 0},   {"stalled", 1, 0}, {"trickle", 1, 0}, {"flaky", 0, 0}};
   conic_ranges_options options = quick();
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     http_server server;
@@ -217,12 +224,26 @@ static void check_turning(conic_context *context) {
     options.n_retries = cases[i].is_fatal ? 2 : 10;
     conic_ranges *ranges = open_mode(context, &server, cases[i].mode, &options, CONIC_OK);
     outcome o = take_all(ranges, 11 + i);
-    CHECK(o.n_good + o.n_given_up == N_RANGES);
+    CHECK(o.n_good + o.n_given_up == N_RANGES && o.n_wrong == (cases[i].is_wrong ? o.n_given_up : 0));
     if (cases[i].is_fatal ? o.n_given_up < N_RANGES * 9 / 10 || !o.reason[0] : o.n_given_up > 0) {
       fprintf(stderr, "%s: %zu good, %zu given up: %s\n", cases[i].mode, o.n_good, o.n_given_up, o.reason);
       check_failures++;
     }
     conic_ranges_close(ranges);
+    http_server_stop(&server);
+  }
+}
+
+/* A server that does not answer, or drop by drop: opening ends when the time is up, whatever the other patience. */
+static void check_hurried(conic_context *context) {
+  const char *const modes[] = {"silent", "stalled", "drops", "500"};
+  for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+    http_server server;
+    conic_ranges_options options = quick();
+    http_server_start(&server, bytes, N_BYTES, 0);
+    options.stall_seconds = options.pause_seconds = 3.0; /* longer than it is to take */
+    options.until_s = conic_seconds_now() + 0.2;
+    CHECK(!open_mode(context, &server, modes[i], &options, CONIC_ERROR_IO) && strstr(files_message, "in time"));
     http_server_stop(&server);
   }
 }
@@ -251,6 +272,7 @@ int main(void) {
     check_whole(context);
     check_hopeless(context);
     check_turning(context);
+    check_hurried(context);
     check_nobody(context);
   } else {
     conic_ranges_options options = quick();
