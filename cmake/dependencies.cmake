@@ -58,6 +58,17 @@ else()
   set(ZSTD_FOUND FALSE)
 endif()
 
+if(CONIC_WITH_WEBP) # likewise
+  find_library(WEBP_LIBRARY webp)
+  find_path(WEBP_INCLUDE_FOLDER webp/encode.h)
+  mark_as_advanced(WEBP_LIBRARY WEBP_INCLUDE_FOLDER)
+endif()
+if(CONIC_WITH_WEBP AND WEBP_LIBRARY AND WEBP_INCLUDE_FOLDER)
+  set(WEBP_FOUND TRUE)
+else()
+  set(WEBP_FOUND FALSE)
+endif()
+
 if(CONIC_WITH_CURL)
   find_package(CURL 7.66 QUIET)
 else()
@@ -72,11 +83,12 @@ set(found_assimp ${assimp_FOUND})
 set(found_opencl ${OpenCL_FOUND})
 set(found_curl ${CURL_FOUND})
 set(found_zstd ${ZSTD_FOUND})
+set(found_webp ${WEBP_FOUND})
 foreach(dependency "openexr:OpenEXR (EXR images)" "png:libpng (PNG images)"
-        "zlib:zlib (compressed deep images)"
+        "zlib:zlib (compressed deep images, Gaussian scenes in .spz)"
         "openimageio:OpenImageIO (TIFF, JPEG … images, and PNG without libpng)"
         "assimp:Assimp (STL, OFF, glTF, 3MF, DAE, FBX … meshes)" "opencl:OpenCL (other devices)"
-        "zstd:zstd (layered point clouds)" "curl:CURL (layered clouds from web servers)")
+        "zstd:zstd (layered point clouds, Gaussian scenes in .spz)" "webp:libwebp (Gaussian scenes in .sog)" "curl:CURL (layered clouds from web servers)")
   string(REGEX MATCH "^([a-z]+):(.*)$" matched ${dependency})
   set(description "${CMAKE_MATCH_2}")
   if(found_${CMAKE_MATCH_1})

@@ -30,6 +30,9 @@ const char *conic_version(void) {
 #ifndef CONIC_HAVE_CURL
 #define CONIC_HAVE_CURL 0
 #endif
+#ifndef CONIC_HAVE_WEBP
+#define CONIC_HAVE_WEBP 0
+#endif
 
 static const conic_feature features[] = {
     {"OpenEXR", CONIC_HAVE_OPENEXR},
@@ -40,6 +43,7 @@ static const conic_feature features[] = {
     {"libpng", CONIC_HAVE_PNG},
     {"Assimp", 1},
     {"zlib", CONIC_HAVE_ZLIB},
+    {"libwebp", CONIC_HAVE_WEBP},
 };
 static const conic_feature without_openimageio = {"OpenImageIO", 0}, without_assimp = {"Assimp", 0};
 enum { I_OPENIMAGEIO = 1, I_ASSIMP = 6 };

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "conic/gaussians.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/message.h"
@@ -281,8 +282,9 @@ conic_status conic_source_inspect(conic_context *context, const char *path, int 
   const conic_source_kind *kind = conic_source_kind_of_file(path);
   conic_status status = begin_facts(context, facts);
   if (status == CONIC_OK)
-    status = kind ? inspect_as(context, kind, path, is_checked, *facts)
-                  : conic_model_inspect(context, path, is_checked, *facts);
+    status = kind                                     ? inspect_as(context, kind, path, is_checked, *facts)
+             : conic_gaussians_is_file(context, path) ? conic_gaussians_inspect(context, path, is_checked, *facts)
+                                                      : conic_model_inspect(context, path, is_checked, *facts);
   if (status == CONIC_OK)
     return CONIC_OK;
   conic_facts_destroy(*facts);

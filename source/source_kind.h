@@ -92,4 +92,7 @@ conic_status conic_model_tell_fields(conic_context *context, const char *path, c
                                      conic_facts *facts);
 conic_status conic_model_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
 
+/* conic_source_inspect of a Gaussian scene. */
+conic_status conic_gaussians_inspect(conic_context *context, const char *path, int is_checked, conic_facts *facts);
+
 #endif

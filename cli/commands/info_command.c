@@ -94,7 +94,8 @@ static void print_image(const info_job *job) {
 static double bytes_per_point(const info_job *job) {
   const conic_fact *fact;
   for (size_t i = 0; job->facts && job->has_bytes && (fact = conic_facts_at(job->facts, i)); i++)
-    if (fact->type == CONIC_FACT_COUNT && strcmp(fact->key, "points") == 0 && fact->count)
+    if (fact->type == CONIC_FACT_COUNT && fact->count &&
+        (strcmp(fact->key, "points") == 0 || strcmp(fact->key, "gaussians") == 0))
       return (double)job->bytes / (double)fact->count;
   return 0.0;
 }

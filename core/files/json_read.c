@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/message.h"
+#include "core/base/real.h"
 #include "core/files/input.h"
 #include "core/files/number.h"
 
@@ -53,6 +54,23 @@ conic_status conic_json_open(conic_context *context, const char *path, conic_jso
   if (status != CONIC_OK)
     conic_json_close(json);
   return status;
+}
+
+conic_status conic_json_take(conic_context *context, const char *name, const void *bytes, size_t n_bytes,
+                             conic_json *json) {
+  memset(json, 0, sizeof *json);
+  json->context = context;
+  json->name = name;
+  json->line = 1;
+  if (n_bytes == 0)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: there is no JSON (line 1)", name);
+  json->text = conic_memory_allocate(context, n_bytes, 1);
+  if (!json->text)
+    return CONIC_ERROR_MEMORY;
+  memcpy(json->text, bytes, n_bytes);
+  json->next = json->text;
+  json->end = json->text + n_bytes;
+  return CONIC_OK;
 }
 
 void conic_json_close(conic_json *json) {
@@ -236,6 +254,54 @@ conic_status conic_json_number(conic_json *json, double *value) {
   conic_number_parse(json->next, (size_t)(after - json->next), value);
   json->next = after;
   return CONIC_OK;
+}
+
+conic_status conic_json_text(conic_json *json, char *text, size_t room) {
+  text[0] = 0;
+  if (json->status != CONIC_OK)
+    return json->status;
+  return peek(json) == '"' ? read_string(json, text, room) : conic_json_wrong(json, "a string is expected");
+}
+
+conic_status conic_json_raw_text(conic_json *json, const char **text, size_t *length) {
+  char start[2];
+  *text = "";
+  *length = 0;
+  if (json->status != CONIC_OK)
+    return json->status;
+  if (peek(json) != '"')
+    return conic_json_wrong(json, "a string is expected");
+  const char *first = json->next + 1;
+  conic_status status = read_string(json, start, sizeof start);
+  if (status == CONIC_OK) {
+    *text = first;
+    *length = (size_t)(json->next - 1 - first);
+  }
+  return status;
+}
+
+conic_status conic_json_numbers(conic_json *json, double *values, size_t n, size_t *n_read) {
+  *n_read = 0;
+  conic_json_begin_array(json);
+  while (conic_json_next_item(json)) {
+    double value = conic_double_of_bits(UINT64_C(0x7ff8000000000000));
+    if (peek(json) == 'n')
+      conic_json_skip(json);
+    else
+      conic_json_number(json, &value);
+    if (*n_read < n)
+      values[*n_read] = value;
+    (*n_read)++;
+  }
+  return json->status;
+}
+
+conic_status conic_json_truth(conic_json *json, int *is_true) {
+  if (json->status != CONIC_OK)
+    return json->status;
+  char c = peek(json);
+  *is_true = c == 't';
+  return c == 't' || c == 'f' ? conic_json_skip(json) : conic_json_wrong(json, "true or false is expected");
 }
 
 static conic_status skip_word(conic_json *json) {

@@ -24,6 +24,9 @@ typedef struct conic_json {
 /* Reads the whole file, of at most 16 MiB ("-" is standard input); `path` must outlive *json. On success the caller
  * ends it with conic_json_close. Errors: INPUT, MEMORY. */
 conic_status conic_json_open(conic_context *context, const char *path, conic_json *json);
+/* The same for JSON that is in memory, of which a copy is made; `name` is for messages. Errors: INPUT, MEMORY. */
+conic_status conic_json_take(conic_context *context, const char *name, const void *bytes, size_t n_bytes,
+                             conic_json *json);
 void conic_json_close(conic_json *json);
 
 /* Enters an object or array: the next value must be one. */
@@ -39,6 +42,20 @@ int conic_json_next_item(conic_json *json);
 
 /* The value that comes next, which must be a number. */
 conic_status conic_json_number(conic_json *json, double *value);
+
+/* The value that comes next, which must be a string, cut to the room; characters beyond ASCII that are escaped become
+ * '?'. */
+conic_status conic_json_text(conic_json *json, char *text, size_t room);
+
+/* The same where it may be long, or should not be copied: its bytes as they stand in the file, escapes and all. */
+conic_status conic_json_raw_text(conic_json *json, const char **text, size_t *length);
+
+/* Up to n numbers of the array that comes next, null being NaN; others are passed over. *n_read says how many it has.
+ */
+conic_status conic_json_numbers(conic_json *json, double *values, size_t n, size_t *n_read);
+
+/* The value that comes next, which must be true or false. */
+conic_status conic_json_truth(conic_json *json, int *is_true);
 
 /* Passes over the value that comes next, whatever it is. */
 conic_status conic_json_skip(conic_json *json);

@@ -13,12 +13,14 @@ enum { LEVEL = 3 };
 struct conic_zstd {
   ZSTD_CCtx *compressor;
   ZSTD_DCtx *decompressor;
+  int level;
 };
 
 conic_status conic_zstd_create(conic_context *context, conic_zstd **zstd) {
   *zstd = conic_memory_allocate_zeroed(context, 1, sizeof **zstd);
   if (!*zstd)
     return CONIC_ERROR_MEMORY;
+  (*zstd)->level = LEVEL;
   (*zstd)->compressor = ZSTD_createCCtx();
   (*zstd)->decompressor = ZSTD_createDCtx();
   if ((*zstd)->compressor && (*zstd)->decompressor)
@@ -36,13 +38,22 @@ void conic_zstd_destroy(conic_context *context, conic_zstd *zstd) {
   conic_memory_release(context, zstd);
 }
 
+void conic_zstd_set_level(conic_zstd *zstd, int level) {
+  zstd->level = level;
+}
+
 size_t conic_zstd_bound(size_t n_bytes) {
   return ZSTD_compressBound(n_bytes);
 }
 
+size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to) {
+  size_t n = ZSTD_compressCCtx(zstd->compressor, to, ZSTD_compressBound(n_bytes), from, n_bytes, zstd->level);
+  return ZSTD_isError(n) ? 0 : n;
+}
+
 size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to) {
-  size_t n = ZSTD_compressCCtx(zstd->compressor, to, ZSTD_compressBound(n_bytes), from, n_bytes, LEVEL);
-  return ZSTD_isError(n) || n >= n_bytes ? 0 : n;
+  size_t n = conic_zstd_pack_whole(zstd, from, n_bytes, to);
+  return n < n_bytes ? n : 0;
 }
 
 int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes) {
@@ -53,7 +64,7 @@ int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_pack
 
 conic_status conic_zstd_create(conic_context *context, conic_zstd **zstd) {
   *zstd = NULL;
-  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "layered point clouds need zstd, which is not in this build");
+  return conic_fail(context, CONIC_ERROR_UNSUPPORTED, "zstd is needed, which is not in this build");
 }
 
 void conic_zstd_destroy(conic_context *context, conic_zstd *zstd) {
@@ -61,8 +72,17 @@ void conic_zstd_destroy(conic_context *context, conic_zstd *zstd) {
   (void)zstd;
 }
 
+void conic_zstd_set_level(conic_zstd *zstd, int level) {
+  (void)zstd;
+  (void)level;
+}
+
 size_t conic_zstd_bound(size_t n_bytes) {
   return n_bytes;
+}
+
+size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to) {
+  return conic_zstd_pack(zstd, from, n_bytes, to);
 }
 
 size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to) {

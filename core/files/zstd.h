@@ -13,11 +13,17 @@ typedef struct conic_zstd conic_zstd;
 conic_status conic_zstd_create(conic_context *context, conic_zstd **zstd);
 void conic_zstd_destroy(conic_context *context, conic_zstd *zstd);
 
+/* How hard packing tries, 1 to 22; 3 at first. */
+void conic_zstd_set_level(conic_zstd *zstd, int level);
+
 /* Room that packing may need for so many bytes. */
 size_t conic_zstd_bound(size_t n_bytes);
 
 /* Packs; returns how many bytes it came to, 0 where that are not fewer than before. */
 size_t conic_zstd_pack(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to);
+
+/* The same whatever it comes to; 0 where memory failed. */
+size_t conic_zstd_pack_whole(conic_zstd *zstd, const unsigned char *from, size_t n_bytes, unsigned char *to);
 
 /* Unpacks; whether it came to n_bytes exactly. */
 int conic_zstd_unpack(conic_zstd *zstd, const unsigned char *from, size_t n_packed, unsigned char *to, size_t n_bytes);

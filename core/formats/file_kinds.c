@@ -10,7 +10,7 @@ const char conic_readable_kinds[] =
 
 #define MESH_REMEDY "save it as OBJ or PLY (Blender, MeshLab, or: assimp export FILE out.obj)"
 #define SCAN_REMEDY "save it as LAS or PLY (CloudCompare, or: pdal translate FILE out.las)"
-#define CLOUD_REMEDY "save it as PLY (with SuperSplat or gsbox)"
+#define GAUSSIANS_REMEDY "save it as PLY (conic convert FILE -o out.ply)"
 #define PACKED_REMEDY "unpack it first"
 #define PICTURE_REMEDY "give a scene; a picture is for conic diff or --texture"
 #define BYTES(text) text, sizeof(text) - 1
@@ -47,9 +47,10 @@ static const conic_foreign_kind kinds[] = {
     {"a 3D Studio model", MESH_REMEDY, "max", NULL, 0, 0},
     {"a CAD model", "export a mesh from it as OBJ or PLY (FreeCAD)", "step stp iges igs fcstd", NULL, 0, 0},
     {"a material file", "give the .obj that names it", "mtl", BYTES("newmtl "), 0},
-    {"a compressed cloud of Gaussians (SPZ)", CLOUD_REMEDY, "spz", BYTES("NGSP"), 0},
-    {"a cloud of Gaussians (SPLAT)", CLOUD_REMEDY, "splat ksplat", NULL, 0, 0},
-    {"a compressed cloud of Gaussians (SOG)", CLOUD_REMEDY, "sog", NULL, 0, 0},
+    {"a compressed cloud of Gaussians (SPZ)", GAUSSIANS_REMEDY, "spz", BYTES("NGSP"), 0},
+    {"a cloud of Gaussians (SPLAT)", GAUSSIANS_REMEDY, "splat", NULL, 0, 0},
+    {"a cloud of Gaussians (KSPLAT)", "save it as PLY (with SuperSplat or gsbox)", "ksplat", NULL, 0, 0},
+    {"a compressed cloud of Gaussians (SOG)", GAUSSIANS_REMEDY, "sog", NULL, 0, 0},
     {"a PTX scan", SCAN_REMEDY, "ptx", NULL, 0, 0},
     {"a scan in a maker's own format", "export E57 or LAS from the maker's program, and save that as PLY or LAS",
      "fls rcs rcp zfs rdbx rxp ptg lgs", NULL, 0, 0},

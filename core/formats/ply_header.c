@@ -72,21 +72,21 @@ static int is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+/* Whether a comment begins with that word and a blank; it then stands after them. */
+static int has_keyword(const char **c, const char *end, const char *keyword) {
+  size_t n = strlen(keyword);
+  if ((size_t)(end - *c) <= n || memcmp(*c, keyword, n) != 0 || !is_blank((*c)[n]))
+    return 0;
+  *c += n;
+  while (*c < end && is_blank(**c))
+    (*c)++;
+  return 1;
+}
+
 /* comment TextureFile NAME: the name is the rest of the line, and may have blanks in it. */
-static conic_status read_comment(conic_input *input, const header_line *line, conic_texts *textures) {
-  static const char keyword[] = "TextureFile";
-  size_t n_keyword = sizeof keyword - 1;
-  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
-  if (status != CONIC_OK)
-    return status;
-  const char *c = (const char *)conic_input_bytes(input), *end = c + conic_input_available(input);
-  while (c < end && is_blank(*c))
-    c++;
-  if ((size_t)(end - c) <= n_keyword || memcmp(c, keyword, n_keyword) != 0 || !is_blank(c[n_keyword]))
-    return CONIC_OK;
-  const char *name = c + n_keyword, *name_end = memchr(name, '\n', (size_t)(end - name));
-  while (name < end && is_blank(*name))
-    name++;
+static conic_status read_texture_name(conic_input *input, const header_line *line, const char *name, const char *end,
+                                      conic_texts *textures) {
+  const char *name_end = memchr(name, '\n', (size_t)(end - name));
   if (!name_end || name_end - name > CONIC_INPUT_LONGEST_WORD / 2)
     return wrong_header(input, line, "a texture's name is too long", NULL);
   while (name_end > name && is_blank(name_end[-1]))
@@ -98,7 +98,23 @@ static conic_status read_comment(conic_input *input, const header_line *line, co
   return conic_texts_add(input->context, textures, name, (size_t)(name_end - name));
 }
 
-static conic_status read_line(conic_input *input, header_line *line, conic_texts *textures) {
+static conic_status read_comment(conic_input *input, const header_line *line, conic_ply_header *header) {
+  conic_status status = conic_input_fill(input, CONIC_INPUT_LONGEST_WORD);
+  if (status != CONIC_OK)
+    return status;
+  const char *c = (const char *)conic_input_bytes(input), *end = c + conic_input_available(input);
+  while (c < end && is_blank(*c))
+    c++;
+  if (has_keyword(&c, end, "TextureFile"))
+    return read_texture_name(input, line, c, end, &header->textures);
+  if (has_keyword(&c, end, "SplatRenderMode:") && end - c >= 4)
+    header->splat_mode = memcmp(c, "mip", 3) == 0    ? CONIC_PLY_MODE_MIP
+                         : memcmp(c, "2dgs", 4) == 0 ? CONIC_PLY_MODE_2D
+                                                     : CONIC_PLY_MODE_PLAIN;
+  return CONIC_OK;
+}
+
+static conic_status read_line(conic_input *input, header_line *line, conic_ply_header *header) {
   int is_done = 0;
   line->n_words = 0;
   line->line = input->line;
@@ -116,7 +132,7 @@ static conic_status read_line(conic_input *input, header_line *line, conic_texts
     if (line->n_words == 1 && is_comment(line))
       break;
   }
-  conic_status status = is_word(line, 0, "comment") ? read_comment(input, line, textures) : CONIC_OK;
+  conic_status status = is_word(line, 0, "comment") ? read_comment(input, line, header) : CONIC_OK;
   if (status == CONIC_OK)
     status = conic_input_next_line(input, &is_done);
   if (status == CONIC_OK && is_done)
@@ -205,11 +221,11 @@ static conic_status parse_property(conic_input *input, const header_line *line, 
 static conic_status read_lines(conic_input *input, conic_ply_header *header) {
   header_line line;
   int has_format = 0;
-  conic_status status = read_line(input, &line, &header->textures);
+  conic_status status = read_line(input, &line, header);
   if (status == CONIC_OK && !(line.n_words == 1 && is_word(&line, 0, "ply")))
     status = wrong_header(input, &line, "not a PLY file: it does not begin with 'ply'", NULL);
   while (status == CONIC_OK) {
-    status = read_line(input, &line, &header->textures);
+    status = read_line(input, &line, header);
     if (status != CONIC_OK || is_comment(&line))
       continue;
     if (is_word(&line, 0, "end_header"))

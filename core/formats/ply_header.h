@@ -37,12 +37,16 @@ typedef struct conic_ply_element {
   size_t least_row_bytes; /* of a binary row whose lists are empty: its exact size where there are none */
 } conic_ply_element;
 
+/* How Gaussians were trained, where a file says it. */
+typedef enum conic_ply_splat_mode { CONIC_PLY_MODE_PLAIN, CONIC_PLY_MODE_MIP, CONIC_PLY_MODE_2D } conic_ply_splat_mode;
+
 typedef struct conic_ply_header {
   conic_ply_format format;
   conic_ply_element *elements;
   conic_ply_property *properties;
   size_t n_elements, n_properties, element_capacity, property_capacity;
-  conic_texts textures; /* comment TextureFile NAME */
+  conic_texts textures;            /* comment TextureFile NAME */
+  conic_ply_splat_mode splat_mode; /* comment SplatRenderMode: NAME */
 } conic_ply_header;
 
 /* Reads from "ply" to past "end_header". On success the caller releases *header; on failure it is empty.

@@ -22,6 +22,7 @@
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/gaussians.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
 #include "conic/isa.h"

@@ -18,7 +18,7 @@ CONIC_API const char *conic_version(void);
 /* A library that conic can use, and whether it does here: it was there when conic was built, and, for OpenImageIO
  * and Assimp, so is the module that leads to it. */
 typedef struct conic_feature {
-  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib" */
+  const char *name; /* "OpenEXR", "OpenImageIO", "OpenCL", "zstd", "CURL", "libpng", "Assimp", "zlib", "libwebp" */
   int available;
 } conic_feature;
 

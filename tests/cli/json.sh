@@ -73,6 +73,9 @@ declare -A wanted=(
   [bench]="lines wrong_pictures peak_rss_bytes machine?"
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
+  [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
+  [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
+    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics bytes?"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -138,6 +141,11 @@ write info-far info_model info far.xyz --check
 write info-image info_image info knot.exr --check
 write info-octree info_octree info knot.cot --check
 write info-hybrid info_hybrid info tent.chy --check
+# Two Gaussians, as .splat has them.
+row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
+printf "$row$row" > two.splat
+write convert convert convert two.splat -o two.compressed.ply
+write info-gaussians info_gaussians info two.compressed.ply --check
 write devices devices devices
 # What no run above writes, or not on every machine.
 unseen="device.name device.platform device.version device.driver device.is_cpu device.has_double

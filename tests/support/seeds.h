@@ -4,13 +4,14 @@
 
 #include "core/assimp/assimp_bridge.h"
 #include "tests/support/files.h"
+#include "tests/support/gaussian_fixture.h"
 #include "tests/support/las_file.h"
 #include "tests/support/mesh_file.h"
 #include "tests/support/png_file.h"
 
 typedef struct seed {
   const char *target; /* the fuzz target that reads it: ply, obj, mtl, las, pcd, xyz, camera, pfm, exr, png,
-                         cot, lpc, chy */
+                         cot, lpc, chy, gaussians */
   char name[32];      /* of the file */
   unsigned char *bytes;
   size_t n_bytes;
@@ -388,6 +389,38 @@ static inline void seeds_all_records(seed_set *set) {
   seeds_add(set, "assimp_records", "bin", 0, file.bytes, file.n);
 }
 
+static inline void seeds_gaussians(seed_set *set, conic_context *context, conic_gaussian_kind kind, int spz_version) {
+  static const char *const endings[] = {"ply", "ply", "splat", "spz", "sog", "gltf", "glb"};
+  conic_gaussians scene = gaussians_random(context, 5, kind == CONIC_GAUSSIANS_SPLAT ? 0 : 1, 0);
+  conic_gaussians_write_options options;
+  conic_gaussians_write_options_init(&options);
+  options.kind = kind;
+  options.spz_version = spz_version;
+  const char *path = files_path("seed.gaussians");
+  if (gaussians_have(kind) && conic_gaussians_write(context, path, &scene, &options) == CONIC_OK) {
+    unsigned char bytes[16384];
+    FILE *file = fopen(path, "rb");
+    size_t n = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    if (!file || fclose(file) != 0 || unlink(path) != 0)
+      exit(1);
+    seeds_add(set, "gaussians", endings[kind], kind == CONIC_GAUSSIANS_SPLAT, bytes, n);
+  }
+  conic_gaussians_release(context, &scene);
+}
+
+static inline void seeds_all_gaussians(seed_set *set, conic_context *context) {
+  for (int kind = 0; kind < CONIC_N_GAUSSIAN_KINDS; kind++)
+    seeds_gaussians(set, context, (conic_gaussian_kind)kind, 4);
+  seeds_gaussians(set, context, CONIC_GAUSSIANS_SPZ, 3);
+  seeds_text(set, "gaussians", "ply",
+             "ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 2\nproperty double x\n"
+             "property double y\nproperty double z\nproperty float f_dc_0\nproperty float f_dc_1\n"
+             "property float f_dc_2\nproperty float opacity\nproperty float scale_0\nproperty float scale_1\n"
+             "property float rot_0\nproperty float rot_1\nproperty float rot_2\nproperty float rot_3\n"
+             "property float filter_3D\nend_header\n"
+             "4e6 1 2 .1 .2 .3 1 -3 -2 1 0 0 0 .01\n4e6 1 3 nan 0 inf -9 -1 -1 0 0 0 0 0\n");
+}
+
 static inline seed_set *seeds_make(conic_context *context) {
   seed_set *set = calloc(1, sizeof *set);
   if (!set)
@@ -397,6 +430,7 @@ static inline seed_set *seeds_make(conic_context *context) {
   seeds_all_las(set);
   seeds_all_pcd(set);
   seeds_all_png(set);
+  seeds_all_gaussians(set, context);
   seeds_octree(set, context, 1, 0);
   seeds_octree(set, context, 40, 0);
   seeds_octree(set, context, 40, 1);

@@ -12,14 +12,15 @@ my %may_include = (
   oracle => [qw(conic core)],
   lod => [qw(conic core raster)],
   surface => [qw(conic core)],
-  source => [qw(conic core raster lod surface)],
+  gaussians => [qw(conic core)],
+  source => [qw(conic core raster lod surface gaussians)],
   opencl => [qw(conic core raster lod)],
-  cli => [qw(conic core raster lod surface source opencl)],
-  bench => [qw(conic core raster lod surface source opencl cli tests)],
+  cli => [qw(conic core raster lod surface gaussians source opencl)],
+  bench => [qw(conic core raster lod surface gaussians source opencl cli tests)],
   examples => [qw(conic)],
-  tests => [qw(conic core raster oracle lod surface source opencl cli bench)],
+  tests => [qw(conic core raster oracle lod surface gaussians source opencl cli bench)],
 );
-my @library = qw(include core raster oracle lod surface source opencl);
+my @library = qw(include core raster oracle lod surface gaussians source opencl);
 my %is_folder = map { s{.*/}{}r => 1 } keys %may_include;
 
 # Rooms that still include each other in a circle. A circle that is gone must leave the list.

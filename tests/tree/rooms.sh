@@ -35,6 +35,7 @@ raster/a.c|#include "cli/session.h"
 oracle/oracle.c|#include "raster/project.h"
 surface/a.c|#include "raster/project.h"
 surface/a.c|x = exp(y);
+gaussians/a.c|#include "raster/project.h"
 raster/a.c|#include "surface/mls_surface.h"
 cli/a.c|#include "tests/support/check.h"
 examples/a.c|#include "core/splats/splats_gather.h"

@@ -30,6 +30,12 @@ static void init_image(void *o, size_t size) {
 static void init_framing(void *o, size_t size) {
   conic_framing_init_sized(o, size);
 }
+static void init_gaussians_read(void *o, size_t size) {
+  conic_gaussians_read_options_init_sized(o, size);
+}
+static void init_gaussians_write(void *o, size_t size) {
+  conic_gaussians_write_options_init_sized(o, size);
+}
 static void init_read(void *o, size_t size) {
   conic_read_options_init_sized(o, size);
 }
@@ -97,18 +103,32 @@ static void init_coloring(void *o, size_t size) {
 static const struct {
   void (*init)(void *options, size_t size);
   size_t size;
-} all[] = {{init_context, sizeof(conic_context_options)},   {init_image, sizeof(conic_image_options)},
-           {init_framing, sizeof(conic_framing)},           {init_read, sizeof(conic_read_options)},
-           {init_write, sizeof(conic_write_options)},       {init_estimate, sizeof(conic_estimate_options)},
-           {init_scene, sizeof(conic_scene_options)},       {init_render, sizeof(conic_render_options)},
-           {init_octree, sizeof(conic_octree_options)},     {init_selection, sizeof(conic_selection_options)},
-           {init_hybrid, sizeof(conic_hybrid_options)},     {init_hybrid_view, sizeof(conic_hybrid_view)},
-           {init_layers, sizeof(conic_layers_options)},     {init_access, sizeof(conic_layers_access)},
-           {init_draw, sizeof(conic_layers_draw_options)},  {init_opencl, sizeof(conic_opencl_options)},
-           {init_surface, sizeof(conic_surface_options)},   {init_clean, sizeof(conic_clean_options)},
-           {init_thin, sizeof(conic_thin_options)},         {init_densify, sizeof(conic_densify_options)},
-           {init_patches, sizeof(conic_patches_options)},   {init_source, sizeof(conic_source_options)},
-           {init_coloring, sizeof(conic_coloring_options)}, {init_view, sizeof(conic_source_view)}};
+} all[] = {{init_context, sizeof(conic_context_options)},
+           {init_image, sizeof(conic_image_options)},
+           {init_framing, sizeof(conic_framing)},
+           {init_read, sizeof(conic_read_options)},
+           {init_write, sizeof(conic_write_options)},
+           {init_estimate, sizeof(conic_estimate_options)},
+           {init_scene, sizeof(conic_scene_options)},
+           {init_render, sizeof(conic_render_options)},
+           {init_octree, sizeof(conic_octree_options)},
+           {init_selection, sizeof(conic_selection_options)},
+           {init_hybrid, sizeof(conic_hybrid_options)},
+           {init_hybrid_view, sizeof(conic_hybrid_view)},
+           {init_layers, sizeof(conic_layers_options)},
+           {init_access, sizeof(conic_layers_access)},
+           {init_draw, sizeof(conic_layers_draw_options)},
+           {init_opencl, sizeof(conic_opencl_options)},
+           {init_surface, sizeof(conic_surface_options)},
+           {init_clean, sizeof(conic_clean_options)},
+           {init_thin, sizeof(conic_thin_options)},
+           {init_densify, sizeof(conic_densify_options)},
+           {init_patches, sizeof(conic_patches_options)},
+           {init_source, sizeof(conic_source_options)},
+           {init_coloring, sizeof(conic_coloring_options)},
+           {init_gaussians_read, sizeof(conic_gaussians_read_options)},
+           {init_gaussians_write, sizeof(conic_gaussians_write_options)},
+           {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
   unsigned char whole[2048], other[2048];
@@ -192,19 +212,47 @@ static void test_other_structs_keep_their_size(void) {
     size_t size, pinned;
   } structs[] = {
 #define PINNED(type, bytes) {#type, sizeof(type), bytes}
-      PINNED(conic_camera, 200),          PINNED(conic_splats, 288),          PINNED(conic_triangles, 296),
-      PINNED(conic_material, 56),         PINNED(conic_model, 384),           PINNED(conic_image, 6544),
-      PINNED(conic_drawing, 48),          PINNED(conic_selection, 400),       PINNED(conic_hybrid_selection, 728),
-      PINNED(conic_patch_selection, 400), PINNED(conic_reference, 456),       PINNED(conic_points_sink, 56),
-      PINNED(conic_projection, 208),      PINNED(conic_hybrid_report, 168),   PINNED(conic_render_statistics, 512),
-      PINNED(conic_hybrid_info, 232),     PINNED(conic_hybrid_defects, 96),   PINNED(conic_difference, 664),
-      PINNED(conic_layers_info, 232),     PINNED(conic_layers_defects, 96),   PINNED(conic_layers_statistics, 160),
-      PINNED(conic_layers_scale, 160),    PINNED(conic_layers_drawn, 176),    PINNED(conic_repairs, 112),
-      PINNED(conic_octree_info, 232),     PINNED(conic_octree_defects, 104),  PINNED(conic_patches_report, 216),
-      PINNED(conic_surface_report, 384),  PINNED(conic_oracle_verdict, 616),  PINNED(conic_surface_distance, 64),
-      PINNED(conic_opencl_device, 616),   PINNED(conic_surface_options, 128), PINNED(conic_clip, 32),
-      PINNED(conic_coloring, 168),        PINNED(conic_model_field, 64),      PINNED(conic_kernel, 20),
-      PINNED(conic_contribution, 32),     PINNED(conic_surface_point, 136)};
+      PINNED(conic_camera, 200),
+      PINNED(conic_splats, 288),
+      PINNED(conic_triangles, 296),
+      PINNED(conic_material, 56),
+      PINNED(conic_model, 384),
+      PINNED(conic_image, 6544),
+      PINNED(conic_drawing, 48),
+      PINNED(conic_selection, 400),
+      PINNED(conic_hybrid_selection, 728),
+      PINNED(conic_patch_selection, 400),
+      PINNED(conic_reference, 456),
+      PINNED(conic_points_sink, 56),
+      PINNED(conic_projection, 208),
+      PINNED(conic_hybrid_report, 168),
+      PINNED(conic_render_statistics, 512),
+      PINNED(conic_hybrid_info, 232),
+      PINNED(conic_hybrid_defects, 96),
+      PINNED(conic_difference, 664),
+      PINNED(conic_layers_info, 232),
+      PINNED(conic_layers_defects, 96),
+      PINNED(conic_layers_statistics, 160),
+      PINNED(conic_layers_scale, 160),
+      PINNED(conic_layers_drawn, 176),
+      PINNED(conic_repairs, 112),
+      PINNED(conic_octree_info, 232),
+      PINNED(conic_octree_defects, 104),
+      PINNED(conic_patches_report, 216),
+      PINNED(conic_surface_report, 384),
+      PINNED(conic_oracle_verdict, 616),
+      PINNED(conic_surface_distance, 64),
+      PINNED(conic_opencl_device, 616),
+      PINNED(conic_surface_options, 128),
+      PINNED(conic_clip, 32),
+      PINNED(conic_coloring, 168),
+      PINNED(conic_model_field, 64),
+      PINNED(conic_kernel, 20),
+      PINNED(conic_contribution, 32),
+      PINNED(conic_surface_point, 136),
+      PINNED(conic_gaussians, 232),
+      PINNED(conic_gaussians_defects, 64),
+      PINNED(conic_gaussians_differences, 80)};
   for (size_t i = 0; i < sizeof structs / sizeof structs[0]; i++) {
     if (structs[i].size != structs[i].pinned)
       fprintf(stderr, "%s has %zu bytes, not %zu\n", structs[i].name, structs[i].size, structs[i].pinned);

@@ -87,6 +87,12 @@ static conic_status read_target(conic_context *context, const char *target, cons
     conic_octree_destroy(octree);
     return status;
   }
+  if (strcmp(target, "gaussians") == 0) {
+    conic_gaussians scene;
+    status = conic_gaussians_read(context, path, NULL, &scene);
+    conic_gaussians_release(context, &scene);
+    return status;
+  }
   if (strcmp(target, "lpc") == 0) {
     conic_layers_info info;
     return conic_layers_describe(context, path, &info);

@@ -1,0 +1,221 @@
+/* conic convert: a Gaussian scene in, the same in another format out, and what of it was lost. */
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/command.h"
+#include "cli/commands/build_steps.h"
+#include "cli/outputs.h"
+
+typedef struct convert_job {
+  cli_build base;
+  conic_gaussians_write_options write;
+  const char *frame; /* null: the output's own; "keep": the input's */
+  const char *from_frame;
+  int to, keeps_order, is_reordered; /* to: of --to, the kind + 1 */
+  int sh_bits;
+
+  conic_gaussians scene, written; /* as it was read, turned and ordered; and as it is read again */
+  char frame_in[4];
+  conic_gaussian_kind kind_in;
+  int is_checked, is_lossless;
+  conic_gaussians_differences differences;
+  char losses[400];
+} convert_job;
+
+enum { READ, WORK, WRITE, CHECK };
+
+static const char *const kind_names[] = {"auto", "ply", "compressed-ply", "splat", "spz", "sog", "gltf", "glb", NULL};
+
+/* Chunks and pictures of neighbours are smaller, and rounded less. */
+static int wants_neighbours(conic_gaussian_kind kind) {
+  return kind == CONIC_GAUSSIANS_COMPRESSED_PLY || kind == CONIC_GAUSSIANS_SOG;
+}
+
+static conic_status arrange(convert_job *job) {
+  conic_context *context = job->base.session->context;
+  const char *frame = job->frame ? job->frame : conic_gaussian_kind_frame(job->write.kind);
+  conic_status status = CONIC_OK;
+  if (job->from_frame)
+    snprintf(job->scene.frame, sizeof job->scene.frame, "%s", job->from_frame);
+  memcpy(job->frame_in, job->scene.frame, sizeof job->frame_in);
+  job->kind_in = job->scene.kind;
+  if (strcmp(frame, "keep") != 0)
+    status = conic_gaussians_turn(context, &job->scene, frame);
+  job->is_reordered = !job->keeps_order && wants_neighbours(job->write.kind) && !wants_neighbours(job->kind_in);
+  if (status == CONIC_OK && job->is_reordered)
+    status = conic_gaussians_sort(context, &job->scene);
+  return status;
+}
+
+static void add_loss(convert_job *job, const char *format, double value) {
+  size_t n = strlen(job->losses);
+  n += (size_t)snprintf(job->losses + n, sizeof job->losses - n, "%s", n ? ", " : "");
+  snprintf(job->losses + n, sizeof job->losses - n, format, value);
+}
+
+/* In words, what is not as it was. */
+static void find_losses(convert_job *job) {
+  const conic_gaussians_differences *apart = &job->differences;
+  const conic_gaussians *from = &job->scene, *to = &job->written;
+  char degrees[64];
+  snprintf(degrees, sizeof degrees, "harmonics of degree %d became %d", from->sh_degree, to->sh_degree);
+  if (to->sh_degree != from->sh_degree)
+    add_loss(job, degrees, 0.0);
+  if (!from->scale[2] && to->scale[2])
+    add_loss(job, "2D Gaussians became flat 3D ones", 0.0);
+  if (from->is_antialiased && !to->is_antialiased)
+    add_loss(job, "nothing says any more that it was trained antialiased", 0.0);
+  if (from->is_linear && !to->is_linear)
+    add_loss(job, "nothing says any more that colours are linear", 0.0);
+  if (from->n_left_out)
+    add_loss(job, "%g columns that Gaussians do not need are left out", (double)from->n_left_out);
+  const struct {
+    const char *format;
+    double value;
+  } greatest[] = {
+      {"means moved by up to %.2g", apart->position},    {"scales changed by up to %.2g %%", 100.0 * apart->scale},
+      {"rotations by up to %.2g°", apart->rotation_deg}, {"opacities by up to %.2g", apart->opacity},
+      {"colours by up to %.2g", apart->color},           {"harmonics by up to %.2g", apart->harmonics}};
+  for (size_t i = 0; i < sizeof greatest / sizeof *greatest; i++)
+    if (greatest[i].value > 0.0)
+      add_loss(job, greatest[i].format, greatest[i].value);
+  if (!job->losses[0])
+    add_loss(job, "quaternions have other lengths", 0.0);
+}
+
+/* Reads the output, and compares. */
+static conic_status read_again(convert_job *job) {
+  conic_context *context = job->base.session->context;
+  conic_gaussians_read_options options;
+  conic_gaussians_read_options_init(&options);
+  options.keeps_source = 1;
+  options.is_splat = job->write.kind == CONIC_GAUSSIANS_SPLAT;
+  conic_status status = conic_gaussians_read(context, job->base.output, &options, &job->written);
+  memcpy(job->written.frame, job->scene.frame, sizeof job->written.frame); /* files do not say theirs */
+  if (status == CONIC_OK)
+    status = conic_gaussians_compare(context, &job->scene, &job->written, &job->differences);
+  job->is_checked = status == CONIC_OK;
+  job->is_lossless = job->is_checked && job->differences.is_same && job->scene.n_left_out == 0;
+  if (job->is_checked && !job->is_lossless)
+    find_losses(job);
+  return status;
+}
+
+static int convert_scene(void *cookie) {
+  convert_job *job = cookie;
+  conic_context *context = job->base.session->context;
+  conic_gaussians_read_options options;
+  conic_gaussians_read_options_init(&options);
+  options.keeps_source = 1;
+  double start = cli_seconds();
+  conic_status status = conic_gaussians_read(context, job->base.input, &options, &job->scene);
+  start = cli_build_end_stage(&job->base.stages[READ], start);
+  if (status == CONIC_OK)
+    status = arrange(job);
+  start = cli_build_end_stage(&job->base.stages[WORK], start);
+  if (status == CONIC_OK)
+    status = conic_gaussians_write(context, job->base.output, &job->scene, &job->write);
+  start = cli_build_end_stage(&job->base.stages[WRITE], start);
+  if (status == CONIC_OK && strcmp(job->base.output, "-") != 0)
+    status = read_again(job);
+  cli_build_end_stage(&job->base.stages[CHECK], start);
+  return cli_exit_of(status);
+}
+
+static void tell_losses(const void *cookie) {
+  const convert_job *job = cookie;
+  if (job->is_checked && !job->is_lossless)
+    cli_note(job->base.session, "%s: not all of it is as it was: %s", job->base.output, job->losses);
+}
+
+static uint64_t bytes_written(const char *path) {
+  struct stat found;
+  return stat(path, &found) == 0 && S_ISREG(found.st_mode) ? (uint64_t)found.st_size : 0;
+}
+
+static void report_conversion(cli_json *json, const void *cookie) {
+  const convert_job *job = cookie;
+  const conic_gaussians *scene = &job->scene;
+  int most = conic_gaussian_kind_sh_degree(job->write.kind);
+  most = most < job->write.most_sh_degree ? most : job->write.most_sh_degree;
+  cli_json_text(json, "kind_in", conic_gaussian_kind_name(job->kind_in));
+  cli_json_text(json, "kind_out", conic_gaussian_kind_name(job->write.kind));
+  cli_json_count(json, "gaussians", scene->count);
+  cli_json_count(json, "sh_degree_in", (uint64_t)scene->sh_degree);
+  cli_json_count(json, "sh_degree_out", (uint64_t)(scene->sh_degree < most ? scene->sh_degree : most));
+  cli_json_text(json, "frame_in", job->frame_in);
+  cli_json_text(json, "frame_out", scene->frame);
+  cli_json_bool(json, "reordered", job->is_reordered);
+  if (job->is_checked) {
+    cli_json_bool(json, "lossless", job->is_lossless);
+    cli_json_text(json, "lost", job->is_lossless ? NULL : job->losses);
+    cli_json_object(json, "differences");
+    cli_json_number(json, "position", job->differences.position);
+    cli_json_number(json, "scale", job->differences.scale);
+    cli_json_number(json, "rotation_deg", job->differences.rotation_deg);
+    cli_json_number(json, "opacity", job->differences.opacity);
+    cli_json_number(json, "color", job->differences.color);
+    cli_json_number(json, "harmonics", job->differences.harmonics);
+    cli_json_close(json);
+    cli_json_count(json, "bytes", bytes_written(job->base.output));
+  }
+  cli_build_report_seconds(json, &job->base, "gaussians_per_s",
+                           (double)scene->count / (job->base.stages[READ].seconds + job->base.stages[WRITE].seconds));
+  cli_json_count(json, "peak_rss_bytes", cli_peak_rss_bytes());
+}
+
+static void release_scenes(void *cookie) {
+  convert_job *job = cookie;
+  conic_gaussians_release(job->base.session->context, &job->scene);
+  conic_gaussians_release(job->base.session->context, &job->written);
+}
+
+static int check_paths(convert_job *job, const char *const *inputs, int n_inputs) {
+  cli_session *session = job->base.session;
+  if (n_inputs != 1)
+    return cli_usage("convert: %s; see conic help convert", n_inputs ? "one input at a time" : "no input given");
+  job->base.input = inputs[0];
+  if (!job->base.output)
+    return cli_usage("convert: no output given (-o OUT)");
+  if (job->to)
+    job->write.kind = (conic_gaussian_kind)(job->to - 1);
+  else if (!conic_gaussians_find_kind(job->base.output, &job->write.kind))
+    return cli_usage(
+        "convert: %s: give the output the ending .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb, "
+        "or say --to KIND",
+        job->base.output);
+  job->write.sh_bits[0] = job->write.sh_bits[1] = job->sh_bits;
+  int exit_code = cli_check_outputs(session, &job->base.output, 1);
+  return exit_code == CLI_DONE ? cli_check_inputs_stay(session, inputs, 1, &job->base.output, 1) : exit_code;
+}
+
+static int run_convert(cli_session *session, int argc, char **argv) {
+  static const cli_build_steps steps = {convert_scene, tell_losses, report_conversion, release_scenes};
+  convert_job job = {.base = {session, .stages = {{"read"}, {"work"}, {"write"}, {"check"}}}, .sh_bits = 8};
+  const char *positional[argc];
+  int n_positional;
+  conic_gaussians_write_options_init(&job.write);
+  const cli_option options[] = {
+      {"o", CLI_TEXT, &job.base.output, "OUT", "the file to write: .ply .compressed.ply .splat .spz .sog .gltf .glb"},
+      {"to", CLI_CHOICE, &job.to, "KIND", "the format, where the name does not say it [auto]", .choices = kind_names},
+      {"sh-degree", CLI_INT, &job.write.most_sh_degree, "N", "keep harmonics up to this degree [4]", 0, 4},
+      {"frame", CLI_TEXT, &job.frame, "XYZ",
+       "where x, y, z shall point, as rdf: right, down, forward; or keep [the format's habit]"},
+      {"from-frame", CLI_TEXT, &job.from_frame, "XYZ", "where they point in the input [the format's habit]"},
+      {"keep-order", CLI_FLAG, &job.keeps_order, NULL, "do not bring neighbours together, whatever that costs"},
+      {"sh-bits", CLI_INT, &job.sh_bits, "N", "of .spz: bits of each number of the harmonics, 1 to 8 [8]", 1, 8},
+      {"spz-version", CLI_INT, &job.write.spz_version, "V", "of .spz: 3 for readers of before 2026 [4]", 3, 4},
+  };
+  int exit_code = cli_parse(session, options, sizeof options / sizeof *options, argc, argv, positional, &n_positional);
+  if (exit_code == CLI_DONE)
+    exit_code = check_paths(&job, positional, n_positional);
+  return cli_build_run(&job, &steps, exit_code);
+}
+
+const cli_command cli_convert = {
+    .name = "convert",
+    .summary = "writes a Gaussian scene in another format, and says what is lost",
+    .usage = "conic convert SCENE -o SCENE [--sh-degree N] [--frame XYZ]",
+    .run = run_convert,
+};

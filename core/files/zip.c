@@ -1,0 +1,193 @@
+#include "core/files/zip.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/files/inflate.h"
+
+/* Bytes of the records, without the names and what follows these. */
+enum { END = 22, ENTRY = 46, LOCAL = 30, STORED = 0, DEFLATED = 8 };
+
+static uint32_t load(const unsigned char *p, int n_bytes) {
+  uint32_t value = 0;
+  while (n_bytes-- > 0)
+    value = value << 8 | p[n_bytes];
+  return value;
+}
+
+static void store_number(unsigned char *p, uint32_t value, int n_bytes) {
+  for (int i = 0; i < n_bytes; i++)
+    p[i] = (unsigned char)(value >> 8 * i);
+}
+
+/* The sum of ZIP and PNG: a remainder by the polynomial 0x04c11db7, its bits reversed. */
+static uint32_t find_sum(const unsigned char *bytes, size_t n) {
+  uint32_t table[256], sum = 0xffffffff;
+  for (uint32_t i = 0; i < 256; i++) {
+    table[i] = i;
+    for (int bit = 0; bit < 8; bit++)
+      table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320 : 0);
+  }
+  for (size_t i = 0; i < n; i++)
+    sum = sum >> 8 ^ table[(sum ^ bytes[i]) & 0xff];
+  return ~sum;
+}
+
+static conic_status zip_wrong(const conic_zip *zip, const char *what, size_t at) {
+  return conic_fail(zip->context, CONIC_ERROR_INPUT, "%s: the ZIP archive is spoiled: %s (at byte %zu)", zip->name,
+                    what, at);
+}
+
+conic_status conic_zip_open(conic_context *context, const char *name, const unsigned char *bytes, size_t n_bytes,
+                            conic_zip *zip) {
+  *zip = (conic_zip){.context = context, .name = name, .bytes = bytes, .n_bytes = n_bytes};
+  size_t earliest = n_bytes > END + 65535 ? n_bytes - END - 65535 : 0, at = n_bytes < END ? 0 : n_bytes - END;
+  while (n_bytes >= END && at > earliest && memcmp(bytes + at, "PK\5\6", 4) != 0)
+    at--;
+  if (n_bytes < END || memcmp(bytes + at, "PK\5\6", 4) != 0)
+    return zip_wrong(zip, "its list of files is not there", n_bytes);
+  size_t n_directory = load(bytes + at + 12, 4);
+  zip->n_entries = load(bytes + at + 10, 2);
+  zip->directory = load(bytes + at + 16, 4);
+  if (n_directory > at || zip->directory > at - n_directory)
+    return zip_wrong(zip, "its list of files is not where it should be", at);
+  return CONIC_OK;
+}
+
+static const size_t none = (size_t)-1;
+
+/* Where the entry of that file begins, or `none`; 0 where the list is spoiled there. */
+static int find_entry(const conic_zip *zip, const char *file, size_t *found) {
+  size_t n_file = strlen(file), at = zip->directory;
+  for (size_t i = 0; i < zip->n_entries; i++) {
+    *found = at;
+    if (zip->n_bytes - at < ENTRY || memcmp(zip->bytes + at, "PK\1\2", 4) != 0)
+      return 0;
+    const unsigned char *entry = zip->bytes + at, *name = entry + ENTRY;
+    size_t n_name = load(entry + 28, 2), n_rest = n_name + load(entry + 30, 2) + load(entry + 32, 2);
+    if (zip->n_bytes - at - ENTRY < n_rest)
+      return 0;
+    if (n_name >= n_file && memcmp(name + n_name - n_file, file, n_file) == 0 &&
+        (n_name == n_file || name[n_name - n_file - 1] == '/'))
+      return 1;
+    at += ENTRY + n_rest;
+  }
+  *found = none;
+  return 1;
+}
+
+int conic_zip_has(const conic_zip *zip, const char *file) {
+  size_t found;
+  return find_entry(zip, file, &found) && found != none;
+}
+
+/* Where the packed bytes begin, past the record that stands before them; `none` where they are not all there. */
+static size_t find_packed(const conic_zip *zip, size_t local, size_t n_packed) {
+  if (local > zip->n_bytes || zip->n_bytes - local < LOCAL || memcmp(zip->bytes + local, "PK\3\4", 4) != 0)
+    return none;
+  size_t at = local + LOCAL + load(zip->bytes + local + 26, 2) + load(zip->bytes + local + 28, 2);
+  return at <= zip->n_bytes && zip->n_bytes - at >= n_packed ? at : none;
+}
+
+static conic_status unpack_file(const conic_zip *zip, size_t entry_at, size_t packed, unsigned char *to,
+                                size_t n_bytes) {
+  const unsigned char *entry = zip->bytes + entry_at;
+  size_t n_packed = load(entry + 20, 4), n = n_packed;
+  if (load(entry + 10, 2) == STORED)
+    memcpy(to, zip->bytes + packed, n_bytes < n_packed ? n_bytes : n_packed);
+  else
+    n = conic_inflate(CONIC_DEFLATE_BARE, zip->bytes + packed, n_packed, to, n_bytes, NULL);
+  return n == n_bytes && find_sum(to, n_bytes) == load(entry + 16, 4)
+             ? CONIC_OK
+             : zip_wrong(zip, "a file in it is not what its sum says", packed);
+}
+
+conic_status conic_zip_read(const conic_zip *zip, const char *file, size_t most_bytes, unsigned char **contents,
+                            size_t *n_contents) {
+  size_t at;
+  *contents = NULL;
+  *n_contents = 0;
+  if (!find_entry(zip, file, &at))
+    return zip_wrong(zip, "an entry of its list is none", at);
+  if (at == none)
+    return conic_fail(zip->context, CONIC_ERROR_INPUT, "%s: the ZIP archive has no file %s (at byte %zu)", zip->name,
+                      file, zip->directory);
+  const unsigned char *entry = zip->bytes + at;
+  size_t method = load(entry + 10, 2), n_packed = load(entry + 20, 4), n_bytes = load(entry + 24, 4);
+  size_t packed = find_packed(zip, load(entry + 42, 4), n_packed);
+  if (load(entry + 8, 2) & 1 || (method != STORED && method != DEFLATED))
+    return zip_wrong(zip, "a file in it is encrypted, or packed in a way that is not known", at);
+  if (method == DEFLATED && !conic_inflate_is_there())
+    return conic_fail(zip->context, CONIC_ERROR_UNSUPPORTED, "%s: its files are deflated: this build lacks zlib",
+                      zip->name);
+  if (packed == none || n_bytes > most_bytes || (double)n_bytes > conic_inflate_most_bytes(n_packed) ||
+      (method == STORED && n_bytes != n_packed))
+    return zip_wrong(zip, "a file in it is larger than it can be", at);
+  *contents = conic_memory_allocate(zip->context, n_bytes + 1, 1);
+  if (!*contents)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = unpack_file(zip, at, packed, *contents, n_bytes);
+  if (status == CONIC_OK) {
+    *n_contents = n_bytes;
+    return CONIC_OK;
+  }
+  conic_memory_release(zip->context, *contents);
+  *contents = NULL;
+  return status;
+}
+
+/* What both records say of a file, from "version needed" on. */
+static void put_facts(const conic_zip_writer *writer, int i, unsigned char facts[26]) {
+  memset(facts, 0, 26);
+  store_number(facts, 10, 2);
+  store_number(facts + 8, 0x21, 2); /* the first day that can be said */
+  store_number(facts + 10, writer->files[i].sum, 4);
+  store_number(facts + 14, writer->files[i].n_bytes, 4);
+  store_number(facts + 18, writer->files[i].n_bytes, 4);
+  store_number(facts + 22, (uint32_t)strlen(writer->files[i].name), 2);
+}
+
+static void put_record(conic_zip_writer *writer, const void *bytes, size_t n_bytes) {
+  if (n_bytes > 0xfffff000 - writer->offset || fwrite(bytes, 1, n_bytes, writer->to) != n_bytes) {
+    writer->is_failed = 1;
+    return;
+  }
+  writer->offset += (uint32_t)n_bytes;
+}
+
+int conic_zip_add(conic_zip_writer *writer, const char *name, const unsigned char *bytes, size_t n_bytes) {
+  unsigned char record[LOCAL] = "PK\3\4";
+  int i = writer->n_files;
+  if (i == CONIC_ZIP_MOST_FILES || n_bytes > 0xfffff000)
+    return 0;
+  snprintf(writer->files[i].name, sizeof writer->files[i].name, "%s", name);
+  writer->files[i].sum = find_sum(bytes, n_bytes);
+  writer->files[i].n_bytes = (uint32_t)n_bytes;
+  writer->files[i].offset = writer->offset;
+  writer->n_files++;
+  put_facts(writer, i, record + 4);
+  put_record(writer, record, sizeof record);
+  put_record(writer, name, strlen(name));
+  put_record(writer, bytes, n_bytes);
+  return !writer->is_failed;
+}
+
+int conic_zip_end(conic_zip_writer *writer) {
+  unsigned char end[END] = "PK\5\6";
+  uint32_t directory = writer->offset;
+  for (int i = 0; i < writer->n_files; i++) {
+    unsigned char entry[ENTRY] = "PK\1\2";
+    store_number(entry + 4, 10, 2);
+    put_facts(writer, i, entry + 6);
+    store_number(entry + 42, writer->files[i].offset, 4);
+    put_record(writer, entry, sizeof entry);
+    put_record(writer, writer->files[i].name, strlen(writer->files[i].name));
+  }
+  store_number(end + 8, (uint32_t)writer->n_files, 2);
+  store_number(end + 10, (uint32_t)writer->n_files, 2);
+  store_number(end + 12, writer->offset - directory, 4);
+  store_number(end + 16, directory, 4);
+  put_record(writer, end, sizeof end);
+  return !writer->is_failed;
+}

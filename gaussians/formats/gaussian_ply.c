@@ -1,0 +1,420 @@
+/* Gaussians in PLY, as 3DGS, 2DGS and Mip-Splatting write them: a row a Gaussian, before activation. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "conic/version.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/real.h"
+#include "core/formats/ply_source.h"
+#include "gaussians/formats/gaussian_formats.h"
+#include "gaussians/scene/activation.h"
+
+enum { BLOCK = 128, MOST_TARGETS = 24 + CONIC_MOST_HARMONICS };
+
+/* A property of the file, and where its values go. */
+typedef struct ply_target {
+  int i_property;
+  float **column;  /* or */
+  int i_harmonic;  /* a number of each Gaussian's harmonics; -1: a column */
+  int origin_axis; /* of a position that has an origin; -1: none */
+} ply_target;
+
+typedef struct gaussian_reader {
+  conic_ply_source *source;
+  const conic_ply_header *header;
+  const conic_ply_property *properties;
+  conic_gaussians *gaussians;
+  ply_target targets[MOST_TARGETS];
+  int n_targets;
+  float *filter; /* column of Mip-Splatting's filter_3D; null: none */
+  size_t room;
+  double block[MOST_TARGETS][BLOCK];
+} gaussian_reader;
+
+static int find_single(const conic_ply_header *header, const conic_ply_element *vertices, const char *name) {
+  int i = conic_ply_find_property(header, vertices, name);
+  return i >= 0 && header->properties[vertices->first_property + (size_t)i].is_list ? -1 : i;
+}
+
+static int has_values(const conic_ply_header *header, const char *const *names, size_t n) {
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  for (size_t i = 0; i < n; i++)
+    if (!vertices || find_single(header, vertices, names[i]) < 0)
+      return 0;
+  return 1;
+}
+
+int conic_ply_has_gaussians(const conic_ply_header *header) {
+  static const char *const names[] = {"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                      "scale_0", "scale_1", "rot_0", "rot_1",  "rot_2",  "rot_3"};
+  return has_values(header, names, sizeof names / sizeof *names);
+}
+
+static void add_target(gaussian_reader *reader, const char *name, float **column, int i_harmonic) {
+  int i = find_single(reader->header, reader->source->element, name);
+  if (i >= 0)
+    reader->targets[reader->n_targets++] = (ply_target){i, column, i_harmonic, -1};
+}
+
+/* The degree that the columns f_rest_0 … are of; -1 after a message. */
+static int find_degree(const conic_input *input, const conic_ply_header *header, const conic_ply_element *vertices) {
+  char name[32];
+  size_t n = 0;
+  for (;; n++) {
+    snprintf(name, sizeof name, "f_rest_%zu", n);
+    if (find_single(header, vertices, name) < 0)
+      break;
+  }
+  int degree = n % 3 ? -1 : conic_degree_of_coefficients(1 + n / 3);
+  if (degree < 0)
+    conic_fail(input->context, CONIC_ERROR_INPUT,
+               "%s: %zu columns f_rest_… are of no degree of harmonics (9, 24, 45 or 72 are) (line %llu)", input->name,
+               n, (unsigned long long)vertices->line);
+  return degree;
+}
+
+/* f_rest_… has a channel after the other. */
+static void find_harmonics(gaussian_reader *reader, int file_degree) {
+  size_t n_kept = conic_harmonics_of_degree(reader->gaussians->sh_degree) / 3;
+  size_t n_rest = conic_harmonics_of_degree(file_degree) / 3 - 1;
+  char name[32];
+  for (size_t channel = 0; channel < 3; channel++) {
+    snprintf(name, sizeof name, "f_dc_%zu", channel);
+    add_target(reader, name, NULL, (int)channel);
+    for (size_t k = 1; k < n_kept; k++) {
+      snprintf(name, sizeof name, "f_rest_%zu", channel * n_rest + k - 1);
+      add_target(reader, name, NULL, (int)(3 * k + channel));
+    }
+  }
+}
+
+static int has_wide_positions(const gaussian_reader *reader) {
+  int is_wide = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    conic_ply_type type = reader->properties[reader->targets[axis].i_property].type;
+    is_wide |= type == CONIC_PLY_DOUBLE || type == CONIC_PLY_INT32 || type == CONIC_PLY_UINT32;
+  }
+  return is_wide;
+}
+
+/* What a Gaussian is made of, and the normals that no file needs. */
+static int count_others(const gaussian_reader *reader, int file_degree) {
+  int n = (int)reader->source->element->n_properties - reader->n_targets;
+  n -= (int)(conic_harmonics_of_degree(file_degree) - conic_harmonics_of_degree(reader->gaussians->sh_degree));
+  for (const char *name = "nx\0ny\0nz\0"; *name; name += 3)
+    n -= conic_ply_find_property(reader->header, reader->source->element, name) >= 0;
+  return n > 0 ? n : 0;
+}
+
+static void find_targets(gaussian_reader *reader, int file_degree) {
+  static const char *const names[] = {"x",       "y",     "z",     "scale_0", "scale_1",
+                                      "scale_2", "rot_0", "rot_1", "rot_2",   "rot_3"};
+  conic_gaussians *gaussians = reader->gaussians;
+  for (int i = 0; i < 10; i++)
+    if (i != 5 || gaussians->scale[2])
+      add_target(reader, names[i],
+                 i < 3   ? &gaussians->position[i]
+                 : i < 6 ? &gaussians->scale[i - 3]
+                         : &gaussians->rotation[i - 6],
+                 -1);
+  add_target(reader, "opacity", &gaussians->opacity, -1);
+  add_target(reader, "filter_3D", &reader->filter, -1);
+  find_harmonics(reader, file_degree);
+  gaussians->n_left_out = count_others(reader, file_degree);
+  if (has_wide_positions(reader))
+    for (int axis = 0; axis < 3; axis++)
+      reader->targets[axis].origin_axis = axis;
+}
+
+/* The first finite place of a file becomes the origin of all. */
+static void settle_origin(gaussian_reader *reader, size_t n) {
+  double *origin = reader->gaussians->origin;
+  for (size_t i = 0; i < n && reader->targets[0].origin_axis == 0; i++)
+    if (conic_is_finite(reader->block[0][i]) && conic_is_finite(reader->block[1][i]) &&
+        conic_is_finite(reader->block[2][i])) {
+      for (int axis = 0; axis < 3; axis++) {
+        origin[axis] = reader->block[axis][i];
+        reader->targets[axis].origin_axis = axis + 3; /* it is known */
+      }
+    }
+}
+
+static void store_block(gaussian_reader *reader, size_t first, size_t n) {
+  conic_gaussians *gaussians = reader->gaussians;
+  size_t n_harmonics = conic_harmonics_of_degree(gaussians->sh_degree);
+  settle_origin(reader, n);
+  for (int t = 0; t < reader->n_targets; t++) {
+    const ply_target *target = &reader->targets[t];
+    const double *values = reader->block[t];
+    double origin = target->origin_axis >= 0 ? gaussians->origin[target->origin_axis % 3] : 0.0;
+    if (target->column)
+      for (size_t i = 0; i < n; i++)
+        (*target->column)[first + i] = (float)(origin != 0.0 ? values[i] - origin : values[i]);
+    else if (gaussians->sh)
+      for (size_t i = 0; i < n; i++)
+        gaussians->sh[(first + i) * n_harmonics + (size_t)target->i_harmonic] = (float)values[i];
+    else
+      for (size_t i = 0; i < n; i++)
+        conic_gaussians_put_harmonic(gaussians, first + i, (size_t)target->i_harmonic, (float)values[i]);
+  }
+}
+
+/* Of a pipe that says that much comes, arrays grow with what has really come. */
+static conic_status make_gaussian_room(gaussian_reader *reader, size_t used) {
+  conic_context *context = reader->source->input->context;
+  conic_gaussians *gaussians = reader->gaussians;
+  float **columns[CONIC_MOST_GAUSSIAN_COLUMNS];
+  if (used + BLOCK <= reader->room || reader->room == gaussians->count)
+    return CONIC_OK;
+  size_t room = 2 * reader->room < gaussians->count ? 2 * reader->room : gaussians->count;
+  size_t n_harmonics = conic_harmonics_of_degree(gaussians->sh_degree);
+  conic_status status = CONIC_OK;
+  int n = conic_gaussians_list_columns(gaussians, columns);
+  for (int i = 0; status == CONIC_OK && i < n; i++)
+    status = conic_memory_grow(context, columns[i], used, room, sizeof(float));
+  if (status == CONIC_OK && reader->filter)
+    status = conic_memory_grow(context, &reader->filter, used, room, sizeof(float));
+  if (status == CONIC_OK && gaussians->sh)
+    status = conic_memory_grow(context, &gaussians->sh, used * n_harmonics, room * n_harmonics, sizeof(float));
+  else if (status == CONIC_OK)
+    status = conic_memory_grow(context, &gaussians->sh_half, used * n_harmonics, room * n_harmonics, sizeof(uint16_t));
+  reader->room = room;
+  return status;
+}
+
+/* Binary rows without lists: property by property, straight from the window. */
+static conic_status read_block(gaussian_reader *reader, size_t *n) {
+  conic_ply_source *source = reader->source;
+  conic_input *input = source->input;
+  size_t row_bytes = source->element->least_row_bytes;
+  conic_status status = conic_input_fill(input, row_bytes);
+  size_t n_there = conic_input_available(input) / row_bytes;
+  if (status != CONIC_OK)
+    return status;
+  if (n_there == 0)
+    return conic_ply_truncated(source);
+  *n = n_there < *n ? n_there : *n;
+  for (int t = 0; t < reader->n_targets; t++) {
+    const ply_target *target = &reader->targets[t];
+    const conic_ply_property *property = &reader->properties[target->i_property];
+    conic_ply_convert(conic_input_bytes(input) + property->row_offset, row_bytes, *n, property->type, source->format,
+                      reader->block[t]);
+  }
+  input->next += *n * row_bytes;
+  return CONIC_OK;
+}
+
+static conic_status read_row(gaussian_reader *reader, const int *target_of_property, size_t i) {
+  conic_ply_source *source = reader->source;
+  conic_status status = conic_ply_begin_row(source);
+  for (size_t k = 0; status == CONIC_OK && k < source->element->n_properties; k++) {
+    const conic_ply_property *property = &reader->properties[k];
+    uint64_t n = 1;
+    if (target_of_property[k] >= 0) {
+      status = conic_ply_read_value(source, property->type, &reader->block[target_of_property[k]][i]);
+      continue;
+    }
+    if (property->is_list)
+      status = conic_ply_read_list_length(source, property, &n);
+    if (status == CONIC_OK)
+      status = conic_ply_skip_values(source, property->type, n);
+  }
+  return status == CONIC_OK ? conic_ply_end_row(source) : status;
+}
+
+static conic_status read_vertices(gaussian_reader *reader) {
+  conic_ply_source *source = reader->source;
+  const conic_ply_element *element = source->element;
+  int is_plain =
+      source->format != CONIC_PLY_TEXT && !element->has_lists && element->least_row_bytes <= CONIC_INPUT_WINDOW;
+  int *target_of_property = conic_memory_allocate(source->input->context, element->n_properties, sizeof(int));
+  conic_status status = target_of_property ? CONIC_OK : CONIC_ERROR_MEMORY;
+  for (size_t k = 0; target_of_property && k < element->n_properties; k++)
+    target_of_property[k] = -1;
+  for (int t = 0; target_of_property && t < reader->n_targets; t++)
+    target_of_property[reader->targets[t].i_property] = t;
+  for (size_t done = 0; status == CONIC_OK && done < element->count;) {
+    size_t left = (size_t)element->count - done, n = left < BLOCK ? left : BLOCK;
+    status = make_gaussian_room(reader, done);
+    if (status == CONIC_OK && is_plain) {
+      status = read_block(reader, &n);
+      source->i_row += n;
+    } else
+      for (size_t i = 0; status == CONIC_OK && i < n; i++)
+        status = read_row(reader, target_of_property, i);
+    if (status == CONIC_OK)
+      store_block(reader, done, n);
+    done += n;
+  }
+  conic_memory_release(source->input->context, target_of_property);
+  return status;
+}
+
+/* Mip-Splatting's smallest size: s ← √(s² + f²), o ← o √(Π s² / Π (s² + f²)). What was kept of the file is made anew,
+ * so that it stands for what there is now. */
+static void fold_filter(conic_gaussians *gaussians, const float *filter) {
+  for (size_t i = 0; i < gaussians->count; i++) {
+    double f2 = (double)filter[i] * (double)filter[i], share = 1.0;
+    for (int axis = 0; axis < 3; axis++) {
+      float *scale = gaussians->scale[axis] ? &gaussians->scale[axis][i] : NULL;
+      double s2 = scale ? (double)*scale * (double)*scale : 0.0;
+      if (!scale || f2 == 0.0)
+        continue;
+      share *= s2 / (s2 + f2);
+      *scale = (float)sqrt(s2 + f2);
+      if (gaussians->log_scale[axis])
+        *scale = conic_scale_of_log(gaussians->log_scale[axis][i] = conic_log_of_scale(*scale));
+    }
+    if (f2 == 0.0)
+      continue;
+    float *opacity = &gaussians->opacity[i];
+    *opacity = (float)((double)*opacity * sqrt(share));
+    if (gaussians->logit_opacity)
+      *opacity = conic_opacity_of_logit(gaussians->logit_opacity[i] = conic_logit_of_opacity(*opacity));
+  }
+}
+
+static conic_status begin_gaussians(gaussian_reader *reader, const conic_gaussians_read_options *options,
+                                    int file_degree) {
+  const conic_ply_element *vertices = reader->source->element;
+  conic_input *input = reader->source->input;
+  int is_2d = find_single(reader->header, vertices, "scale_2") < 0 || reader->header->splat_mode == CONIC_PLY_MODE_2D;
+  reader->room = input->has_size ? (size_t)vertices->count : 65536;
+  reader->room = reader->room < vertices->count ? reader->room : (size_t)vertices->count;
+  conic_status status =
+      conic_gaussians_begin(input->context, input->name, options, reader->room, file_degree,
+                            CONIC_GAUSSIANS_SOURCE | (is_2d ? CONIC_GAUSSIANS_2D : 0), reader->gaussians);
+  if (status == CONIC_OK && find_single(reader->header, vertices, "filter_3D") >= 0) {
+    reader->filter = conic_memory_allocate(input->context, reader->room, sizeof *reader->filter);
+    status = reader->filter ? CONIC_OK : CONIC_ERROR_MEMORY;
+  }
+  reader->gaussians->count = (size_t)vertices->count;
+  reader->gaussians->is_antialiased = reader->header->splat_mode == CONIC_PLY_MODE_MIP;
+  return status;
+}
+
+static conic_status read_elements(gaussian_reader *reader, const conic_gaussians_read_options *options,
+                                  const conic_ply_element *vertices) {
+  conic_ply_source *source = reader->source;
+  conic_context *context = source->input->context;
+  conic_status status = CONIC_OK;
+  for (const conic_ply_element *element = reader->header->elements; status == CONIC_OK && element < vertices;
+       element++) {
+    status = conic_ply_begin_element(source, element);
+    if (status == CONIC_OK)
+      status = conic_ply_skip_element(source, reader->header);
+  }
+  if (status == CONIC_OK)
+    status = conic_ply_begin_element(source, vertices);
+  int degree = status == CONIC_OK ? find_degree(source->input, reader->header, vertices) : 0;
+  if (degree < 0)
+    return CONIC_ERROR_INPUT;
+  if (status == CONIC_OK)
+    status = begin_gaussians(reader, options, degree);
+  if (status == CONIC_OK) {
+    find_targets(reader, degree);
+    status = read_vertices(reader);
+  }
+  if (status == CONIC_OK)
+    status = conic_gaussians_activate(context, reader->gaussians);
+  if (status == CONIC_OK && reader->filter)
+    fold_filter(reader->gaussians, reader->filter);
+  conic_memory_release(context, reader->filter);
+  return status;
+}
+
+conic_status conic_gaussian_ply_read(conic_input *input, const conic_ply_header *header,
+                                     const conic_gaussians_read_options *options, conic_gaussians *gaussians) {
+  const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
+  conic_ply_source source = {.input = input, .format = header->format, .element = vertices};
+  gaussian_reader *reader = conic_memory_allocate_zeroed(input->context, 1, sizeof *reader);
+  if (!reader)
+    return CONIC_ERROR_MEMORY;
+  reader->source = &source;
+  reader->header = header;
+  reader->properties = header->properties + vertices->first_property;
+  reader->gaussians = gaussians;
+  conic_status status = read_elements(reader, options, vertices);
+  conic_memory_release(input->context, reader);
+  return status;
+}
+
+/* --- writing --- */
+
+static void print_header(const conic_gaussian_writer *writer, int is_wide, size_t n_rest) {
+  const conic_gaussians *gaussians = writer->gaussians;
+  const char *wide = is_wide ? "double" : "float";
+  fprintf(writer->to, "ply\nformat binary_little_endian 1.0\ncomment conic %s\n", conic_version());
+  if (gaussians->is_antialiased)
+    fprintf(writer->to, "comment SplatRenderMode: mip\n");
+  fprintf(writer->to, "element vertex %zu\nproperty %s x\nproperty %s y\nproperty %s z\n", gaussians->count, wide, wide,
+          wide);
+  fprintf(writer->to, "property float nx\nproperty float ny\nproperty float nz\n");
+  for (int i = 0; i < 3; i++)
+    fprintf(writer->to, "property float f_dc_%d\n", i);
+  for (size_t i = 0; i < 3 * n_rest; i++)
+    fprintf(writer->to, "property float f_rest_%zu\n", i);
+  fprintf(writer->to, "property float opacity\n");
+  for (int i = 0; i < (gaussians->scale[2] ? 3 : 2); i++)
+    fprintf(writer->to, "property float scale_%d\n", i);
+  for (int i = 0; i < 4; i++)
+    fprintf(writer->to, "property float rot_%d\n", i);
+  fprintf(writer->to, "end_header\n");
+}
+
+static unsigned char *put_value(unsigned char *to, float value) {
+  conic_store_float(to, value);
+  return to + sizeof value;
+}
+
+static unsigned char *put_gaussian(const conic_gaussians *gaussians, size_t i, int is_wide, size_t n_rest,
+                                   unsigned char *to) {
+  float room[CONIC_MOST_HARMONICS];
+  const float *sh = conic_gaussians_harmonics(gaussians, i, room);
+  for (int axis = 0; axis < 3; axis++) {
+    double mean = conic_gaussians_mean(gaussians, axis, i);
+    uint64_t bits = conic_bits_of_double(mean);
+    if (!is_wide) {
+      to = put_value(to, (float)mean);
+      continue;
+    }
+    conic_store_32(to, (uint32_t)bits);
+    conic_store_32(to + 4, (uint32_t)(bits >> 32));
+    to += 8;
+  }
+  for (int k = 0; k < 3; k++)
+    to = put_value(to, 0.0f);
+  for (int channel = 0; channel < 3; channel++)
+    to = put_value(to, sh[channel]);
+  for (size_t channel = 0; channel < 3; channel++)
+    for (size_t k = 1; k <= n_rest; k++)
+      to = put_value(to, sh[3 * k + channel]);
+  to = put_value(to, conic_gaussians_logit(gaussians, i));
+  for (int axis = 0; axis < 3; axis++)
+    if (gaussians->scale[axis])
+      to = put_value(to, conic_gaussians_log_scale(gaussians, axis, i));
+  for (int k = 0; k < 4; k++)
+    to = put_value(to, gaussians->rotation[k][i]);
+  return to;
+}
+
+conic_status conic_gaussian_ply_write(const conic_gaussian_writer *writer) {
+  const conic_gaussians *gaussians = writer->gaussians;
+  unsigned char rows[64 * (6 * 4 + (14 + CONIC_MOST_HARMONICS) * 4)], *end = rows;
+  size_t n_rest = conic_harmonics_of_degree(writer->sh_degree) / 3 - 1;
+  int is_wide = gaussians->origin[0] != 0.0 || gaussians->origin[1] != 0.0 || gaussians->origin[2] != 0.0;
+  conic_status status = CONIC_OK;
+  print_header(writer, is_wide, n_rest);
+  for (size_t i = 0; status == CONIC_OK && i < gaussians->count; i++) {
+    end = put_gaussian(gaussians, i, is_wide, n_rest, end);
+    if (i % 64 != 63 && i + 1 < gaussians->count)
+      continue;
+    status = conic_gaussian_writer_put(writer, rows, (size_t)(end - rows));
+    end = rows;
+    if (status == CONIC_OK)
+      status = conic_gaussian_writer_tell(writer, i);
+  }
+  return status;
+}

@@ -1,0 +1,361 @@
+/* Gaussian scenes by whatever format: which a file is, and its reader and writer. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/base/real.h"
+#include "core/files/file.h"
+#include "core/files/inflate.h"
+#include "core/files/zip.h"
+#include "gaussians/formats/gaussian_formats.h"
+
+typedef struct kind_facts {
+  const char *name, *ending, *frame;
+  int sh_degree;
+  conic_status (*read)(const conic_gaussian_bytes *file, conic_gaussians *gaussians); /* null: PLY's */
+  conic_status (*write)(const conic_gaussian_writer *writer);
+} kind_facts;
+
+/* Endings in the order in which they are looked for. */
+static const kind_facts kinds[CONIC_N_GAUSSIAN_KINDS] = {
+    [CONIC_GAUSSIANS_PLY] = {"ply", "ply", "rdf", 4, NULL, conic_gaussian_ply_write},
+    [CONIC_GAUSSIANS_COMPRESSED_PLY] = {"compressed-ply", "compressed.ply", "rdf", 3, NULL, conic_compressed_ply_write},
+    [CONIC_GAUSSIANS_SPLAT] = {"splat", "splat", "rdf", 0, conic_splat_file_read, conic_splat_file_write},
+    [CONIC_GAUSSIANS_SPZ] = {"spz", "spz", "rub", 4, conic_spz_read, conic_spz_write},
+    [CONIC_GAUSSIANS_SOG] = {"sog", "sog", "rdf", 3, conic_sog_read, conic_sog_write},
+    [CONIC_GAUSSIANS_GLTF] = {"gltf", "gltf", "luf", 3, conic_gaussian_gltf_read, conic_gaussian_gltf_write},
+    [CONIC_GAUSSIANS_GLB] = {"glb", "glb", "luf", 3, conic_gaussian_gltf_read, conic_gaussian_gltf_write},
+};
+
+static int is_kind(conic_gaussian_kind kind) {
+  return (int)kind >= 0 && (int)kind < CONIC_N_GAUSSIAN_KINDS;
+}
+
+const char *conic_gaussian_kind_name(conic_gaussian_kind kind) {
+  return is_kind(kind) ? kinds[kind].name : NULL;
+}
+
+const char *conic_gaussian_kind_frame(conic_gaussian_kind kind) {
+  return is_kind(kind) ? kinds[kind].frame : NULL;
+}
+
+int conic_gaussian_kind_sh_degree(conic_gaussian_kind kind) {
+  return is_kind(kind) ? kinds[kind].sh_degree : -1;
+}
+
+int conic_gaussians_find_kind(const char *path, conic_gaussian_kind *kind) {
+  int found = -1;
+  for (int i = 0; i < CONIC_N_GAUSSIAN_KINDS; i++)
+    if (conic_file_has_ending(path, kinds[i].ending))
+      found = i; /* a longer ending comes after its own */
+  if (found >= 0)
+    *kind = (conic_gaussian_kind)found;
+  return found >= 0;
+}
+
+/* --- what the readers share --- */
+
+conic_status conic_gaussians_begin(conic_context *context, const char *name,
+                                   const conic_gaussians_read_options *options, uint64_t count, int sh_degree,
+                                   unsigned fields, conic_gaussians *gaussians) {
+  if (count > CONIC_MOST_GAUSSIANS)
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %llu Gaussians are too many (at byte 0)", name,
+                      (unsigned long long)count);
+  if (!options->keeps_source)
+    fields &= ~(unsigned)CONIC_GAUSSIANS_SOURCE;
+  if (options->half_harmonics)
+    fields |= CONIC_GAUSSIANS_HALF;
+  sh_degree = sh_degree < options->most_sh_degree ? sh_degree : options->most_sh_degree;
+  return conic_gaussians_allocate(context, (size_t)count, sh_degree, fields, gaussians);
+}
+
+conic_status conic_gaussian_bytes_wrong(const conic_gaussian_bytes *file, size_t at, const char *what) {
+  return conic_fail(file->context, CONIC_ERROR_INPUT, "%s: %s (at byte %zu)", file->name, what, at);
+}
+
+void conic_gaussians_unit_rotation(const conic_gaussians *gaussians, size_t i, double q[4]) {
+  double sum = 0.0;
+  for (int k = 0; k < 4; k++) {
+    q[k] = (double)gaussians->rotation[k][i];
+    sum += q[k] * q[k];
+  }
+  int is_one = sum > 0.0 && conic_is_finite(sum);
+  for (int k = 0; k < 4; k++)
+    q[k] = is_one ? q[k] / sqrt(sum) : k == 0 ? 1.0 : 0.0;
+}
+
+int conic_find_left_out(double q[4], double (*rounded)(double value)) {
+  double largest = 0.0, least_error = 8.0;
+  int best = 0;
+  for (int k = 0; k < 4; k++)
+    largest = fabs(q[k]) > largest ? fabs(q[k]) : largest;
+  for (int k = 0; k < 4; k++) {
+    double sign = q[k] < 0.0 ? -1.0 : 1.0, sum = 0.0, error = 0.0;
+    if (fabs(q[k]) < 0.9 * largest)
+      continue;
+    for (int j = 0; j < 4; j++)
+      if (j != k) {
+        double value = rounded(sign * q[j]);
+        error += (value - sign * q[j]) * (value - sign * q[j]);
+        sum += value * value;
+      }
+    double rest = sum < 1.0 ? sqrt(1.0 - sum) : 0.0;
+    error += (rest - fabs(q[k])) * (rest - fabs(q[k]));
+    int is_tie = fabs(error - least_error) < 1e-12; /* what was left out before is positive, and mostly the largest */
+    if (is_tie ? (q[k] > 0.0) > (q[best] > 0.0) || ((q[k] > 0.0) == (q[best] > 0.0) && fabs(q[k]) > fabs(q[best]))
+               : error < least_error) {
+      least_error = error;
+      best = k;
+    }
+  }
+  for (int k = 0, is_negative = q[best] < 0.0; is_negative && k < 4; k++)
+    q[k] = -q[k];
+  return best;
+}
+
+/* --- which format a file is --- */
+
+static int has_text(const unsigned char *bytes, size_t n, const char *text) {
+  size_t length = strlen(text);
+  while (n >= length) {
+    const unsigned char *found = memchr(bytes, text[0], n - length + 1);
+    if (!found)
+      return 0;
+    if (memcmp(found, text, length) == 0)
+      return 1;
+    n -= (size_t)(found + 1 - bytes);
+    bytes = found + 1;
+  }
+  return 0;
+}
+
+static int begins_as_ply(const unsigned char *bytes, size_t n) {
+  return n >= 4 && memcmp(bytes, "ply", 3) == 0 && (bytes[3] == '\n' || bytes[3] == '\r' || bytes[3] == ' ');
+}
+
+static int is_gaussian_ply(const unsigned char *bytes, size_t n) {
+  static const char *const names[] = {" scale_0", " scale_1", " rot_0", " rot_3", " f_dc_2", " opacity"};
+  size_t n_head = n < 65536 ? n : 65536;
+  if (has_text(bytes, n_head, " packed_position") && has_text(bytes, n_head, "element chunk"))
+    return 1;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!has_text(bytes, n_head, names[i]))
+      return 0;
+  return 1;
+}
+
+static int is_packed_spz(const unsigned char *bytes, size_t n) {
+  unsigned char head[4];
+  return !conic_inflate_is_there() ||
+         (conic_inflate(CONIC_DEFLATE_GZIP, bytes, n, head, sizeof head, NULL) == sizeof head &&
+          memcmp(head, "NGSP", 4) == 0);
+}
+
+static int is_sog_archive(const unsigned char *bytes, size_t n) {
+  size_t tail = n > 65536 ? n - 65536 : 0;
+  return has_text(bytes + tail, n - tail, "meta.json") && has_text(bytes + tail, n - tail, "means_l.webp");
+}
+
+/* The JSON of a glTF, whichever way it is wrapped. */
+static int names_gaussians(const unsigned char *bytes, size_t n) {
+  size_t from = 0, length = n;
+  if (n >= 20 && memcmp(bytes, "glTF", 4) == 0) {
+    from = 20;
+    length = conic_load_32(bytes + 12);
+    length = length < n - 20 ? length : n - 20;
+  }
+  return has_text(bytes + from, length, "KHR_gaussian_splatting");
+}
+
+/* Of a file that is no PLY. */
+static int find_scene_kind(const char *path, const unsigned char *bytes, size_t n, conic_gaussian_kind *kind) {
+  size_t blank = n >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+  while (blank < n && bytes[blank] && strchr(" \t\r\n", bytes[blank]))
+    blank++;
+  int is_json = blank < n && bytes[blank] == '{';
+  if (n >= 4 && memcmp(bytes, "NGSP", 4) == 0)
+    *kind = CONIC_GAUSSIANS_SPZ;
+  else if (n >= 2 && memcmp(bytes, "\x1f\x8b", 2) == 0 && is_packed_spz(bytes, n))
+    *kind = CONIC_GAUSSIANS_SPZ;
+  else if (n >= 4 && memcmp(bytes, "PK\3\4", 4) == 0 && is_sog_archive(bytes, n))
+    *kind = CONIC_GAUSSIANS_SOG;
+  else if (n >= 4 && memcmp(bytes, "glTF", 4) == 0 && names_gaussians(bytes, n))
+    *kind = CONIC_GAUSSIANS_GLB;
+  else if (is_json && names_gaussians(bytes, n))
+    *kind = CONIC_GAUSSIANS_GLTF;
+  else if (is_json && has_text(bytes, n, "\"means\"") && has_text(bytes, n, "\"sh0\""))
+    *kind = CONIC_GAUSSIANS_SOG;
+  else if (path && conic_file_has_ending(path, "splat"))
+    *kind = CONIC_GAUSSIANS_SPLAT;
+  else
+    return 0;
+  return 1;
+}
+
+/* The file of a folder that says what the others are. */
+static const char *resolve_folder(const char *path, char room[4096]) {
+  struct stat about;
+  if (strcmp(path, "-") == 0 || stat(path, &about) != 0 || !S_ISDIR(about.st_mode))
+    return path;
+  int n = snprintf(room, 4096, "%s/meta.json", path);
+  return n > 0 && n < 4096 && conic_file_is_there(room) ? room : path;
+}
+
+int conic_gaussians_is_file(conic_context *context, const char *path) {
+  char room[4096];
+  conic_mapping file;
+  conic_gaussian_kind kind;
+  const char *resolved = resolve_folder(path, room);
+  if (strcmp(path, "-") == 0 || !conic_file_is_there(resolved) ||
+      conic_mapping_open(context, resolved, &file) != CONIC_OK)
+    return 0;
+  int is_one = begins_as_ply(file.bytes, file.n_bytes) ? is_gaussian_ply(file.bytes, file.n_bytes)
+                                                       : find_scene_kind(resolved, file.bytes, file.n_bytes, &kind);
+  conic_mapping_close(context, &file);
+  return is_one;
+}
+
+/* --- reading --- */
+
+void conic_gaussians_read_options_init_sized(conic_gaussians_read_options *options, size_t size) {
+  static const conic_gaussians_read_options own = {.size = sizeof own, .most_sh_degree = CONIC_MAX_SH_DEGREE};
+  conic_options_give(options, size, &own);
+}
+
+static conic_status read_ply_scene(conic_input *input, const conic_gaussians_read_options *options,
+                                   conic_gaussians *gaussians) {
+  conic_ply_header header;
+  conic_gaussian_kind kind = CONIC_GAUSSIANS_PLY;
+  conic_status status = conic_ply_header_read(input, &header);
+  if (status != CONIC_OK)
+    return status;
+  if (conic_ply_has_compressed_gaussians(&header)) {
+    kind = CONIC_GAUSSIANS_COMPRESSED_PLY;
+    status = conic_compressed_ply_read(input, &header, options, gaussians);
+  } else if (conic_ply_has_gaussians(&header))
+    status = conic_gaussian_ply_read(input, &header, options, gaussians);
+  else
+    status = conic_fail(input->context, CONIC_ERROR_INPUT,
+                        "%s: no Gaussians: the vertices lack f_dc_…, opacity, scale_… or rot_… (line %llu)",
+                        input->name, (unsigned long long)(input->line - 1));
+  gaussians->kind = kind;
+  conic_ply_header_release(input->context, &header);
+  return status;
+}
+
+static conic_status read_scene_bytes(const conic_gaussian_bytes *file, conic_gaussians *gaussians) {
+  conic_gaussian_kind kind = CONIC_GAUSSIANS_SPLAT;
+  if (file->n_bytes == 0)
+    return conic_gaussian_bytes_wrong(file, 0, "the file is empty");
+  if (!find_scene_kind(file->path, file->bytes, file->n_bytes, &kind) && !file->options->is_splat)
+    return conic_gaussian_bytes_wrong(
+        file, 0, "no Gaussian scene that is known: a .ply, .compressed.ply, .splat, .spz, .sog, .gltf or .glb is");
+  conic_status status = kinds[kind].read(file, gaussians);
+  gaussians->kind = kind;
+  return status;
+}
+
+/* What else comes through a pipe that has begun. */
+static conic_status read_rest(conic_input *input, conic_mapping *rest) {
+  size_t room = 0;
+  conic_status status = CONIC_OK;
+  while (status == CONIC_OK && conic_input_available(input)) {
+    size_t n = conic_input_available(input);
+    if (rest->n_bytes + n > room)
+      status = conic_memory_reserve(input->context, &rest->bytes, rest->n_bytes, rest->n_bytes + n, &room, 1);
+    if (status != CONIC_OK)
+      break;
+    memcpy(rest->bytes + rest->n_bytes, conic_input_bytes(input), n);
+    rest->n_bytes += n;
+    input->next += n;
+    status = conic_input_fill(input, CONIC_INPUT_WINDOW / 2);
+  }
+  return status;
+}
+
+static conic_status read_input(conic_input *input, const char *path, const conic_gaussians_read_options *options,
+                               conic_gaussians *gaussians) {
+  conic_gaussian_bytes file = {input->context, input->name, path, NULL, 0, options};
+  conic_mapping mapping = {NULL, 0, 0};
+  conic_status status = conic_input_fill(input, 4);
+  if (status == CONIC_OK && begins_as_ply(conic_input_bytes(input), conic_input_available(input)))
+    return read_ply_scene(input, options, gaussians);
+  if (status == CONIC_OK)
+    status = path && input->has_size ? conic_mapping_open(input->context, path, &mapping) : read_rest(input, &mapping);
+  file.bytes = mapping.bytes;
+  file.n_bytes = mapping.n_bytes;
+  if (status == CONIC_OK)
+    status = read_scene_bytes(&file, gaussians);
+  conic_mapping_close(input->context, &mapping);
+  return status;
+}
+
+conic_status conic_gaussians_read(conic_context *context, const char *path, const conic_gaussians_read_options *options,
+                                  conic_gaussians *gaussians) {
+  conic_gaussians_read_options own;
+  char room[4096];
+  conic_input input;
+  const char *resolved = resolve_folder(path, room);
+  memset(gaussians, 0, sizeof *gaussians);
+  conic_gaussians_read_options_init(&own);
+  if ((options && !conic_options_take(&own, options)) || own.most_sh_degree < 0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the reader's options have no meaning", path);
+  conic_status status = conic_input_open(context, resolved, &input);
+  if (status != CONIC_OK)
+    return status;
+  status = read_input(&input, strcmp(path, "-") == 0 ? NULL : resolved, &own, gaussians);
+  conic_input_close(&input);
+  if (status != CONIC_OK)
+    conic_gaussians_release(context, gaussians);
+  return status;
+}
+
+/* --- writing --- */
+
+void conic_gaussians_write_options_init_sized(conic_gaussians_write_options *options, size_t size) {
+  static const conic_gaussians_write_options own = {
+      .size = sizeof own, .sh_bits = {8, 8}, .spz_version = 4, .most_sh_degree = CONIC_MAX_SH_DEGREE};
+  conic_options_give(options, size, &own);
+}
+
+conic_status conic_gaussian_writer_put(const conic_gaussian_writer *writer, const void *bytes, size_t n_bytes) {
+  if (fwrite(bytes, 1, n_bytes, writer->to) == n_bytes)
+    return CONIC_OK;
+  return conic_fail(writer->context, CONIC_ERROR_IO, "%s: cannot write: %s", writer->path, strerror(errno));
+}
+
+conic_status conic_gaussian_writer_tell(const conic_gaussian_writer *writer, size_t i) {
+  size_t n = writer->gaussians->count;
+  return i % 65536 != 65535 ? CONIC_OK : conic_progress(writer->context, "write", (double)i / (double)n);
+}
+
+static int are_usable(const conic_gaussians_write_options *options) {
+  int is_usable = is_kind(options->kind) && options->most_sh_degree >= 0 &&
+                  (options->spz_version == 3 || options->spz_version == 4);
+  for (int i = 0; i < 2; i++)
+    is_usable = is_usable && options->sh_bits[i] >= 1 && options->sh_bits[i] <= 8;
+  return is_usable;
+}
+
+conic_status conic_gaussians_write(conic_context *context, const char *path, const conic_gaussians *gaussians,
+                                   const conic_gaussians_write_options *options) {
+  conic_gaussians_write_options own;
+  conic_output *output;
+  conic_gaussians_write_options_init(&own);
+  if ((options && !conic_options_take(&own, options)) || !are_usable(&own))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the writer's options have no meaning", path);
+  conic_status status = conic_gaussians_check(context, gaussians, path);
+  if (status == CONIC_OK)
+    status = conic_output_open(context, path, &output);
+  if (status != CONIC_OK)
+    return status;
+  const kind_facts *kind = &kinds[own.kind];
+  int sh_degree = gaussians->sh_degree < kind->sh_degree ? gaussians->sh_degree : kind->sh_degree;
+  sh_degree = sh_degree < own.most_sh_degree ? sh_degree : own.most_sh_degree;
+  const conic_gaussian_writer writer = {context, path, conic_output_stream(output), gaussians, &own, sh_degree};
+  return conic_output_end(output, kind->write(&writer));
+}

@@ -1,0 +1,21 @@
+/* Scales and opacities as they are used, and as 3D Gaussian splatting trains and keeps them: ln s, logit o. */
+#ifndef CONIC_ACTIVATION_H
+#define CONIC_ACTIVATION_H
+
+#include "conic/gaussians.h"
+
+/* e^x as a float, with the same bits on every machine; NaN stays NaN. */
+float conic_scale_of_log(float log_scale);
+/* 1 / (1 + e^-x). */
+float conic_opacity_of_logit(float logit);
+
+/* Their inverses, rounded to float. 0 and 1 have finite ones which give them back; what has none (a negative scale, an
+ * opacity beyond 1) is NaN. */
+float conic_log_of_scale(float scale);
+float conic_logit_of_opacity(float opacity);
+
+/* Makes scales of the logarithms, and opacities of the logits, that a reader has put in their places; keeps these where
+ * the set has arrays for them. Errors: CANCELLED. */
+conic_status conic_gaussians_activate(conic_context *context, conic_gaussians *gaussians);
+
+#endif

@@ -1,0 +1,53 @@
+/* What the readers and writers of Gaussian scenes share about the set itself. */
+#ifndef CONIC_GAUSSIAN_SET_H
+#define CONIC_GAUSSIAN_SET_H
+
+#include "conic/gaussians.h"
+#include "gaussians/scene/half.h"
+
+enum {
+  CONIC_MOST_HARMONICS = 3 * (CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1),
+  CONIC_MOST_GAUSSIANS = 0x7fffffff
+};
+
+#define CONIC_SH_CONSTANT 0.28209479177387814 /* of the harmonic of degree 0 */
+
+/* Numbers of each Gaussian's harmonics: 3 × (degree + 1)². */
+static inline size_t conic_harmonics_of_degree(int degree) {
+  return 3 * (size_t)(degree + 1) * (size_t)(degree + 1);
+}
+
+/* The degree that has so many coefficients a channel, degree 0's included; -1: none. */
+int conic_degree_of_coefficients(size_t n);
+
+/* Gaussian i's harmonics, in `room` where they are not kept as floats. */
+const float *conic_gaussians_harmonics(const conic_gaussians *gaussians, size_t i, float room[CONIC_MOST_HARMONICS]);
+
+static inline void conic_gaussians_put_harmonic(conic_gaussians *gaussians, size_t i, size_t i_number, float value) {
+  size_t at = i * conic_harmonics_of_degree(gaussians->sh_degree) + i_number;
+  if (gaussians->sh)
+    gaussians->sh[at] = value;
+  else
+    gaussians->sh_half[at] = conic_half_of_float(value);
+}
+
+/* Gaussian i's ln s and logit o: as its file had them where they were kept. */
+float conic_gaussians_log_scale(const conic_gaussians *gaussians, int axis, size_t i);
+float conic_gaussians_logit(const conic_gaussians *gaussians, size_t i);
+
+static inline double conic_gaussians_mean(const conic_gaussians *gaussians, int axis, size_t i) {
+  double mean = (double)gaussians->position[axis][i];
+  return gaussians->origin[axis] != 0.0 ? mean + gaussians->origin[axis] : mean; /* adding 0 would turn -0 into 0 */
+}
+
+/* The arrays of one number a Gaussian that a set has; returns how many. */
+enum { CONIC_MOST_GAUSSIAN_COLUMNS = 15 };
+int conic_gaussians_list_columns(const conic_gaussians *gaussians, float **columns[CONIC_MOST_GAUSSIAN_COLUMNS]);
+
+/* Turns a scene about the origin by a rotation, harmonics too. */
+void conic_gaussians_rotate(conic_context *context, conic_gaussians *gaussians, const double rotation[3][3]);
+
+/* Whether a set that a caller hands in is whole. Errors: ARGUMENT. */
+conic_status conic_gaussians_check(conic_context *context, const conic_gaussians *gaussians, const char *name);
+
+#endif

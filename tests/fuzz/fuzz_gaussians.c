@@ -1,0 +1,39 @@
+/* Gaussian scenes in every format that is told by its content. What is read can be turned, ordered, compared with
+ * itself and written again. */
+#include "tests/fuzz/fuzz.h"
+
+static void use(const fuzz_input *input, conic_gaussians *scene) {
+  conic_gaussians_differences apart;
+  conic_gaussians_defects found;
+  conic_gaussians_write_options options;
+  conic_gaussians_write_options_init(&options);
+  conic_gaussians_find_defects(scene, &found);
+  FUZZ_CHECK(found.positions <= scene->count && found.harmonics <= scene->count);
+  char first[4];
+  memcpy(first, scene->frame, sizeof first);
+  if (strcmp(first, "rub") == 0 || strcmp(first, "rdf") == 0 || strcmp(first, "luf") == 0)
+    FUZZ_CHECK(conic_gaussians_turn(input->context, scene, "rfu") == CONIC_OK);
+  FUZZ_CHECK(conic_gaussians_sort(input->context, scene) == CONIC_OK);
+  FUZZ_CHECK(conic_gaussians_compare(input->context, scene, scene, &apart) == CONIC_OK && apart.is_same);
+  for (int kind = 0; kind < CONIC_N_GAUSSIAN_KINDS; kind++) {
+    options.kind = (conic_gaussian_kind)kind;
+    conic_gaussians_write(input->context, "/dev/null", scene, &options);
+  }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n_bytes) {
+  conic_gaussians scene;
+  conic_gaussians_read_options options;
+  fuzz_input input = fuzz_open(bytes, n_bytes);
+  conic_gaussians_read_options_init(&options);
+  options.keeps_source = n_bytes % 2 != 0;
+  options.half_harmonics = n_bytes % 4 / 2;
+  conic_status status = conic_gaussians_read(input.context, input.path, &options, &scene);
+  int n_messages = fuzz_n_messages;
+  if (status == CONIC_OK && scene.count < 4096)
+    use(&input, &scene);
+  fuzz_n_messages = n_messages;
+  conic_gaussians_release(input.context, &scene);
+  fuzz_close(&input, status, 1);
+  return 0;
+}
