@@ -272,6 +272,7 @@ static void report_frame(const conic_frame *f, conic_render_statistics *s) {
   s->splats_drawn = f->n_drawn_in_all;
   s->fragments = f->n_fragments;
   conic_method_count(f->view->method, f->counts[CONIC_DEVICE_RAYS], s);
+  s->splats_by_laplace = f->counts[CONIC_DEVICE_LAPLACES];
   s->threads = f->opencl->device.n_compute_units;
   s->tile = f->opencl->tile;
   s->isa = "opencl";

@@ -112,8 +112,10 @@ conic_status conic_frame_clear_tiles(const conic_frame *f, int buffer) {
 }
 
 conic_status conic_frame_visibility(conic_frame *f) {
-  conic_argument arguments[ARGUMENTS_OF_RECORDS + 3];
+  conic_argument arguments[ARGUMENTS_OF_RECORDS + 5];
   int n = records(f, arguments);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_X);
+  arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_DIRECTIONS_Y);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_THRESHOLDS);
   arguments[n++] = conic_frame_argument(f, CONIC_BUFFER_N_FRAGMENTS);
   n += masks(f, arguments + n);

@@ -46,7 +46,8 @@ static conic_view view_of(__constant conic_view *frame_view, __global const floa
 }
 
 /* Pass 1: every pixel's threshold, and how many fragments there are. */
-__kernel void gather_visibility(GATHER_RECORDS, __global float *thresholds, __global uint *n_fragments) {
+__kernel void gather_visibility(GATHER_RECORDS, __global const float *columns, __global const float *rows,
+                                __global float *thresholds, __global uint *n_fragments) {
   conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   gather_pixel p = gather_pixel_of(&frame);
@@ -60,7 +61,7 @@ __kernel void gather_visibility(GATHER_RECORDS, __global float *thresholds, __gl
     conic_fragment fragment;
     if (!gather_fragment(&view, reference, footprints, rays, clips, &p, &footprint, &fragment))
       continue;
-    float offset_iz = conic_hiding_iz(&footprint, &fragment);
+    float offset_iz = conic_hiding_iz(&footprint, &fragment, columns[p.x], rows[p.y]);
     threshold = offset_iz > threshold ? offset_iz : threshold;
     n_covered++;
   }

@@ -66,6 +66,7 @@ static conic_status upload(const host_setup *h) {
     counts[CONIC_DEVICE_SKIPPED] += (uint32_t)p->chunks[i].n_skipped;
     counts[CONIC_DEVICE_FALLBACK] += (uint32_t)p->chunks[i].n_fallback;
     counts[CONIC_DEVICE_RAYS] += (uint32_t)p->chunks[i].n_rays;
+    counts[CONIC_DEVICE_LAPLACES] += (uint32_t)p->chunks[i].n_laplaces;
   }
   conic_status status = CONIC_OK;
   const struct {

@@ -79,10 +79,21 @@ static ulong lanes_box_mask(uint blocks) {
   return mask;
 }
 
+/* conic_hiding_iz in the block whose first pixel is at (x, y). */
+static lanes lanes_hiding_iz(const conic_footprint *footprint, const fragments *f, __global const float *columns,
+                             __global const float *rows, int x, int y) {
+  lanes iz = lanes_min(f->plane_iz, f->iz), ray_x, ray_y;
+  if (!conic_is_wide(footprint))
+    return footprint->nearness * iz;
+  lanes_directions(columns, rows, x, y, &ray_x, &ray_y);
+  return wide_hiding(footprint, iz, ray_lengths(ray_x, ray_y));
+}
+
 /* Pass 1. Of each reference it also notes in which blocks the splat may be seen, as far as those before it and itself
  * tell: thresholds only rise, so that pass 2 need not look at others. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fragments, __global ulong *masks) {
+lanes_visibility(GATHER_RECORDS, __global const float *columns, __global const float *rows, __global lanes *thresholds,
+                 __global uint *n_fragments, __global ulong *masks) {
   conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
@@ -94,7 +105,8 @@ lanes_visibility(GATHER_RECORDS, __global lanes *thresholds, __global uint *n_fr
   LANES_FOR_FRAGMENTS(
       ulong mask = 0;,
                      {
-                       lanes offset_iz = splat.footprint.nearness * lanes_min(fragment.plane_iz, fragment.iz);
+                       lanes offset_iz = lanes_hiding_iz(&splat.footprint, &fragment, columns, rows,
+                                                         lanes_block_x(&t, block), lanes_block_y(&t, block));
                        threshold[block] =
                            (fragment.covered & (offset_iz > threshold[block])) ? offset_iz : threshold[block];
                        found = lanes_increment(fragment.covered, found);

@@ -11,6 +11,14 @@ static lanes rows_from(int y) {
   return (float)y + lanes_of_ints(lanes_rows());
 }
 
+/* The directions of a block's pixels. */
+static void lanes_directions(__global const float *columns, __global const float *rows, int x, int y, lanes *dx,
+                             lanes *dy) {
+  float4 of_columns = vload4(0, columns + x), of_rows = vload4(0, rows + y); /* there are some of all whole tiles */
+  *dx = (lanes)(of_columns.xxxx, of_columns.yyyy, of_columns.zzzz, of_columns.wwww);
+  *dy = (lanes)(of_rows, of_rows, of_rows, of_rows);
+}
+
 #define CONIC_DEVICE_TILE_BLOCKS (CONIC_DEVICE_TILE / 4)
 #define N_TILE_BLOCKS (CONIC_DEVICE_TILE_BLOCKS * CONIC_DEVICE_TILE_BLOCKS)
 

@@ -3,14 +3,6 @@
 #include "raster/triangles/draw_lanes.h"
 #include "raster/triangles/look_lanes.h"
 
-/* The directions of a block's pixels. */
-static void lanes_directions(__global const float *columns, __global const float *rows, int x, int y, lanes *dx,
-                             lanes *dy) {
-  float4 of_columns = vload4(0, columns + x), of_rows = vload4(0, rows + y); /* there are some of all whole tiles */
-  *dx = (lanes)(of_columns.xxxx, of_columns.yyyy, of_columns.zzzz, of_columns.wwww);
-  *dy = (lanes)(of_rows, of_rows, of_rows, of_rows);
-}
-
 /* The nearest triangle of every pixel, and where splats are to be blended what it hides: the splats' thresholds begin
  * with that. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_triangles(TRIANGLE_LISTS, __global lanes *thresholds,

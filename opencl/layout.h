@@ -23,7 +23,14 @@ enum { CONIC_TILE_BITS_OF_PIXELS = 4, CONIC_TILE_BITS_OF_TILES = 5 };
 #define CONIC_DEVICE_HAS_OPACITY 2
 
 /* What set-up counts. */
-enum { CONIC_DEVICE_CULLED, CONIC_DEVICE_SKIPPED, CONIC_DEVICE_FALLBACK, CONIC_DEVICE_RAYS, CONIC_DEVICE_N_COUNTS };
+enum {
+  CONIC_DEVICE_CULLED,
+  CONIC_DEVICE_SKIPPED,
+  CONIC_DEVICE_FALLBACK,
+  CONIC_DEVICE_RAYS,
+  CONIC_DEVICE_LAPLACES, /* of the rays */
+  CONIC_DEVICE_N_COUNTS
+};
 
 /* A footprint in a tile, and which of the tile's blocks its box meets: first and last column and row, four bits each.
  */

@@ -110,6 +110,7 @@ static void project_one(const conic_view *view, splat_columns *columns, uint i, 
   s.ray = &ray;
   conic_outcome outcome = project_splat(&s);
   count_outcome(view, outcome, counts);
+  counts[CONIC_DEVICE_LAPLACES] += outcome == CONIC_DRAWN_RAY && conic_is_laplace(&footprint);
   if (outcome >= CONIC_CULLED)
     return;
   surface.index = columns->first + i;

@@ -86,6 +86,7 @@ static void project_group(const conic_view *view, splat_columns *from, const uin
   for (int lane = 0; lane < (int)n_valid; lane++) {
     if (((const int *)&verdict.usual)[lane]) {
       count_outcome(view, ((const int *)&s.by_ray)[lane] ? CONIC_DRAWN_RAY : CONIC_DRAWN_VARIANCE, counts);
+      counts[CONIC_DEVICE_LAPLACES] += ((const int *)&s.by_ray)[lane] && ((const float *)r.footprint)[16 * lane + 5] > 0.0f;
       write_lane(&s, &r, lane, to);
       if (from->n_clips)
         clip_record(view, from, places[lane], to);

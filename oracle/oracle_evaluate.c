@@ -169,6 +169,9 @@ static void evaluate_point(const oracle_view *view, const oracle_shape *shape, d
 
 void conic_oracle_evaluate(const oracle_view *view, const oracle_shape *shape, double x, double y,
                            double values[ORACLE_N_VALUES]) {
+  const conic_camera *c = &view->camera;
+  const double ray[3] = {(x - c->cx) / c->fx, (y - c->cy) / c->fy, 1.0};
+  values[ORACLE_RAY_LENGTH] = oracle_length(ray);
   if (shape->formula == ORACLE_RAY) {
     evaluate_ray(view, shape, x, y, values);
     return;

@@ -26,6 +26,8 @@ void conic_oracle_candidate(const oracle_view *view, const oracle_splat *splat, 
     oracle_placed moved = conic_oracle_disturb(&splat->placed, i);
     candidate->is_disturbed[i] =
         candidate->is_drawn && conic_oracle_shape(view, &moved, splat->formula, &candidate->disturbed[i]);
+    if (candidate->is_disturbed[i] && candidate->shape.change < INFINITY)
+      candidate->shape.change_error += fabs(candidate->disturbed[i].change - candidate->shape.change);
   }
 }
 
@@ -66,10 +68,33 @@ static oracle_interval around(double value, double error) {
   return (oracle_interval){value - error, value, value + error};
 }
 
+/* What lies ε behind iz on the ray, as wide splats have it: others have one factor for all of their pixels. */
+static double behind_here(const oracle_splat *splat, double iz, double ray_length) {
+  double before_eye = oracle_max(iz, 0.0);
+  return before_eye / (1.0 + splat->epsilon * before_eye / ray_length);
+}
+
+/* The lesser of both depths, moved back. */
+static oracle_interval hide(const oracle_splat *splat, const oracle_shape *shape, oracle_interval iz,
+                            double ray_length) {
+  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, excess = shape->change - ORACLE_NARROW_CHANGE;
+  oracle_interval all = {splat->behind * iz.low, splat->behind * iz.value, splat->behind * iz.high};
+  oracle_interval here = {behind_here(splat, iz.low, ray_length), behind_here(splat, iz.value, ray_length),
+                          behind_here(splat, iz.high, ray_length)};
+  oracle_interval hides = excess > 0.0 ? here : all;
+  if (!(fabs(excess) > shape->change_error)) {
+    hides.low = oracle_min(here.low, all.low);
+    hides.high = oracle_max(here.high, all.high);
+  }
+  hides.low *= 1.0 - slack;
+  hides.high *= 1.0 + slack;
+  return hides;
+}
+
 /* The greater of both depths is what a splat is seen by, the lesser, moved back, what it hides by. */
 static void set_depths(const oracle_splat *splat, const oracle_shape *shape, const double values[ORACLE_N_VALUES],
                        const double errors[ORACLE_N_VALUES], oracle_fragment *fragment) {
-  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, behind = splat->behind;
+  const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT;
   oracle_interval iz = around(values[ORACLE_IZ], errors[ORACLE_IZ]);
   oracle_interval plane = around(values[ORACLE_IZ_PLANE], errors[ORACLE_IZ_PLANE]);
   iz.low = oracle_max(iz.low, shape->range[0] * (1.0 - slack));
@@ -77,9 +102,9 @@ static void set_depths(const oracle_splat *splat, const oracle_shape *shape, con
   fragment->seen.low = oracle_max(iz.low, plane.low);
   fragment->seen.value = oracle_max(iz.value, plane.value);
   fragment->seen.high = oracle_max(iz.high, plane.high);
-  fragment->hides.low = behind * oracle_min(iz.low, plane.low) * (1.0 - slack);
-  fragment->hides.value = behind * oracle_min(iz.value, plane.value);
-  fragment->hides.high = behind * oracle_min(iz.high, plane.high) * (1.0 + slack);
+  const oracle_interval lesser = {oracle_min(iz.low, plane.low), oracle_min(iz.value, plane.value),
+                                  oracle_min(iz.high, plane.high)};
+  fragment->hides = hide(splat, shape, lesser, values[ORACLE_RAY_LENGTH]);
   fragment->iz = iz.value;
   fragment->iz_error = oracle_max(iz.value - iz.low, iz.high - iz.value);
   double clamped = oracle_min(oracle_max(plane.value, shape->range[0]), shape->range[1]);

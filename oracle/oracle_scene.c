@@ -200,10 +200,10 @@ static void set_appearance(const oracle_view *view, const conic_render_options *
     splat->normals[1][c] = splat->is_facing_unsure ? size : splat->normal[c];
   }
   splat->color_error = 0.0;
-  double epsilon = options->epsilon;
-  if (!(epsilon >= 0.0)) /* automatic, with c = 1 */
-    epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
-  splat->behind = 1.0 / (1.0 + epsilon / oracle_length(splat->placed.p));
+  splat->epsilon = options->epsilon;
+  if (!(splat->epsilon >= 0.0)) /* automatic, with c = 1 */
+    splat->epsilon = view->cutoff * oracle_min(length, 4.0 * longest);
+  splat->behind = 1.0 / (1.0 + splat->epsilon / oracle_length(splat->placed.p));
 }
 
 /* Reads a splat and puts it before the camera; 0 where picture.md leaves it out. */

@@ -20,7 +20,8 @@ typedef struct oracle_splat {
   double box[2][2]; /* what any of the formulas may cover lies within, amply */
   int is_anywhere;  /* … but is not trusted to: for tests */
   oracle_clip clip;
-  double behind; /* s = 1/(1 + ε/‖p‖) */
+  double epsilon;
+  double behind; /* 1/(1 + ε/‖p‖): s unless the splat is wide */
   double opacity, color[3];
   double normal[3]; /* world, unit, towards the viewer */
   /* What rounding may make of the two: */

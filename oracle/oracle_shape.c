@@ -214,6 +214,24 @@ static int set_segment(const oracle_view *view, const oracle_placed *s, oracle_s
   return 1;
 }
 
+/* By how much of itself the distance may change from p's to the pixels': with the depth of the disc, with its plane
+ * within the filter's reach, and with the length of d, of which all that is not known is |d_p| ≥ 1. */
+static double greatest_change(const oracle_view *view, const oracle_placed *s, const oracle_shape *shape) {
+  const conic_camera *c = &view->camera;
+  const double focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};
+  double turn = 0.0, squares = 0.0, reach = view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]);
+  if (shape->formula == ORACLE_LAPLACE || !conic_oracle_is_before_near(view, s))
+    return INFINITY;
+  for (int i = 0; i < 2; i++) {
+    double place = focal[i] * s->p[i] / s->p[2] + principal[i];
+    double across = oracle_max(shape->box[1][i] - place, place - shape->box[0][i]) / focal[i];
+    turn += fabs(s->p[i] / s->p[2]) * across;
+    squares += across * across;
+  }
+  double slope = sqrt(shape->gradient[0] * shape->gradient[0] + shape->gradient[1] * shape->gradient[1]);
+  return reach / s->p[2] + slope * view->reach_px * s->p[2] + turn + 0.5 * squares;
+}
+
 int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_formula formula, oracle_shape *shape) {
   static const oracle_shape nothing;
   double normal[3], reach = view->cutoff * sqrt(s->tu[2] * s->tu[2] + s->tv[2] * s->tv[2]);
@@ -237,6 +255,8 @@ int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_f
     is_set = set_dot(view, s, shape);
   else
     is_set = 0;
+  shape->change = is_set ? greatest_change(view, s, shape) : INFINITY;
+  shape->change_error = 2.0 * ORACLE_ROUNDINGS * ORACLE_UNIT * ORACLE_NARROW_CHANGE;
   double sum = shape->amplitude + shape->center[0] + shape->center[1] + shape->inverse.xx + shape->inverse.yy;
   for (int i = 0; i < 2; i++)
     sum += shape->box[0][i] + shape->box[1][i];

@@ -78,6 +78,9 @@ typedef struct oracle_shape {
   double range[2];    /* of inverse depth: far end, near end */
   double box[2][2];   /* the widened box: minimum and maximum in x, y; of what the formula may cover */
   double gradient[2]; /* of the plane's inverse depth per pixel; zero where it is infinite */
+  /* How much the distance along the rays changes over what is covered, at most (docs/reference/picture.md, Visible),
+   * and by how much single precision may be off there. */
+  double change, change_error;
   /* all; a ray's or laplace's center is what its pixels are counted from, a point's the projected p, others' that of
    * the ellipse */
   double center[2];
@@ -89,6 +92,9 @@ typedef struct oracle_shape {
   /* ray, laplace: U, V, iz at the place (x, y) are row 0·x + row 1·y + row 2 */
   double from_screen[3][3];
 } oracle_shape;
+
+/* From this change on a splat is wide. */
+#define ORACLE_NARROW_CHANGE 0.0195
 
 /* Sets up `formula` for the splat; 0 where it cannot be (not finite). */
 int conic_oracle_shape(const oracle_view *view, const oracle_placed *s, oracle_formula formula, oracle_shape *shape);
@@ -114,6 +120,7 @@ enum {
   ORACLE_WEIGHT = ORACLE_N_MARGINS, /* amplitude times kernel, without opacity and floor */
   ORACLE_IZ,
   ORACLE_IZ_PLANE,
+  ORACLE_RAY_LENGTH, /* |d| */
   ORACLE_N_VALUES
 };
 

@@ -241,6 +241,7 @@ static void prepare(const slot *s, const cross_tables *plain, splat_desk *d, int
   memset(d->band.sums, CROSS_PATTERN, CONIC_BAND_BLOCKS * sizeof *d->band.sums);
   d->band.strip_rows = y / CONIC_BLOCK_EDGE % 2 ? 2 : 4;
   conic_tile_rays_init(&d->view, x, y / CONIC_GREATEST_TILE * CONIC_GREATEST_TILE, &d->rays);
+  d->band.rays = &d->rays;
   list_splats(d, is_single_pass(s));
   for (int i = 0; i < 3 && s->before[i]; i++)
     s->before[i](plain, &d->memory);
@@ -272,6 +273,7 @@ static void copy_band(const slot *s, splat_desk *to, const splat_desk *from) {
   conic_band band = from->band;
   band.projected = &to->projected;
   band.view = &to->view;
+  band.rays = &to->rays;
   band.indices = to->list;
   band.words = to->words;
   band.kept = to->band.kept;

@@ -31,9 +31,33 @@ static void list_frame_stages(const conic_render_milliseconds *ms, cli_stage sta
   memcpy(stages, list, sizeof list);
 }
 
+/* The formulas that splats are drawn by: the methods', and laplace, which is no method. */
+enum { LAPLACE = CONIC_N_METHODS, N_FORMULAS };
+
+static const char *formula_name(int formula) {
+  return formula == LAPLACE ? "laplace" : conic_method_name((conic_method)formula);
+}
+
+static uint64_t splats_by_formula(const conic_render_statistics *s, int formula) {
+  if (formula == LAPLACE)
+    return s->splats_by_laplace;
+  return s->splats_by_method[formula] - (formula == CONIC_METHOD_RAY ? s->splats_by_laplace : 0);
+}
+
+/* "1 by conic, 2 by ray", as far as there are any. */
+static void list_formulas(const conic_render_statistics *s, char *text, size_t size) {
+  size_t n = 0;
+  text[0] = '\0';
+  for (int i = 0; i < N_FORMULAS; i++)
+    if (splats_by_formula(s, i) && n < size)
+      n += (size_t)snprintf(text + n, size - n, "%s%llu by %s", n ? ", " : "",
+                            (unsigned long long)splats_by_formula(s, i), formula_name(i));
+}
+
 void cli_render_tell(cli_session *session, const cli_render_job *job) {
   const conic_render_statistics *s = &job->statistics;
   cli_stage stages[N_STAGES], of_frame[N_FRAME_STAGES];
+  char formulas[240];
   conic_context *context = session->context;
   list_stages(job, stages);
   list_frame_stages(&s->ms, of_frame);
@@ -42,9 +66,11 @@ void cli_render_tell(cli_session *session, const cli_render_job *job) {
     conic_log(context, CONIC_LOG_INFO, "%llu triangles: %llu drawn, %llu culled, %llu skipped",
               (unsigned long long)s->triangles_in, (unsigned long long)s->triangles_drawn,
               (unsigned long long)s->triangles_culled, (unsigned long long)s->triangles_skipped);
-  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn, %llu culled, %llu skipped; %llu pixels covered",
-            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, (unsigned long long)s->splats_culled,
-            (unsigned long long)s->splats_skipped, (unsigned long long)s->pixels_covered);
+  list_formulas(s, formulas, sizeof formulas);
+  conic_log(context, CONIC_LOG_INFO, "%llu splats: %llu drawn%s%s%s, %llu culled, %llu skipped; %llu pixels covered",
+            (unsigned long long)s->splats_in, (unsigned long long)s->splats_drawn, formulas[0] ? " (" : "", formulas,
+            formulas[0] ? ")" : "", (unsigned long long)s->splats_culled, (unsigned long long)s->splats_skipped,
+            (unsigned long long)s->pixels_covered);
   cli_tell_stages(session, of_frame + !has_choice, N_FRAME_STAGES - !has_choice,
                   cli_frames_count(job) * job->repeat > 1 ? "a frame" : "for the frame", 1e-3 * s->ms.frame);
   cli_tell_run(session, stages, job->hash_ms > 0.0 && session->json_path ? N_STAGES : N_STAGES - 1,
@@ -85,9 +111,9 @@ static conic_status report_counts(cli_json *json, const cli_render_job *job) {
   cli_json_number(json, "overdraw", overdraw);
   cli_json_text(json, "method", cli_method_name(job));
   cli_json_object(json, "methods");
-  for (int i = 0; i < CONIC_N_METHODS; i++)
-    if (s->splats_by_method[i])
-      cli_json_count(json, conic_method_name((conic_method)i), s->splats_by_method[i]);
+  for (int i = 0; i < N_FORMULAS; i++)
+    if (splats_by_formula(s, i))
+      cli_json_count(json, formula_name(i), splats_by_formula(s, i));
   cli_json_close(json);
   if (job->view.error_px > 0.0)
     cli_json_number(json, "error_px_asked", job->view.error_px);

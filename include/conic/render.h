@@ -141,7 +141,8 @@ typedef struct conic_render_statistics {
   int threads, tile;
   const char *isa;              /* what the hot loops used; static */
   conic_render_milliseconds ms; /* wall-clock; visibility, accumulate and resolve are shares of the tiles' time */
-  uint64_t reserved[16];
+  uint64_t splats_by_laplace;   /* of those that splats_by_method counts as ray: by Laplace's method */
+  uint64_t reserved[15];
 } conic_render_statistics;
 
 /* The near distance that near_z = 0 stands for. Looks at every centre; who draws many frames asks once. */

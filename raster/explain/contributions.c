@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/base/threads.h"
+#include "core/base/vectors.h"
 
 /* Splats that a thread projects at a time. */
 enum { CHUNK = 1 << 14 };
@@ -157,6 +158,15 @@ static void describe_ellipse(const conic_footprint *footprint, conic_projection 
   to->variance_px[2] = to->conic[0] / determinant;
 }
 
+/* s at the centre, which a wide splat has for no other place. */
+static double nearness_of(const conic_contributions *c, size_t i, const conic_footprint *footprint) {
+  conic_disc disc = conic_disc_of(&c->view, c->splats, i);
+  double distance = conic_length(disc.p);
+  if (!conic_is_wide(footprint))
+    return (double)footprint->nearness;
+  return distance > 0.0 ? 1.0 / (1.0 - (double)footprint->nearness / distance) : 0.0;
+}
+
 conic_status conic_contributions_project(const conic_contributions *c, size_t i, conic_projection *projection) {
   conic_footprint footprint;
   conic_box box;
@@ -183,7 +193,7 @@ conic_status conic_contributions_project(const conic_contributions *c, size_t i,
   projection->amplitude = (double)footprint.amplitude;
   projection->nearest_z = 1.0 / (double)footprint.iz_near;
   projection->farthest_z = 1.0 / (double)footprint.iz_far;
-  projection->nearness = (double)footprint.nearness;
+  projection->nearness = nearness_of(c, i, &footprint);
   memcpy(projection->color, surface.color, sizeof projection->color);
   memcpy(projection->normal, surface.normal, sizeof projection->normal);
   if (projection->fate == CONIC_FATE_VARIANCE)
@@ -200,7 +210,7 @@ conic_contribution conic_contribution_of(const conic_contributions *c, uint32_t 
                               .depth = conic_plane_z(footprint, x, y),
                               .inverse_depth = fragment->iz,
                               .plane_inverse_depth = fragment->plane_iz,
-                              .hides = conic_hiding_iz(footprint, fragment)};
+                              .hides = conic_contribution_hides(&c->view, footprint, fragment, x, y)};
 }
 
 /* Whether what does not cover the pixel fails by its clip lines, or as a ray by its range of depths. */

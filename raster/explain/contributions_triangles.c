@@ -4,18 +4,12 @@
 #include "raster/explain/pixel_contributions.h"
 #include "raster/triangles/triangle_tile.h"
 
-/* The viewer looks at the pixel along (x, y, 1). */
-static void set_ray(const conic_view *view, int x, int y, float ray[2]) {
-  ray[0] = (float)(((double)x + 0.5 - view->cx) / view->fx);
-  ray[1] = (float)(((double)y + 0.5 - view->cy) / view->fy);
-}
-
 /* What the viewer sees of a triangle at a pixel. */
 static void see(const conic_contributions *c, const conic_triangle_record *record, int x, int y,
                 conic_triangle_sight *sight) {
   const conic_view *view = &c->view;
   float ray[2], world_from_cam[3][3];
-  set_ray(view, x, y, ray);
+  conic_contribution_ray(view, x, y, ray);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       world_from_cam[i][j] = view->rotation_float[j][i];
@@ -34,7 +28,7 @@ static void describe_triangle(const conic_contributions *c, const conic_triangle
                               conic_triangle_contribution *to) {
   conic_triangle_sight sight;
   float ray[2];
-  set_ray(&c->view, x, y, ray);
+  conic_contribution_ray(&c->view, x, y, ray);
   to->triangle = record->index;
   to->verdict = CONIC_CONTRIBUTION_HIDDEN;
   to->inverse_depth = iz;
@@ -127,7 +121,7 @@ void conic_contribution_triangle_line(const conic_contributions *c, int y, conic
   }
   for (int x = 0; x < width; x++) {
     float ray[2];
-    set_ray(&c->view, x, y, ray);
+    conic_contribution_ray(&c->view, x, y, ray);
     line[x].hides = line[x].iz > 0.0f ? conic_triangle_hides(frame->epsilon, line[x].iz, ray[0], ray[1]) : 0.0f;
   }
 }

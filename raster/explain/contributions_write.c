@@ -49,7 +49,7 @@ static void walk(const conic_contributions *c, line *l, visit_fragment *visit) {
 
 static void raise_threshold(const conic_contributions *c, line *l, uint32_t i_footprint, int x,
                             const conic_fragment *fragment) {
-  float hides = conic_hiding_iz(&c->projected.footprints[i_footprint], fragment);
+  float hides = conic_contribution_hides(&c->view, &c->projected.footprints[i_footprint], fragment, x, l->y);
   l->threshold[x] = l->threshold[x] < hides ? hides : l->threshold[x];
 }
 

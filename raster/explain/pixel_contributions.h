@@ -25,6 +25,20 @@ struct conic_contributions {
   conic_kept_memory triangle_list_memory;
 };
 
+/* The viewer looks at the pixel along (ray[0], ray[1], 1). */
+static inline void conic_contribution_ray(const conic_view *view, int x, int y, float ray[2]) {
+  ray[0] = (float)(((double)x + 0.5 - view->cx) / view->fx);
+  ray[1] = (float)(((double)y + 0.5 - view->cy) / view->fy);
+}
+
+/* By what a footprint hides others at a pixel that it covers. */
+static inline float conic_contribution_hides(const conic_view *view, const conic_footprint *footprint,
+                                             const conic_fragment *fragment, int x, int y) {
+  float ray[2];
+  conic_contribution_ray(view, x, y, ray);
+  return conic_hiding_iz(footprint, fragment, ray[0], ray[1]);
+}
+
 /* The triangles at a pixel before it is known what splats hide them: the nearest alone is visible. Errors: MEMORY. */
 conic_status conic_contribution_triangles(conic_contributions *contributions, int x, int y,
                                           const conic_triangle_contribution **nearest, size_t *n);

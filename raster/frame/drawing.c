@@ -62,6 +62,7 @@ void conic_chunk_add(const conic_chunk *chunk, conic_chunk *sum) {
   sum->n_drawn += chunk->n_drawn;
   sum->n_fallback += chunk->n_fallback;
   sum->n_rays += chunk->n_rays;
+  sum->n_laplaces += chunk->n_laplaces;
 }
 
 void conic_chunks_count(const conic_chunk *chunks, size_t n_chunks, conic_method method,
@@ -74,4 +75,5 @@ void conic_chunks_count(const conic_chunk *chunks, size_t n_chunks, conic_method
   statistics->splats_drawn = sum.n_drawn;
   statistics->splats_fallback = sum.n_fallback;
   conic_method_count(method, sum.n_rays, statistics);
+  statistics->splats_by_laplace = sum.n_laplaces;
 }

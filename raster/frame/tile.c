@@ -134,6 +134,7 @@ void conic_tile_draw(conic_tile *tile, const conic_raster_kernels *kernels, cons
   conic_tile_rays rays;
   conic_band band = {.view = tile->view,
                      .projected = tile->projected,
+                     .rays = &rays,
                      .keeps_indices = tile->keeps_indices,
                      .x = tile->x_begin,
                      .y = tile->y_begin,

@@ -80,25 +80,40 @@ CONIC_INLINE void empty_blocks(conic_band *band) {
   }
 }
 
-/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
-CONIC_INLINE unsigned pass_part(lanes nearness, const fragments *f, conic_kept *kept, size_t place, size_t at,
-                                splat_kind kind) {
-  lanes offset_iz = lanes_keep(f->covered, nearness * lanes_min(f->plane_iz, f->iz));
-  lanes_store(kept->threshold + at, lanes_max(offset_iz, lanes_load(kept->threshold + at)));
-  lanes_store(kept->fragments[place].q + at, f->q);
-  lanes_store(kept->fragments[place].seen_iz + at,
-              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
-  if (kind != SPLAT_USUAL)
-    lanes_store(kept->scale[place] + at, f->scale);
-  return lanes_count(f->covered);
-}
-
 /* The state of the first pass along a band, a copy of its own like `sources`. */
 typedef struct pass {
   conic_kept *kept;
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
+  lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* from the first wide splat on */
+  float greatest_length;
+  int has_lengths;
 } pass;
+
+CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
+  p->kept = band->kept;
+  p->room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
+  p->n_fragments = 0;
+  p->has_lengths = 0;
+  memset(p->n_kept, 0, sizeof p->n_kept);
+  for (int block = 0; block < band->n_blocks; block++) {
+    p->not_kept[block] = band->n;
+    memset(p->kept[block].threshold, 0, sizeof p->kept[block].threshold);
+  }
+}
+
+static __attribute__((noinline)) void find_lengths(const conic_band *band, pass *p) {
+  const float *ray_y = conic_band_ray_y(band);
+  p->greatest_length = 1.0f;
+  for (int i = 0; i < (CONIC_BAND_BLOCKS + 1) * CONIC_PARTS; i++) {
+    const float *ray_x = band->rays->block_x[i / CONIC_PARTS];
+    size_t at = (size_t)(i % CONIC_PARTS) * CONIC_LANES;
+    p->ray_length[i] = ray_lengths(lanes_load(ray_x + at), lanes_load(ray_y + at));
+    for (int lane = 0; lane < CONIC_LANES; lane++)
+      p->greatest_length = p->ray_length[i][lane] > p->greatest_length ? p->ray_length[i][lane] : p->greatest_length;
+  }
+  p->has_lengths = 1;
+}
 
 /* One splat, and what of it is the same in all blocks. */
 typedef struct passing {
@@ -109,6 +124,25 @@ typedef struct passing {
   splat_rows rows;
 } passing;
 
+/* conic_hiding_iz in a part of a block. */
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
+  if (kind == SPLAT_WIDE || (kind >= SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
+    return wide_hiding(splat->footprint, iz, p->ray_length[part]);
+  return splat->nearness * iz;
+}
+
+/* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
+CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
+                                splat_kind kind) {
+  lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
+  lanes_store(kept->fragments[place].q + at, f->q);
+  lanes_store(kept->fragments[place].seen_iz + at,
+              lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
+  if (kind >= SPLAT_SPECIAL)
+    lanes_store(kept->scale[place] + at, f->scale);
+  return lanes_count(f->covered);
+}
+
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
                              splat_kind kind) {
   conic_kept *kept = &p->kept[block];
@@ -118,7 +152,8 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind, &f);
-    n_covered += pass_part(splat->nearness, &f, kept, place, (size_t)part * CONIC_LANES, kind);
+    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, kind);
+    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind);
   }
   p->n_fragments += n_covered;
   if (place < p->room)
@@ -155,8 +190,8 @@ CONIC_INLINE int glance_at_block(pass *p, const sources *from, const sites *s, c
     if (lanes_any(covered & lanes_less(iz, lanes_of(sure))))
       return 0;
     lanes clamped = lanes_min(lanes_max(iz, rows->iz_far), rows->iz_near);
-    raised[part] = lanes_max(lanes_keep(covered, splat->nearness * lanes_min(iz, clamped)),
-                             lanes_load(thresholds + (size_t)part * CONIC_LANES));
+    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, SPLAT_SPECIAL);
+    raised[part] = lanes_max(lanes_keep(covered, hides), lanes_load(thresholds + (size_t)part * CONIC_LANES));
     n_covered += lanes_count(covered);
   }
   if (n_covered > 0 && p->n_kept[block] < p->room)
@@ -192,8 +227,12 @@ static __attribute__((noinline)) void look_at_crowd(const conic_band *band, cons
 
 /* Whether a ray that covers all of the band does nothing else there: no place is left for it, and it raises no
  * threshold. */
-CONIC_INLINE int only_counts(const crowd *c, const conic_footprint *f, const crowd_depths *depths) {
-  return c->is_full && f->nearness * most_seen(f, depths) <= c->threshold;
+CONIC_INLINE int only_counts(const pass *p, const crowd *c, const conic_footprint *f, const crowd_depths *depths) {
+  float most = most_seen(f, depths), length = p->greatest_length;
+  float hides = f->nearness * most;
+  if (conic_is_wide(f)) /* and what rounding adds: it grows with the length in exact arithmetic */
+    hides = (1.0f + 0x1p-20f) * (most * (length / (length - hides)));
+  return c->is_full && hides <= c->threshold;
 }
 
 static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *from, const sites *s,
@@ -204,7 +243,7 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
   const crowd_span span = span_of(band, f);
   const crowd_depths depths = depths_of(f, &span);
   const float sure = sure_iz(from->view, f, ray, &span);
-  if (covers_span(ray, &span, &depths, sure) && only_counts(c, f, &depths)) {
+  if (covers_span(ray, &span, &depths, sure) && only_counts(p, c, f, &depths)) {
     p->n_fragments += c->n_pixels;
     return;
   }
@@ -219,25 +258,30 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
   const sources from = sources_of(band);
   const int is_crowd = from.n > CONIC_KEPT_SPLATS;
   crowd c = {0, 0.0f, 0};
-  pass p = {.kept = band->kept, .room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS};
+  pass p;
   int has_special = 0;
   sites s;
   find_sites(band, &s);
-  for (int block = 0; block < band->n_blocks; block++) {
-    p.not_kept[block] = from.n;
-    memset(p.kept[block].threshold, 0, sizeof p.kept[block].threshold);
-  }
+  begin_pass(band, &p);
   for (size_t i = 0; i < from.n; i++) {
     prefetch_splat(&from, i);
+    const conic_footprint *footprint = &from.footprints[from.indices[i]];
+    const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
     if (is_crowd && has_special && i % LOOK_EVERY == 0)
       look_at_crowd(band, p.not_kept, &c);
+    if (!is_profiled && __builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
+      continue;
+    }
+    if (!p.has_lengths)
+      find_lengths(band, &p);
     if (is_profiled)
       pass_splat(&p, &from, &s, i, SPLAT_PROFILED);
-    else if (__builtin_expect(from.footprints[from.indices[i]].s3 > 0.0f, 1))
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
+    else if (is_ellipse)
+      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
-      if (is_crowd && is_plain_ray(&from.footprints[from.indices[i]]))
+      if (is_crowd && is_plain_ray(footprint))
         pass_ray_in_crowd(&p, &from, &s, band, &c, i);
       else
         pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);

@@ -39,6 +39,8 @@ static __attribute__((noinline)) void write_rays(records *r, unsigned by_ray, co
   float stored[CONIC_LANES + 1][16];
   lanes fields[16] = {lanes_of(0.0f)};
   size_t at = chunk->first_ray + chunk->n_rays;
+  unsigned by_laplace = lanes_bits(lanes_less(lanes_of(0.0f), r->footprint[5])) & by_ray;
+  chunk->n_laplaces += (size_t)__builtin_popcount(by_laplace);
   index_lanes i_ray = (index_lanes)r->footprint[4];
   for (int lane = 0; by_ray >> lane; lane++)
     if (by_ray >> lane & 1)

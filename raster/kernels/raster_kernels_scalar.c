@@ -51,6 +51,7 @@ static size_t select_references(const conic_tile_entry *references, size_t n, ui
 /* Raises the thresholds of one block and writes the splat's fragments to the next place; returns how many there are. */
 static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int block) {
   conic_kept *kept = &band->kept[block];
+  const float *ray_x = band->rays->block_x[block], *ray_y = conic_band_ray_y(band);
   size_t place = band->n_kept[block];
   unsigned n_covered = 0;
   kept->footprint[place] = i_footprint;
@@ -62,7 +63,7 @@ static unsigned pass_block(const conic_band *band, uint32_t i_footprint, int blo
     kept->scale[place][l] = fragment.scale;
     if (!is_covered)
       continue;
-    float offset_iz = conic_hiding_iz(&band->projected->footprints[i_footprint], &fragment);
+    float offset_iz = conic_hiding_iz(&band->projected->footprints[i_footprint], &fragment, ray_x[l], ray_y[l]);
     kept->threshold[l] = offset_iz > kept->threshold[l] ? offset_iz : kept->threshold[l];
     n_covered++;
   }

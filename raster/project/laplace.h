@@ -19,10 +19,6 @@ typedef struct conic_spot {
   float u, v;
 } conic_spot;
 
-static inline int conic_is_laplace(const conic_footprint *footprint) {
-  return footprint->s3 == 0.0f && footprint->s2 != 0.0f;
-}
-
 static inline conic_spot conic_spot_at(const conic_footprint *footprint, const conic_ray *ray, float dx, float dy) {
   conic_spot spot;
   spot.iz = (footprint->iz0 + footprint->iz_dy * dy) + footprint->iz_dx * dx;

@@ -20,6 +20,7 @@ typedef struct splat_setup {
   double inverse_z;
   float reach;             /* F_g·h_z / p_z */
   float nearest, farthest; /* 1 - reach and 1 + reach, rounded from double: the difference may nearly vanish */
+  float extent_px[2];      /* how far from where p projects to it may cover pixels, in x and y; infinite if unknown */
   float along_ray;         /* p·(t_u × t_v), up to a positive factor: below 0 the splat faces the viewer */
   conic_footprint *footprint;
   conic_box *box;
@@ -140,6 +141,12 @@ static void set_depth(const splat_setup *s, const projected_kernel *k, float vxx
   footprint->iz_near = inverse_z / s->nearest;
 }
 
+/* Of a box half so wide and high, with its centre so far from where p projects to. */
+static void set_extent(splat_setup *s, float half_x, float half_y, float shift_x, float shift_y) {
+  s->extent_px[0] = half_x + fabsf(shift_x);
+  s->extent_px[1] = half_y + fabsf(shift_y);
+}
+
 /* The gradient of the plane's inverse depth. */
 static void set_slope(const splat_setup *s, const tangents *t) {
   float inverse_z = (float)s->inverse_z, area = t->ux * t->vy - t->uy * t->vx;
@@ -200,16 +207,17 @@ static void set_laplace(const conic_view *view, const tangents *t, conic_footpri
 
 /* About the projected p, U, V and iz are made of what shearing to it gave: no cancellation, so that float will do
  * (docs/reference/picture.md). The box is the projected outline's, widened. */
-static conic_outcome project_ray_before_near(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+static conic_outcome project_ray_before_near(splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
   conic_ray *ray = s->ray;
   double x_p = view->cx + view->fx * (s->p[0] * s->inverse_z);
   double y_p = view->cy + view->fy * (s->p[1] * s->inverse_z);
-  pixel_range(x_p + (double)k->shift_x, (double)(view->cutoff * sqrtf(k->rxx) + view->growth_px), view->width,
-              &s->box->x_begin, &s->box->x_end);
-  pixel_range(y_p + (double)k->shift_y, (double)(view->cutoff * sqrtf(k->ryy) + view->growth_px), view->height,
-              &s->box->y_begin, &s->box->y_end);
+  float half_x = view->cutoff * sqrtf(k->rxx) + view->growth_px;
+  float half_y = view->cutoff * sqrtf(k->ryy) + view->growth_px;
+  pixel_range(x_p + (double)k->shift_x, (double)half_x, view->width, &s->box->x_begin, &s->box->x_end);
+  pixel_range(y_p + (double)k->shift_y, (double)half_y, view->height, &s->box->y_begin, &s->box->y_end);
+  set_extent(s, half_x, half_y, k->shift_x, k->shift_y);
   if (conic_box_is_empty(s->box))
     return CONIC_CULLED;
   set_reference(x_p, y_p, footprint);
@@ -236,7 +244,7 @@ static double a_hair_more(float half_width) {
   return (double)half_width * 1.0001 + 0.01;
 }
 
-static conic_outcome project_variance(const splat_setup *s, const tangents *t, const projected_kernel *k) {
+static conic_outcome project_variance(splat_setup *s, const tangents *t, const projected_kernel *k) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
   conic_box *box = s->box;
@@ -249,8 +257,10 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
     return project_by_ray(s);
   double x_t = (view->cx + view->fx * (s->p[0] * s->inverse_z)) + (double)k->shift_x;
   double y_t = (view->cy + view->fy * (s->p[1] * s->inverse_z)) + (double)k->shift_y;
-  pixel_range(x_t, a_hair_more(view->cutoff * sqrtf(vxx)), view->width, &box->x_begin, &box->x_end);
-  pixel_range(y_t, a_hair_more(view->cutoff * sqrtf(vyy)), view->height, &box->y_begin, &box->y_end);
+  float half_x = view->cutoff * sqrtf(vxx), half_y = view->cutoff * sqrtf(vyy);
+  pixel_range(x_t, a_hair_more(half_x), view->width, &box->x_begin, &box->x_end);
+  pixel_range(y_t, a_hair_more(half_y), view->height, &box->y_begin, &box->y_end);
+  set_extent(s, half_x, half_y, k->shift_x, k->shift_y);
   if (conic_box_is_empty(box))
     return CONIC_CULLED;
   set_reference(x_t, y_t, footprint);
@@ -267,7 +277,7 @@ static conic_outcome project_variance(const splat_setup *s, const tangents *t, c
 
 /* Methods `disc` and `point`: a circle about the projected p, without tilt or depth of its own; or the pixel that holds
  * p, which is the circle that just fits into it. */
-static conic_outcome project_dot(const splat_setup *s, const float tu[3], const float tv[3]) {
+static conic_outcome project_dot(splat_setup *s, const float tu[3], const float tv[3]) {
   const conic_view *view = s->view;
   conic_footprint *footprint = s->footprint;
   int is_point = view->method == CONIC_METHOD_POINT;
@@ -281,6 +291,7 @@ static conic_outcome project_dot(const splat_setup *s, const float tu[3], const 
   double reach = is_point ? 0.5 : a_hair_more(radius);
   pixel_range(x_p, reach, view->width, &s->box->x_begin, &s->box->x_end);
   pixel_range(y_p, reach, view->height, &s->box->y_begin, &s->box->y_end);
+  set_extent(s, radius, radius, 0.0f, 0.0f);
   if (conic_box_is_empty(s->box))
     return CONIC_CULLED;
   set_reference(x_p, y_p, footprint);
@@ -360,6 +371,19 @@ static void set_surface(const splat_setup *s, const float normal[3]) {
   surface->amplitude = s->footprint->amplitude;
 }
 
+/* Whether the distance along the rays may differ from that of p by more than one factor allows, over what the splat
+ * covers: by the disc's own depth, by the plane's where the prefilter widens it, and by the rays' length. */
+static int is_wide(const splat_setup *s) {
+  const conic_view *view = s->view;
+  const conic_footprint *footprint = s->footprint;
+  float x = fabsf((float)(s->p[0] * s->inverse_z)), y = fabsf((float)(s->p[1] * s->inverse_z));
+  float slope = sqrtf(footprint->plane_dx * footprint->plane_dx + footprint->plane_dy * footprint->plane_dy);
+  float across_x = s->extent_px[0] / (float)view->fx, across_y = s->extent_px[1] / (float)view->fy;
+  float change = (s->reach + slope * view->growth_px * (float)s->p[2]) +
+                 ((x * across_x + y * across_y) + 0.5f * (across_x * across_x + across_y * across_y));
+  return !(change <= CONIC_NARROW_CHANGE) || conic_is_laplace(footprint);
+}
+
 /* ε-offset along the ray, and the opacity. */
 static void set_weighing(const splat_setup *s, float longer) {
   const conic_view *view = s->view;
@@ -369,6 +393,8 @@ static void set_weighing(const splat_setup *s, float longer) {
     epsilon = epsilon < view->epsilon_cap ? epsilon : view->epsilon_cap;
     float distance = (float)sqrt((s->p[0] * s->p[0] + s->p[1] * s->p[1]) + s->p[2] * s->p[2]);
     s->footprint->nearness = distance > 0.0f ? 1.0f / (1.0f + epsilon / distance) : 0.0f;
+    if (epsilon > 0.0f && epsilon < HUGE_VALF && is_wide(s))
+      s->footprint->nearness = -epsilon;
   }
   if (s->splats->opacity)
     s->footprint->amplitude *= s->splats->opacity[s->i];
@@ -414,6 +440,7 @@ static conic_outcome project_splat(splat_setup *s) {
     return CONIC_CULLED;
   conic_outcome outcome;
   s->footprint->amplitude = 1.0f;
+  s->extent_px[0] = s->extent_px[1] = HUGE_VALF;
   s->inverse_z = 1.0 / s->p[2];
   s->reach = (float)((double)reach_z * s->inverse_z);
   s->nearest = (float)((s->p[2] - (double)reach_z) * s->inverse_z);
@@ -452,6 +479,7 @@ void conic_project_one(const conic_view *view, const conic_splats *splats, size_
   } else if (outcome == CONIC_SKIPPED) {
     chunk->n_skipped++;
   } else {
+    chunk->n_laplaces += (size_t)conic_is_laplace(s.footprint);
     if (outcome == CONIC_DRAWN_RAY)
       s.footprint->i_ray = (uint32_t)(chunk->first_ray + chunk->n_rays++);
     chunk->n_fallback += (size_t)is_fallback(view->method, outcome);

@@ -25,9 +25,23 @@ typedef struct conic_footprint {
   float iz0, iz_dx, iz_dy;
   float plane_dx, plane_dy; /* gradient of the inverse depth of the splat's plane, not shrunk by the prefilter */
   float iz_far, iz_near;
-  float nearness;  /* s = 1 / (1 + ε/‖p‖) */
+  float nearness;  /* s = 1 / (1 + ε/‖p‖); of a wide splat, whose pixels each have an s of their own, -ε */
   float amplitude; /* A·opacity */
 } conic_footprint;
+
+/* Drawn by raster/project/laplace.h. */
+static inline int conic_is_laplace(const conic_footprint *footprint) {
+  return footprint->s3 == 0.0f && footprint->s2 != 0.0f;
+}
+
+/* From this relative change of the distance along the rays on, a splat is wide: with what the sum of its parts leaves
+ * out, the distance is then within 2 % of ‖p‖ wherever a splat that is not wide covers a pixel
+ * (docs/reference/picture.md, Visible). */
+#define CONIC_NARROW_CHANGE 0.0195f
+
+static inline int conic_is_wide(const conic_footprint *footprint) {
+  return footprint->nearness < 0.0f;
+}
 
 /* The pixels that a footprint may cover, within the image: what binning reads, apart from the rest. It is rounded
  * outwards to blocks of 4 × 4 pixels there: where a pixel is covered, its q decides, and for rays their own limits. */
@@ -82,6 +96,7 @@ typedef struct conic_projected_surface {
 typedef struct conic_chunk {
   size_t first, n_drawn;    /* its splats are at first … first + n_drawn in the arrays below */
   size_t first_ray, n_rays; /* its rays likewise in rays */
+  size_t n_laplaces;        /* of them */
   size_t n_culled, n_skipped, n_fallback;
 } conic_chunk;
 

@@ -201,7 +201,23 @@ typedef struct records {
   lanes footprint[16], surface[8], ray[12];
 } records;
 
-CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, lanes longer, records *r) {
+/* is_wide of project.c; laplace's have s2 = 1 and s3 = 0, which no other splat has. */
+CONIC_INLINE lanes_mask are_wide(const conic_view *view, const group_splats *g, const group_screen *s,
+                                 const records *r) {
+  lanes slope = lanes_sqrt(r->footprint[10] * r->footprint[10] + r->footprint[11] * r->footprint[11]);
+  lanes across_x = (s->half_width[0] + lanes_absolute(s->shift[0])) / lanes_of((float)view->fx);
+  lanes across_y = (s->half_width[1] + lanes_absolute(s->shift[1])) / lanes_of((float)view->fy);
+  lanes change = (g->reach + slope * view->growth_px * lanes_narrow(&g->p[2])) +
+                 ((lanes_absolute(g->x) * across_x + lanes_absolute(g->y) * across_y) +
+                  0.5f * (across_x * across_x + across_y * across_y));
+  lanes_mask is_so = lanes_not(lanes_at_least(lanes_of(CONIC_NARROW_CHANGE), change));
+  if (view->method == CONIC_METHOD_AUTO)
+    is_so |= s->by_ray & lanes_less(lanes_of(0.0f), r->footprint[5]);
+  return is_so;
+}
+
+CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, const group_screen *s, lanes longer,
+                               records *r) {
   doubles distance;
   r->footprint[14] = lanes_of(0.0f);
   if (!view->needs_nearness)
@@ -213,6 +229,9 @@ CONIC_INLINE void set_nearness(const conic_view *view, const group_splats *g, la
   lanes epsilon = lanes_min(view->epsilon_scale * (view->cutoff * longer), lanes_of(view->epsilon_cap));
   lanes from_eye = lanes_narrow(&distance);
   r->footprint[14] = lanes_keep(lanes_less(lanes_of(0.0f), from_eye), 1.0f / (1.0f + epsilon / from_eye));
+  lanes_mask is_wide =
+      are_wide(view, g, s, r) & lanes_less(lanes_of(0.0f), epsilon) & lanes_less(epsilon, lanes_of(HUGE_VALF));
+  r->footprint[14] = lanes_select(is_wide, -epsilon, r->footprint[14]);
 }
 
 /* Returns 0, but NaN or less in lanes whose colour is not finite or out of range. */
@@ -391,7 +410,7 @@ CONIC_INLINE group_verdict set_up_group(const conic_view *view, const batch *fro
     not_finite += set_footprints(view, &g, s, r);
   if (view->method == CONIC_METHOD_AUTO && lanes_any(s->by_ray))
     set_laplaces(view, &g, s, r);
-  set_nearness(view, &g, longer, r);
+  set_nearness(view, &g, s, longer, r);
   lanes opacity = batch_column(from, OPACITY, at);
   r->footprint[15] *= opacity;
   not_finite -= lanes_keep(lanes_less(lanes_of(CONIC_GREATEST_OPACITY), opacity), lanes_of(1.0f));

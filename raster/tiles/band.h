@@ -72,7 +72,7 @@ typedef struct conic_kept_fragments {
 
 /* What visibility found in a block, and blending reads: whole cache lines. The last places are for what is not kept. */
 typedef struct conic_kept {
-  _Alignas(64) float threshold[CONIC_BLOCK_PIXELS]; /* max of s·min(iz, iz_plane) over what covers it, at least 0 */
+  _Alignas(64) float threshold[CONIC_BLOCK_PIXELS]; /* max of what covers it hides by, at least 0 */
   uint32_t footprint[CONIC_KEPT_SPLATS + 16];
   conic_kept_fragments fragments[CONIC_KEPT_SPLATS + 1];
   float scale[CONIC_KEPT_SPLATS + 1][CONIC_BLOCK_PIXELS]; /* of special ones: all but ellipses without clip lines */
@@ -102,6 +102,14 @@ typedef struct conic_nearest {
   float scale[CONIC_NEAREST_PIXELS];
 } conic_nearest;
 
+/* The directions of a tile's columns and rows of pixels: d = (x, y, 1). */
+typedef struct conic_tile_rays {
+  int x_begin, y_begin; /* the tile's first pixel */
+  float x[CONIC_GREATEST_TILE], y[CONIC_GREATEST_TILE];
+  float block_x[CONIC_BAND_BLOCKS + 1][CONIC_BLOCK_PIXELS]; /* the same for each column of blocks, 0 beside them … */
+  float block_y[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* … and each row of them, in the order of a block's pixels */
+} conic_tile_rays;
+
 struct conic_triangle_frame;
 struct conic_triangle_row;
 
@@ -111,6 +119,7 @@ typedef struct conic_band {
   const uint32_t *indices, *words; /* footprints whose boxes meet the band, in file order */
   size_t n;
   int x, y, n_blocks;              /* its first pixel in the image */
+  const conic_tile_rays *rays;     /* its tile's */
   int keeps_indices;               /* the image wants counts or ids */
   int has_special;                 /* visibility has met rays or clip lines */
   uint64_t n_fragments, n_covered; /* found by visibility and by resolving, all bands before included */
@@ -130,6 +139,11 @@ typedef struct conic_band {
   const struct conic_triangle_frame *triangle_frame;
   struct conic_triangle_row *triangles;
 } conic_band;
+
+/* The directions of the rows of the band's blocks. */
+static inline const float *conic_band_ray_y(const conic_band *band) {
+  return band->rays->block_y[(band->y - band->rays->y_begin) / CONIC_BLOCK_EDGE];
+}
 
 /* Where a strip of so many rows keeps the pixel in the given column and row of the tile. */
 static inline size_t conic_strip_place(int strip_rows, int column, int row) {

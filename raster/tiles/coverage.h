@@ -60,9 +60,15 @@ static inline float conic_plane_z(const conic_footprint *footprint, int x, int y
   return 1.0f / conic_clamp_iz(footprint, iz);
 }
 
-/* By what a fragment hides others, and by what it is seen: docs/reference/picture.md, "Visible". */
-static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment) {
-  return footprint->nearness * (fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz);
+/* By what a fragment hides others on the ray (ray_x, ray_y, 1), and by what it is seen: docs/reference/picture.md,
+ * "Visible". */
+static inline float conic_hiding_iz(const conic_footprint *footprint, const conic_fragment *fragment, float ray_x,
+                                    float ray_y) {
+  float iz = fragment->plane_iz < fragment->iz ? fragment->plane_iz : fragment->iz;
+  if (!conic_is_wide(footprint))
+    return footprint->nearness * iz;
+  float ray_length = sqrtf((ray_x * ray_x + ray_y * ray_y) + 1.0f), before = iz > 0.0f ? iz : 0.0f;
+  return before * (ray_length / (ray_length - footprint->nearness * before));
 }
 
 static inline float conic_seen_iz(const conic_fragment *fragment) {

@@ -34,14 +34,6 @@ typedef struct conic_finish {
   float background[4];        /* of an uncovered pixel: rgba, exposed */
 } conic_finish;
 
-/* The directions of a tile's columns and rows of pixels: d = (x, y, 1). */
-typedef struct conic_tile_rays {
-  int x_begin, y_begin; /* the tile's first pixel */
-  float x[CONIC_GREATEST_TILE], y[CONIC_GREATEST_TILE];
-  float block_x[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* the same for each column of blocks … */
-  float block_y[CONIC_BAND_BLOCKS][CONIC_BLOCK_PIXELS]; /* … and each row of them, in the order of a block's pixels */
-} conic_tile_rays;
-
 void conic_tile_rays_init(const conic_view *view, int x_begin, int y_begin, conic_tile_rays *rays);
 
 /* Colour of a surface with this albedo and normal (unit), seen from the unit direction `viewer`. mean_normal is the

@@ -56,6 +56,7 @@ declare -A wanted=(
   [render]="$render methods.conic"
   [render-octree]="$render methods.conic primitives.inner_nodes primitives.leaves error_px error_px_asked?"
   [render-odd]="$render skipped.nan? skipped.zero? skipped.duplicate? skipped.isolated? skipped.failed?"
+  [render-steep]="$render methods.conic methods.laplace"
   [render-mesh]="$render primitives.triangles triangles_in triangles_culled triangles_skipped triangles_drawn
     triangle_fragments mtriangles_per_s"
   [render-patches]="$render methods.conic primitives.patches primitives.samples"
@@ -103,6 +104,8 @@ write render-patches render_patches render thin.ply -o patches.exr --method patc
 write render-hybrid render_hybrid render tent.chy -o tent.exr
 write render-cluster render_hybrid render tent.chy -o tent.exr --aov cluster --only surfels
 write render-auto render render knot.ply -o auto.exr --method auto --zoom 20 --size 256x256
+run 0 make plane -n 3000 -o sheet.ply
+write render-steep render render sheet.ply -o steep.exr --method auto --azimuth 87 --elevation 0
 write render-other render render thin.ply -o other.exr --size 256x256 --method disc --samples 2 --epsilon 2x
 write render-dots render render wire.ply -o wire.exr --size 64x64
 write render-odd render render odd.xyz -o odd.exr --size 64x64

@@ -40,6 +40,7 @@ static void check_counts(const conic_render_statistics *a, const conic_render_st
   CHECK(a->splats_fallback == b->splats_fallback && a->fragments == b->fragments);
   CHECK(a->pixels_covered == b->pixels_covered && a->near_z == b->near_z);
   CHECK(memcmp(a->splats_by_method, b->splats_by_method, sizeof a->splats_by_method) == 0);
+  CHECK(a->splats_by_laplace == b->splats_by_laplace);
 }
 
 /* Draws what the fixture holds on the CPU and in the first `n_ways` ways on the device. */

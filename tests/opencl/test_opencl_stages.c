@@ -42,10 +42,6 @@ static float larger(float a, float b) {
   return a > b ? a : b;
 }
 
-static float smaller(float a, float b) {
-  return a < b ? a : b;
-}
-
 static int covers(const expectation *e, size_t i, int x, int y, conic_fragment *fragment) {
   const conic_box *box = &e->projected.boxes[i]; /* rounded outwards to blocks */
   return x >= box->x_begin / 4 * 4 && x < (box->x_end + 3) / 4 * 4 && y >= box->y_begin / 4 * 4 &&
@@ -58,10 +54,12 @@ static void expect_pixel(expectation *e, int x, int y) {
   size_t at = (size_t)y * (size_t)e->view.width + (size_t)x;
   conic_fragment g;
   float *sums = e->sums[at], threshold = 0.0f;
+  float ray_x = (float)(((double)x + 0.5 - e->view.cx) / e->view.fx);
+  float ray_y = (float)(((double)y + 0.5 - e->view.cy) / e->view.fy);
   uint32_t count = 0;
   for (size_t i = 0; i < e->chunk.n_drawn; i++)
     if (covers(e, i, x, y, &g)) {
-      threshold = larger(e->projected.footprints[i].nearness * smaller(g.plane_iz, g.iz), threshold);
+      threshold = larger(conic_hiding_iz(&e->projected.footprints[i], &g, ray_x, ray_y), threshold);
       e->n_fragments++;
     }
   e->thresholds[at] = threshold;

@@ -147,6 +147,7 @@ static void recount_piece(void *data, size_t i_piece, int i_thread) {
     conic_project_one(&r->view, splats, k, &at, &one);
     sum->n_drawn += one.n_drawn;
     sum->n_rays += one.n_rays;
+    sum->n_laplaces += one.n_laplaces;
     sum->n_skipped += one.n_skipped;
     sum->n_fallback += one.n_fallback;
   }
@@ -161,11 +162,13 @@ static void take_from(const recount *r, int n_threads, conic_method method, coni
     twice.splats_skipped += r->chunks[i].n_skipped;
     twice.splats_fallback += r->chunks[i].n_fallback;
     n_rays += r->chunks[i].n_rays;
+    twice.splats_by_laplace += r->chunks[i].n_laplaces;
   }
   conic_method_count(method, n_rays, &twice);
   band->splats_drawn -= twice.splats_drawn;
   band->splats_skipped -= twice.splats_skipped;
   band->splats_fallback -= twice.splats_fallback;
+  band->splats_by_laplace -= twice.splats_by_laplace;
   for (int i = 0; i < CONIC_N_METHODS; i++)
     band->splats_by_method[i] -= twice.splats_by_method[i];
 }
@@ -200,6 +203,7 @@ static void add_up(const conic_render_statistics *band, conic_render_statistics 
   sum->splats_skipped += before.splats_skipped;
   sum->splats_drawn += before.splats_drawn;
   sum->splats_fallback += before.splats_fallback;
+  sum->splats_by_laplace += before.splats_by_laplace;
   for (int i = 0; i < CONIC_N_METHODS; i++)
     sum->splats_by_method[i] += before.splats_by_method[i];
   sum->fragments += before.fragments;
