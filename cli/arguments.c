@@ -149,11 +149,11 @@ static int refuse_text(const cli_session *session, const cli_option *option, con
   size_t used = 0;
   for (int i = 0; option->choices && option->choices[i] && used < sizeof words; i++)
     used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i ? ", " : "", option->choices[i]);
-  if (option->type == CLI_PARSED)
+  if (!used)
     return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s: %s", session->command, dashes(option),
                      option->name, text, option->argument, option->help);
   return cli_usage("%s: %s%s: \"%s\" is not understood; it takes %s", session->command, dashes(option), option->name,
-                   text, used ? words : option->argument);
+                   text, words);
 }
 
 /* Reads one value; CLI_DONE or CLI_USAGE after a message. */

@@ -12,7 +12,7 @@
 #include "core/base/message.h"
 #include "core/files/file.h"
 
-enum { PATIENCE_MS = 500 };
+enum { PATIENCE_MS = 300 };
 static const char asked = 'a', over = 'o';
 
 static conic_context *watched;

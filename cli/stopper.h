@@ -1,7 +1,7 @@
 /* Ends a run that was asked to stop and does not: whatever it waits for or works on, a signal is obeyed within a
  * second, and nothing half-written stays. */
-#ifndef CLI_STOPPER_H
-#define CLI_STOPPER_H
+#ifndef CONIC_STOPPER_H
+#define CONIC_STOPPER_H
 
 #include "conic/conic.h"
 
@@ -11,7 +11,7 @@ void cli_stopper_begin(conic_context *context, const char *command);
 /* Stops watching; before the context ends. */
 void cli_stopper_end(void);
 
-/* Grants the run another half second, or, asked again, none. Whether somebody watches. For signal handlers. */
+/* Grants the run another third of a second, or, asked again, none. Whether somebody watches. For signal handlers. */
 int cli_stopper_ask(void);
 
 #endif

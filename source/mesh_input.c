@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/message.h"
 #include "core/estimate/estimate.h"
+#include "core/formats/model_read.h"
 #include "core/splats/splats_gather.h"
 
 static int is_apart(float *const position[3], uint32_t a, uint32_t b) {
@@ -69,28 +70,12 @@ conic_status conic_mesh_lay_texture(conic_context *context, const char *texture_
   return status;
 }
 
-static conic_status read_faces(conic_context *context, const char *path, const conic_coloring_options *coloring,
-                               conic_triangles *triangles) {
-  conic_read_options options;
-  conic_model model;
-  memset(triangles, 0, sizeof *triangles);
-  conic_read_options_init(&options);
-  options.keeps_faces = 1;
-  conic_coloring_read(coloring, &options);
-  conic_status status = conic_model_read(context, path, &options, &model);
-  if (status != CONIC_OK)
-    return status;
-  if (model.n_triangles == 0)
-    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: the file has no faces", path);
-  if (status == CONIC_OK)
-    status = conic_triangles_take(context, &model, triangles);
-  conic_model_release(context, &model);
-  return status;
-}
-
 conic_status conic_mesh_read(conic_context *context, const char *path, const char *texture_path,
                              const conic_coloring_options *coloring, conic_triangles *triangles) {
-  conic_status status = read_faces(context, path, coloring, triangles);
+  conic_read_options options;
+  conic_read_options_init(&options);
+  conic_coloring_read(coloring, &options);
+  conic_status status = conic_triangles_read_model(context, path, &options, triangles);
   if (status == CONIC_OK)
     status = conic_mesh_check(context, path, triangles);
   if (status == CONIC_OK && texture_path)

@@ -49,6 +49,10 @@ conic_status conic_source_of_octree(conic_context *context, conic_octree *octree
   return conic_source_finish(measure_octree((octree_source *)*source), source);
 }
 
+const conic_octree *conic_source_octree(const conic_source *source) {
+  return source->kind == &conic_source_kind_octree ? ((const octree_source *)source)->octree : NULL;
+}
+
 static void close_octree(conic_source *source) {
   octree_source *o = (octree_source *)source;
   conic_selection_release(source->context, &o->selection);

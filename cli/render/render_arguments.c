@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/render/frames.h"
 
+static const char *const overdraw_words[] = {"log", "confetti", NULL};
 static const char *const exr_words[] = {"float", "half", NULL};
 static const char *const occlusion_words[] = {"auto", "on", "off", NULL};
 
@@ -49,9 +50,10 @@ static int check_streaming(const cli_render_job *job, int is_given) {
 
 /* What render's own options mean. */
 static int check_outputs(const cli_session *session, cli_render_job *job, int is_streaming_given) {
-  const char *paths[CLI_MAX_OUTPUTS + 4];
+  const char *paths[CLI_MAX_OUTPUTS + 5];
   int answer = CLI_DONE;
-  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->progressive_path)
+  if (job->n_outputs == 0 && !job->deep_path && !job->overdraw_path && !job->clusters_path && !job->boxes_path &&
+      !job->progressive_path)
     return cli_usage("render: no output; give one with -o OUT.exr, OUT.png, …");
   for (int i = 0; i < job->n_outputs && answer == CLI_DONE; i++)
     answer = check_output(job, paths[i] = job->outputs[i]);
@@ -59,12 +61,15 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
   paths[job->n_outputs + 1] = job->overdraw_path;
   paths[job->n_outputs + 2] = job->clusters_path;
   paths[job->n_outputs + 3] = job->legend_path;
+  paths[job->n_outputs + 4] = job->boxes_path;
   if (answer == CLI_DONE && job->deep_path)
     answer = check_deep(job);
   if (answer == CLI_DONE && job->overdraw_path)
     answer = check_output(job, job->overdraw_path);
   if (answer == CLI_DONE && job->clusters_path)
     answer = check_output(job, job->clusters_path);
+  if (answer == CLI_DONE && job->boxes_path)
+    answer = check_output(job, job->boxes_path);
   if (answer == CLI_DONE && job->legend_path)
     answer = check_output(job, job->legend_path);
   if (answer != CLI_DONE)
@@ -78,12 +83,13 @@ static int check_outputs(const cli_session *session, cli_render_job *job, int is
     answer = cli_mattes_check(job);
   if (answer == CLI_DONE)
     answer = cli_planes_check(session, job);
-  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 4) : answer;
+  return answer == CLI_DONE ? cli_frames_check(session, job, paths, job->n_outputs + 5) : answer;
 }
 
 int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job *job) {
   cli_scene_defaults(job);
   job->may_stream = job->is_for_looking = 1;
+  job->box_level = -1;
   conic_image_options_init(&job->writing);
   const char *compression_words[CONIC_N_COMPRESSIONS + 1] = {NULL};
   for (int i = 0; i < CONIC_N_COMPRESSIONS; i++)
@@ -104,6 +110,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        "every splat and triangle of every pixel, as a deep image: colour, depth, id, weight"},
       {"overdraw", CLI_TEXT, &job->overdraw_path, "OUT.png",
        "how many splats each pixel blends, in false colours: blue 1, red 4, yellow 16, white 64"},
+      {"overdraw-colors", CLI_CHOICE, &job->is_overdraw_confetti, "NAME",
+       "of --overdraw: log, or confetti: blue 1, green 8, red 16 [log]", .choices = overdraw_words},
       {"legend", CLI_FLAG, &job->has_legend, NULL, "what the colours mean, in the picture's lower right corner"},
       {"legend-out", CLI_TEXT, &job->legend_path, "OUT.png", "the same as a picture of its own"},
       {"cryptomatte", CLI_FLAG, &job->has_mattes, NULL,
@@ -112,6 +120,10 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
        .parse = cli_parse_turntable},
       {"frames", CLI_PARSED, &job->frames, "A:B:STEP", "of the turntable's frames 1 to N, A to B in steps of STEP",
        .parse = cli_parse_frames},
+      {"boxes", CLI_TEXT, &job->boxes_path, "OUT.png",
+       "of a .cot, the nodes of one level in false colours, with their boxes"},
+      {"box-level", CLI_INT, &job->box_level, "N", "of --boxes: the root is 0 [the deepest of at most 64 nodes]", 0,
+       127},
       {"clusters", CLI_TEXT, &job->clusters_path, "OUT.png", "the patches of a hybrid in false colours"},
       {"progressive", CLI_TEXT, &job->progressive_path, "DIR",
        "of an .lpc, also a picture of each level: DIR/0001.exr …"},
@@ -146,6 +158,8 @@ int cli_render_parse(cli_session *session, int argc, char **argv, cli_render_job
     job->planes |= 1u << CONIC_PLANE_COUNT;
   if (job->clusters_path)
     job->planes |= 1u << CONIC_PLANE_CLUSTER | 1u << CONIC_PLANE_RGBA;
+  if (job->boxes_path)
+    job->planes |= 1u << CONIC_PLANE_RGBA | 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_ID;
   if (job->planes & 1u << CONIC_PLANE_CLUSTER)
     job->planes |= 1u << CONIC_PLANE_ID;
   if (job->has_mattes)

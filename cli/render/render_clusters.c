@@ -1,15 +1,6 @@
 /* conic render --clusters: what belongs to which cluster of a hybrid. */
 #include "cli/render/render_job.h"
-
-/* A colour for a number: bright, and unlike those of its neighbours. */
-static void color_of(uint32_t number, float color[3]) {
-  uint32_t bits = (number + 1) * 2654435761u;
-  bits ^= bits >> 15;
-  bits *= 2246822519u;
-  bits ^= bits >> 13;
-  for (int channel = 0; channel < 3; channel++)
-    color[channel] = 0.08f + 0.92f * (float)(bits >> 8 * channel & 0xFF) / 255.0f;
-}
+#include "core/coloring/color_ramp.h"
 
 conic_status cli_clusters_write(cli_session *session, const cli_render_job *job, const char *path,
                                 const conic_image *image) {
@@ -25,7 +16,7 @@ conic_status cli_clusters_write(cli_session *session, const cli_render_job *job,
     float color[3], light = (from[4 * i] + from[4 * i + 1] + from[4 * i + 2]) / 3.0f;
     if (cluster[i] == CONIC_NO_ID)
       continue;
-    color_of(cluster[i], color);
+    conic_number_color(cluster[i], color);
     for (int channel = 0; channel < 3; channel++)
       to[4 * i + (size_t)channel] = color[channel] * light;
     to[4 * i + 3] = 1.0f;

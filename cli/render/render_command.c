@@ -93,7 +93,8 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
   double start = cli_seconds();
   if (!job->overdraw_path)
     return CONIC_OK;
-  conic_status status = conic_image_overdraw(session->context, image, &map);
+  conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
+                                                  : conic_image_overdraw(session->context, image, &map);
   char *path = cli_frame_name(job, job->overdraw_path, i_frame);
   if (status == CONIC_OK) {
     status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
@@ -111,6 +112,25 @@ static conic_status write_clusters(cli_session *session, cli_render_job *job, co
     return CONIC_OK;
   char *path = cli_frame_name(job, job->clusters_path, i_frame);
   conic_status status = path ? cli_clusters_write(session, job, path, image) : CONIC_ERROR_MEMORY;
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
+/* --boxes: the nodes of an octree. */
+static conic_status write_boxes(cli_session *session, cli_render_job *job, const conic_camera *camera,
+                                const conic_image *image, int i_frame) {
+  const conic_octree *octree = job->boxes_path ? conic_source_octree(job->source) : NULL;
+  conic_image map;
+  double start = cli_seconds();
+  if (!octree)
+    return CONIC_OK;
+  conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
+  char *path = cli_frame_name(job, job->boxes_path, i_frame);
+  if (status == CONIC_OK) {
+    status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
+    conic_image_release(session->context, &map);
+  }
   free(path);
   job->write_ms += 1e3 * (cli_seconds() - start);
   return status;
@@ -208,6 +228,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
     status = write_overdraw(session, job, image, i_frame);
   if (status == CONIC_OK)
     status = write_clusters(session, job, image, i_frame);
+  if (status == CONIC_OK)
+    status = write_boxes(session, job, &camera, image, i_frame);
   return status == CONIC_OK ? write_deep(session, job, &camera, image, i_frame) : status;
 }
 
@@ -245,9 +267,9 @@ static int render_scene(cli_session *session, cli_render_job *job) {
 
 /* What cannot be written is said before anything is read. */
 static conic_status check_formats(cli_session *session, const cli_render_job *job) {
-  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->legend_path};
+  const char *const maps[] = {job->overdraw_path, job->clusters_path, job->boxes_path, job->legend_path};
   conic_status status = cli_planes_check_formats(session, job);
-  for (int i = 0; i < 3 && status == CONIC_OK; i++)
+  for (int i = 0; i < 4 && status == CONIC_OK; i++)
     if (maps[i])
       status = conic_image_check_output_as(session->context, maps[i], 1u << CONIC_PLANE_RGBA, &job->writing);
   return status;

@@ -28,7 +28,10 @@ typedef struct cli_render_job {
   int n_outputs;
   const char *deep_path;        /* --deep; null: none */
   const char *overdraw_path;    /* --overdraw; null: none */
+  int is_overdraw_confetti;     /* --overdraw-colors */
   const char *clusters_path;    /* --clusters; null: none */
+  const char *boxes_path;       /* --boxes; null: none */
+  int box_level;                /* --box-level; below 0: what suits */
   const char *legend_path;      /* --legend-out; null: none */
   int has_legend;               /* --legend: in the picture */
   int has_mattes;               /* --cryptomatte */

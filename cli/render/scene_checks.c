@@ -32,6 +32,9 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
     return cli_usage("%s: --method patch draws points; not with --as mesh, nor hybrids", command);
   if (job->is_patch && cli_lod_is_wanted(job))
     return cli_usage("%s: --method patch draws samples of its own: not with --error or --budget", command);
+  if (job->boxes_path && job->abilities != CONIC_SOURCE_CHOOSES)
+    return cli_usage("%s: --boxes shows the nodes of a single .cot (conic octree makes one), not with --color-by",
+                     command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
@@ -76,7 +79,7 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return colors;
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
-  job->opening.is_whole = !cli_lod_is_wanted(job) && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
+  job->opening.is_whole = !cli_lod_is_wanted(job) && !job->boxes_path && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
   int answer = check_choice(session, job, words->as);
   return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
 }

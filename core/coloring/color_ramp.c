@@ -124,3 +124,12 @@ void conic_class_color(uint32_t number, float linear[3]) {
   for (int channel = 0; channel < 3; channel++)
     linear[channel] = (float)conic_srgb_decode((double)code[channel] / 255.0);
 }
+
+void conic_number_color(uint32_t number, float linear[3]) {
+  uint32_t bits = (number + 1) * 2654435761u;
+  bits ^= bits >> 15;
+  bits *= 2246822519u;
+  bits ^= bits >> 13;
+  for (int channel = 0; channel < 3; channel++)
+    linear[channel] = 0.08f + 0.92f * (float)(bits >> 8 * channel & 0xFF) / 255.0f;
+}

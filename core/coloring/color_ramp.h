@@ -21,6 +21,9 @@ void conic_ramp_color(conic_ramp ramp, double t, float linear[3]);
 /* The colour of a class; from 23 on one of eight, by turns. */
 void conic_class_color(uint32_t number, float linear[3]);
 
+/* A colour for a number: bright, and unlike those of its neighbours. */
+void conic_number_color(uint32_t number, float linear[3]);
+
 /* "ground", "water" …; null from 23 on. */
 const char *conic_class_name(uint32_t number);
 

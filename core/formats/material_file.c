@@ -12,6 +12,7 @@ typedef struct material_reader {
   conic_input input;
   const conic_texts *names;
   conic_material *materials, *current; /* null: one that nobody uses */
+  int has_warned;
 } material_reader;
 
 static conic_status read_name(void *data) {
@@ -49,6 +50,30 @@ static conic_status read_color(void *data) {
   return CONIC_OK;
 }
 
+/* Triangles are opaque; said once of a file. */
+static conic_status warn_of_opacity(material_reader *reader, double opaque) {
+  const char *word;
+  size_t length;
+  double value;
+  conic_status status = conic_input_word(&reader->input, &word, &length);
+  if (status != CONIC_OK || reader->has_warned || !reader->current || length == 0 ||
+      conic_number_parse(word, length, &value) != length || value == opaque)
+    return status;
+  reader->has_warned = 1;
+  conic_log(reader->input.context, CONIC_LOG_WARNING,
+            "%s: triangles are opaque: what d and Tr say is left out (line %llu)", reader->input.name,
+            (unsigned long long)reader->input.line);
+  return CONIC_OK;
+}
+
+static conic_status read_opacity(void *data) {
+  return warn_of_opacity(data, 1.0);
+}
+
+static conic_status read_transparency(void *data) {
+  return warn_of_opacity(data, 0.0);
+}
+
 /* map_Kd [-option value …] FILE: the file is the last word; `-clamp on` is the one option that matters here. */
 static conic_status read_map(void *data) {
   material_reader *reader = data;
@@ -82,7 +107,8 @@ static conic_status read_map(void *data) {
 
 conic_status conic_material_file_read(conic_context *context, const char *path, const conic_texts *names,
                                       conic_material *materials) {
-  static const conic_input_statement statements[] = {{"newmtl", read_name}, {"Kd", read_color}, {"map_Kd", read_map}};
+  static const conic_input_statement statements[] = {
+      {"newmtl", read_name}, {"Kd", read_color}, {"map_Kd", read_map}, {"d", read_opacity}, {"Tr", read_transparency}};
   material_reader reader = {.names = names, .materials = materials};
   conic_status status = conic_input_open(context, path, &reader.input);
   if (status != CONIC_OK)

@@ -3,6 +3,7 @@
 #define CONIC_MODEL_READ_H
 
 #include "conic/model.h"
+#include "conic/triangles.h"
 #include "core/files/input.h"
 #include "core/splats/builder.h"
 
@@ -17,5 +18,9 @@ conic_status conic_model_read_kind(conic_input *input, conic_model_kind kind, co
 /* Null options become the defaults. Errors: ARGUMENT. */
 conic_status conic_read_options_check(conic_context *context, const char *path, const conic_read_options *options,
                                       conic_read_options *settings);
+
+/* conic_triangles_read with these options, which then keep faces. */
+conic_status conic_triangles_read_model(conic_context *context, const char *path, conic_read_options *options,
+                                        conic_triangles *triangles);
 
 #endif

@@ -29,6 +29,7 @@ typedef struct obj_reader {
   conic_builder builder;
   uint64_t counts[N_KINDS];
   largest_index used[N_KINDS];
+  uint64_t n_lines;
   double (*normals)[3];
   size_t normal_capacity;
   obj_corner *corners;
@@ -256,9 +257,18 @@ static conic_status read_libraries(void *data) {
   }
 }
 
-static const conic_input_statement statements[] = {{"v", read_vertex},        {"vn", read_normal},
-                                                   {"vt", read_texture},      {"f", read_face},
-                                                   {"usemtl", read_material}, {"mtllib", read_libraries}};
+/* Said once of a file. */
+static conic_status leave_out_line(void *data) {
+  obj_reader *reader = data;
+  if (reader->n_lines++ == 0)
+    conic_log(reader->input->context, CONIC_LOG_WARNING, "%s: lines are not drawn, and are left out (line %llu)",
+              reader->input->name, (unsigned long long)reader->input->line);
+  return CONIC_OK;
+}
+
+static const conic_input_statement statements[] = {
+    {"v", read_vertex},        {"vn", read_normal},        {"vt", read_texture}, {"f", read_face},
+    {"usemtl", read_material}, {"mtllib", read_libraries}, {"l", leave_out_line}};
 
 static conic_status check_indices(const obj_reader *reader) {
   for (int kind = VERTEX; kind < N_KINDS; kind++)

@@ -6,6 +6,7 @@
 #include "core/base/message.h"
 #include "core/files/file.h"
 #include "core/formats/material_file.h"
+#include "core/formats/model_read.h"
 #include "core/splats/faces.h"
 
 /* Moves the model's vertices, their colours, normals and scalars, and its faces. */
@@ -183,13 +184,12 @@ conic_status conic_triangles_take(conic_context *context, conic_model *model, co
   return status;
 }
 
-conic_status conic_triangles_read(conic_context *context, const char *path, conic_triangles *triangles) {
-  conic_read_options options;
+conic_status conic_triangles_read_model(conic_context *context, const char *path, conic_read_options *options,
+                                        conic_triangles *triangles) {
   conic_model model;
   memset(triangles, 0, sizeof *triangles);
-  conic_read_options_init(&options);
-  options.keeps_faces = 1;
-  conic_status status = conic_model_read(context, path, &options, &model);
+  options->keeps_faces = 1;
+  conic_status status = conic_model_read(context, path, options, &model);
   if (status != CONIC_OK)
     return status;
   if (model.n_triangles == 0)
@@ -198,4 +198,10 @@ conic_status conic_triangles_read(conic_context *context, const char *path, coni
     status = conic_triangles_take(context, &model, triangles);
   conic_model_release(context, &model);
   return status;
+}
+
+conic_status conic_triangles_read(conic_context *context, const char *path, conic_triangles *triangles) {
+  conic_read_options options;
+  conic_read_options_init(&options);
+  return conic_triangles_read_model(context, path, &options, triangles);
 }

@@ -98,7 +98,22 @@ conic_status conic_image_flip_heatmap(conic_context *context, const conic_image 
   return status;
 }
 
-conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map) {
+/* Blue at 1, white at 64, by the logarithm. */
+static void paint_count(uint32_t count, float pixel[4]) {
+  paint(scale_position((double)count * 0x1p-6, -6), pixel);
+}
+
+/* Blue at 1, green at 8, red at 16. */
+static void paint_confetti(uint32_t count, float pixel[4]) {
+  float above = count < 16 ? (float)(count - 1) : 15.0f;
+  float low = above < 7.0f ? above / 7.0f : 1.0f, high = above > 7.0f ? (above - 7.0f) / 8.0f : 0.0f;
+  pixel[0] = high;
+  pixel[1] = low - high;
+  pixel[2] = 1.0f - low;
+}
+
+static conic_status paint_overdraw(conic_context *context, const conic_image *image,
+                                   void paint_one(uint32_t count, float pixel[4]), conic_image *map) {
   const uint32_t *count = image ? image->planes[CONIC_PLANE_COUNT] : NULL;
   if (map)
     memset(map, 0, sizeof *map);
@@ -110,8 +125,16 @@ conic_status conic_image_overdraw(conic_context *context, const conic_image *ima
   float *pixel = map->planes[CONIC_PLANE_RGBA];
   for (size_t i = 0; i < conic_image_pixels(image); i++, pixel += 4) {
     if (count[i] > 0)
-      paint(scale_position((double)count[i] * 0x1p-6, -6), pixel);
+      paint_one(count[i], pixel);
     pixel[3] = 1.0f;
   }
   return CONIC_OK;
+}
+
+conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map) {
+  return paint_overdraw(context, image, paint_count, map);
+}
+
+conic_status conic_image_overdraw_confetti(conic_context *context, const conic_image *image, conic_image *map) {
+  return paint_overdraw(context, image, paint_confetti, map);
 }

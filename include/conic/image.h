@@ -202,6 +202,11 @@ CONIC_API double conic_image_exposure(const conic_image *image);
  * Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_image_overdraw(conic_context *context, const conic_image *image, conic_image *map);
 
+/* The same in the colours of Confetti (Fig. 18): black for none, blue for one, green for 8, red for 16 and more,
+ * straight between. */
+CONIC_API conic_status conic_image_overdraw_confetti(conic_context *context, const conic_image *image,
+                                                     conic_image *map);
+
 #ifdef __cplusplus
 }
 #endif

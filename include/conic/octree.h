@@ -85,6 +85,13 @@ CONIC_API conic_status conic_octree_check(conic_octree *octree, conic_octree_def
  * releases *splats. Errors: MEMORY. */
 CONIC_API conic_status conic_octree_leaves(const conic_octree *octree, conic_splats *splats);
 
+/* A picture of how the octree parts its points: what `image` shows, in colours of the nodes of a level (the root's is
+ * 0, below 0 stands for the deepest that has no more than 64), with a box of lines around the centres of each of these
+ * nodes' leaves, fainter where it is behind what is drawn. `image` was drawn from this octree with this camera, and has
+ * rgba, Z and id. On success the caller owns *map. Errors: ARGUMENT, MEMORY, CANCELLED. */
+CONIC_API conic_status conic_octree_draw_boxes(const conic_octree *octree, const conic_camera *camera, int level,
+                                               const conic_image *image, conic_image *map);
+
 typedef struct conic_selection_options {
   size_t size;     /* sizeof(conic_selection_options), set by the init function */
   double error_px; /* above 0: the greatest error on the screen */
@@ -109,8 +116,9 @@ typedef struct conic_selection {
 } conic_selection;
 
 /* Chooses what to draw: of every leaf in sight, itself or one of the nodes above it, the first from the root whose
- * error is at most so many pixels wherever in its sphere it is projected. The kernel's cutoff must be the octree's.
- * Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not here). */
+ * error is at most so many pixels wherever in its sphere it is projected, and more where it is seen from its side. The
+ * kernel's cutoff must be the octree's. Errors: ARGUMENT, MEMORY, UNSUPPORTED (the options' instruction set is not
+ * here). */
 CONIC_API conic_status conic_octree_select(conic_octree *octree, const conic_camera *camera,
                                            const conic_render_options *render, const conic_selection_options *options,
                                            conic_selection *selection);

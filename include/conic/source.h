@@ -84,6 +84,9 @@ CONIC_API conic_status conic_source_open(conic_context *context, const char *con
  * caller's, on failure too. `triangles` may be null; splats are to have tangent axes. Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_source_of_drawing(conic_context *context, conic_splats *splats, conic_triangles *triangles,
                                                conic_source **source);
+/* The octree that a source draws from; null where it is none. */
+CONIC_API const conic_octree *conic_source_octree(const conic_source *source);
+
 CONIC_API conic_status conic_source_of_octree(conic_context *context, conic_octree *octree, conic_source **source);
 CONIC_API conic_status conic_source_of_hybrid(conic_context *context, conic_hybrid *hybrid, conic_source **source);
 

@@ -7,8 +7,9 @@
 typedef struct conic_octree_view conic_octree_view;
 
 /* For n nodes from `begin` on: pixels[k] is below 0 where nothing of node begin + k is in sight, else the most that its
- * error can be on the screen, which is infinite where it reaches the near plane; with --cull back, that of its diameter
- * where some of its leaves may face away. `pixels` has room for n rounded up to whole groups. */
+ * error can be on the screen, less where the node is seen from its side, and infinite where it reaches the near plane;
+ * with --cull back, that of its diameter where some of its leaves may face away. `pixels` has room for n rounded up to
+ * whole groups. */
 typedef void conic_measure_function(const conic_octree *octree, const conic_octree_view *view, size_t begin, size_t n,
                                     float *pixels);
 

@@ -86,6 +86,15 @@ fi
 # What each pixel blends, as a picture.
 run 0 render knot.cot --overdraw overdraw.pfm --size 64x64 --error 1
 run 0 render knot.cot --overdraw turn.pfm --size 64x64 --turntable 2
+run 0 render knot.cot --overdraw confetti.pfm --overdraw-colors confetti --size 64x64 --error 1
+cmp -s overdraw.pfm confetti.pfm && fail "the overdraw has one set of colours"
+run 0 render knot.cot --boxes boxes.pfm --size 64x64
+run 0 render knot.cot --boxes deeper.pfm --box-level 4 --size 64x64 --threads 1
+run 0 render knot.cot --boxes again.pfm --box-level 4 --size 64x64 -o beside.pfm
+cmp -s boxes.pfm deeper.pfm && fail "all levels have the same boxes"
+cmp -s again.pfm deeper.pfm || fail "the boxes depend on what is drawn beside them"
+run 2 render knot.ply --boxes boxes.pfm
+run 2 render knot.cot --boxes boxes.pfm -o boxes.pfm
 [[ -s overdraw.pfm && -s turn.0002.pfm ]] || fail "no picture of the overdraw"
 run 2 render knot.cot -o overdraw.pfm --overdraw overdraw.pfm
 run 2 render knot.cot --overdraw overdraw

@@ -13,6 +13,19 @@ static void write_seed(const char *folder, const seed *from) {
   }
 }
 
+/* The same EXR as if it were packed as DWAA, which OpenEXRCore leaves to OpenImageIO. */
+static void write_packed_seed(const char *folder, const seed *from) {
+  static const char before[] = "compression\0compression\0\1\0\0"; /* the 0 at its end is the size's last byte */
+  for (size_t i = 0; i + sizeof before < from->n_bytes; i++)
+    if (memcmp(from->bytes + i, before, sizeof before) == 0) {
+      seed packed = *from;
+      from->bytes[i + sizeof before] = 8;
+      snprintf(packed.name, sizeof packed.name, "dwaa-%.20s", from->name);
+      write_seed(folder, &packed);
+      return;
+    }
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
@@ -24,6 +37,9 @@ int main(int argc, char **argv) {
   seeds_all_records(set);
   for (int i = 0; i < set->n; i++)
     write_seed(argv[1], &set->seeds[i]);
+  for (int i = 0; i < set->n; i++)
+    if (strcmp(set->seeds[i].target, "exr") == 0)
+      write_packed_seed(argv[1], &set->seeds[i]);
   seeds_release(set);
   files_end(context);
   return check_result();
