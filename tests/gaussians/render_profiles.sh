@@ -15,12 +15,12 @@ hash_of() { # PLANE, of the JSON in `out`
 }
 
 # By default exact; with --plain, as splats; --profile goes before both.
-run_as_typed 0 render two.ply --size 40x40 --json -
+run_as_typed 0 render two.ply --size 40x40 -o a.exr --json -
 grep -q '"profile": "exact"' out || fail "the default is not exact: $(cat out)"
-run 0 render two.ply --size 40x40 --json -
+run 0 render two.ply --size 40x40 -o a.exr --json -
 grep -q '"profile"' out && fail "--plain composites"
 plain=$(hash_of rgba)
-run_as_typed 0 render two.ply --plain --profile surface --size 40x40 --json -
+run_as_typed 0 render two.ply --plain --profile surface --size 40x40 -o a.exr --json -
 [[ $(hash_of rgba) == "$plain" ]] || fail "surface is not what --plain draws"
 for profile in inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-aa 2dgs-2024 2dgs-gsplat khr-2026 exact; do
   run 0 render two.ply --profile $profile --size 40x40 --aov rgba,T,Z,N,count,id,last,medianZ,inverseZ -o $profile.exr --json -
@@ -28,7 +28,7 @@ for profile in inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-aa 2dgs
   wanted=$(hash_of rgba)$(hash_of T)$(hash_of count)
   for how in "--threads 1" "--isa scalar" "--isa sse2" "--tile 16"; do
     # shellcheck disable=SC2086
-    "$conic" render two.ply --plain --profile $profile --size 40x40 --aov rgba,T,count --json - $how > out 2> err || continue
+    "$conic" render two.ply --plain --profile $profile --size 40x40 --aov rgba,T,count -o a.exr --json - $how > out 2> err || continue
     [[ $(hash_of rgba)$(hash_of T)$(hash_of count) == "$wanted" ]] || fail "$profile $how: other bits"
   done
 done
@@ -46,8 +46,8 @@ fi
 run 0 convert "$data/biker.spz" -o a.ply
 run 0 render a.ply --profile exact --size 200x200 -o a.exr
 run 0 render "$data/biker.compressed.ply" --profile exact --size 200x200 -o b.exr
-run 0 diff a.exr b.exr --json -
+run 1 diff a.exr b.exr --json -
 psnr=$(grep -o '"psnr": [0-9.]*' out | grep -o '[0-9.]*$')
-perl -e 'exit !($ARGV[0] > 30)' "${psnr:-0}" || fail "biker differs by file: $psnr dB"
+perl -e 'exit !($ARGV[0] > 45)' "${psnr:-0}" || fail "biker differs by file: $psnr dB"
 
 [[ $failures -eq 0 ]]
