@@ -138,6 +138,9 @@ conic_status conic_frame_begin(conic_frame *f) {
     status = conic_frame_copy(f, CONIC_BUFFER_VIEW, f->view, sizeof *f->view);
   const conic_view *v = f->view;
   if (status == CONIC_OK)
+    status = conic_frame_give(f, CONIC_BUFFER_PROFILE, v->profile.table,
+                              v->profile.table ? CONIC_PROFILE_FLOATS * sizeof(float) : 0);
+  if (status == CONIC_OK)
     status = write_directions(f, CONIC_BUFFER_DIRECTIONS_X, c->n_tiles_x, v->width, v->cx, v->fx);
   return status == CONIC_OK ? write_directions(f, CONIC_BUFFER_DIRECTIONS_Y, c->n_tiles_y, v->height, v->cy, v->fy)
                             : status;

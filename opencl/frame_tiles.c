@@ -1,7 +1,7 @@
 /* From records to pixels: the tiles' lists, and the passes over them. */
 #include "opencl/frame.h"
 
-enum { ARGUMENTS_OF_RECORDS = 8 };
+enum { ARGUMENTS_OF_RECORDS = 9 };
 
 /* Chunks that are counted and filled at the same time: enough of them for all units, few enough for their counts. */
 static uint32_t chunks_of(const conic_frame *f) {
@@ -62,9 +62,10 @@ conic_status conic_frame_bin(conic_frame *f, int *fits) {
 
 /* What every kernel of the raster reads. */
 static int records(const conic_frame *f, conic_argument *to) {
-  const int buffers[ARGUMENTS_OF_RECORDS] = {CONIC_BUFFER_VIEW,       CONIC_BUFFER_FRAME,       CONIC_BUFFER_TILE_BEGIN,
-                                             CONIC_BUFFER_REFERENCES, CONIC_BUFFER_FOOTPRINTS,  CONIC_BUFFER_SURFACES,
-                                             CONIC_BUFFER_RAYS,       CONIC_BUFFER_CLIP_RECORDS};
+  const int buffers[ARGUMENTS_OF_RECORDS] = {
+      CONIC_BUFFER_VIEW,       CONIC_BUFFER_FRAME,        CONIC_BUFFER_TILE_BEGIN,
+      CONIC_BUFFER_REFERENCES, CONIC_BUFFER_FOOTPRINTS,   CONIC_BUFFER_SURFACES,
+      CONIC_BUFFER_RAYS,       CONIC_BUFFER_CLIP_RECORDS, CONIC_BUFFER_PROFILE};
   for (int i = 0; i < ARGUMENTS_OF_RECORDS; i++)
     to[i] = conic_frame_argument(f, buffers[i]);
   return ARGUMENTS_OF_RECORDS;

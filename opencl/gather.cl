@@ -34,12 +34,21 @@ static int gather_fragment(const conic_view *view, conic_device_reference refere
 #define GATHER_RECORDS                                                                                                 \
   __constant conic_view *frame_view, __constant conic_device_frame *frame_constants, __global const ulong *tile_begin, \
       __global const conic_device_reference *references, __global const conic_footprint *footprints,                   \
-      __global const conic_projected_surface *surfaces, __global const conic_ray *rays, __global const conic_clip_record *clips
+      __global const conic_projected_surface *surfaces, __global const conic_ray *rays, __global const conic_clip_record *clips,   \
+      __global const float *profile_table
+
+/* The view, with the table of its profile where that is here. */
+static conic_view view_of(__constant conic_view *frame_view, __global const float *profile_table) {
+  conic_view view = *frame_view;
+  if (view.profile.table)
+    view.profile.table = profile_table;
+  return view;
+}
 
 /* Pass 1: every pixel's threshold, and how many fragments there are. */
 __kernel void gather_visibility(GATHER_RECORDS, __global const float *columns, __global const float *rows,
                                 __global float *thresholds, __global uint *n_fragments) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   gather_pixel p = gather_pixel_of(&frame);
   uint at = p.block * 16 + p.lane, n_covered = 0;
@@ -96,7 +105,7 @@ static void gather_finish(const conic_device_frame *frame, const gather_pixel *p
 
 /* Pass 2 and, with the last part of the splats, pass 3. */
 __kernel void gather_accumulate(GATHER_RECORDS, __global const float *thresholds, __global float *sums, PIXEL_PLANES) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   gather_pixel p = gather_pixel_of(&frame);
   gather_sums s = {0};
@@ -129,7 +138,7 @@ __kernel void gather_accumulate(GATHER_RECORDS, __global const float *thresholds
 
 /* In place of both where the nearest splat wins alone. */
 __kernel void gather_nearest(GATHER_RECORDS, __global uint *n_fragments, __global float *sums, PIXEL_PLANES) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   gather_pixel p = gather_pixel_of(&frame);
   gather_sums s = {0};

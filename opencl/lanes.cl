@@ -32,12 +32,20 @@ static void lanes_fetch(__global const conic_device_reference *reference, __glob
   splat->row_last = blocks >> 12;
 }
 
+/* In the rows from y on. */
+static splat_rows lanes_begin(const conic_view *view, const lanes_splat *splat, int y) {
+  splat_rows rows = begin_rows(&splat->footprint, rows_from(y));
+  if (view->profile.table)
+    begin_profile(view, &splat->footprint, &splat->ray, 0, &rows);
+  return rows;
+}
+
 /* Its fragments in block (column, row) of the tile; 0 where it covers none of its pixels. */
 static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_splat *splat, const splat_rows *rows,
                        uint column, uint i_row, fragments *f) {
   int x = t->x + 4 * (int)column;
   fragments_at(view, view->support, &splat->footprint, &splat->ray, 0, &splat->clip, 0, rows, columns_from(x),
-               splat->is_special, f);
+               view->profile.table ? SPLAT_PROFILED : splat->is_special ? SPLAT_SPECIAL : SPLAT_USUAL, f);
   if (t->is_at_border)
     f->covered &= lanes_inside(t, x, t->y + 4 * (int)i_row);
   return lanes_any(f->covered);
@@ -51,7 +59,7 @@ static int lanes_cover(const conic_view *view, const lanes_tile *t, const lanes_
     CONIC_FETCH_AHEAD(&footprints[references[min(i + LANES_AHEAD, tile_begin[t.index + 1] - 1)].footprint]);           \
     before lanes_fetch(&references[i], footprints, rays, clips, &splat);                                               \
     for (uint i_row = splat.row_begin; i_row <= splat.row_last; i_row++) {                                             \
-      splat_rows row = begin_rows(&splat.footprint, rows_from(t.y + 4 * (int)i_row));                                  \
+      splat_rows row = lanes_begin(&view, &splat, t.y + 4 * (int)i_row);                                  \
       for (uint column = splat.column_begin; column <= splat.column_last; column++) {                                  \
         uint block = CONIC_DEVICE_TILE_BLOCKS * i_row + column;                                                        \
         fragments fragment;                                                                                       \
@@ -86,7 +94,7 @@ static lanes lanes_hiding_iz(const conic_footprint *footprint, const fragments *
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 lanes_visibility(GATHER_RECORDS, __global const float *columns, __global const float *rows, __global lanes *thresholds,
                  __global uint *n_fragments, __global ulong *masks) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes threshold[N_TILE_BLOCKS];
@@ -113,7 +121,7 @@ lanes_visibility(GATHER_RECORDS, __global const float *columns, __global const f
 
 static void lanes_blend(const conic_view *view, const lanes_splat *splat, __global const conic_projected_surface *surface,
                         const fragments *f, lanes_mask is_visible, lanes_sums *s) {
-  lanes weight = weigh(view, splat->footprint.amplitude, f->q, f->scale, is_visible, kind_of(&view->kernel));
+  lanes weight = weigh(view, splat->footprint.amplitude, f->q, f->scale, is_visible, kind_of_view(view));
   s->values[CONIC_SUM_WEIGHT] += weight;
   for (int axis = 0; axis < 3; axis++) {
     s->values[CONIC_SUM_COLOR + axis] += weight * surface->color[axis];
@@ -196,7 +204,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
                                                                               __global const lanes *thresholds,
                                                                               __global lanes *sums, PIXEL_PLANES,
                                                                               __global const ulong *masks) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes threshold[N_TILE_BLOCKS];
@@ -222,7 +230,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_accumulate(GA
       uint block = 63 - (uint)clz(mask & -mask), i_row = block / CONIC_DEVICE_TILE_BLOCKS;
       fragments fragment;
       if (i_row != row_begun)
-        row = begin_rows(&splat.footprint, rows_from(t.y + 4 * (int)i_row));
+        row = lanes_begin(&view, &splat, t.y + 4 * (int)i_row);
       row_begun = i_row;
       lanes_cover(&view, &t, &splat, &row, block % CONIC_DEVICE_TILE_BLOCKS, i_row, &fragment);
       int16 is_visible = fragment.covered & (lanes_max(fragment.plane_iz, fragment.iz) >= threshold[block]);
@@ -266,7 +274,7 @@ static void lanes_take_nearest(const conic_view *view, const conic_device_frame 
 /* In place of both where the nearest splat wins alone. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void lanes_nearest(GATHER_RECORDS, __global uint *n_fragments,
                                                                            __global lanes *sums, PIXEL_PLANES) {
-  conic_view view = *frame_view;
+  conic_view view = view_of(frame_view, profile_table);
   conic_device_frame frame = *frame_constants;
   lanes_tile t = lanes_tile_of(&frame);
   lanes q[N_TILE_BLOCKS], scale[N_TILE_BLOCKS];

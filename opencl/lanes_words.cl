@@ -2,6 +2,7 @@
  * pixels or as many splats. */
 #define CONIC_LANES_H
 #define CONIC_LANES_DOUBLE_H
+#define CONIC_LANES_TABLE_H
 #define CONIC_LANES 16
 #define CONIC_WIDE_LANES 8
 #define CONIC_INLINE static inline
@@ -94,6 +95,19 @@ CONIC_INLINE uint lanes_count(lanes_mask mask) {
   int4 b = a.lo + a.hi;
   int2 c = b.lo + b.hi;
   return (uint)-(c.x + c.y);
+}
+
+#define CONIC_TABLE_PARTS 1
+
+typedef struct lanes_table {
+  lanes part[CONIC_TABLE_PARTS];
+} lanes_table;
+
+CONIC_INLINE lanes lanes_look_up(const lanes_table *table, int_lanes place) {
+  lanes value;
+  for (int lane = 0; lane < CONIC_LANES; lane++)
+    ((float *)&value)[lane] = ((const float *)table)[((const int *)&place)[lane] & 15];
+  return value;
 }
 
 #include "core/lanes/lanes_exponential.h"

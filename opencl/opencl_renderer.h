@@ -27,6 +27,7 @@ typedef enum conic_kernel_name {
 
 typedef enum conic_buffer_name {
   CONIC_BUFFER_VIEW,
+  CONIC_BUFFER_PROFILE, /* its table */
   CONIC_BUFFER_FRAME,
   CONIC_BUFFER_COLUMNS, /* of the splat set: position, tangent_u, tangent_v, colour, opacity */
   CONIC_BUFFER_CLIPS = CONIC_BUFFER_COLUMNS + 13,

@@ -13,6 +13,9 @@
 #define rotate conic_rotate
 #define dot conic_dot_of_floats
 
+/* Where a profile's table is: core/splats/profile.h. */
+#define CONIC_FAR __global
+
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -15,6 +15,7 @@ oracle_view conic_oracle_view(const conic_camera *camera, const conic_render_opt
   if (options->method == CONIC_METHOD_AUTO)
     view.thin_px = 0.125 * sqrt(oracle_max(view.prefilter, 1.0));
   view.cull_back = options->cull_back;
+  view.profile = NULL;
   return view;
 }
 

@@ -23,6 +23,20 @@ double conic_oracle_exp(double x) {
   return sum * power;
 }
 
+/* x = m·2ᵏ with m within √½ … √2, and ln m = 2·artanh((m − 1)/(m + 1)) by its series. */
+double conic_oracle_log(double x) {
+  int k;
+  double m = frexp(x, &k);
+  if (m < 0.70710678118654752440) {
+    m *= 2.0;
+    k--;
+  }
+  double t = (m - 1.0) / (m + 1.0), square = t * t, sum = 0.0;
+  for (int n = 25; n > 0; n -= 2)
+    sum = sum * square + 1.0 / n;
+  return k * 0.69314718055994530942 + 2.0 * t * sum;
+}
+
 int conic_oracle_invert(const double matrix[3][3], double inverse[3][3]) {
   double rows[3][6];
   for (int i = 0; i < 3; i++)

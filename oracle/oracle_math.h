@@ -8,6 +8,9 @@
 /* eˣ; relative error under 1e-15, 0 below -700 and infinite above 709. */
 double conic_oracle_exp(double x);
 
+/* ln x for 0 < x < ∞; relative error under 1e-15, near 1 of x − 1's. */
+double conic_oracle_log(double x);
+
 /* The inverse of a 3 × 3 matrix by elimination with pivots; 0 where it has none. */
 int conic_oracle_invert(const double matrix[3][3], double inverse[3][3]);
 

@@ -4,6 +4,7 @@
 #include "core/base/message.h"
 #include "core/image/view_arguments.h"
 #include "oracle/oracle_exact.h"
+#include "oracle/oracle_profile.h"
 
 static oracle_formula formula_of(const oracle_view *view, const int is_so[ORACLE_N_QUESTIONS]) {
   static const oracle_formula formulas[CONIC_N_METHODS] = {[CONIC_METHOD_CONIC] = ORACLE_CONIC,
@@ -38,6 +39,9 @@ conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat
       !conic_oracle_shape(&view, &placed, formula_of(&view, is_so), &shape))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "the splat has no footprint of its own on the screen");
   conic_oracle_exact(&view, &placed, &exact);
+  status = conic_oracle_profile_create(context, &view);
+  if (status != CONIC_OK)
+    return status;
   for (size_t i = 0; i < n; i++) {
     conic_oracle_sample *sample = &samples[i];
     double values[ORACLE_N_VALUES];
@@ -49,5 +53,6 @@ conic_status conic_oracle_probe(conic_context *context, const conic_oracle_splat
     sample->inverse_depth = values[ORACLE_IZ];
     sample->plane_inverse_depth = values[ORACLE_IZ_PLANE];
   }
+  conic_oracle_profile_release(context, &view);
   return CONIC_OK;
 }

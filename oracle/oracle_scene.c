@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/threads.h"
 #include "core/splats/clip.h"
+#include "oracle/oracle_profile.h"
 
 /* An axis is turned into camera space and sheared in single precision, so that each of its components may be off by a
  * rounding of the whole. */
@@ -306,7 +307,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
   scene->options = options;
   scene->is_brute = is_brute;
   scene->reaches = conic_memory_allocate(context, splats->count, sizeof *scene->reaches);
-  conic_status status = scene->reaches ? CONIC_OK : CONIC_ERROR_MEMORY;
+  conic_status status = scene->reaches ? conic_oracle_profile_create(context, &scene->view) : CONIC_ERROR_MEMORY;
   if (status == CONIC_OK && !(scene->longest > 0.0))
     status = median_length(context, splats, &scene->longest);
   if (status == CONIC_OK)
@@ -318,6 +319,7 @@ conic_status conic_oracle_scene_create(conic_context *context, const conic_splat
 }
 
 void conic_oracle_scene_release(conic_context *context, oracle_scene *scene) {
+  conic_oracle_profile_release(context, &scene->view);
   conic_memory_release(context, scene->reaches);
   scene->reaches = NULL;
 }

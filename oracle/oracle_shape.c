@@ -142,10 +142,10 @@ static void set_ray_reference(const oracle_view *view, const oracle_placed *s, o
   const conic_camera *c = &view->camera;
   const double size[2] = {c->width, c->height}, focal[2] = {c->fx, c->fy}, principal[2] = {c->cx, c->cy};
   for (int i = 0; i < 2; i++) {
-    double low = oracle_min(oracle_max(shape->box[0][i], 0.0), size[i]);
-    double high = oracle_min(oracle_max(shape->box[1][i], 0.0), size[i]);
-    shape->center[i] =
-        conic_oracle_is_before_near(view, s) ? focal[i] * s->p[i] / s->p[2] + principal[i] : 0.5 * (low + high);
+    double first = oracle_max(ceil(shape->box[0][i] - 0.5), 0.0);
+    double last = oracle_min(floor(shape->box[1][i] - 0.5), size[i] - 1.0);
+    shape->center[i] = conic_oracle_is_before_near(view, s) ? focal[i] * s->p[i] / s->p[2] + principal[i]
+                                                            : floor(0.5 * (first + last + 1.0)) + 0.5;
   }
 }
 

@@ -25,6 +25,7 @@ typedef struct oracle_view {
   double thin_px;   /* below this smaller standard deviation a splat is not drawn by ray */
   int method;
   int cull_back;
+  const struct oracle_profile *profile; /* null: the kernel is taken as it is */
 } oracle_view;
 
 /* The error of a weight from which on `auto` draws by ray, and the bound's factor: docs/reference/picture.md, Auto. */

@@ -13,7 +13,7 @@
 #include "source/source_kind.h"
 
 /* Every kind, in the order in which they are asked; the last takes whatever is left. */
-static const conic_source_kind *const kinds[] = {&conic_source_kind_layers, &conic_source_kind_hybrid,
+static const conic_source_kind *const kinds[] = {&conic_source_kind_gaussians, &conic_source_kind_layers, &conic_source_kind_hybrid,
                                                  &conic_source_kind_patches, &conic_source_kind_octree,
                                                  &conic_source_kind_drawing};
 enum { N_KINDS = sizeof kinds / sizeof kinds[0] };
@@ -106,7 +106,7 @@ conic_status conic_source_open(conic_context *context, const char *const *paths,
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "source: no input, or the options were not initialised");
   const conic_source_kind *kind = find_kind(paths, n_paths, &own);
   if (kind->company == CONIC_SOURCE_ALONE && n_paths != 1)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid is drawn by itself, and made of one mesh", paths[0]);
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: a hybrid, and a Gaussian scene, is drawn by itself", paths[0]);
   if (conic_coloring_is_asked(&own) && (kind == &conic_source_kind_octree || kind == &conic_source_kind_layers))
     return conic_coloring_refuse(context, paths[0], &own);
   return conic_source_open_kind(context, kind, paths, n_paths, &own, source);

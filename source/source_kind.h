@@ -65,7 +65,7 @@ struct conic_source {
 };
 
 extern const conic_source_kind conic_source_kind_drawing, conic_source_kind_octree, conic_source_kind_layers,
-    conic_source_kind_hybrid, conic_source_kind_patches;
+    conic_source_kind_hybrid, conic_source_kind_patches, conic_source_kind_gaussians;
 
 /* The kind of a file that only one reads; null: it is read as a model. */
 const conic_source_kind *conic_source_kind_of_file(const char *path);

@@ -70,8 +70,9 @@ static conic_status compare(cli_session *session, verify_job *job) {
   if (status == CONIC_OK)
     status = check_size(job, &camera);
   conic_render_options options = job->scene.options;
-  if (choice->is_all)
-    options.splat_length = 0.0; /* the oracle sees all splats, and measures them by itself */
+  const conic_splats *splats = choice->drawing.splats;
+  if (choice->is_all && !(splats && splats->dot))
+    options.splat_length = 0.0; /* the oracle sees all splats as they are kept, and measures them by itself */
   double start = cli_seconds();
   if (status == CONIC_OK)
     status = conic_oracle_render_pixels(session->context, &choice->drawing, &camera, &options,

@@ -9,6 +9,9 @@
 /* Chosen by eye: darker than what is lit, so that plaster stands out, and lighter than the shades of scans. */
 static const cli_backdrop studio = {.is_given = 1, .top = {0.08f, 0.088f, 0.1f}, .bottom = {0.022f, 0.023f, 0.025f}};
 
+/* Behind Gaussian scenes, which bring their own surroundings. */
+static const cli_backdrop night = {.is_given = 1};
+
 int cli_parse_background(const char *text, void *value) {
   cli_render_job *job = value;
   conic_render_options *options = &job->options;
@@ -73,7 +76,7 @@ conic_status cli_backdrop_write(cli_session *session, const cli_render_job *job,
     return status;
   shown.planes[CONIC_PLANE_RGBA] = alone.planes[CONIC_PLANE_RGBA];
   memcpy(alone.planes[CONIC_PLANE_RGBA], rgba, (size_t)image->width * (size_t)image->height * 4 * sizeof *rgba);
-  put_behind(&studio, 1.0f, &alone);
+  put_behind(image->is_display ? &night : &studio, 1.0f, &alone);
   status = cli_planes_write(session, job, path, &shown);
   conic_image_release(session->context, &alone);
   return status;

@@ -61,7 +61,9 @@ int cli_parse_exposure(const char *text, void *value) {
 
 /* Of those that --aov may name. */
 static int find_plane(const char *name, size_t length) {
-  for (int i = 0; i < CONIC_PLANE_MATTE_0; i++) {
+  for (int i = 0; i < CONIC_N_PLANES; i++) {
+    if (CONIC_MATTE_PLANES >> i & 1)
+      continue;
     const char *known = conic_plane_describe((conic_plane)i)->name;
     if (strlen(known) == length && strncmp(known, name, length) == 0)
       return i;

@@ -67,6 +67,7 @@ typedef struct cli_render_job {
 
   /* What is drawn. */
   conic_source_options opening;
+  conic_gaussian_options gaussians; /* the opening's, unless they are drawn as splats */
   conic_patches_options patches; /* the opening's, as is the next */
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */

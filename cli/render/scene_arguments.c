@@ -16,10 +16,13 @@ static const char *const only_words[] = {"triangles", "surfels", NULL};
 /* The words of choices that the library names, in the order of its numbers. */
 typedef struct library_words {
   const char *methods[CONIC_N_METHODS + 2], *shadings[CONIC_N_SHADINGS + 1], *isas[CONIC_N_ISAS + 1];
+  const char *profiles[CONIC_N_GAUSSIAN_PROFILES + 2];
 } library_words;
 
 static library_words find_words(void) {
-  library_words words = {.methods[CONIC_N_METHODS] = "patch"};
+  library_words words = {.methods[CONIC_N_METHODS] = "patch", .profiles[CONIC_N_GAUSSIAN_PROFILES] = "surface"};
+  for (int i = 0; i < CONIC_N_GAUSSIAN_PROFILES; i++)
+    words.profiles[i] = conic_gaussian_profile_name((conic_gaussian_profile)i);
   for (int i = 0; i < CONIC_N_METHODS; i++)
     words.methods[i] = conic_method_name((conic_method)i);
   for (int i = 0; i < CONIC_N_SHADINGS; i++)
@@ -34,6 +37,7 @@ void cli_scene_defaults(cli_render_job *job) {
   conic_framing_init(&job->framing);
   conic_render_options_init(&job->options);
   conic_source_options_init(&job->opening);
+  conic_gaussian_options_init(&job->gaussians);
   conic_patches_options_init(&job->patches);
   conic_layers_access_init(&job->access);
   conic_source_view_init(&job->view);
@@ -88,7 +92,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                          .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
-  int method = (int)o->method, shading = (int)o->shading;
+  int method = (int)o->method, shading = (int)o->shading, profile = 0;
   const library_words words = find_words();
   const cli_option table[] = {
       {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
@@ -125,6 +129,10 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "how a splat is projected and weighed: point, disc, affine, conic, ray, auto; patch: as part of a smooth "
        "surface [auto]",
        .choices = words.methods, .is_given = &raw.is_method_given},
+      {"profile", CLI_CHOICE, &profile, "NAME",
+       "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
+       "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
+       .choices = words.profiles, .is_given = &raw.is_profile_given},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
        "[good]",
@@ -158,7 +166,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "stops, -100 to 100: the picture is multiplied by 2^EV; auto: as bright as leaves 1 pixel in 20 near white [0]",
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
-       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids [rgba,Z]",
+       "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids; T, medianZ, inverseZ, last of "
+       "Gaussian scenes [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
        CONIC_SURFACE_MAX_DEGREE, .is_given = &raw.is_patch_given},
@@ -184,6 +193,9 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   job->is_patch = method == CONIC_N_METHODS;
   if (!job->is_patch)
     o->method = (conic_method)method;
+  job->gaussians.profile = (conic_gaussian_profile)profile;
+  if (profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || !job->is_plain))
+    job->opening.gaussians = &job->gaussians;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;

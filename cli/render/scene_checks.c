@@ -37,6 +37,8 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
                      command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+  if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
+    return cli_usage("%s: the planes T, medianZ, inverseZ and last are of Gaussian scenes", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)

@@ -69,6 +69,10 @@ void conic_context_destroy(conic_context *context) {
     return;
   conic_pool_destroy(context, context->pool);
   conic_memory_release(context, context->inputs);
+  for (conic_lasting *block = context->lasting, *next; block; block = next) {
+    next = block->next;
+    conic_memory_release(context, block);
+  }
   pthread_mutex_destroy(&context->outputs_lock);
   context->options.release(context->options.allocator_cookie, context);
 }

@@ -3,6 +3,7 @@
 #define CONIC_CONTEXT_STRUCT_H
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "conic/context.h"
@@ -17,13 +18,19 @@ typedef struct conic_file_identity {
   uint64_t device, number;
 } conic_file_identity;
 
+/* What begins a block of memory that lasts as long as the context. */
+typedef struct conic_lasting {
+  struct conic_lasting *next;
+} conic_lasting;
+
 struct conic_context {
   conic_context_options options; /* allocate, release and threads are set */
   conic_pool *pool;
-  size_t texture_bytes;        /* of all textures that there are */
-  int reads_texture;           /* the picture that is read is to become one */
-  int guards_inputs;           /* core/files/guard.h; the next are its own */
-  conic_file_identity *inputs; /* which were read */
+  _Atomic(conic_lasting *) lasting; /* the newest first */
+  size_t texture_bytes;             /* of all textures that there are */
+  int reads_texture;                /* the picture that is read is to become one */
+  int guards_inputs;                /* core/files/guard.h; the next are its own */
+  conic_file_identity *inputs;      /* which were read */
   size_t n_inputs, inputs_room;
   conic_file_identity replaceable;
   pthread_mutex_t outputs_lock;

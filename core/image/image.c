@@ -32,6 +32,10 @@ static const conic_plane_description descriptions[CONIC_N_PLANES] = {
                              4,
                              0,
                              {"CryptoObject02.R", "CryptoObject02.G", "CryptoObject02.B", "CryptoObject02.A"}},
+    [CONIC_PLANE_TRANSPARENCY] = {"T", 1, 0, {"T"}},
+    [CONIC_PLANE_MEDIAN_Z] = {"medianZ", 1, 0, {"medianZ"}},
+    [CONIC_PLANE_INVERSE_Z] = {"inverseZ", 1, 0, {"inverseZ"}},
+    [CONIC_PLANE_LAST] = {"last", 1, 1, {"last"}},
 };
 
 const conic_plane_description *conic_plane_describe(conic_plane plane) {

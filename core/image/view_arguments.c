@@ -33,7 +33,7 @@ const char *conic_rotation_fault(const double rows[3][4]) {
   return determinant > 0.0 ? NULL : "mirrors";
 }
 
-static conic_status check_camera(conic_context *context, const char *who, const conic_camera *c) {
+conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
   if (!conic_is_zero(c->reserved, sizeof c->reserved))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's reserved words are not zero", who);
   if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
@@ -53,5 +53,5 @@ conic_status conic_view_arguments_take(conic_context *context, const char *who, 
   if (!camera || !conic_options_take(own, options))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an argument is null, or the options were not initialised",
                       who);
-  return check_camera(context, who, camera);
+  return conic_view_camera_check(context, who, camera);
 }

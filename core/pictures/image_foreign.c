@@ -82,6 +82,7 @@ conic_status conic_foreign_write(conic_context *context, const char *path, const
     return status;
   const float *rgba = image->planes[CONIC_PLANE_RGBA];
   conic_samples_layout layout = choose_layout(&writer);
+  layout.is_display = image->is_display != 0;
   const conic_bridge_picture picture = {image->width, image->height, layout.n_channels, layout.sample_bytes,
                                         layout.is_straight};
   void *samples = conic_memory_allocate(context, conic_image_pixels(image),

@@ -110,7 +110,7 @@ conic_status conic_png_write(conic_context *context, const char *path, const con
                    .path = path,
                    .width = image->width,
                    .height = image->height,
-                   .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1}};
+                   .layout = {.n_channels = 4, .sample_bytes = 1, .is_straight = 1, .is_display = image->is_display != 0}};
   conic_status status = conic_png_check(context, path, conic_image_planes(image));
   if (status != CONIC_OK)
     return status;

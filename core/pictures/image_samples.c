@@ -70,6 +70,10 @@ static void encode_row(void *data, size_t y, int i_thread) {
       size_t i = y * n_row + x * n + c;
       if (work->layout.sample_bytes == 4)
         ((float *)work->samples)[i] = color[c];
+      else if (work->layout.is_display && work->layout.sample_bytes == 2)
+        ((uint16_t *)work->samples)[i] = (uint16_t)quantize((double)color[c], 65535.0);
+      else if (work->layout.is_display)
+        ((uint8_t *)work->samples)[i] = (uint8_t)quantize((double)color[c], 255.0);
       else if (work->layout.sample_bytes == 2)
         ((uint16_t *)work->samples)[i] =
             (uint16_t)quantize(c < 3 ? conic_srgb_encode((double)color[c]) : (double)color[c], 65535.0);

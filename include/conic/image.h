@@ -29,12 +29,20 @@ typedef enum conic_plane {
                                Cryptomatte; 0 where there are fewer names */
   CONIC_PLANE_MATTE_1 = 10, /* the second layer */
   CONIC_PLANE_MATTE_2 = 11, /* the third */
-  CONIC_N_PLANES = 12
+  CONIC_PLANE_TRANSPARENCY = 12, /* 1 float: T, what is left of the light from behind; this and what follows are of
+                                    Gaussian scenes */
+  CONIC_PLANE_MEDIAN_Z = 13,     /* 1 float: z of the Gaussian with which T comes to ½; 0 where it does not */
+  CONIC_PLANE_INVERSE_Z = 14,    /* 1 float: Σ w/z; 0 where nothing is */
+  CONIC_PLANE_LAST = 15,         /* 1 uint32: the last Gaussian composited, 0xFFFFFFFF where nothing is */
+  CONIC_N_PLANES = 16
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */
 #define CONIC_N_DRAWN_PLANES CONIC_PLANE_CLUSTER
 #define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
+
+/* Those that only Gaussian scenes have. */
+#define CONIC_GAUSSIAN_PLANES (15u << CONIC_PLANE_TRANSPARENCY)
 
 /* The planes of a Cryptomatte, as bits. */
 #define CONIC_MATTE_PLANES (7u << CONIC_PLANE_MATTE_0)
@@ -80,8 +88,9 @@ typedef struct conic_image {
   int n_attributes;
   conic_attribute attributes[CONIC_MAX_ATTRIBUTES];
   uint64_t lacks_alpha; /* A of rgba, which is 1, is not in the file that the image was read from */
+  uint64_t is_display;  /* rgba are display values: files of 8 or 16 bits take them as they are */
   const char *manifest; /* the names of a Cryptomatte in JSON, for an EXR's header; the caller's. Null: none */
-  uint64_t reserved[6];
+  uint64_t reserved[5];
 } conic_image;
 
 /* Allocates the planes of `planes` (bit 1 << plane), contents zero. On failure *image is empty. Sizes are 1 to 65535.

@@ -10,6 +10,7 @@
 #include "conic/camera.h"
 #include "conic/coloring.h"
 #include "conic/context.h"
+#include "conic/gaussian_render.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"
 #include "conic/layers_draw.h"
@@ -40,8 +41,10 @@ typedef enum conic_representation {
 typedef enum conic_source_ability {
   CONIC_SOURCE_CHOOSES = 1,  /* draws less than everything: by an error, or within a budget */
   CONIC_SOURCE_CLUSTERS = 2, /* draws clusters of two kinds: only_kind, and the image's cluster plane */
-  CONIC_SOURCE_STREAMS = 4   /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
+  CONIC_SOURCE_STREAMS = 4,  /* draws by itself what it reads meanwhile: levels, deadline, occlusion; and hands nothing
                                 over unless it is opened whole */
+  CONIC_SOURCE_COMPOSITES = 8 /* draws Gaussians, composited by alpha: display values, and planes of its own. Of the
+                                 render options, the background and the instruction set count; nothing is handed over */
 } conic_source_ability;
 
 typedef struct conic_source_options {
@@ -63,6 +66,7 @@ typedef struct conic_source_options {
   const conic_coloring_options *coloring;
   const char *columns; /* of conic_read_options: what the columns of text are; null: its header says */
   double crease_deg;   /* above 0: triangles of a file without normals are round over edges up to this angle */
+  const conic_gaussian_options *gaussians; /* how Gaussian scenes are composited; null: they are splats like others */
 } conic_source_options;
 
 /* Splats, cutoff 1.5, 20 neighbours, no dots, flat faces. */

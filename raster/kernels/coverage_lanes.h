@@ -6,6 +6,7 @@
 
 #include "core/lanes/lanes.h"
 #include "raster/kernels/laplace_body.h"
+#include "raster/kernels/profile_lanes.h"
 #include "raster/tiles/coverage.h"
 
 /* One splat's pixels in one part of a block, covered or not. */
@@ -16,11 +17,17 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
+/* How a splat is evaluated: by its ellipse alone, or whatever it is; in either case without the kernel, or with its
+ * profile in the scale. */
+typedef enum splat_kind { SPLAT_USUAL = 0, SPLAT_SPECIAL = 1, SPLAT_PROFILED = 2 } splat_kind;
+
 /* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
  * every block would be most of what the loops read. */
 typedef struct splat_rows {
   lanes dy, q_offset, q_rest, iz_offset, plane_offset;
   lanes x, dx0, s1, iz_dx, plane_dx, iz_far, iz_near;
+  lanes minor;         /* s3·dy */
+  profile_slice slice; /* of what is profiled */
 } splat_rows;
 
 CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
@@ -28,6 +35,7 @@ CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
   rows.dy = (y - footprint->y) + footprint->dy0;
   lanes minor = footprint->s3 * rows.dy;
   rows.q_offset = footprint->s2 * rows.dy;
+  rows.minor = minor;
   rows.q_rest = minor * minor;
   rows.iz_offset = footprint->iz0 + footprint->iz_dy * rows.dy;
   rows.plane_offset = footprint->iz0 + footprint->plane_dy * rows.dy;
@@ -41,14 +49,25 @@ CONIC_INLINE splat_rows begin_rows(const conic_footprint *footprint, lanes y) {
   return rows;
 }
 
+/* The splat's part of the profile, where there is one. */
+CONIC_INLINE void begin_profile(const conic_view *view, const conic_footprint *footprint, const conic_ray *rays,
+                                uint32_t i_ray, splat_rows *rows) {
+  rows->slice.aim =
+      footprint->s3 == 0.0f ? conic_ray_aim(view, footprint, &rays[i_ray]) : conic_variance_aim(view, footprint);
+  cut_slice(&view->profile, &rows->slice);
+}
+
 /* The same operations, lane by lane, as conic_row_q, conic_row_iz and the plane's depth of coverage.h. */
-CONIC_INLINE void ellipse_fragments(const splat_rows *rows, float support, lanes dx, fragments *f) {
+CONIC_INLINE void ellipse_fragments(const conic_view *view, const splat_rows *rows, float support,
+                                    const profile_slice *slice, lanes dx, fragments *f) {
   lanes major = rows->s1 * dx + rows->q_offset;
   f->q = major * major + rows->q_rest;
   f->covered = lanes_less(f->q, lanes_of(support));
   f->iz = lanes_min(lanes_max(rows->iz_offset + rows->iz_dx * dx, rows->iz_far), rows->iz_near);
   f->plane_iz = rows->plane_offset + rows->plane_dx * dx;
   f->scale = lanes_of(1.0f);
+  if (slice && lanes_any(f->covered))
+    f->scale = profile_lanes(&view->profile, slice, f->q, major, rows->minor);
 }
 
 /* The plane's inverse depth, and where that and the box let a ray cover pixels. */
@@ -64,7 +83,7 @@ CONIC_INLINE lanes_mask ray_reaches(const conic_footprint *footprint, const coni
 
 /* conic_ray_fragment of coverage.h, lane by lane. Lanes that it leaves early may hold anything: they are masked. */
 CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
-                                lanes dx, lanes dy, fragments *f) {
+                                const profile_slice *slice, lanes dx, lanes dy, fragments *f) {
   lanes iz;
   f->covered = ray_reaches(footprint, ray, dx, dy, &iz);
   lanes r = 1.0f / iz;
@@ -84,17 +103,21 @@ CONIC_INLINE void ray_fragments(const conic_view *view, const conic_footprint *f
   f->iz = lanes_min(lanes_max(iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
   f->plane_iz = iz;
   f->scale = lanes_sqrt(s_uu * inverse);
+  if (slice && lanes_any(f->covered))
+    f->scale *= profile_lanes(&view->profile, slice, f->q, u, v);
 }
 
 /* conic_laplace_fragment of coverage.h, lane by lane. */
 CONIC_INLINE void laplace_fragments(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
-                                    lanes dx, lanes dy, fragments *f) {
+                                    const profile_slice *slice, lanes dx, lanes dy, fragments *f) {
   laplaces at = laplaces_at(view, footprint, ray, dx, dy);
   f->covered = at.covered;
   f->q = at.q;
   f->iz = lanes_min(lanes_max(at.iz, lanes_of(footprint->iz_far)), lanes_of(footprint->iz_near));
   f->plane_iz = at.plane_iz;
   f->scale = at.scale;
+  if (slice && lanes_any(f->covered))
+    f->scale *= profile_lanes(&view->profile, slice, at.q, at.u, at.v);
 }
 
 CONIC_INLINE lanes ray_lengths(lanes ray_x, lanes ray_y) {
@@ -121,25 +144,30 @@ CONIC_INLINE lanes_mask clip_keeps(const conic_clip_record *clip, lanes dx, lane
  * record i_clip are only looked at where the splat has one. */
 CONIC_INLINE void fragments_at(const conic_view *view, float support, const conic_footprint *footprint,
                                const conic_ray *rays, uint32_t i_ray, const conic_clip_record *clips, size_t i_clip,
-                               const splat_rows *rows, lanes x, int is_special, fragments *f) {
+                               const splat_rows *rows, lanes x, splat_kind kind, fragments *f) {
   lanes dx = (x - rows->x) + rows->dx0;
-  if (is_special && conic_is_laplace(footprint))
-    laplace_fragments(view, footprint, &rays[i_ray], dx, rows->dy, f);
-  else if (is_special && footprint->s3 == 0.0f)
-    ray_fragments(view, footprint, &rays[i_ray], dx, rows->dy, f);
+  const profile_slice *slice = kind == SPLAT_PROFILED ? &rows->slice : NULL;
+  if (kind && conic_is_laplace(footprint))
+    laplace_fragments(view, footprint, &rays[i_ray], slice, dx, rows->dy, f);
+  else if (kind && footprint->s3 == 0.0f)
+    ray_fragments(view, footprint, &rays[i_ray], slice, dx, rows->dy, f);
   else
-    ellipse_fragments(rows, support, dx, f);
-  if (is_special && conic_is_clipped(footprint))
+    ellipse_fragments(view, rows, support, slice, dx, f);
+  if (kind && conic_is_clipped(footprint))
     f->covered &= clip_keeps(&clips[i_clip], dx, rows->dy);
 }
 
-/* Which kernel a loop is made for. */
-typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER } kernel_kind;
+/* Which kernel a loop is made for; that of a profile is in the scale already. */
+typedef enum kernel_kind { KERNEL_NARROW_GAUSS, KERNEL_GAUSS, KERNEL_OTHER, KERNEL_PROFILE } kernel_kind;
 
 static kernel_kind kind_of(const conic_kernel *kernel) {
   if (conic_kernel_is_narrow(kernel))
     return KERNEL_NARROW_GAUSS;
   return kernel->type == CONIC_KERNEL_GAUSS ? KERNEL_GAUSS : KERNEL_OTHER;
+}
+
+static kernel_kind kind_of_view(const conic_view *view) {
+  return view->profile.table ? KERNEL_PROFILE : kind_of(&view->kernel);
 }
 
 /* conic_kernel_value of core/splats/kernel.h, for kernels that are no Gaussian. */
@@ -167,7 +195,9 @@ CONIC_INLINE lanes kernel_value(const conic_view *view, lanes q, kernel_kind kin
 /* conic_final_weight in every lane; 0 in those that are not visible. */
 CONIC_INLINE lanes weigh(const conic_view *view, float amplitude, lanes q, lanes scale, lanes_mask visible,
                          kernel_kind kind) {
-  lanes weight = (amplitude * scale) * kernel_value(view, q, kind);
+  lanes weight = amplitude * scale;
+  if (kind != KERNEL_PROFILE)
+    weight *= kernel_value(view, q, kind);
   return lanes_keep(visible, lanes_max(weight, lanes_of(CONIC_LEAST_WEIGHT)));
 }
 

@@ -55,7 +55,7 @@ CONIC_INLINE lanes curved_determinants(const conic_footprint *footprint, const s
 /* Lanes that are not covered may hold anything. */
 typedef struct laplaces {
   lanes_mask covered;
-  lanes q, scale, iz, plane_iz;
+  lanes q, scale, iz, plane_iz, u, v;
 } laplaces;
 
 CONIC_INLINE laplaces laplaces_at(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
@@ -80,6 +80,8 @@ CONIC_INLINE laplaces laplaces_at(const conic_view *view, const conic_footprint 
   result.q = lanes_select(lanes_less(q, support), q, within);
   result.covered &= lanes_less(result.q, support);
   result.scale = 1.0f / lanes_sqrt(curved_determinants(footprint, &at, &s, h));
+  result.u = u;
+  result.v = v;
   result.iz = at.iz;
   result.plane_iz = here.iz;
   return result;

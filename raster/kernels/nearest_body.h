@@ -84,9 +84,8 @@ CONIC_INLINE void nearest_ellipse(const sources *from, const strip_sites *s, con
   }
 }
 
-static __attribute__((noinline)) unsigned nearest_special(const sources *from, const strip_sites *s,
-                                                          const conic_tile_entry *entry, uint32_t strip_rows,
-                                                          conic_nearest *kept) {
+CONIC_INLINE unsigned nearest_of_kind(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
+                                      uint32_t strip_rows, conic_nearest *kept, splat_kind kind) {
   const conic_footprint *footprint = &from->footprints[entry->footprint];
   const size_t n_rows = strip_rows, begin = conic_word_first(entry->word) * n_rows,
                end = (conic_word_last(entry->word) + 1) * n_rows, stride = n_rows * CONIC_STRIP_COLUMNS;
@@ -94,14 +93,24 @@ static __attribute__((noinline)) unsigned nearest_special(const sources *from, c
   unsigned n_covered = 0;
   fragments f;
   for (uint32_t i = conic_word_first_row(entry->word) / strip_rows; i <= last; i++) {
-    const splat_rows rows = begin_rows(footprint, s->y[i]);
+    const splat_rows rows = begin_splat(from, footprint, s->y[i], kind);
     for (size_t at = begin; at < end; at += CONIC_LANES) {
-      evaluate(from, footprint, &rows, lanes_load(s->x + at), 1, &f);
+      evaluate(from, footprint, &rows, lanes_load(s->x + at), kind, &f);
       keep_nearest(&f, entry->footprint, kept, i * stride + at, 1);
       n_covered += lanes_count(f.covered);
     }
   }
   return n_covered;
+}
+
+CONIC_OUTLINE unsigned nearest_special(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
+                                       uint32_t strip_rows, conic_nearest *kept) {
+  return nearest_of_kind(from, s, entry, strip_rows, kept, SPLAT_SPECIAL);
+}
+
+CONIC_OUTLINE unsigned nearest_profiled(const sources *from, const strip_sites *s, const conic_tile_entry *entry,
+                                        uint32_t strip_rows, conic_nearest *kept) {
+  return nearest_of_kind(from, s, entry, strip_rows, kept, SPLAT_PROFILED);
 }
 
 /* The splats of the entries begin … end - 1, so few that no lane's count overflows. Returns how many pixels they
@@ -112,13 +121,17 @@ CONIC_INLINE uint64_t nearest_of(conic_band *band, const sources *from, const st
   const conic_tile_entry *const entries = band->entries;
   conic_nearest *const kept = band->nearest;
   const size_t n = band->n_entries;
+  const int is_profiled = from->view->profile.table != NULL;
   index_lanes n_covered = lanes_of_index(0);
   uint64_t sum = 0;
   for (size_t i = begin; i < end; i++) {
     uint32_t later = entries[i + AHEAD < n ? i + AHEAD : i].footprint;
     __builtin_prefetch(&from->footprints[later]);
     __builtin_prefetch(&from->surfaces[later], 0, 2);
-    if (__builtin_expect(from->footprints[entries[i].footprint].s3 > 0.0f, 1))
+    if (__builtin_expect(is_profiled, 0)) {
+      sum += nearest_profiled(from, s, &entries[i], strip_rows, kept);
+      band->has_special = 1;
+    } else if (__builtin_expect(from->footprints[entries[i].footprint].s3 > 0.0f, 1))
       nearest_ellipse(from, s, &entries[i], strip_rows, kept, &n_covered);
     else {
       prefetch_ray(from, entries[i + 12 < n ? i + 12 : i].footprint);
@@ -172,14 +185,14 @@ CONIC_INLINE void take_part(const conic_band *band, const sources *from, int str
   to.heaviest = to.nearest = lanes_select_indices(covered, to.nearest, lanes_of_index(0)); /* else it is anything */
   lanes_store_indices(footprint, to.nearest);
   lanes_gather_records(from->surfaces->color, footprint, surface);
+  const kernel_kind kind = kind_of_view(from->view);
   if (band->has_special) {
     lanes scales = load_part(kept->scale + of_strip, strip_rows);
     for (int lane = 0; lane < CONIC_LANES; lane++)
-      if (!(from->footprints[footprint[lane]].s3 > 0.0f))
+      if (kind == KERNEL_PROFILE || !(from->footprints[footprint[lane]].s3 > 0.0f))
         scale[lane] = scales[lane];
   }
-  to.weight = weigh(from->view, 1.0f, load_part(kept->q + of_strip, strip_rows), surface[7] * scale, covered,
-                    kind_of(&from->view->kernel));
+  to.weight = weigh(from->view, 1.0f, load_part(kept->q + of_strip, strip_rows), surface[7] * scale, covered, kind);
   for (int axis = 0; axis < 3; axis++) { /* to 0, which a product may be below: -0 */
     to.color[axis] += to.weight * surface[axis];
     to.normal[axis] += to.weight * surface[3 + axis];

@@ -44,9 +44,16 @@ CONIC_INLINE sources sources_of(const conic_band *band) {
 }
 
 CONIC_INLINE void evaluate(const sources *from, const conic_footprint *footprint, const splat_rows *rows, lanes x,
-                           int is_special, fragments *f) {
+                           splat_kind kind, fragments *f) {
   fragments_at(from->view, from->support, footprint, from->rays, footprint->i_ray, from->clips,
-               (size_t)(footprint - from->footprints), rows, x, is_special, f);
+               (size_t)(footprint - from->footprints), rows, x, kind, f);
+}
+
+CONIC_INLINE splat_rows begin_splat(const sources *from, const conic_footprint *footprint, lanes y, splat_kind kind) {
+  splat_rows rows = begin_rows(footprint, y);
+  if (kind == SPLAT_PROFILED)
+    begin_profile(from->view, footprint, from->rays, footprint->i_ray, &rows);
+  return rows;
 }
 
 /* What the splat after the next few is read from, in this pass and the next. */
@@ -117,39 +124,36 @@ typedef struct passing {
   splat_rows rows;
 } passing;
 
-/* What a loop over splats is made for: ellipses without clip lines that are not wide or are wide, and all else. */
-typedef enum splat_kind { SPLAT_USUAL, SPLAT_WIDE, SPLAT_SPECIAL } splat_kind;
-
 /* conic_hiding_iz in a part of a block. */
-CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
-  if (kind == SPLAT_WIDE || (kind == SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, int may_be_wide) {
+  if (may_be_wide && conic_is_wide(splat->footprint))
     return wide_hiding(splat->footprint, iz, p->ray_length[part]);
   return splat->nearness * iz;
 }
 
 /* Raises a part's thresholds and writes its fragments to the place; returns how many there are. */
 CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kept, size_t place, size_t at,
-                                int is_special) {
+                                splat_kind kind) {
   lanes_store(kept->threshold + at, lanes_max(lanes_keep(f->covered, hides), lanes_load(kept->threshold + at)));
   lanes_store(kept->fragments[place].q + at, f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
-  if (is_special)
+  if (kind != SPLAT_USUAL)
     lanes_store(kept->scale[place] + at, f->scale);
   return lanes_count(f->covered);
 }
 
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
-                             splat_kind kind) {
+                             splat_kind kind, int may_be_wide) {
   conic_kept *kept = &p->kept[block];
   size_t place = p->n_kept[block];
   unsigned n_covered = 0;
   fragments f;
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
-    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind == SPLAT_SPECIAL, &f);
-    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, kind);
-    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind == SPLAT_SPECIAL);
+    evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind, &f);
+    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, may_be_wide);
+    n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind);
   }
   p->n_fragments += n_covered;
   if (place < p->room)
@@ -160,15 +164,16 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
 
 /* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
  * splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind, int may_be_wide) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
-  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness), begin_rows(footprint, s->y)};
-  pass_block(p, from, s, &splat, first, kind);
-  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
+  const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness),
+                         begin_splat(from, footprint, s->y, kind)};
+  pass_block(p, from, s, &splat, first, kind, may_be_wide);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind, may_be_wide);
   for (uint32_t block = first + 2; block <= last; block++)
-    pass_block(p, from, s, &splat, block, kind);
+    pass_block(p, from, s, &splat, block, kind, may_be_wide);
 }
 
 /* A ray's pixels in a block, by their inverse depth alone. Returns 0, and does nothing, where they must be evaluated:
@@ -185,7 +190,7 @@ CONIC_INLINE int glance_at_block(pass *p, const sources *from, const sites *s, c
     if (lanes_any(covered & lanes_less(iz, lanes_of(sure))))
       return 0;
     lanes clamped = lanes_min(lanes_max(iz, rows->iz_far), rows->iz_near);
-    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, SPLAT_SPECIAL);
+    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, 1);
     raised[part] = lanes_max(lanes_keep(covered, hides), lanes_load(thresholds + (size_t)part * CONIC_LANES));
     n_covered += lanes_count(covered);
   }
@@ -245,10 +250,10 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
   const passing splat = {f, i, i_footprint, lanes_of(f->nearness), begin_rows(f, s->y)};
   for (uint32_t block = conic_word_first(word); block <= conic_word_last(word); block++)
     if (!(sure < HUGE_VALF) || !glance_at_block(p, from, s, &splat, sure, block))
-      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL);
+      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL, 1);
 }
 
-static void visibility(conic_band *band) {
+CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
   enum { LOOK_EVERY = 32 };
   const sources from = sources_of(band);
   const int is_crowd = from.n > CONIC_KEPT_SPLATS;
@@ -264,20 +269,22 @@ static void visibility(conic_band *band) {
     const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
     if (is_crowd && has_special && i % LOOK_EVERY == 0)
       look_at_crowd(band, p.not_kept, &c);
-    if (__builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
+    if (!is_profiled && __builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL, 0);
       continue;
     }
     if (!p.has_lengths)
       find_lengths(band, &p);
-    if (is_ellipse)
-      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
+    if (is_profiled)
+      pass_splat(&p, &from, &s, i, SPLAT_PROFILED, 1);
+    else if (is_ellipse)
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL, 1);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
       if (is_crowd && is_plain_ray(footprint))
         pass_ray_in_crowd(&p, &from, &s, band, &c, i);
       else
-        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
+        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL, 1);
       has_special = 1;
     }
   }
@@ -285,6 +292,17 @@ static void visibility(conic_band *band) {
   memcpy(band->not_kept, p.not_kept, sizeof band->not_kept);
   band->has_special = has_special;
   band->n_fragments += p.n_fragments;
+}
+
+CONIC_OUTLINE void visibility_profiled(conic_band *band) {
+  visibility_with(band, 1);
+}
+
+static void visibility(conic_band *band) {
+  if (band->view->profile.table)
+    visibility_profiled(band);
+  else
+    visibility_with(band, 0);
 }
 
 /* The sums of one part, in registers. */
@@ -330,7 +348,7 @@ CONIC_INLINE void blend_kept(const sources *from, const conic_kept *kept, size_t
     if (!lanes_any(visible))
       continue;
     lanes scale = lanes_of(1.0f), q = lanes_load(kept->fragments[i].q + at);
-    if (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f))
+    if (kind == KERNEL_PROFILE || (__builtin_expect(has_special, 0) && !(from->footprints[i_footprint].s3 > 0.0f)))
       scale = lanes_load(kept->scale[i] + at);
     const conic_projected_surface *surface = &from->surfaces[i_footprint];
     blend(surface, i_footprint, weigh(from->view, surface->amplitude, q, scale, visible, kind), to);
@@ -350,8 +368,12 @@ CONIC_INLINE int glance_at_ray(const sources *from, const conic_footprint *footp
   f->q = lanes_of(0.0f);
   f->scale = lanes_of(1.0f);
   if (lanes_any(f->covered & lanes_less(f->plane_iz, lanes_of(flat))))
-    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], dx, rows->dy, f);
+    ray_fragments(from->view, footprint, &from->rays[footprint->i_ray], NULL, dx, rows->dy, f);
   return 1;
+}
+
+CONIC_INLINE splat_kind kind_of_splat(const conic_footprint *footprint, kernel_kind kind) {
+  return kind == KERNEL_PROFILE ? SPLAT_PROFILED : footprint->s3 > 0.0f ? SPLAT_USUAL : SPLAT_SPECIAL;
 }
 
 /* A fragment that was not kept is evaluated again. */
@@ -364,7 +386,7 @@ CONIC_INLINE void blend_again(const conic_band *band, const sources *from, const
     if (!glance_at_ray(from, footprint, rows, x, threshold, flat, &f))
       return;
   } else
-    evaluate(from, footprint, rows, x, !(footprint->s3 > 0.0f), &f);
+    evaluate(from, footprint, rows, x, kind_of_splat(footprint, kind), &f);
   lanes_mask visible = f.covered & lanes_at_least(lanes_max(f.plane_iz, f.iz), threshold);
   if (!lanes_any(visible))
     return;
@@ -380,7 +402,7 @@ CONIC_INLINE void blend_again(const conic_band *band, const sources *from, const
  * but never reached by one whose are never. */
 CONIC_INLINE float flat_in(const sources *from, const conic_footprint *footprint, const crowd_span *span,
                            kernel_kind kind) {
-  if (!is_plain_ray(footprint))
+  if (!is_plain_ray(footprint) || kind == KERNEL_PROFILE)
     return HUGE_VALF;
   float flat = flat_iz(from->view, footprint, &from->rays[footprint->i_ray], span);
   return kind != KERNEL_OTHER && flat < FLT_MAX ? flat : FLT_MAX;
@@ -401,7 +423,7 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sources *from, const 
   look_at_crowd(band, band->not_kept, &c);
   for (size_t i = first; i < from->n; i++) {
     const conic_footprint *footprint = &from->footprints[from->indices[i]];
-    const splat_rows rows = begin_rows(footprint, s->y);
+    const splat_rows rows = begin_splat(from, footprint, s->y, kind_of_splat(footprint, kind));
     const crowd_span span = span_of(band, footprint);
     const uint32_t last = conic_word_last(from->words[i]);
     const float flat = flat_in(from, footprint, &span, kind);
@@ -459,12 +481,15 @@ CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
 }
 
 static void accumulate(conic_band *band) {
-  switch (kind_of(&band->view->kernel)) {
+  switch (kind_of_view(band->view)) {
   case KERNEL_NARROW_GAUSS:
     accumulate_with(band, KERNEL_NARROW_GAUSS);
     break;
   case KERNEL_GAUSS:
     accumulate_with(band, KERNEL_GAUSS);
+    break;
+  case KERNEL_PROFILE:
+    accumulate_with(band, KERNEL_PROFILE);
     break;
   default:
     accumulate_with(band, KERNEL_OTHER);

@@ -69,7 +69,7 @@ static inline float conic_curved_determinant(const conic_footprint *footprint, c
 
 /* A laplace splat at a pixel. */
 typedef struct conic_laplace {
-  float q, scale;
+  float q, scale, u, v;
   float iz, plane_iz; /* iz where the pixel mostly looks, not clamped; the plane's at the pixel */
 } conic_laplace;
 
@@ -98,6 +98,8 @@ static inline int conic_laplace_at(const conic_view *view, const conic_footprint
   if (!(result->q < view->support))
     return 0;
   result->scale = 1.0f / sqrtf(conic_curved_determinant(footprint, &at, &s, h));
+  result->u = u;
+  result->v = v;
   result->iz = at.iz;
   result->plane_iz = here.iz;
   return 1;

@@ -18,7 +18,7 @@ typedef struct conic_row {
 typedef struct conic_fragment {
   float q, iz;
   float plane_iz; /* of the splat's plane at the pixel, neither shrunk nor clamped */
-  float scale;    /* what multiplies amplitude and kernel: |I + h·JJᵀ|^-½ for rays, else 1 */
+  float scale; /* what multiplies amplitude and kernel: |I + h·JJᵀ|^-½ for rays, else 1; with a profile, times that */
 } conic_fragment;
 
 static inline float conic_row_dy(const conic_footprint *footprint, int y) {
@@ -75,6 +75,24 @@ static inline float conic_seen_iz(const conic_fragment *fragment) {
   return fragment->plane_iz > fragment->iz ? fragment->plane_iz : fragment->iz;
 }
 
+/* The footprint's part in the profile, by the axes of V⁻¹. */
+static inline conic_aim conic_variance_aim(const conic_view *view, const conic_footprint *footprint) {
+  float h = view->prefilter, s1 = footprint->s1, s2 = footprint->s2, s3 = footprint->s3, area = h * (s1 * s3);
+  return conic_aim_of(&view->profile, h * (s1 * s1 + s2 * s2), h * (s2 * s3), h * (s3 * s3), area * area, 0);
+}
+
+/* The same of a ray, by its Jacobian at the reference. Where that is not before the eye, the kernel is as without a
+ * filter. */
+static inline conic_aim conic_ray_aim(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray) {
+  float r = footprint->iz0 > 0.0f ? 1.0f / footprint->iz0 : 0.0f, h = view->prefilter;
+  float u = conic_is_laplace(footprint) ? 0.0f : ray->u0 * r, v = conic_is_laplace(footprint) ? 0.0f : ray->v0 * r;
+  float u_x = (ray->u_dx - u * footprint->iz_dx) * r, u_y = (ray->u_dy - u * footprint->iz_dy) * r;
+  float v_x = (ray->v_dx - v * footprint->iz_dx) * r, v_y = (ray->v_dy - v * footprint->iz_dy) * r;
+  float area = h * (u_x * v_y - u_y * v_x);
+  return conic_aim_of(&view->profile, h * (u_x * u_x + u_y * u_y), h * (u_x * v_x + u_y * v_y),
+                      h * (v_x * v_x + v_y * v_y), area * area, 1);
+}
+
 /* The exact ray–splat parameter with the pixel's filter mapped into the splat (docs/reference/picture.md): 1 where the
  * pixel is covered. */
 static inline int conic_ray_fragment(const conic_view *view, const conic_footprint *footprint, const conic_ray *ray,
@@ -105,11 +123,17 @@ static inline int conic_ray_fragment(const conic_view *view, const conic_footpri
   fragment->iz = conic_clamp_iz(footprint, iz);
   fragment->plane_iz = iz;
   fragment->scale = sqrtf(s_uu * inverse);
+  if (view->profile.table) {
+    conic_aim aim = conic_ray_aim(view, footprint, ray);
+    fragment->scale *= conic_profile_at(&view->profile, &aim, q, u, v);
+  }
   return 1;
 }
 
 static inline float conic_final_weight(const conic_view *view, const conic_footprint *footprint, float q, float scale) {
-  float weight = (footprint->amplitude * scale) * conic_kernel_value(&view->kernel, q);
+  float weight = footprint->amplitude * scale;
+  if (!view->profile.table)
+    weight *= conic_kernel_value(&view->kernel, q);
   return weight > CONIC_LEAST_WEIGHT ? weight : CONIC_LEAST_WEIGHT;
 }
 
@@ -123,6 +147,10 @@ static inline int conic_laplace_fragment(const conic_view *view, const conic_foo
   fragment->iz = conic_clamp_iz(footprint, at.iz);
   fragment->plane_iz = at.plane_iz;
   fragment->scale = at.scale;
+  if (view->profile.table) {
+    conic_aim aim = conic_ray_aim(view, footprint, ray);
+    fragment->scale *= conic_profile_at(&view->profile, &aim, at.q, at.u, at.v);
+  }
   return 1;
 }
 
@@ -134,7 +162,14 @@ static inline int conic_variance_fragment(const conic_view *view, const conic_fo
   fragment->iz = conic_row_iz(footprint, &row, dx);
   fragment->plane_iz = row.plane_offset + footprint->plane_dx * dx;
   fragment->scale = 1.0f;
-  return fragment->q < view->support;
+  if (!(fragment->q < view->support))
+    return 0;
+  if (view->profile.table) {
+    conic_aim aim = conic_variance_aim(view, footprint);
+    float x = footprint->s1 * dx + row.q_offset, y = footprint->s3 * dy;
+    fragment->scale = conic_profile_at(&view->profile, &aim, fragment->q, x, y);
+  }
+  return 1;
 }
 
 /* The splat at a pixel: 1 where it covers it. */

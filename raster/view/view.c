@@ -107,5 +107,7 @@ conic_status conic_view_init(conic_context *context, const conic_splats *splats,
     view->epsilon_cap = 4.0f * CONIC_EPSILON_C * view->cutoff * (float)splat_length;
   }
   view->needs_nearness = view->needs_slope = 1;
-  return CONIC_OK;
+  if (view->kernel.type == CONIC_KERNEL_GAUSS || !(view->prefilter > 0.0f) || conic_method_is_dot(view->method))
+    return CONIC_OK;
+  return conic_profile_make(context, &view->kernel, &view->profile);
 }

@@ -97,7 +97,7 @@ for choice in "" "--error 1" "--error 4" "--error 20" "--budget 20" "--budget 10
 done
 # shellcheck disable=SC2086
 run 0 verify hill.obj --as hybrid $view --error 2
-run 0 verify hill.obj --as mesh $view
+run 0 verify hill.obj --as mesh $view --pixels 2000
 run 0 verify hill.chy --size 32x24 --error 2 --against exact
 grep -q '^weights  *max ' out || fail "no errors of the weights"
 

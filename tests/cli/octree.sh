@@ -72,7 +72,7 @@ run 0 render knot.cot knot.ply -o both.pfm --size 64x64 --json both.json
 run 0 render small.cot -o small.pfm $picture --error 1
 
 # What was chosen is what is verified and explained, by the names that the picture has.
-run 0 verify knot.cot --size 64x48 --error 2
+run 0 verify knot.cot --size 64x48 --error 2 --pixels 1000
 run 0 verify knot.cot --size 64x48 --budget 500 --json verify.json
 [[ $(value pass verify.json) == true ]] || fail "a budget is not verified"
 run 0 explain knot.cot --size 64x48 --error 2 --pixel 32,24 --json explain.json

@@ -49,6 +49,35 @@ run 0 verify knot.ply --size 64x48 --aov Z,N --json v.json
 grep -q '"N": {' v.json || fail "no N in the file"
 grep -q '"rgba": {' v.json && fail "rgba, unasked"
 
+# Some of the pixels: always the same, of all kinds of pictures
+run 0 verify knot.ply --size 160x120 --pixels 500
+has '^judged    500 of 19200 pixels, 0 wrong$'
+cp out first
+run 0 verify knot.ply --size 160x120 --pixels 500 --threads 1
+cmp -s out first || fail "other pixels the second time"
+run 0 verify knot.ply --size 40x30 --pixels 50k --samples 2
+has '^judged    1200 of 1200 pixels, 0 wrong$'
+run 0 verify knot.ply --size 48x36 --against exact --pixels 60
+has '^judged    60 of 1728 pixels, 0 wrong$'
+run 2 verify knot.ply --pixels 0
+
+# Dots, whose axes are each picture's, measured as they are kept
+awk 'BEGIN { seed = 3
+  for (i = 0; i < 1500; i++) {
+    for (k = 0; k < 4; k++) { seed = seed * 16807 % 2147483647; value[k] = seed / 2147483647 }
+    size = value[3] ^ 4
+    print size * value[0], size * value[1], size * value[2]
+  } }' > foliage.xyz
+run_as_typed 0 verify foliage.xyz --size 96x96
+
+# A long run is stopped
+"$conic" verify knot.ply --plain --size 4000x4000 --against exact > out 2> err &
+stopped=$!
+sleep 1
+kill -TERM $stopped
+wait $stopped
+[[ $? -eq 143 ]] || fail "an interrupted run goes on, or ends otherwise"
+
 # The exact question: no bounds, but errors
 run 0 verify knot.ply --size 48x36 --against exact --json -
 has '"against": "exact"'
@@ -64,6 +93,7 @@ if "$conic" --version | grep -q '^In this build:.*OpenEXR'; then
   run 0 render knot.ply --size 160x120 --aov all --prefilter 1.002 -o wrong.exr
   run 1 verify knot.ply --size 160x120 --image wrong.exr
   has '^weight .*FAILED$'
+  has '^worst     pixel [0-9]*,[0-9]*: .* is .*; it may be '
   has '^FAILED$'
   run 1 verify knot.ply --size 160x120 --image wrong.exr --json -
   has '"pass": false'

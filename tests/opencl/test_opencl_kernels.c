@@ -32,17 +32,20 @@ static const char added_text[] =
     "}\n"
     "__kernel void try_fragments(__constant conic_view *frame_view, __global const conic_footprint *footprints,\n"
     "                            __global const conic_ray *rays, __global const conic_clip_record *clips,\n"
-    "                            __global float *plain, __global float *in_lanes) {\n"
-    "  conic_view view = *frame_view;\n"
+    "                            __global float *plain, __global float *in_lanes,\n"
+    "                            __global const float *profile_table) {\n"
+    "  conic_view view = view_of(frame_view, profile_table);\n"
     "  size_t item = get_global_id(0);\n"
     "  conic_footprint footprint = footprints[item];\n"
     "  conic_ray ray = rays[item];\n"
     "  conic_clip_record clip = clips[item];\n"
     "  const conic_device_reference reference = {(uint)item, 0};\n"
     "  splat_rows row = begin_rows(&footprint, rows_from(8));\n"
+    "  if (view.profile.table)\n"
+    "    begin_profile(&view, &footprint, &ray, 0, &row);\n"
+    "  splat_kind kind = view.profile.table ? SPLAT_PROFILED : footprint.s3 > 0.0f ? SPLAT_USUAL : SPLAT_SPECIAL;\n"
     "  fragments f;\n"
-    "  fragments_at(&view, view.support, &footprint, &ray, 0, &clip, 0, &row, columns_from(12), !(footprint.s3 > "
-    "0.0f), "
+    "  fragments_at(&view, view.support, &footprint, &ray, 0, &clip, 0, &row, columns_from(12), kind, "
     "&f);\n"
     "  for (int lane = 0; lane < 16; lane++) {\n"
     "    gather_pixel p = {.column = 0, .row = 0};\n"
@@ -69,7 +72,7 @@ typedef struct workbench {
   conic_queue queue;
   cl_program program;
   cl_kernel functions, fragments;
-  conic_buffer view, x, records[3], plain, in_lanes;
+  conic_buffer view, x, records[3], plain, in_lanes, profile;
 } workbench;
 
 static float edge_value(uint64_t *state) {
@@ -117,7 +120,8 @@ static void open_workbench(conic_context *context, workbench *d, const char *fro
 }
 
 static void close_workbench(workbench *d) {
-  conic_buffer *all[] = {&d->view, &d->x, &d->records[0], &d->records[1], &d->records[2], &d->plain, &d->in_lanes};
+  conic_buffer *all[] = {&d->view,       &d->x,     &d->records[0], &d->records[1],
+                         &d->records[2], &d->plain, &d->in_lanes,   &d->profile};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     conic_queue_release(all[i]);
   clReleaseKernel(d->functions);
@@ -211,11 +215,14 @@ static size_t try_fragments(workbench *d, const conic_view *view, uint64_t *stat
   size_t n_wrong = 0;
   for (uint32_t i = 0; i < N; i++)
     random_records(&footprints[i], &rays[i], &clips[i], state, i);
-  const conic_argument arguments[] = {
-      put(d, &d->view, view, sizeof *view),      put(d, &d->records[0], footprints, sizeof footprints),
-      put(d, &d->records[1], rays, sizeof rays), put(d, &d->records[2], clips, sizeof clips),
-      put(d, &d->plain, NULL, sizeof plain),     put(d, &d->in_lanes, NULL, sizeof in_lanes)};
-  run(d, d->fragments, arguments, 6, N);
+  const conic_argument arguments[] = {put(d, &d->view, view, sizeof *view),
+                                      put(d, &d->records[0], footprints, sizeof footprints),
+                                      put(d, &d->records[1], rays, sizeof rays),
+                                      put(d, &d->records[2], clips, sizeof clips),
+                                      put(d, &d->plain, NULL, sizeof plain),
+                                      put(d, &d->in_lanes, NULL, sizeof in_lanes),
+                                      put(d, &d->profile, view->profile.table, CONIC_PROFILE_FLOATS * sizeof(float))};
+  run(d, d->fragments, arguments, 7, N);
   CHECK_OK(conic_queue_read(&d->queue, &d->plain, 0, plain, sizeof plain));
   CHECK_OK(conic_queue_read(&d->queue, &d->in_lanes, 0, in_lanes, sizeof in_lanes));
   for (int i = 0; i < N * 16; i++) {

@@ -1,0 +1,81 @@
+/* A counting sort by tile, run by run of footprints: each run counts, the counts become places, each run puts its
+ * entries there. The order within a tile is so that of the footprints, whatever the threads. */
+#include "gaussians/draw/gaussian_bins.h"
+
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/threads.h"
+
+typedef struct bin_job {
+  const conic_gaussian_footprint *footprints;
+  size_t n, a_run, n_runs;
+  conic_gaussian_bins *bins;
+  size_t *places; /* n_runs × n_tiles: counts, then places */
+} bin_job;
+
+static void visit(const bin_job *j, size_t i_run, int writes) {
+  size_t *places = &j->places[i_run * j->bins->n_tiles], across = j->bins->n_tiles_x;
+  size_t end = (i_run + 1) * j->a_run < j->n ? (i_run + 1) * j->a_run : j->n;
+  for (size_t i = i_run * j->a_run; i < end; i++) {
+    const conic_gaussian_footprint *f = &j->footprints[i];
+    for (size_t y = f->box[0][1] / CONIC_GAUSSIAN_TILE; y <= f->box[1][1] / CONIC_GAUSSIAN_TILE; y++)
+      for (size_t x = f->box[0][0] / CONIC_GAUSSIAN_TILE; x <= f->box[1][0] / CONIC_GAUSSIAN_TILE; x++) {
+        size_t *place = &places[y * across + x];
+        if (writes)
+          j->bins->entries[*place] = (uint32_t)i;
+        ++*place;
+      }
+  }
+}
+
+static void count_run(void *data, size_t i_run, int i_thread) {
+  (void)i_thread;
+  visit(data, i_run, 0);
+}
+
+static void fill_run(void *data, size_t i_run, int i_thread) {
+  (void)i_thread;
+  visit(data, i_run, 1);
+}
+
+static size_t place_counts(const bin_job *j) {
+  size_t sum = 0;
+  for (size_t tile = 0; tile < j->bins->n_tiles; tile++) {
+    j->bins->tile_begin[tile] = sum;
+    for (size_t run = 0; run < j->n_runs; run++) {
+      size_t *place = &j->places[run * j->bins->n_tiles + tile], count = *place;
+      *place = sum;
+      sum += count;
+    }
+  }
+  return j->bins->tile_begin[j->bins->n_tiles] = sum;
+}
+
+conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints, size_t n,
+                                      int width, int height, conic_gaussian_bins *bins) {
+  enum { LEAST_RUN = 16384, MOST_RUNS = 64 };
+  bin_job j = {.footprints = footprints, .n = n, .bins = bins};
+  bins->n_tiles_x = ((size_t)width + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE;
+  bins->n_tiles = bins->n_tiles_x * (((size_t)height + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE);
+  j.a_run = n / MOST_RUNS + 1 > LEAST_RUN ? n / MOST_RUNS + 1 : LEAST_RUN;
+  j.n_runs = (n + j.a_run - 1) / j.a_run;
+  bins->tile_begin = conic_memory_allocate(context, bins->n_tiles + 1, sizeof *bins->tile_begin);
+  j.places = conic_memory_allocate_zeroed(context, j.n_runs * bins->n_tiles, sizeof *j.places);
+  if (!bins->tile_begin || !j.places) {
+    conic_memory_release(context, j.places);
+    return CONIC_ERROR_MEMORY;
+  }
+  conic_parallel_for(context, j.n_runs, count_run, &j);
+  bins->entries = conic_memory_allocate(context, place_counts(&j), sizeof *bins->entries);
+  if (bins->entries)
+    conic_parallel_for(context, j.n_runs, fill_run, &j);
+  conic_memory_release(context, j.places);
+  return bins->entries ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+void conic_gaussian_bins_release(conic_context *context, conic_gaussian_bins *bins) {
+  conic_memory_release(context, bins->tile_begin);
+  conic_memory_release(context, bins->entries);
+  memset(bins, 0, sizeof *bins);
+}

@@ -1,0 +1,19 @@
+/* Which footprints meet which tile, in the order of all. */
+#ifndef CONIC_GAUSSIAN_BINS_H
+#define CONIC_GAUSSIAN_BINS_H
+
+#include "gaussians/draw/gaussian_tile.h"
+
+typedef struct conic_gaussian_bins {
+  size_t n_tiles_x, n_tiles;
+  size_t *tile_begin; /* n_tiles + 1 places among the entries */
+  uint32_t *entries;
+} conic_gaussian_bins;
+
+/* Makes the lists of a picture of that size; the footprints are in their order. On failure *bins is to be released,
+ * too. Errors: MEMORY. */
+conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints, size_t n,
+                                      int width, int height, conic_gaussian_bins *bins);
+void conic_gaussian_bins_release(conic_context *context, conic_gaussian_bins *bins);
+
+#endif

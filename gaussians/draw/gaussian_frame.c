@@ -1,0 +1,263 @@
+/* A picture of Gaussians: set up, put in order, binned, composited. */
+#include <string.h>
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/base/radix.h"
+#include "core/base/real.h"
+#include "core/base/threads.h"
+#include "core/image/view_arguments.h"
+#include "gaussians/draw/gaussian_bins.h"
+
+enum { SET_UP_RUN = 2048 };
+
+typedef struct frame {
+  conic_context *context;
+  const conic_gaussians *set;
+  const conic_gaussian_options *options;
+  conic_gaussian_planes *planes;
+  conic_gaussian_view view;
+  conic_gaussian_kernels kernels;
+  conic_gaussian_statistics statistics;
+  int has_rays;
+  /* As they were set up, a run of the scene after the other, and in their order. */
+  conic_gaussian_footprint *footprints, *ordered;
+  conic_gaussian_ray *rays, *ordered_rays;
+  float (*normals)[3], (*ordered_normals)[3];
+  size_t *n_of_run, *n_skipped_of_run, n_runs, n;
+  conic_radix_item *order;
+  conic_gaussian_bins bins;
+  conic_gaussian_hit **hits; /* by thread */
+  size_t n_hits;
+} frame;
+
+static void set_up_run(void *data, size_t i_run, int i_thread) {
+  frame *f = data;
+  size_t begin = i_run * SET_UP_RUN, to = begin;
+  size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
+  conic_gaussian_ray unused;
+  (void)i_thread;
+  for (size_t i = begin; i < end; i++) {
+    conic_gaussian_fate fate =
+        conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], f->has_rays ? &f->rays[to] : &unused,
+                              f->normals ? f->normals[to] : NULL);
+    f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
+    to += fate == CONIC_GAUSSIAN_DRAWN;
+  }
+  f->n_of_run[i_run] = to - begin;
+}
+
+static conic_status set_up_all(frame *f) {
+  const size_t count = f->set->count;
+  int is_done = 1;
+  f->n_runs = (count + SET_UP_RUN - 1) / SET_UP_RUN;
+  is_done &= (f->footprints = conic_memory_allocate(f->context, count, sizeof *f->footprints)) != NULL;
+  is_done &= (f->n_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_of_run)) != NULL;
+  is_done &=
+      (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
+  if (f->has_rays)
+    is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
+  if (f->planes->normal)
+    is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
+  if (!is_done)
+    return CONIC_ERROR_MEMORY;
+  conic_status status = conic_parallel_runs(f->context, "setup", 0.0, 0.3, f->n_runs, 64, set_up_run, f);
+  for (size_t run = 0; run < f->n_runs; run++) {
+    f->n += f->n_of_run[run];
+    f->statistics.gaussians_skipped += f->n_skipped_of_run[run];
+  }
+  f->statistics.gaussians_drawn = f->n;
+  f->statistics.gaussians_culled = count - f->n - f->statistics.gaussians_skipped;
+  return status;
+}
+
+/* Keys are depths over 0, or of a mean behind the eye below: ordered as their bits are, once those below are turned. */
+static uint64_t key_of(float key) {
+  uint32_t bits = conic_bits_of_float(key);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+static void move_run(void *data, size_t i_run, int i_thread) {
+  frame *f = data;
+  size_t end = (i_run + 1) * SET_UP_RUN < f->n ? (i_run + 1) * SET_UP_RUN : f->n;
+  (void)i_thread;
+  for (size_t i = i_run * SET_UP_RUN; i < end; i++) {
+    uint32_t from = f->order[i].value;
+    f->ordered[i] = f->footprints[from];
+    if (f->has_rays)
+      f->ordered_rays[i] = f->rays[from];
+    if (f->normals)
+      memcpy(f->ordered_normals[i], f->normals[from], sizeof *f->normals);
+  }
+}
+
+static conic_status order_footprints(frame *f) {
+  f->order = conic_memory_allocate(f->context, f->n, sizeof *f->order);
+  f->ordered = conic_memory_allocate(f->context, f->n, sizeof *f->ordered);
+  if (f->has_rays)
+    f->ordered_rays = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_rays);
+  if (f->normals)
+    f->ordered_normals = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_normals);
+  if (!f->order || !f->ordered || (f->has_rays && !f->ordered_rays) || (f->normals && !f->ordered_normals))
+    return CONIC_ERROR_MEMORY;
+  size_t n = 0;
+  for (size_t run = 0; run < f->n_runs; run++)
+    for (size_t i = 0; i < f->n_of_run[run]; i++) {
+      size_t from = run * SET_UP_RUN + i;
+      f->order[n++] = (conic_radix_item){key_of(f->footprints[from].key), (uint32_t)from};
+    }
+  conic_status status = conic_radix_sort(f->context, f->order, n, 32);
+  if (status == CONIC_OK)
+    conic_parallel_for(f->context, (n + SET_UP_RUN - 1) / SET_UP_RUN, move_run, f);
+  return status;
+}
+
+static void begin_compositing(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
+  memset(tile, 0, sizeof *tile);
+  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++) {
+    tile->T[i] = 1.0f;
+    tile->id[i] = tile->last[i] = CONIC_NO_ID;
+  }
+  tile->x = (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
+  tile->y = (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
+}
+
+static void put_number(float *plane, size_t pixel, float value) {
+  if (plane)
+    plane[pixel] = value;
+}
+
+static void put_word(uint32_t *plane, size_t pixel, uint32_t value) {
+  if (plane)
+    plane[pixel] = value;
+}
+
+static void end_compositing(const frame *f, const conic_gaussian_tile *tile) {
+  conic_gaussian_planes *to = f->planes;
+  for (int row = 0; row < CONIC_GAUSSIAN_TILE && tile->y + row < to->height; row++)
+    for (int column = 0; column < CONIC_GAUSSIAN_TILE && tile->x + column < to->width; column++) {
+      size_t at = (size_t)(row * CONIC_GAUSSIAN_TILE + column);
+      size_t pixel = (size_t)(tile->y + row) * (size_t)to->width + (size_t)(tile->x + column);
+      float T = tile->T[at] > 0.0f ? tile->T[at] : tile->rest[at];
+      put_number(to->transparency, pixel, T);
+      put_number(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
+      put_number(to->median_z, pixel, tile->median_z[at]);
+      put_number(to->inverse_z, pixel, tile->inverse_z[at]);
+      put_word(to->count, pixel, tile->count[at]);
+      put_word(to->id, pixel, tile->id[at]);
+      put_word(to->last, pixel, tile->last[at]);
+      for (int c = 0; c < 3; c++) {
+        put_number(to->rgb, 3 * pixel + (size_t)c, tile->rgb[c][at] + T * f->options->background[c]);
+        put_number(to->normal, 3 * pixel + (size_t)c, tile->normal[c][at]);
+      }
+    }
+}
+
+static void composite_tile(void *data, size_t i_tile, int i_thread) {
+  frame *f = data;
+  const conic_gaussian_planes *to = f->planes;
+  conic_gaussian_tile tile;
+  begin_compositing(f, i_tile, &tile);
+  conic_gaussian_list list = {.rules = f->view.rules,
+                              .footprints = f->ordered,
+                              .rays = f->ordered_rays,
+                              .normals = (const float(*)[3])f->ordered_normals,
+                              .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
+                                           to->id || to->last,
+                              .entries = f->bins.entries + f->bins.tile_begin[i_tile],
+                              .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
+                              .hits = f->hits ? f->hits[i_thread] : NULL};
+  f->kernels.composite[f->view.rules->shape](&list, &tile);
+  end_compositing(f, &tile);
+}
+
+/* Room for a row of a tile, the longest list at each of its pixels. */
+static conic_status make_room_for_hits(frame *f) {
+  const size_t threads = (size_t)conic_context_threads(f->context);
+  if (f->view.rules->shape != CONIC_SHAPE_RAY)
+    return CONIC_OK;
+  for (size_t tile = 0; tile < f->bins.n_tiles; tile++) {
+    size_t n = f->bins.tile_begin[tile + 1] - f->bins.tile_begin[tile];
+    f->n_hits = n > f->n_hits ? n : f->n_hits;
+  }
+  f->hits = conic_memory_allocate_zeroed(f->context, threads, sizeof *f->hits);
+  if (!f->hits)
+    return CONIC_ERROR_MEMORY;
+  for (size_t i = 0; i < threads; i++)
+    if (!(f->hits[i] = conic_memory_allocate(f->context, f->n_hits, CONIC_GAUSSIAN_TILE * sizeof **f->hits)))
+      return CONIC_ERROR_MEMORY;
+  return CONIC_OK;
+}
+
+static void release_frame(frame *f) {
+  void *const all[] = {f->footprints, f->ordered,          f->rays, f->ordered_rays, f->normals, f->ordered_normals,
+                       f->n_of_run,   f->n_skipped_of_run, f->order};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    conic_memory_release(f->context, all[i]);
+  for (int i = 0; f->hits && i < conic_context_threads(f->context); i++)
+    conic_memory_release(f->context, f->hits[i]);
+  conic_memory_release(f->context, f->hits);
+  conic_gaussian_bins_release(f->context, &f->bins);
+}
+
+static conic_status draw_scene(frame *f) {
+  double begin = conic_seconds_now(), now;
+  conic_status status = set_up_all(f);
+  f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
+  if (status == CONIC_OK)
+    status = order_footprints(f);
+  f->statistics.seconds_sort = conic_seconds_now() - now;
+  now = conic_seconds_now();
+  if (status == CONIC_OK)
+    status = conic_gaussian_bins_make(f->context, f->ordered, f->n, f->planes->width, f->planes->height, &f->bins);
+  f->statistics.seconds_bin = conic_seconds_now() - now;
+  now = conic_seconds_now();
+  if (status == CONIC_OK)
+    status = make_room_for_hits(f);
+  if (status == CONIC_OK) {
+    f->statistics.entries = f->bins.tile_begin[f->bins.n_tiles];
+    status = conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f);
+  }
+  f->statistics.seconds_composite = conic_seconds_now() - now;
+  return status;
+}
+
+static void look_through(const conic_camera *camera, conic_gaussian_view *view) {
+  view->camera = camera;
+  for (int axis = 0; axis < 3; axis++) {
+    const double(*rows)[4] = camera->cam_from_world;
+    double eye = -(rows[0][axis] * rows[0][3] + rows[1][axis] * rows[1][3] + rows[2][axis] * rows[2][3]);
+    view->eye[axis] = view->rules->has_float_eye ? (double)(float)eye : eye;
+  }
+  view->center_px[0] = view->rules->takes_middle ? 0.5 * camera->width : camera->cx;
+  view->center_px[1] = view->rules->takes_middle ? 0.5 * camera->height : camera->cy;
+}
+
+conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
+                                    const conic_camera *camera, const conic_gaussian_options *options,
+                                    conic_gaussian_planes *planes, conic_gaussian_statistics *statistics) {
+  conic_gaussian_options own;
+  conic_isa isa;
+  conic_gaussian_options_init(&own);
+  if (!gaussians || !camera || !planes || (options && !conic_options_take(&own, options)) ||
+      !conic_gaussian_rules_of(own.profile) || planes->width != camera->width || planes->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
+                      "camera's size");
+  conic_status status = conic_view_camera_check(context, "gaussians", camera);
+  if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
+    return status;
+  frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
+  f.view.rules = conic_gaussian_rules_of(own.profile);
+  f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
+  f.statistics.gaussians_in = gaussians->count;
+  conic_gaussian_kernels_init(&f.kernels, isa);
+  look_through(camera, &f.view);
+  status = draw_scene(&f);
+  release_frame(&f);
+  if (statistics)
+    *statistics = f.statistics;
+  return status;
+}

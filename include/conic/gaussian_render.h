@@ -1,0 +1,79 @@
+/* Pictures of Gaussian scenes, composited by alpha: docs/reference/gaussians.md defines each profile to the bit. */
+#ifndef CONIC_GAUSSIAN_RENDER_H
+#define CONIC_GAUSSIAN_RENDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "conic/camera.h"
+#include "conic/context.h"
+#include "conic/gaussians.h"
+#include "conic/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a renderer does with a Gaussian. A profile that is named after a program draws what that version of it draws;
+ * it never changes. */
+typedef enum conic_gaussian_profile {
+  CONIC_PROFILE_EXACT = 0, /* the response along each pixel's own ray, in the order along that ray */
+  CONIC_PROFILE_INRIA_2023 = 1,
+  CONIC_PROFILE_GSPLAT_1_5 = 2,
+  CONIC_PROFILE_GSPLAT_1_5_AA = 3, /* "antialiased": faint where the dilation is large */
+  CONIC_PROFILE_GSPLAT_1_6 = 4,
+  CONIC_PROFILE_GSPLAT_1_6_AA = 5,
+  CONIC_PROFILE_2DGS_2024 = 6,   /* the 2D Gaussians of their authors' program */
+  CONIC_PROFILE_2DGS_GSPLAT = 7, /* and of gsplat's */
+  CONIC_PROFILE_KHR_2026 = 8     /* KHR_gaussian_splatting, release candidate */
+} conic_gaussian_profile;
+
+#define CONIC_N_GAUSSIAN_PROFILES 9
+
+/* "exact", "inria-2023" …; null for a number that is no profile. */
+CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile);
+
+typedef struct conic_gaussian_options {
+  size_t size; /* sizeof(conic_gaussian_options), set by the init function */
+  conic_gaussian_profile profile;
+  float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;       /* as the context has it */
+  uint32_t reserved;
+} conic_gaussian_options;
+
+/* Exact, black. */
+CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
+#define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
+
+/* What a picture of Gaussians consists of, each of width × height numbers times its channels. Null: not wanted. */
+typedef struct conic_gaussian_planes {
+  int width, height;
+  float *rgb;          /* 3: display values over the background, as the profile composites them */
+  float *transparency; /* T: what is left of the light from behind */
+  float *z; /* Σ w·z / Σ w, z of the mean, of the hit or of the greatest response by the profile; 0: nothing */
+  float *median_z;  /* of the Gaussian with which T comes to ½; 0 where it does not */
+  float *inverse_z; /* Σ w/z */
+  float *normal;    /* 3: Σ w·n in the world, n the shortest axis, towards the eye */
+  uint32_t *count;  /* Gaussians composited */
+  uint32_t *id;     /* the one with the largest w, of equal ones the first; CONIC_NO_ID: nothing */
+  uint32_t *last;   /* the last one composited */
+  uint64_t reserved[8];
+} conic_gaussian_planes;
+
+typedef struct conic_gaussian_statistics {
+  size_t gaussians_in, gaussians_skipped, gaussians_culled, gaussians_drawn; /* skipped: a number is not finite */
+  size_t entries;                                                            /* of tiles' lists */
+  double seconds_setup, seconds_sort, seconds_bin, seconds_composite;
+  uint64_t reserved[8];
+} conic_gaussian_statistics;
+
+/* Draws into the planes that are there. The same bits for any number of threads and every instruction set. Null options
+ * are the defaults; statistics may be null. Errors: ARGUMENT, MEMORY, CANCELLED, UNSUPPORTED (the instruction set). */
+CONIC_API conic_status conic_gaussians_render(conic_context *context, const conic_gaussians *gaussians,
+                                              const conic_camera *camera, const conic_gaussian_options *options,
+                                              conic_gaussian_planes *planes, conic_gaussian_statistics *statistics);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

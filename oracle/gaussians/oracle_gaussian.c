@@ -1,0 +1,308 @@
+/* Gaussians for the oracle: what each profile makes of one, and what of it a place of the screen sees. */
+#include "oracle/gaussians/oracle_gaussian.h"
+
+#include <string.h>
+
+#include "oracle/oracle_math.h"
+
+#define LEAST_ALPHA (1.0 / 255.0)
+#define AS_GSPLAT .near_z = 0.01, .alpha_least = LEAST_ALPHA, .stop = 1e-4, .stop_is_left_out = 1
+
+const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile) {
+  static const oracle_gaussian_rules rules[CONIC_N_GAUSSIAN_PROFILES] = {
+      [CONIC_PROFILE_EXACT] = {.form = ORACLE_FORM_RAY, .alpha_most = 0.99, .alpha_least = LEAST_ALPHA, .stop = 1e-4},
+      [CONIC_PROFILE_INRIA_2023] = {.near_z = 0.2,
+                                    .near_is_left_out = 1,
+                                    .alpha_most = 0.99,
+                                    .alpha_least = LEAST_ALPHA,
+                                    .stop = 1e-4,
+                                    .dilation = 0.3,
+                                    .compensation_least = -1.0,
+                                    .is_inria = 1},
+      [CONIC_PROFILE_GSPLAT_1_5] = {AS_GSPLAT, .alpha_most = 0.999, .dilation = 0.3, .compensation_least = -1.0},
+      [CONIC_PROFILE_GSPLAT_1_5_AA] = {AS_GSPLAT, .alpha_most = 0.999, .dilation = 0.3, .compensation_least = 0.0},
+      [CONIC_PROFILE_GSPLAT_1_6] = {AS_GSPLAT, .alpha_most = 0.99, .dilation = 0.3, .compensation_least = -1.0},
+      [CONIC_PROFILE_GSPLAT_1_6_AA] = {AS_GSPLAT, .alpha_most = 0.99, .dilation = 0.3, .compensation_least = 2.5e-5},
+      [CONIC_PROFILE_2DGS_2024] = {.form = ORACLE_FORM_DISC,
+                                   .near_z = 0.2,
+                                   .near_is_left_out = 1,
+                                   .alpha_most = 0.99,
+                                   .alpha_least = LEAST_ALPHA,
+                                   .stop = 1e-4,
+                                   .is_inria = 1,
+                                   .disc_cutoff = 3.0,
+                                   .disc_near = 0.2},
+      [CONIC_PROFILE_2DGS_GSPLAT] = {AS_GSPLAT, .form = ORACLE_FORM_DISC, .near_is_left_out = 1, .alpha_most = 0.99,
+                                     .disc_cutoff = 1.0, .disc_extent = 3.33},
+      [CONIC_PROFILE_KHR_2026] = {.alpha_most = 1.0, .compensation_least = -1.0, .cutoff = 9.0, .is_by_distance = 1},
+  };
+  return (unsigned)profile < CONIC_N_GAUSSIAN_PROFILES ? &rules[profile] : NULL;
+}
+
+static void rotation_of_quaternion(const double q[4], double r[3][3]) {
+  double w = q[0], x = q[1], y = q[2], z = q[3];
+  double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                       {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+                       {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}};
+  memcpy(r, rows, sizeof rows);
+}
+
+/* The axes in the world and in camera space. Returns 0 where there are none. */
+static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i, double world[3][3],
+                     oracle_gaussian *g) {
+  double q[4], length = 0.0;
+  for (int k = 0; k < 4; k++) {
+    q[k] = (double)set->rotation[k][i];
+    length += q[k] * q[k];
+  }
+  length = view->rules->is_inria ? 1.0 : sqrt(length);
+  for (int k = 0; k < 4; k++)
+    q[k] /= length;
+  rotation_of_quaternion(q, world);
+  int is_good = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    g->scale[axis] = set->scale[axis] ? (double)set->scale[axis][i] : 0.0;
+    is_good &= oracle_is_finite(g->scale[axis]) && g->scale[axis] >= 0.0;
+    for (int row = 0; row < 3; row++) {
+      const double *camera = view->camera->cam_from_world[row];
+      g->unit[axis][row] = camera[0] * world[0][axis] + camera[1] * world[1][axis] + camera[2] * world[2][axis];
+      g->axes[axis][row] = g->unit[axis][row] * g->scale[axis];
+      is_good &= oracle_is_finite(g->axes[axis][row]);
+    }
+  }
+  return is_good;
+}
+
+/* The direction of the shortest axis, of a disc the third, turned towards the eye. */
+static void pick_normal(const oracle_gaussian_view *view, const double world[3][3], oracle_gaussian *g) {
+  int axis = 2;
+  if (view->rules->form != ORACLE_FORM_DISC && !g->is_flat)
+    for (int k = 1; k >= 0; k--)
+      axis = g->scale[k] < g->scale[axis] ? k : axis;
+  double side = oracle_dot(g->unit[axis], g->mean) > 0.0 ? -1.0 : 1.0;
+  for (int row = 0; row < 3; row++)
+    g->normal[row] = side * world[row][axis];
+}
+
+static double clamp(double value, double low, double high) {
+  return oracle_min(oracle_max(value, low), high);
+}
+
+/* How many whole tiles of 16 pixels there are up to a place. */
+static double tiles_to(double place, double size) {
+  double n = place / 16.0;
+  return clamp(n < 0.0 ? ceil(n) : floor(n), 0.0, ceil(size / 16.0)) * 16.0;
+}
+
+/* A square about the place, rounded out to tiles. */
+static void cover_tiles(const oracle_gaussian_view *view, double radius, oracle_gaussian *g) {
+  const double size[2] = {view->camera->width, view->camera->height};
+  for (int axis = 0; axis < 2; axis++) {
+    double place = g->place_px[axis] - 0.5;
+    g->box_px[0][axis] = tiles_to(place - radius, size[axis]);
+    g->box_px[1][axis] = tiles_to(place + radius + 15.0, size[axis]);
+  }
+}
+
+static int place_ellipse(const oracle_gaussian_view *view, oracle_gaussian *g) {
+  const oracle_gaussian_rules *rules = view->rules;
+  const conic_camera *camera = view->camera;
+  const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height}, z = g->mean[2];
+  double rows[2][3], d = rules->dilation;
+  for (int axis = 0; axis < 2; axis++) {
+    double slope = g->mean[axis] / z, half = 0.5 * size[axis] / focal[axis], c = view->center_px[axis];
+    g->place_px[axis] = focal[axis] * slope + c;
+    if (rules->is_inria)
+      slope = clamp(slope, -1.3 * half, 1.3 * half);
+    else if (rules->dilation > 0.0)
+      slope = clamp(slope, -(c / focal[axis] + 0.3 * half), (size[axis] - c) / focal[axis] + 0.3 * half);
+    for (int k = 0; k < 3; k++)
+      rows[axis][k] = focal[axis] / z * (g->axes[k][axis] - slope * g->axes[k][2]);
+  }
+  oracle_symmetric bare = {oracle_dot(rows[0], rows[0]), oracle_dot(rows[0], rows[1]), oracle_dot(rows[1], rows[1])};
+  oracle_symmetric wide = {bare.xx + d, bare.xy, bare.yy + d};
+  double area[3];
+  oracle_cross(rows[0], rows[1], area);
+  double before = oracle_dot(area, area), after = before + d * (bare.xx + bare.yy) + d * d;
+  if (!(after > 0.0) || !oracle_is_finite(after))
+    return 0;
+  if (rules->compensation_least >= 0.0)
+    g->opacity *= sqrt(oracle_max(rules->compensation_least, before / after));
+  g->form[0] = wide.yy / after;
+  g->form[1] = -wide.xy / after;
+  g->form[2] = wide.xx / after;
+  if (rules->is_inria) {
+    double mean = 0.5 * (wide.xx + wide.yy);
+    cover_tiles(view, ceil(3.0 * sqrt(mean + sqrt(oracle_max(0.1, mean * mean - after)))), g);
+  }
+  return 1;
+}
+
+/* The centre of the box of the disc's outline at the cutoff, and the pixels that the profile looks at. */
+static int place_disc(const oracle_gaussian_view *view, oracle_gaussian *g) {
+  const oracle_gaussian_rules *rules = view->rules;
+  const conic_camera *camera = view->camera;
+  const double columns[3][3] = {{g->axes[0][0], g->axes[0][1], g->axes[0][2]},
+                                {g->axes[1][0], g->axes[1][1], g->axes[1][2]},
+                                {g->mean[0], g->mean[1], g->mean[2]}};
+  const double signs[3] = {rules->disc_cutoff * rules->disc_cutoff, rules->disc_cutoff * rules->disc_cutoff, -1.0};
+  double extent[2], weight = 0.0;
+  for (int k = 0; k < 3; k++) {
+    g->rows[0][k] = camera->fx * columns[k][0] + view->center_px[0] * columns[k][2];
+    g->rows[1][k] = camera->fy * columns[k][1] + view->center_px[1] * columns[k][2];
+    g->rows[2][k] = columns[k][2];
+    weight += signs[k] * g->rows[2][k] * g->rows[2][k];
+  }
+  if (weight == 0.0 || !oracle_is_finite(weight))
+    return 0;
+  for (int axis = 0; axis < 2; axis++) {
+    double place = 0.0, square = 0.0;
+    for (int k = 0; k < 3; k++) {
+      place += signs[k] / weight * g->rows[axis][k] * g->rows[2][k];
+      square += signs[k] / weight * g->rows[axis][k] * g->rows[axis][k];
+    }
+    g->place_px[axis] = place;
+    extent[axis] = sqrt(oracle_max(1e-4, place * place - square));
+  }
+  if (rules->is_inria) {
+    cover_tiles(view, ceil(oracle_max(oracle_max(extent[0], extent[1]), 3.0 * 0.707106)), g);
+    return 1;
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    double radius = ceil(rules->disc_extent * extent[axis]), size = axis ? camera->height : camera->width;
+    if (g->place_px[axis] + radius <= 0.0 || g->place_px[axis] - radius >= size)
+      return 0;
+    g->box_px[0][axis] = floor((g->place_px[axis] - radius) / 16.0) * 16.0;
+    g->box_px[1][axis] = ceil((g->place_px[axis] + radius) / 16.0) * 16.0;
+  }
+  return 1;
+}
+
+static double number_of_half(uint16_t half) {
+  int exponent = half >> 10 & 31, fraction = half & 1023;
+  double size = exponent ? 1024.0 + fraction : fraction;
+  if (exponent == 31)
+    return fraction ? NAN : half & 0x8000 ? -INFINITY : INFINITY;
+  for (int k = exponent ? exponent : 1; k < 25; k++)
+    size *= 0.5;
+  for (int k = 25; k < exponent; k++)
+    size *= 2.0;
+  return half & 0x8000 ? -size : size;
+}
+
+static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaussians *set, const double mean[3],
+                              size_t i, oracle_gaussian *g) {
+  const size_t n = (size_t)(set->sh_degree + 1) * (size_t)(set->sh_degree + 1) * 3;
+  double sh[(CONIC_MAX_SH_DEGREE + 1) * (CONIC_MAX_SH_DEGREE + 1) * 3], direction[3];
+  for (size_t k = 0; k < n; k++)
+    sh[k] = set->sh ? (double)set->sh[i * n + k] : number_of_half(set->sh_half[i * n + k]);
+  for (int axis = 0; axis < 3; axis++)
+    direction[axis] = mean[axis] - view->eye[axis];
+  double length = oracle_length(direction);
+  for (int axis = 0; axis < 3; axis++)
+    direction[axis] = length > 0.0 ? direction[axis] / length : 0.0;
+  conic_oracle_harmonics(sh, set->sh_degree, direction, g->color);
+}
+
+void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
+                                 oracle_gaussian *g) {
+  const oracle_gaussian_rules *rules = view->rules;
+  double mean[3], world[3][3];
+  memset(g, 0, sizeof *g);
+  g->index = (uint32_t)i;
+  g->is_flat = !set->scale[2];
+  g->opacity = (double)set->opacity[i];
+  g->box_px[0][0] = g->box_px[0][1] = -INFINITY;
+  g->box_px[1][0] = g->box_px[1][1] = INFINITY;
+  for (int axis = 0; axis < 3; axis++)
+    mean[axis] = set->origin[axis] + (double)set->position[axis][i];
+  for (int row = 0; row < 3; row++) {
+    const double *camera = view->camera->cam_from_world[row];
+    g->mean[row] = camera[0] * mean[0] + camera[1] * mean[1] + camera[2] * mean[2] + camera[3];
+    if (!oracle_is_finite(g->mean[row]))
+      return;
+  }
+  int is_near = g->mean[2] < rules->near_z || (rules->near_is_left_out && g->mean[2] == rules->near_z);
+  if (!oracle_is_finite(g->opacity) || !turn_axes(view, set, i, world, g) ||
+      (rules->form != ORACLE_FORM_RAY && (is_near || !(g->mean[2] > 0.0))))
+    return;
+  pick_normal(view, world, g);
+  color_towards_eye(view, set, mean, i, g);
+  g->key = (float)(rules->is_by_distance ? oracle_length(g->mean) : g->mean[2]);
+  g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
+  if (rules->form == ORACLE_FORM_ELLIPSE)
+    g->is_drawn &= place_ellipse(view, g);
+  if (rules->form == ORACLE_FORM_DISC)
+    g->is_drawn &= place_disc(view, g);
+}
+
+/* In the Gaussian's own frame, where it is a unit ball, the ray goes through z·d − m. Of a flat one, where the ray
+ * meets the plane. */
+int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                double *q, double *z, double *width) {
+  const conic_camera *camera = view->camera;
+  const double ray[3] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy, 1.0};
+  double d[3], m[3], cross[3];
+  for (int axis = 0; axis < 3; axis++) {
+    d[axis] = oracle_dot(g->unit[axis], ray);
+    m[axis] = oracle_dot(g->unit[axis], g->mean);
+  }
+  if (g->is_flat || g->scale[2] == 0.0) {
+    *z = m[2] / d[2];
+    double u = (*z * d[0] - m[0]) / g->scale[0], v = (*z * d[1] - m[1]) / g->scale[1];
+    *q = u * u + v * v;
+    *width = 0.0;
+    return *z > 0.0 && oracle_is_finite(*q);
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    d[axis] /= g->scale[axis];
+    m[axis] /= g->scale[axis];
+  }
+  double square = oracle_dot(d, d);
+  oracle_cross(d, m, cross);
+  *q = oracle_dot(cross, cross) / square;
+  *z = oracle_dot(d, m) / square;
+  *width = 1.0 / sqrt(square);
+  return *z > 0.0 && oracle_is_finite(*q) && oracle_is_finite(*z);
+}
+
+static double disc_form(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y, double *z) {
+  double k[3], l[3], p[3];
+  for (int i = 0; i < 3; i++) {
+    k[i] = x * g->rows[2][i] - g->rows[0][i];
+    l[i] = y * g->rows[2][i] - g->rows[1][i];
+  }
+  oracle_cross(k, l, p);
+  if (p[2] == 0.0)
+    return -1.0;
+  double u = p[0] / p[2], v = p[1] / p[2], dx = g->place_px[0] - x, dy = g->place_px[1] - y;
+  double hit = u * g->rows[2][0] + v * g->rows[2][1] + g->rows[2][2];
+  if (view->rules->disc_near > 0.0) {
+    *z = hit;
+    if (hit < view->rules->disc_near)
+      return -1.0;
+  }
+  return oracle_min(u * u + v * v, 2.0 * (dx * dx + dy * dy));
+}
+
+double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                   double *z) {
+  const oracle_gaussian_rules *rules = view->rules;
+  double q, width;
+  if (x < g->box_px[0][0] || x >= g->box_px[1][0] || y < g->box_px[0][1] || y >= g->box_px[1][1])
+    return 0.0;
+  *z = g->mean[2];
+  if (rules->form == ORACLE_FORM_RAY) {
+    if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
+      return 0.0;
+  } else if (rules->form == ORACLE_FORM_DISC) {
+    q = disc_form(view, g, x, y, z);
+  } else {
+    double dx = g->place_px[0] - x, dy = g->place_px[1] - y;
+    q = g->form[0] * dx * dx + 2.0 * g->form[1] * dx * dy + g->form[2] * dy * dy;
+  }
+  if (!(q >= 0.0) || (rules->cutoff > 0.0 && q > rules->cutoff))
+    return 0.0;
+  double alpha = oracle_min(rules->alpha_most, g->opacity * conic_oracle_exp(-0.5 * q));
+  return alpha >= rules->alpha_least ? alpha : 0.0;
+}

@@ -1,0 +1,67 @@
+/* A Gaussian of a scene, set up for one view in double precision. */
+#ifndef CONIC_ORACLE_GAUSSIAN_H
+#define CONIC_ORACLE_GAUSSIAN_H
+
+#include "conic/gaussian_oracle.h"
+
+typedef enum oracle_gaussian_form {
+  ORACLE_FORM_ELLIPSE = 0, /* projected by the Jacobian at the mean */
+  ORACLE_FORM_DISC = 1,    /* a 2D Gaussian where the ray meets its plane, or as a dot on the screen */
+  ORACLE_FORM_RAY = 2      /* the greatest response along the ray */
+} oracle_gaussian_form;
+
+/* What distinguishes the profiles: the table of docs/reference/gaussians.md. */
+typedef struct oracle_gaussian_rules {
+  oracle_gaussian_form form;
+  double near_z;
+  int near_is_left_out; /* a mean at near itself is */
+  double alpha_most, alpha_least, stop;
+  int stop_is_left_out;      /* at `stop` itself, as below it, nothing more is composited */
+  double dilation;           /* px² */
+  double compensation_least; /* of det/det′; negative: no compensation */
+  int is_inria;              /* tiles of 16 px as its coverage, quaternions as they are, the centre of the picture */
+  int is_clamped;            /* the Jacobian's x/z and y/z */
+  double cutoff;             /* of q, the greatest; 0: none */
+  int is_by_distance;        /* the order of the means */
+  double disc_cutoff, disc_extent, disc_near;
+} oracle_gaussian_rules;
+
+const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile);
+
+typedef struct oracle_gaussian_view {
+  const conic_camera *camera;
+  const oracle_gaussian_rules *rules;
+  double eye[3];       /* from which colours are seen */
+  double center_px[2]; /* the principal point, as the profile has it */
+} oracle_gaussian_view;
+
+typedef struct oracle_gaussian {
+  uint32_t index;
+  float key; /* orders */
+  int is_drawn, is_flat;
+  double mean[3];    /* in camera space */
+  double axes[3][3]; /* in camera space, one standard deviation long each; the third of a flat one is zero */
+  double unit[3][3]; /* the directions of the axes */
+  double scale[3];
+  double opacity, color[3], normal[3];
+  double place_px[2], form[3]; /* of an ellipse: q = form₀·x² + 2·form₁·x·y + form₂·y² */
+  double rows[3][3];           /* of a disc: from its plane to the screen */
+  double box_px[2][2];         /* no pixel outside is covered: minimum, maximum */
+} oracle_gaussian;
+
+/* Sets up Gaussian i; is_drawn is 0 where the profile leaves it out everywhere. */
+void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
+                                 oracle_gaussian *g);
+
+/* Its opacity at a place of the screen and the depth there; 0 where the profile leaves it out. */
+double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                   double *z);
+
+/* Its response along the pixel's ray: the greatest, as q, where (z), and the width there in z. 0 where it has none. */
+int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                double *q, double *z, double *width);
+
+/* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
+void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);
+
+#endif

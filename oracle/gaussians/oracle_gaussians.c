@@ -1,0 +1,266 @@
+/* A picture of Gaussians by the oracle: every pixel by itself, over all of them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/options.h"
+#include "core/base/threads.h"
+#include "core/image/view_arguments.h"
+#include "oracle/gaussians/oracle_along.h"
+#include "oracle/gaussians/oracle_gaussian.h"
+#include "oracle/oracle_math.h"
+
+enum { SET_UP_RUN = 1024 };
+
+/* What covers a pixel. */
+typedef struct covering {
+  const oracle_gaussian *gaussian;
+  float key;
+  double alpha, z;
+} covering;
+
+typedef struct gaussian_worker {
+  covering *coverings;
+  oracle_cloud *clouds;
+  double *places, quadrature;
+} gaussian_worker;
+
+typedef struct job {
+  conic_context *context;
+  const conic_gaussians *set;
+  const conic_gaussian_options *options;
+  conic_gaussian_question question;
+  oracle_gaussian_view view;
+  oracle_gaussian *gaussians;
+  size_t n;
+  gaussian_worker *workers;
+  conic_gaussian_reference *reference;
+} job;
+
+static int compare_order(float a, float b, uint32_t i, uint32_t j) {
+  return a != b ? (a > b ? 1 : -1) : (i > j) - (i < j);
+}
+
+static int compare_gaussians(const void *a, const void *b) {
+  const oracle_gaussian *x = a, *y = b;
+  return compare_order(x->key, y->key, x->index, y->index);
+}
+
+static int compare_coverings(const void *a, const void *b) {
+  const covering *x = a, *y = b;
+  return compare_order(x->key, y->key, x->gaussian->index, y->gaussian->index);
+}
+
+static void place_gaussians(void *data, size_t i_run, int i_thread) {
+  job *j = data;
+  (void)i_thread;
+  for (size_t i = i_run * SET_UP_RUN; i < (i_run + 1) * SET_UP_RUN && i < j->set->count; i++)
+    conic_oracle_gaussian_place(&j->view, j->set, i, &j->gaussians[i]);
+}
+
+/* In the order that all pixels share, without what is never drawn. */
+static void sort_gaussians(job *j) {
+  j->n = 0;
+  for (size_t i = 0; i < j->set->count; i++)
+    if (j->gaussians[i].is_drawn)
+      j->gaussians[j->n++] = j->gaussians[i];
+  qsort(j->gaussians, j->n, sizeof *j->gaussians, compare_gaussians);
+}
+
+/* Composites what covers the pixel, nearest first. */
+static void composite(const job *j, const covering *coverings, size_t n, size_t pixel) {
+  const oracle_gaussian_rules *rules = j->view.rules;
+  conic_gaussian_reference *r = j->reference;
+  double T = 1.0, heaviest = 0.0, sum_of_z = 0.0, sum = 0.0, *rgb = &r->rgb[3 * pixel];
+  for (size_t i = 0; i < n; i++) {
+    const oracle_gaussian *g = coverings[i].gaussian;
+    double alpha = coverings[i].alpha, z = coverings[i].z, w = alpha * T, rest = T * (1.0 - alpha);
+    if (rest < rules->stop || (rules->stop_is_left_out && rest == rules->stop))
+      break;
+    for (int c = 0; c < 3; c++) {
+      rgb[c] += w * g->color[c];
+      r->normal[3 * pixel + (size_t)c] += w * g->normal[c];
+    }
+    sum += w;
+    sum_of_z += w * z;
+    r->inverse_z[pixel] += w / z;
+    if (rules->disc_near > 0.0 ? T > 0.5 : T > 0.5 && rest <= 0.5)
+      r->median_z[pixel] = z;
+    if (w > heaviest) {
+      heaviest = w;
+      r->id[pixel] = g->index;
+    }
+    r->last[pixel] = g->index;
+    r->count[pixel]++;
+    T = rest;
+  }
+  r->z[pixel] = sum > 0.0 ? sum_of_z / sum : 0.0;
+  r->transparency[pixel] = T;
+}
+
+/* The profile's picture at a pixel. */
+static void composite_pixel(const job *j, gaussian_worker *w, double x, double y, size_t pixel) {
+  size_t n = 0;
+  for (size_t i = 0; i < j->n; i++) {
+    covering *c = &w->coverings[n];
+    c->gaussian = &j->gaussians[i];
+    c->alpha = conic_oracle_gaussian_alpha(&j->view, c->gaussian, x, y, &c->z);
+    c->key = (float)c->z;
+    n += c->alpha > 0.0;
+  }
+  if (j->view.rules->form == ORACLE_FORM_RAY)
+    qsort(w->coverings, n, sizeof *w->coverings, compare_coverings);
+  composite(j, w->coverings, n, pixel);
+}
+
+/* A Gaussian's optical depth along the ray; docs/reference/gaussians.md, Truth. */
+static double optical_depth(const job *j, const oracle_gaussian *g, double q, double width, double x, double y) {
+  const conic_camera *camera = j->view.camera;
+  double response = conic_oracle_exp(-0.5 * q);
+  if (j->question == CONIC_GAUSSIAN_OVERLAP)
+    return -conic_oracle_log(1.0 - oracle_min(g->opacity * response, 0.99));
+  double slope[2] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy};
+  double length = sqrt(slope[0] * slope[0] + slope[1] * slope[1] + 1.0);
+  double radius = conic_oracle_exp(conic_oracle_log(g->scale[0] * g->scale[1] * g->scale[2]) / 3.0);
+  return -conic_oracle_log(1.0 - oracle_min(g->opacity, 1.0 - 1e-12)) * width * length / radius * response;
+}
+
+static void integrate_pixel(const job *j, gaussian_worker *w, double x, double y, size_t pixel) {
+  conic_gaussian_reference *r = j->reference;
+  size_t n = 0;
+  double q, z, width, depth = 0.0, greatest = 0.0;
+  for (size_t i = 0; i < j->n; i++) {
+    const oracle_gaussian *g = &j->gaussians[i];
+    if (!conic_oracle_gaussian_along(&j->view, g, x, y, &q, &z, &width))
+      continue;
+    double own = optical_depth(j, g, q, width, x, y);
+    if (!(own > 1e-15))
+      continue;
+    w->clouds[n++] = (oracle_cloud){own, z, oracle_max(width, z * 1e-9), {g->color[0], g->color[1], g->color[2]}};
+    depth += own;
+    if (own > greatest) {
+      greatest = own;
+      r->id[pixel] = g->index;
+    }
+  }
+  double change = conic_oracle_integrate(w->clouds, n, w->places, &r->rgb[3 * pixel]);
+  w->quadrature = oracle_max(w->quadrature, change);
+  r->transparency[pixel] = conic_oracle_exp(-depth);
+  r->count[pixel] = (uint32_t)n;
+}
+
+static void draw_row_again(void *data, size_t row, int i_thread) {
+  job *j = data;
+  conic_gaussian_reference *r = j->reference;
+  for (int column = 0; column < r->width; column++) {
+    size_t pixel = row * (size_t)r->width + (size_t)column;
+    double x = column + 0.5, y = (double)row + 0.5;
+    r->id[pixel] = r->last[pixel] = CONIC_NO_ID;
+    if (j->question == CONIC_GAUSSIAN_PROFILE)
+      composite_pixel(j, &j->workers[i_thread], x, y, pixel);
+    else
+      integrate_pixel(j, &j->workers[i_thread], x, y, pixel);
+    for (int c = 0; c < 3; c++)
+      r->rgb[3 * pixel + (size_t)c] += r->transparency[pixel] * (double)j->options->background[c];
+  }
+}
+
+static conic_status allocate_job(job *j, int width, int height) {
+  conic_gaussian_reference *r = j->reference;
+  const size_t n = (size_t)width * (size_t)height, threads = (size_t)conic_context_threads(j->context);
+  double **const singles[] = {&r->transparency, &r->z, &r->median_z, &r->inverse_z};
+  uint32_t **const words[] = {&r->count, &r->id, &r->last};
+  int is_done = 1;
+  r->width = width;
+  r->height = height;
+  for (size_t k = 0; k < sizeof singles / sizeof *singles; k++)
+    is_done &= (*singles[k] = conic_memory_allocate_zeroed(j->context, n, sizeof(double))) != NULL;
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    is_done &= (*words[k] = conic_memory_allocate_zeroed(j->context, n, sizeof(uint32_t))) != NULL;
+  is_done &= (r->rgb = conic_memory_allocate_zeroed(j->context, n, 3 * sizeof(double))) != NULL;
+  is_done &= (r->normal = conic_memory_allocate_zeroed(j->context, n, 3 * sizeof(double))) != NULL;
+  is_done &= (j->gaussians = conic_memory_allocate(j->context, j->set->count, sizeof *j->gaussians)) != NULL;
+  is_done &= (j->workers = conic_memory_allocate_zeroed(j->context, threads, sizeof *j->workers)) != NULL;
+  for (size_t k = 0; is_done && k < threads; k++) {
+    gaussian_worker *w = &j->workers[k];
+    if (j->question == CONIC_GAUSSIAN_PROFILE) {
+      is_done = (w->coverings = conic_memory_allocate(j->context, j->set->count + 1, sizeof *w->coverings)) != NULL;
+      continue;
+    }
+    w->clouds = conic_memory_allocate(j->context, j->set->count, sizeof *w->clouds);
+    w->places = conic_memory_allocate(j->context, j->set->count, ORACLE_PLACES * sizeof *w->places);
+    is_done = w->clouds && w->places;
+  }
+  return is_done ? CONIC_OK : CONIC_ERROR_MEMORY;
+}
+
+static void release_job(job *j) {
+  for (int k = 0; j->workers && k < conic_context_threads(j->context); k++) {
+    conic_memory_release(j->context, j->workers[k].coverings);
+    conic_memory_release(j->context, j->workers[k].clouds);
+    conic_memory_release(j->context, j->workers[k].places);
+  }
+  conic_memory_release(j->context, j->workers);
+  conic_memory_release(j->context, j->gaussians);
+}
+
+/* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */
+static void eye_of_profile(const conic_camera *camera, oracle_gaussian_view *view) {
+  for (int axis = 0; axis < 3; axis++) {
+    double eye = 0.0;
+    for (int row = 0; row < 3; row++)
+      eye -= camera->cam_from_world[row][axis] * camera->cam_from_world[row][3];
+    view->eye[axis] = view->rules->form == ORACLE_FORM_RAY ? eye : (double)(float)eye;
+  }
+}
+
+static conic_status draw_gaussians_again(job *j) {
+  const conic_camera *camera = j->view.camera;
+  conic_status status = allocate_job(j, camera->width, camera->height);
+  if (status != CONIC_OK)
+    return status;
+  eye_of_profile(camera, &j->view);
+  j->view.center_px[0] = j->view.rules->is_inria ? 0.5 * camera->width : camera->cx;
+  j->view.center_px[1] = j->view.rules->is_inria ? 0.5 * camera->height : camera->cy;
+  status = conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN,
+                               place_gaussians, j);
+  if (status != CONIC_OK)
+    return status;
+  sort_gaussians(j);
+  status = conic_parallel_told(j->context, "verify", 0.05, 1.0, (size_t)camera->height, draw_row_again, j);
+  for (int k = 0; k < conic_context_threads(j->context); k++)
+    j->reference->quadrature = oracle_max(j->reference->quadrature, j->workers[k].quadrature);
+  return status;
+}
+
+conic_status conic_gaussian_oracle_render(conic_context *context, const conic_gaussians *gaussians,
+                                          const conic_camera *camera, const conic_gaussian_options *options,
+                                          conic_gaussian_question question, conic_gaussian_reference *reference) {
+  conic_gaussian_options own;
+  conic_gaussian_options_init(&own);
+  memset(reference, 0, sizeof *reference);
+  if ((options && !conic_options_take(&own, options)) || (unsigned)question > CONIC_GAUSSIAN_VOLUME ||
+      !conic_oracle_gaussian_rules(own.profile))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: no such options, profile or question");
+  if (conic_view_camera_check(context, "oracle", camera) != CONIC_OK)
+    return CONIC_ERROR_ARGUMENT;
+  job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
+  j.view.camera = camera;
+  j.view.rules = conic_oracle_gaussian_rules(question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT);
+  conic_status status = draw_gaussians_again(&j);
+  release_job(&j);
+  if (status != CONIC_OK)
+    conic_gaussian_reference_release(context, reference);
+  return status;
+}
+
+void conic_gaussian_reference_release(conic_context *context, conic_gaussian_reference *r) {
+  double *const doubles[] = {r->rgb, r->transparency, r->z, r->median_z, r->inverse_z, r->normal};
+  uint32_t *const words[] = {r->count, r->id, r->last};
+  for (size_t k = 0; k < sizeof doubles / sizeof *doubles; k++)
+    conic_memory_release(context, doubles[k]);
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    conic_memory_release(context, words[k]);
+  memset(r, 0, sizeof *r);
+}

@@ -1,0 +1,208 @@
+#include "oracle/oracle_profile.h"
+
+#include "core/base/memory.h"
+
+enum { LEVELS = 15, RADII = 16, NODES = 5, PARTS = 40, KNOWN = 256, NORMALS = 225 };
+
+static const double node_directions[NODES] = {0.0, 0.15, 0.5, 0.85, 1.0};
+
+/* At the lesser share's level, the greater's, the radius, the direction's node; only where the first is not above the
+ * second. */
+struct oracle_profile {
+  double nodes[LEVELS][LEVELS][RADII][NODES];
+  double narrowing;
+};
+
+/* What the making of it needs: the normal distribution's integral, itself and its density at every 1/32. */
+typedef struct workshop {
+  const oracle_view *view;
+  double integral[NORMALS], distribution[NORMALS], density[NORMALS];
+  double end, blur, reach, known[KNOWN + 1]; /* of the kernel, blurred in all directions */
+} workshop;
+
+static double level_share(int level) {
+  double s = ((double)(1 << level) - 1.0) / 16384.0;
+  return 4.0 * s / (1.0 + 3.0 * s);
+}
+
+static double bend_of(const oracle_view *view, const double share[2]) {
+  return view->kernel.type == CONIC_KERNEL_BOX ? sqrt((share[0] + 0.007) / (share[1] + 0.007)) : 1.0;
+}
+
+/* By the series of the distribution's odd part. */
+static void tabulate_normal(workshop *w) {
+  for (int i = 0; i < NORMALS; i++) {
+    double z = i / 32.0, term = z, sum = z;
+    w->density[i] = conic_oracle_exp(-0.5 * z * z) / sqrt(2.0 * 3.14159265358979323846);
+    for (int n = 3; n < 300; n += 2) {
+      term *= z * z / n;
+      sum += term;
+    }
+    w->distribution[i] = 0.5 + w->density[i] * sum;
+    w->integral[i] = z * w->distribution[i] + w->density[i];
+  }
+}
+
+static double integrate_normal(const workshop *w, double z) {
+  if (z < 0.0)
+    return integrate_normal(w, -z) + z;
+  if (z >= 7.0)
+    return z;
+  int i = (int)(z * 32.0 + 0.5);
+  double at = i / 32.0, d = z - at, phi = w->density[i];
+  return w->integral[i] +
+         d * (w->distribution[i] + d * (phi / 2.0 + d * (-at * phi / 6.0 + d * (at * at - 1.0) * phi / 24.0)));
+}
+
+/* The mean, over half widths from a to b, of boxes about 0 as a Gaussian at y sees them. */
+static double mean_box(const workshop *w, double a, double b, double y, double blur) {
+  double sum = integrate_normal(w, (b + y) / blur) - integrate_normal(w, (a + y) / blur) +
+               integrate_normal(w, (b - y) / blur) - integrate_normal(w, (a - y) / blur);
+  return sum * blur / (b - a) - 1.0;
+}
+
+static double blur_even(const workshop *w, const double *places, const double *values, double y, double blur) {
+  double hair = 1e-6 * blur;
+  double sum = values[PARTS] * mean_box(w, places[PARTS], places[PARTS] + hair, y, blur);
+  for (int i = 0; i < PARTS; i++)
+    if (places[i] < places[i + 1])
+      sum += (values[i] - values[i + 1]) * mean_box(w, places[i], places[i + 1], y, blur);
+  return sum;
+}
+
+static double round_kernel(const workshop *w, double r) {
+  if (w->blur == 0.0 && w->view->kernel.type == CONIC_KERNEL_BOX)
+    return 1.0;
+  if (w->blur == 0.0)
+    return conic_oracle_kernel(&w->view->kernel, r * r);
+  double place = oracle_min(r / w->reach, 1.0) * KNOWN;
+  int i = (int)oracle_min(place, KNOWN - 1.0);
+  return w->known[i] * (i + 1 - place) + w->known[i + 1] * (place - i);
+}
+
+static void cut_exactly(const workshop *w, double x, double *places, double *values) {
+  double steep = w->blur > 0.0 ? oracle_max(w->end - 3.0 * w->blur, 0.0) : 0.75 * w->end;
+  double first = sqrt(oracle_max(steep * steep - x * x, 0.0)),
+         last = sqrt(oracle_max(w->reach * w->reach - x * x, 0.0));
+  for (int i = 0; i <= PARTS; i++) {
+    const int half = PARTS / 2;
+    places[i] = i < half ? first * i / half : first + (last - first) * (i - half) / half;
+    values[i] = round_kernel(w, sqrt(x * x + places[i] * places[i]));
+  }
+}
+
+/* From the plain kernel, which the workshop has. */
+static void blur_all_round(workshop *w, double blur) {
+  double places[PARTS + 1], values[PARTS + 1], row_places[PARTS + 1], rows[PARTS + 1];
+  w->blur = 0.0;
+  w->reach = w->end;
+  for (int i = 0; i <= PARTS; i++) {
+    double rest = 1.0 - (double)i / PARTS;
+    row_places[i] = w->end * (1.0 - rest * rest);
+    cut_exactly(w, row_places[i], places, values);
+    rows[i] = i < PARTS ? blur_even(w, places, values, 0.0, blur) : 0.0;
+  }
+  w->blur = blur;
+  w->reach = w->end + 5.0 * blur;
+  for (int i = 0; i <= KNOWN; i++)
+    w->known[i] = blur_even(w, row_places, rows, w->reach * i / KNOWN, blur);
+}
+
+static double node(const workshop *w, const double share[2], double narrowing, double radius, double direction) {
+  double support = w->view->support, bend = bend_of(w->view, share), peak = 1.0;
+  double q = w->view->kernel.type == CONIC_KERNEL_BOX ? support * (1.0 - radius * radius) : support * radius * radius;
+  double across = direction * bend / (direction * bend + (1.0 - direction));
+  double x = sqrt(q * (1.0 - across) / (1.0 - share[0])), y = sqrt(q * across / (1.0 - share[1]));
+  double more = share[1] / (1.0 - share[1]) - share[0] / (1.0 - share[0]), places[PARTS + 1], values[PARTS + 1];
+  for (int i = 0; i < 2; i++)
+    peak *= sqrt((1.0 - share[i]) / (1.0 + narrowing * share[i]));
+  if (share[0] == share[1])
+    return round_kernel(w, sqrt(x * x + y * y)) / peak;
+  cut_exactly(w, x, places, values);
+  return blur_even(w, places, values, y, sqrt(more)) / peak;
+}
+
+static double narrowing_of(const workshop *w) {
+  double integral = 0.0;
+  for (int i = 0; i < 1024; i++) {
+    double r = w->end * (i + 0.5) / 1024.0;
+    integral += (w->view->kernel.type == CONIC_KERNEL_BOX ? 1.0 : conic_oracle_kernel(&w->view->kernel, r * r)) * r;
+  }
+  return 1.0 / (integral * w->end / 1024.0) - 1.0;
+}
+
+conic_status conic_oracle_profile_create(conic_context *context, oracle_view *view) {
+  const conic_kernel *kernel = &view->kernel;
+  view->profile = NULL;
+  if (kernel->type == CONIC_KERNEL_GAUSS || !(view->prefilter > 0.0) || view->method == CONIC_METHOD_DISC ||
+      view->method == CONIC_METHOD_POINT)
+    return CONIC_OK;
+  struct oracle_profile *profile = conic_memory_allocate(context, 1, sizeof *profile);
+  if (!profile)
+    return CONIC_ERROR_MEMORY;
+  workshop w = {.view = view, .end = view->cutoff};
+  if (kernel->type == CONIC_KERNEL_CONFETTI)
+    w.end = oracle_min((double)kernel->b, 4.0 * view->cutoff);
+  tabulate_normal(&w);
+  w.reach = w.end;
+  profile->narrowing = narrowing_of(&w);
+  for (int low = 0; low < LEVELS; low++) {
+    if (low > 0)
+      blur_all_round(&w, sqrt(level_share(low) / (1.0 - level_share(low))));
+    for (int high = low; high < LEVELS; high++)
+      for (int i = 0; i < RADII * NODES; i++) {
+        const double share[2] = {level_share(low), level_share(high)};
+        profile->nodes[low][high][i / NODES][i % NODES] =
+            node(&w, share, profile->narrowing, (i / NODES) / (RADII - 1.0), node_directions[i % NODES]);
+      }
+  }
+  view->profile = profile;
+  return CONIC_OK;
+}
+
+void conic_oracle_profile_release(conic_context *context, oracle_view *view) {
+  conic_memory_release(context, (void *)view->profile);
+  view->profile = NULL;
+}
+
+/* Lagrange's polynomial through the nodes of one radius, for any order of the levels. */
+static double along_direction(const struct oracle_profile *p, int first, int second, int i_radius, double direction) {
+  double sum = 0.0;
+  for (int i = 0; i < NODES; i++) {
+    double factor =
+        first <= second ? p->nodes[first][second][i_radius][i] : p->nodes[second][first][i_radius][NODES - 1 - i];
+    for (int j = 0; j < NODES; j++)
+      if (j != i)
+        factor *= (direction - node_directions[j]) / (node_directions[i] - node_directions[j]);
+    sum += factor;
+  }
+  return sum;
+}
+
+double conic_oracle_direction(const oracle_view *view, const double share[2], double n, double m, double round) {
+  double d = n + bend_of(view, share) * m + share[1] / 4096.0 * round;
+  return d > 0.0 ? oracle_min(oracle_max(n / d, 0.0), 1.0) : 0.0;
+}
+
+double conic_oracle_response(const oracle_view *view, const double share[2], double direction, double q) {
+  const struct oracle_profile *p = view->profile;
+  if (!p)
+    return conic_oracle_kernel(&view->kernel, q);
+  double part = oracle_min(oracle_max(q / view->support, 0.0), 1.0), level_part[2], sum = 0.0, peak = 1.0;
+  double place = (RADII - 1) * sqrt(view->kernel.type == CONIC_KERNEL_BOX ? 1.0 - part : part);
+  int i_radius = (int)oracle_min(place, RADII - 2.0), level[2];
+  for (int i = 0; i < 2; i++) {
+    double s = 1.0 + 16384.0 * share[i] / (4.0 - 3.0 * share[i]);
+    for (level[i] = 0; level[i] < LEVELS - 2 && s >= (double)(2 << level[i]); level[i]++)
+      ;
+    level_part[i] = s / (double)(1 << level[i]) - 1.0;
+    peak *= 1.0 + p->narrowing * share[i];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+    double factor = (a ? level_part[0] : 1.0 - level_part[0]) * (b ? level_part[1] : 1.0 - level_part[1]) *
+                    (c ? place - i_radius : 1.0 - (place - i_radius));
+    sum += factor * along_direction(p, level[0] + a, level[1] + b, i_radius + c, direction);
+  }
+  return sum / sqrt(peak);
+}

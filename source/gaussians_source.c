@@ -1,0 +1,260 @@
+/* Gaussian scenes: drawn by themselves, composited by alpha. */
+#include <string.h>
+
+#include "core/base/memory.h"
+#include "core/base/message.h"
+#include "core/base/vectors.h"
+#include "source/source_kind.h"
+
+typedef struct gaussians_source {
+  conic_source base;
+  conic_gaussians gaussians;
+  conic_gaussian_options options;
+  conic_gaussian_statistics drawn;
+} gaussians_source;
+
+/* What is fainter says little of where the scene is. */
+static const float least_opacity = 0.1f;
+
+static int takes_gaussians(const char *path, const conic_source_options *options) {
+  conic_context *context; /* of its own, which says nothing: whether it is one is no more than a question */
+  conic_context_options quiet;
+  conic_context_options_init(&quiet);
+  quiet.threads = 1;
+  if (!options->gaussians || conic_context_create(&quiet, &context) != CONIC_OK)
+    return 0;
+  int is_one = conic_gaussians_is_file(context, path);
+  conic_context_destroy(context);
+  return is_one;
+}
+
+/* A dot for every Gaussian that is not faint: what the camera frames. */
+static conic_status outline_means(gaussians_source *g) {
+  const conic_gaussians *set = &g->gaussians;
+  conic_splats *outline = &g->base.outline;
+  conic_status status = conic_splats_allocate(g->base.context, set->count, CONIC_SPLATS_TANGENTS, outline);
+  if (status != CONIC_OK)
+    return status;
+  memcpy(outline->origin, set->origin, sizeof outline->origin);
+  outline->count = 0;
+  for (size_t i = 0; i < set->count; i++) {
+    size_t at = outline->count;
+    float place = set->position[0][i] + set->position[1][i] + set->position[2][i];
+    if (!(set->opacity[i] >= least_opacity) || place - place != 0.0f)
+      continue;
+    for (int axis = 0; axis < 3; axis++) {
+      outline->position[axis][at] = set->position[axis][i];
+      outline->tangent_u[axis][at] = axis == 0 ? set->scale[0][i] : 0.0f;
+      outline->tangent_v[axis][at] = axis == 1 ? set->scale[0][i] : 0.0f;
+    }
+    outline->count++;
+  }
+  return CONIC_OK;
+}
+
+/* A frame's letters say where its axes point; up is the one that has u, or against the one that has d. */
+static void up_of_frame(const char *frame, double up[3]) {
+  for (int axis = 0; axis < 3; axis++)
+    up[axis] = frame[axis] == 'u' ? 1.0 : frame[axis] == 'd' ? -1.0 : 0.0;
+}
+
+static conic_status open_gaussians(conic_source *source, const char *const *paths, size_t n_paths,
+                                   const conic_source_options *options) {
+  gaussians_source *g = (gaussians_source *)source;
+  conic_source_scale *scale = &source->scale;
+  (void)n_paths;
+  g->options = *options->gaussians;
+  conic_status status = conic_gaussians_read(source->context, paths[0], NULL, &g->gaussians);
+  if (status != CONIC_OK)
+    return status;
+  if (conic_gaussians_bounds(&g->gaussians, scale->minimum, scale->maximum) == 0)
+    return conic_fail(source->context, CONIC_ERROR_INPUT, "%s: there is no Gaussian that could be drawn", paths[0]);
+  scale->n_splats = g->gaussians.count;
+  scale->has_colors = 1;
+  up_of_frame(g->gaussians.frame, scale->up);
+  scale->up_basis = CONIC_UP_KIND;
+  return outline_means(g);
+}
+
+static void close_gaussians(conic_source *source) {
+  conic_gaussians_release(source->context, &((gaussians_source *)source)->gaussians);
+}
+
+/* The picture with several samples a pixel. */
+typedef struct fine_picture {
+  conic_camera camera;
+  conic_gaussian_planes planes;
+  int samples, is_opaque; /* a background is behind */
+} fine_picture;
+
+static int wants(const conic_image *image, conic_plane plane) {
+  return image->planes[plane] != NULL;
+}
+
+static conic_status allocate_planes(conic_context *context, const conic_image *image, fine_picture *fine) {
+  conic_gaussian_planes *p = &fine->planes;
+  const size_t n = (size_t)p->width * (size_t)p->height;
+  const struct {
+    void *plane;
+    int is_wanted;
+    size_t channels;
+  } all[] = {{&p->rgb, 1, 3},
+             {&p->transparency, 1, 1},
+             {&p->z, wants(image, CONIC_PLANE_Z), 1},
+             {&p->median_z, wants(image, CONIC_PLANE_MEDIAN_Z), 1},
+             {&p->inverse_z, wants(image, CONIC_PLANE_INVERSE_Z), 1},
+             {&p->normal, wants(image, CONIC_PLANE_NORMAL), 3},
+             {&p->count, wants(image, CONIC_PLANE_COUNT), 1},
+             {&p->id, wants(image, CONIC_PLANE_ID), 1},
+             {&p->last, wants(image, CONIC_PLANE_LAST), 1}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    void *plane = all[i].is_wanted ? conic_memory_allocate(context, n * all[i].channels, sizeof(float)) : NULL;
+    if (all[i].is_wanted && !plane)
+      return CONIC_ERROR_MEMORY;
+    memcpy(all[i].plane, &plane, sizeof plane);
+  }
+  return CONIC_OK;
+}
+
+static void release_planes(conic_context *context, fine_picture *fine) {
+  conic_gaussian_planes *p = &fine->planes;
+  void *const all[] = {p->rgb, p->transparency, p->z, p->median_z, p->inverse_z, p->normal, p->count, p->id, p->last};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    conic_memory_release(context, all[i]);
+}
+
+/* The sample nearest to the pixel's centre, of four the upper left. */
+static size_t middle_sample(const fine_picture *fine, size_t x, size_t y) {
+  size_t n = (size_t)fine->samples, middle = (n - 1) / 2;
+  return (y * n + middle) * (size_t)fine->planes.width + x * n + middle;
+}
+
+static double mean_of(const fine_picture *fine, const float *plane, size_t channels, size_t channel, size_t x,
+                      size_t y) {
+  const size_t n = (size_t)fine->samples, width = (size_t)fine->planes.width;
+  double sum = 0.0;
+  for (size_t row = y * n; row < (y + 1) * n; row++)
+    for (size_t column = x * n; column < (x + 1) * n; column++)
+      sum += (double)plane[(row * width + column) * channels + channel];
+  return sum / (double)(n * n);
+}
+
+static void mean_normal(const fine_picture *fine, size_t x, size_t y, float normal[3]) {
+  double n[3];
+  for (size_t c = 0; c < 3; c++)
+    n[c] = mean_of(fine, fine->planes.normal, 3, c, x, y);
+  conic_normalize(n);
+  for (int c = 0; c < 3; c++)
+    normal[c] = (float)n[c];
+}
+
+static uint32_t greatest_count(const fine_picture *fine, size_t x, size_t y) {
+  const size_t n = (size_t)fine->samples;
+  uint32_t greatest = 0;
+  for (size_t row = y * n; row < (y + 1) * n; row++)
+    for (size_t column = x * n; column < (x + 1) * n; column++) {
+      uint32_t count = fine->planes.count[row * (size_t)fine->planes.width + column];
+      greatest = count > greatest ? count : greatest;
+    }
+  return greatest;
+}
+
+/* One pixel of each n × n samples, as docs/reference/picture.md has it. Returns whether anything is there. */
+static int reduce_pixel(const fine_picture *fine, size_t x, size_t y, size_t pixel, const conic_image *image) {
+  const conic_gaussian_planes *p = &fine->planes;
+  const size_t middle = middle_sample(fine, x, y);
+  const float *const singles[] = {p->z, p->median_z, p->inverse_z};
+  const uint32_t *const words[] = {p->id, p->last};
+  static const conic_plane single_planes[] = {CONIC_PLANE_Z, CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z};
+  static const conic_plane word_planes[] = {CONIC_PLANE_ID, CONIC_PLANE_LAST};
+  float T = (float)mean_of(fine, p->transparency, 1, 0, x, y), *rgba = image->planes[CONIC_PLANE_RGBA];
+  for (size_t c = 0; c < 3 && rgba; c++)
+    rgba[4 * pixel + c] = (float)mean_of(fine, p->rgb, 3, c, x, y);
+  if (rgba)
+    rgba[4 * pixel + 3] = fine->is_opaque ? 1.0f : 1.0f - T;
+  if (wants(image, CONIC_PLANE_TRANSPARENCY))
+    ((float *)image->planes[CONIC_PLANE_TRANSPARENCY])[pixel] = T;
+  for (int i = 0; i < 3; i++)
+    if (singles[i])
+      ((float *)image->planes[single_planes[i]])[pixel] = singles[i][middle];
+  for (int i = 0; i < 2; i++)
+    if (words[i])
+      ((uint32_t *)image->planes[word_planes[i]])[pixel] = words[i][middle];
+  if (p->normal)
+    mean_normal(fine, x, y, (float *)image->planes[CONIC_PLANE_NORMAL] + 3 * pixel);
+  if (p->count)
+    ((uint32_t *)image->planes[CONIC_PLANE_COUNT])[pixel] = greatest_count(fine, x, y);
+  return T < 1.0f;
+}
+
+static uint64_t reduce_samples(const fine_picture *fine, const conic_image *image) {
+  uint64_t n_covered = 0;
+  for (size_t y = 0; y < (size_t)image->height; y++)
+    for (size_t x = 0; x < (size_t)image->width; x++)
+      n_covered += (uint64_t)reduce_pixel(fine, x, y, y * (size_t)image->width + x, image);
+  return n_covered;
+}
+
+static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_render_statistics *statistics) {
+  const conic_gaussian_statistics *s = &g->drawn;
+  memset(statistics, 0, sizeof *statistics);
+  statistics->splats_in = s->gaussians_in;
+  statistics->splats_drawn = s->gaussians_drawn;
+  statistics->splats_culled = s->gaussians_culled;
+  statistics->splats_skipped = s->gaussians_skipped;
+  statistics->pixels_covered = n_covered;
+  statistics->ms.setup = 1e3 * s->seconds_setup;
+  statistics->ms.bin = 1e3 * (s->seconds_sort + s->seconds_bin);
+  statistics->ms.accumulate = 1e3 * s->seconds_composite;
+  statistics->ms.frame = statistics->ms.setup + statistics->ms.bin + statistics->ms.accumulate;
+}
+
+static conic_status draw_gaussians(conic_source *source, conic_renderer *renderer, const conic_camera *camera,
+                                   const conic_render_options *render, const conic_source_view *view,
+                                   conic_image *image, conic_render_statistics *statistics) {
+  gaussians_source *g = (gaussians_source *)source;
+  const int n = view->samples;
+  fine_picture fine = {.camera = *camera, .samples = n, .is_opaque = render->has_background};
+  (void)renderer;
+  if ((long)camera->width * n > 65535 || (long)camera->height * n > 65535)
+    return conic_fail(source->context, CONIC_ERROR_ARGUMENT, "%s: so many samples make more than 65535 a side",
+                      source->name);
+  fine.planes.width = fine.camera.width *= n;
+  fine.planes.height = fine.camera.height *= n;
+  fine.camera.fx *= n;
+  fine.camera.fy *= n;
+  fine.camera.cx *= n;
+  fine.camera.cy *= n;
+  g->options.isa = render->isa;
+  for (int c = 0; c < 3; c++)
+    g->options.background[c] = render->has_background ? render->background[c] : 0.0f;
+  conic_status status = allocate_planes(source->context, image, &fine);
+  if (status == CONIC_OK)
+    status = conic_gaussians_render(source->context, &g->gaussians, &fine.camera, &g->options, &fine.planes, &g->drawn);
+  if (status == CONIC_OK) {
+    uint64_t n_covered = reduce_samples(&fine, image);
+    image->is_display = !g->gaussians.is_linear;
+    if (statistics)
+      tell_drawing(g, n_covered, statistics);
+  }
+  release_planes(source->context, &fine);
+  return status;
+}
+
+static void tell_gaussians_rest(const conic_source *source, conic_facts *facts) {
+  const gaussians_source *g = (const gaussians_source *)source;
+  CONIC_ADD_FACTS(facts,
+                  conic_fact_text(CONIC_FACT_TEXT, "profile", "%s", conic_gaussian_profile_name(g->options.profile)),
+                  CONIC_COUNT("entries", g->drawn.entries));
+}
+
+const conic_source_kind conic_source_kind_gaussians = {
+    .size = sizeof(gaussians_source),
+    .abilities = CONIC_SOURCE_COMPOSITES,
+    .company = CONIC_SOURCE_ALONE,
+    .takes = takes_gaussians,
+    .open = open_gaussians,
+    .close = close_gaussians,
+    .draw = draw_gaussians,
+    .tell_rest = tell_gaussians_rest,
+};
