@@ -17,9 +17,9 @@ typedef struct fragments {
   lanes scale;
 } fragments;
 
-/* How a splat is evaluated: by its ellipse alone, or whatever it is; in either case without the kernel, or with its
- * profile in the scale. */
-typedef enum splat_kind { SPLAT_USUAL = 0, SPLAT_SPECIAL = 1, SPLAT_PROFILED = 2 } splat_kind;
+/* How a splat is evaluated: by its ellipse alone, of which wide ones hide otherwise; or whatever it is, without the
+ * kernel, or with its profile in the scale. */
+typedef enum splat_kind { SPLAT_USUAL = 0, SPLAT_WIDE = 1, SPLAT_SPECIAL = 2, SPLAT_PROFILED = 3 } splat_kind;
 
 /* What of a splat's evaluation does not depend on the column, each in all lanes of a register: to fetch it anew for
  * every block would be most of what the loops read. */
@@ -147,13 +147,13 @@ CONIC_INLINE void fragments_at(const conic_view *view, float support, const coni
                                const splat_rows *rows, lanes x, splat_kind kind, fragments *f) {
   lanes dx = (x - rows->x) + rows->dx0;
   const profile_slice *slice = kind == SPLAT_PROFILED ? &rows->slice : NULL;
-  if (kind && conic_is_laplace(footprint))
+  if (kind >= SPLAT_SPECIAL && conic_is_laplace(footprint))
     laplace_fragments(view, footprint, &rays[i_ray], slice, dx, rows->dy, f);
-  else if (kind && footprint->s3 == 0.0f)
+  else if (kind >= SPLAT_SPECIAL && footprint->s3 == 0.0f)
     ray_fragments(view, footprint, &rays[i_ray], slice, dx, rows->dy, f);
   else
     ellipse_fragments(view, rows, support, slice, dx, f);
-  if (kind && conic_is_clipped(footprint))
+  if (kind >= SPLAT_SPECIAL && conic_is_clipped(footprint))
     f->covered &= clip_keeps(&clips[i_clip], dx, rows->dy);
 }
 

@@ -125,8 +125,8 @@ typedef struct passing {
 } passing;
 
 /* conic_hiding_iz in a part of a block. */
-CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, int may_be_wide) {
-  if (may_be_wide && conic_is_wide(splat->footprint))
+CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
+  if (kind == SPLAT_WIDE || (kind >= SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
     return wide_hiding(splat->footprint, iz, p->ray_length[part]);
   return splat->nearness * iz;
 }
@@ -138,13 +138,13 @@ CONIC_INLINE unsigned pass_part(lanes hides, const fragments *f, conic_kept *kep
   lanes_store(kept->fragments[place].q + at, f->q);
   lanes_store(kept->fragments[place].seen_iz + at,
               lanes_select(f->covered, lanes_max(f->plane_iz, f->iz), lanes_of(-1.0f)));
-  if (kind != SPLAT_USUAL)
+  if (kind >= SPLAT_SPECIAL)
     lanes_store(kept->scale[place] + at, f->scale);
   return lanes_count(f->covered);
 }
 
 CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const passing *splat, uint32_t block,
-                             splat_kind kind, int may_be_wide) {
+                             splat_kind kind) {
   conic_kept *kept = &p->kept[block];
   size_t place = p->n_kept[block];
   unsigned n_covered = 0;
@@ -152,7 +152,7 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
   kept->footprint[place] = splat->i_footprint;
   for (uint32_t part = 0; part < CONIC_PARTS; part++) {
     evaluate(from, splat->footprint, &splat->rows, s->x[block * CONIC_PARTS + part], kind, &f);
-    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, may_be_wide);
+    lanes hides = hiding_iz(p, splat, lanes_min(f.plane_iz, f.iz), block * CONIC_PARTS + part, kind);
     n_covered += pass_part(hides, &f, kept, place, (size_t)part * CONIC_LANES, kind);
   }
   p->n_fragments += n_covered;
@@ -164,16 +164,16 @@ CONIC_INLINE void pass_block(pass *p, const sources *from, const sites *s, const
 
 /* One splat in the blocks that its word names. Two are done in any case, the second perhaps beside the band: most small
  * splats have one or two, and which, no branch can foresee. */
-CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind, int may_be_wide) {
+CONIC_INLINE void pass_splat(pass *p, const sources *from, const sites *s, size_t i, splat_kind kind) {
   const uint32_t i_footprint = from->indices[i], word = from->words[i];
   const uint32_t first = conic_word_first(word), last = conic_word_last(word);
   const conic_footprint *footprint = &from->footprints[i_footprint];
   const passing splat = {footprint, i, i_footprint, lanes_of(footprint->nearness),
                          begin_splat(from, footprint, s->y, kind)};
-  pass_block(p, from, s, &splat, first, kind, may_be_wide);
-  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind, may_be_wide);
+  pass_block(p, from, s, &splat, first, kind);
+  pass_block(p, from, s, &splat, last > first ? first + 1 : CONIC_NO_BLOCK, kind);
   for (uint32_t block = first + 2; block <= last; block++)
-    pass_block(p, from, s, &splat, block, kind, may_be_wide);
+    pass_block(p, from, s, &splat, block, kind);
 }
 
 /* A ray's pixels in a block, by their inverse depth alone. Returns 0, and does nothing, where they must be evaluated:
@@ -190,7 +190,7 @@ CONIC_INLINE int glance_at_block(pass *p, const sources *from, const sites *s, c
     if (lanes_any(covered & lanes_less(iz, lanes_of(sure))))
       return 0;
     lanes clamped = lanes_min(lanes_max(iz, rows->iz_far), rows->iz_near);
-    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, 1);
+    lanes hides = hiding_iz(p, splat, lanes_min(iz, clamped), block * CONIC_PARTS + part, SPLAT_SPECIAL);
     raised[part] = lanes_max(lanes_keep(covered, hides), lanes_load(thresholds + (size_t)part * CONIC_LANES));
     n_covered += lanes_count(covered);
   }
@@ -250,7 +250,7 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
   const passing splat = {f, i, i_footprint, lanes_of(f->nearness), begin_rows(f, s->y)};
   for (uint32_t block = conic_word_first(word); block <= conic_word_last(word); block++)
     if (!(sure < HUGE_VALF) || !glance_at_block(p, from, s, &splat, sure, block))
-      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL, 1);
+      pass_block(p, from, s, &splat, block, SPLAT_SPECIAL);
 }
 
 CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
@@ -270,21 +270,21 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
     if (is_crowd && has_special && i % LOOK_EVERY == 0)
       look_at_crowd(band, p.not_kept, &c);
     if (!is_profiled && __builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL, 0);
+      pass_splat(&p, &from, &s, i, SPLAT_USUAL);
       continue;
     }
     if (!p.has_lengths)
       find_lengths(band, &p);
     if (is_profiled)
-      pass_splat(&p, &from, &s, i, SPLAT_PROFILED, 1);
+      pass_splat(&p, &from, &s, i, SPLAT_PROFILED);
     else if (is_ellipse)
-      pass_splat(&p, &from, &s, i, SPLAT_USUAL, 1);
+      pass_splat(&p, &from, &s, i, SPLAT_WIDE);
     else {
       prefetch_ray(&from, from.indices[i + 12 < from.n ? i + 12 : i]);
       if (is_crowd && is_plain_ray(footprint))
         pass_ray_in_crowd(&p, &from, &s, band, &c, i);
       else
-        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL, 1);
+        pass_splat(&p, &from, &s, i, SPLAT_SPECIAL);
       has_special = 1;
     }
   }
