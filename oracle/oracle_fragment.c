@@ -75,8 +75,8 @@ static double behind_here(const oracle_splat *splat, double iz, double ray_lengt
 }
 
 /* The lesser of both depths, moved back. */
-static oracle_interval hide(const oracle_splat *splat, const oracle_shape *shape, oracle_interval iz,
-                            double ray_length) {
+static oracle_interval find_hiding(const oracle_splat *splat, const oracle_shape *shape, oracle_interval iz,
+                                   double ray_length) {
   const double slack = ORACLE_ROUNDINGS * ORACLE_UNIT, excess = shape->change - ORACLE_NARROW_CHANGE;
   oracle_interval all = {splat->behind * iz.low, splat->behind * iz.value, splat->behind * iz.high};
   oracle_interval here = {behind_here(splat, iz.low, ray_length), behind_here(splat, iz.value, ray_length),
@@ -104,7 +104,7 @@ static void set_depths(const oracle_splat *splat, const oracle_shape *shape, con
   fragment->seen.high = oracle_max(iz.high, plane.high);
   const oracle_interval lesser = {oracle_min(iz.low, plane.low), oracle_min(iz.value, plane.value),
                                   oracle_min(iz.high, plane.high)};
-  fragment->hides = hide(splat, shape, lesser, values[ORACLE_RAY_LENGTH]);
+  fragment->hides = find_hiding(splat, shape, lesser, values[ORACLE_RAY_LENGTH]);
   fragment->iz = iz.value;
   fragment->iz_error = oracle_max(iz.value - iz.low, iz.high - iz.value);
   double clamped = oracle_min(oracle_max(plane.value, shape->range[0]), shape->range[1]);
