@@ -138,7 +138,7 @@ static void go_on(judged *j, size_t i) {
     j->n_ids++;
 }
 
-static void note_pixel(const judged *j, const errors *e, double *worst, conic_oracle_verdict *verdict) {
+static void note_wrong_pixel(const judged *j, const errors *e, double *worst, conic_oracle_verdict *verdict) {
   int is_wrong = 0;
   for (int plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++) {
     verdict->planes[plane].max_abs = oracle_max(verdict->planes[plane].max_abs, e->planes[plane]);
@@ -165,7 +165,7 @@ static void compare_pixels(const conic_reference *reference, const conic_image *
     if (reference->unstable[i] && !j.n_alternatives)
       continue;
     compare_pixel(&j, &e);
-    note_pixel(&j, &e, &worst, verdict);
+    note_wrong_pixel(&j, &e, &worst, verdict);
     if (!reference->unstable[i] && reference->planes[CONIC_PLANE_COUNT][i] > 0.0) {
       for (size_t plane = 0; plane < CONIC_N_DRAWN_PLANES; plane++)
         stable[plane * room + n_stable] = e.planes[plane];

@@ -203,6 +203,9 @@ static void tell_drawing(const gaussians_source *g, uint64_t n_covered, conic_re
   statistics->splats_culled = s->gaussians_culled;
   statistics->splats_skipped = s->gaussians_skipped;
   statistics->pixels_covered = n_covered;
+  statistics->threads = conic_context_threads(g->base.context);
+  statistics->tile = s->tile;
+  statistics->isa = conic_isa_name(s->isa);
   statistics->ms.setup = 1e3 * s->seconds_setup;
   statistics->ms.bin = 1e3 * (s->seconds_sort + s->seconds_bin);
   statistics->ms.accumulate = 1e3 * s->seconds_composite;

@@ -10,7 +10,9 @@ static int is_covered(const conic_image *image, conic_plane plane, size_t i) {
   const float *value = (const float *)image->planes[plane] + i * n_channels;
   if (plane == CONIC_PLANE_RGBA)
     return value[3] > 0.0f;
-  if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER)
+  if (plane == CONIC_PLANE_TRANSPARENCY)
+    return value[0] < 1.0f;
+  if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER || plane == CONIC_PLANE_LAST)
     return ((const uint32_t *)image->planes[plane])[i] != CONIC_NO_ID;
   if (plane == CONIC_PLANE_COUNT)
     return ((const uint32_t *)image->planes[plane])[i] != 0;
@@ -22,10 +24,11 @@ static int is_covered(const conic_image *image, conic_plane plane, size_t i) {
 
 /* The plane that tells what is covered: the first of these that both images have; negative where there is none. */
 static int covering_plane(const conic_image *a, const conic_image *b) {
-  static const conic_plane order[] = {CONIC_PLANE_RGBA,    CONIC_PLANE_ID,      CONIC_PLANE_Z,
-                                      CONIC_PLANE_WEIGHT,  CONIC_PLANE_COUNT,   CONIC_PLANE_NORMAL,
-                                      CONIC_PLANE_ALBEDO,  CONIC_PLANE_CLUSTER, CONIC_PLANE_POSITION,
-                                      CONIC_PLANE_MATTE_0, CONIC_PLANE_MATTE_1, CONIC_PLANE_MATTE_2};
+  static const conic_plane order[CONIC_N_PLANES] = {
+      CONIC_PLANE_RGBA,         CONIC_PLANE_ID,       CONIC_PLANE_Z,         CONIC_PLANE_WEIGHT,
+      CONIC_PLANE_COUNT,        CONIC_PLANE_NORMAL,   CONIC_PLANE_ALBEDO,    CONIC_PLANE_CLUSTER,
+      CONIC_PLANE_POSITION,     CONIC_PLANE_MATTE_0,  CONIC_PLANE_MATTE_1,   CONIC_PLANE_MATTE_2,
+      CONIC_PLANE_TRANSPARENCY, CONIC_PLANE_MEDIAN_Z, CONIC_PLANE_INVERSE_Z, CONIC_PLANE_LAST};
   for (size_t i = 0; i < sizeof order / sizeof order[0]; i++)
     if (a->planes[order[i]] && b->planes[order[i]])
       return (int)order[i];

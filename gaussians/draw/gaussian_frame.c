@@ -253,6 +253,8 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   f.view.rules = conic_gaussian_rules_of(own.profile);
   f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
   f.statistics.gaussians_in = gaussians->count;
+  f.statistics.isa = isa;
+  f.statistics.tile = CONIC_GAUSSIAN_TILE;
   conic_gaussian_kernels_init(&f.kernels, isa);
   look_through(camera, &f.view);
   status = draw_scene(&f);

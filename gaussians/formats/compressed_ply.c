@@ -87,7 +87,7 @@ static conic_status read_packed_rows(compressed_reader *reader, const int *colum
   return CONIC_OK;
 }
 
-static conic_status read_chunks(compressed_reader *reader) {
+static conic_status read_boxes(compressed_reader *reader) {
   int columns[N_BOUNDS];
   conic_status status = CONIC_OK;
   find_packed_columns(reader, bound_names, N_BOUNDS, columns);
@@ -101,7 +101,7 @@ static conic_status read_chunks(compressed_reader *reader) {
   return status;
 }
 
-static float mix(float low, float high, uint32_t packed, int shift, int n_bits) {
+static float mix_between(float low, float high, uint32_t packed, int shift, int n_bits) {
   uint32_t most = (1u << n_bits) - 1;
   double share = (double)(packed >> shift & most) / (double)most;
   return (float)((double)low * (1.0 - share) + (double)high * share);
@@ -125,8 +125,8 @@ static void unpack_gaussian(const compressed_reader *reader, size_t i, const uin
   conic_gaussians *gaussians = reader->gaussians;
   const float *bounds = reader->chunks[i / CHUNK];
   for (int axis = 0; axis < 3; axis++) {
-    gaussians->position[axis][i] = mix(bounds[axis], bounds[3 + axis], packed[0], shifts[axis], bits[axis]);
-    float log_scale = mix(bounds[6 + axis], bounds[9 + axis], packed[2], shifts[axis], bits[axis]);
+    gaussians->position[axis][i] = mix_between(bounds[axis], bounds[3 + axis], packed[0], shifts[axis], bits[axis]);
+    float log_scale = mix_between(bounds[6 + axis], bounds[9 + axis], packed[2], shifts[axis], bits[axis]);
     if (gaussians->scale[axis])
       gaussians->scale[axis][i] = conic_scale_of_log(log_scale);
     if (gaussians->log_scale[axis])
@@ -228,7 +228,7 @@ static conic_status read_packed_elements(compressed_reader *reader, size_t n_res
     if (status != CONIC_OK)
       break;
     if (strcmp(element->name, "chunk") == 0)
-      status = read_chunks(reader);
+      status = read_boxes(reader);
     else if (strcmp(element->name, "vertex") == 0)
       status = read_packed(reader);
     else if (strcmp(element->name, "sh") == 0 && n_rest)
@@ -239,7 +239,7 @@ static conic_status read_packed_elements(compressed_reader *reader, size_t n_res
   return status;
 }
 
-static conic_status read_compressed(compressed_reader *reader, const conic_gaussians_read_options *options) {
+static conic_status read_packed_scene(compressed_reader *reader, const conic_gaussians_read_options *options) {
   const conic_ply_header *header = reader->header;
   const conic_ply_element *vertices = conic_ply_find_element(header, "vertex");
   conic_input *input = reader->source.input;
@@ -267,7 +267,7 @@ conic_status conic_compressed_ply_read(conic_input *input, const conic_ply_heade
   reader->source = (conic_ply_source){.input = input, .format = header->format};
   reader->header = header;
   reader->gaussians = gaussians;
-  conic_status status = read_compressed(reader, options);
+  conic_status status = read_packed_scene(reader, options);
   conic_memory_release(input->context, reader->chunks);
   conic_memory_release(input->context, reader);
   return status;

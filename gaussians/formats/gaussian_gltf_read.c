@@ -54,7 +54,7 @@ static conic_status find_numbers(const conic_gltf_reader *reader, double i_acces
   return CONIC_OK;
 }
 
-static float number_at(const gltf_numbers *numbers, size_t i, int component) {
+static float gltf_number_at(const gltf_numbers *numbers, size_t i, int component) {
   const unsigned char *p = numbers->bytes + i * numbers->stride;
   double value, most;
   if (numbers->type == FLOAT)
@@ -93,7 +93,7 @@ static conic_status take_attribute(conic_gltf_reader *reader, const conic_gltf_p
     status = conic_gltf_wrong(reader, "attributes of the same Gaussians are of different numbers");
   for (int k = 0; status == CONIC_OK && k < n; k++)
     for (size_t i = 0; i < count; i++) {
-      float value = number_at(&numbers, i, first_component + k);
+      float value = gltf_number_at(&numbers, i, first_component + k);
       value = factor == 1.0 ? value : (float)((double)value * factor + offset);
       if (columns)
         columns[k][reader->n_placed + i] = value;

@@ -224,7 +224,7 @@ static conic_status read_row(gaussian_reader *reader, const int *target_of_prope
   return status == CONIC_OK ? conic_ply_end_row(source) : status;
 }
 
-static conic_status read_vertices(gaussian_reader *reader) {
+static conic_status read_gaussian_rows(gaussian_reader *reader) {
   conic_ply_source *source = reader->source;
   const conic_ply_element *element = source->element;
   int is_plain =
@@ -295,8 +295,8 @@ static conic_status begin_gaussians(gaussian_reader *reader, const conic_gaussia
   return status;
 }
 
-static conic_status read_elements(gaussian_reader *reader, const conic_gaussians_read_options *options,
-                                  const conic_ply_element *vertices) {
+static conic_status read_gaussian_elements(gaussian_reader *reader, const conic_gaussians_read_options *options,
+                                           const conic_ply_element *vertices) {
   conic_ply_source *source = reader->source;
   conic_context *context = source->input->context;
   conic_status status = CONIC_OK;
@@ -315,7 +315,7 @@ static conic_status read_elements(gaussian_reader *reader, const conic_gaussians
     status = begin_gaussians(reader, options, degree);
   if (status == CONIC_OK) {
     find_targets(reader, degree);
-    status = read_vertices(reader);
+    status = read_gaussian_rows(reader);
   }
   if (status == CONIC_OK)
     status = conic_gaussians_activate(context, reader->gaussians);
@@ -336,14 +336,14 @@ conic_status conic_gaussian_ply_read(conic_input *input, const conic_ply_header 
   reader->header = header;
   reader->properties = header->properties + vertices->first_property;
   reader->gaussians = gaussians;
-  conic_status status = read_elements(reader, options, vertices);
+  conic_status status = read_gaussian_elements(reader, options, vertices);
   conic_memory_release(input->context, reader);
   return status;
 }
 
 /* --- writing --- */
 
-static void print_header(const conic_gaussian_writer *writer, int is_wide, size_t n_rest) {
+static void print_gaussian_header(const conic_gaussian_writer *writer, int is_wide, size_t n_rest) {
   const conic_gaussians *gaussians = writer->gaussians;
   const char *wide = is_wide ? "double" : "float";
   fprintf(writer->to, "ply\nformat binary_little_endian 1.0\ncomment conic %s\n", conic_version());
@@ -406,7 +406,7 @@ conic_status conic_gaussian_ply_write(const conic_gaussian_writer *writer) {
   size_t n_rest = conic_harmonics_of_degree(writer->sh_degree) / 3 - 1;
   int is_wide = gaussians->origin[0] != 0.0 || gaussians->origin[1] != 0.0 || gaussians->origin[2] != 0.0;
   conic_status status = CONIC_OK;
-  print_header(writer, is_wide, n_rest);
+  print_gaussian_header(writer, is_wide, n_rest);
   for (size_t i = 0; status == CONIC_OK && i < gaussians->count; i++) {
     end = put_gaussian(gaussians, i, is_wide, n_rest, end);
     if (i % 64 != 63 && i + 1 < gaussians->count)

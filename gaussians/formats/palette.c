@@ -49,7 +49,7 @@ static void measure_group(const palette *self, palette_group *group) {
   }
 }
 
-static void sift_down(palette *self, size_t at) {
+static void sift_entry(palette *self, size_t at) {
   for (;;) {
     size_t child = 2 * at + 1;
     if (child + 1 < self->n_groups && self->groups[child + 1].squares > self->groups[child].squares)
@@ -92,13 +92,13 @@ static int split_group(palette *self) {
   low.count = left - low.first;
   if (low.count == 0 || high.count == 0) {
     self->groups[0].squares = 0.0;
-    sift_down(self, 0);
+    sift_entry(self, 0);
     return 1;
   }
   measure_group(self, &low);
   measure_group(self, &high);
   self->groups[0] = low;
-  sift_down(self, 0);
+  sift_entry(self, 0);
   add_group(self, high);
   return 1;
 }

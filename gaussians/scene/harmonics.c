@@ -42,7 +42,7 @@ void conic_harmonics_evaluate(const double direction[3], int degree, double *y) 
   y[24] = 0.62583573544917614 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy));
 }
 
-static double snapped(double value) {
+static double whole_where_near(double value) {
   for (int whole = -1; whole <= 1; whole++)
     if (fabs(value - whole) < 1e-13)
       return whole;
@@ -74,7 +74,7 @@ void conic_harmonics_find_turn(const double rotation[3][3], conic_harmonics_turn
   for (int degree = 0; degree <= CONIC_MAX_SH_DEGREE; degree++)
     for (int j = 0; j < CONIC_MOST_ORDERS; j++)
       for (int k = 0; k < CONIC_MOST_ORDERS; k++)
-        turn[degree][j][k] = snapped(turn[degree][j][k]);
+        turn[degree][j][k] = whole_where_near(turn[degree][j][k]);
 }
 
 void conic_harmonics_apply(conic_harmonics_turn turn, int degree, float *sh) {

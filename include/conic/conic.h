@@ -22,6 +22,8 @@
 #include "conic/context.h"
 #include "conic/contributions.h"
 #include "conic/export.h"
+#include "conic/gaussian_oracle.h"
+#include "conic/gaussian_render.h"
 #include "conic/gaussians.h"
 #include "conic/hybrid.h"
 #include "conic/image.h"

@@ -64,6 +64,8 @@ typedef struct conic_gaussian_statistics {
   size_t gaussians_in, gaussians_skipped, gaussians_culled, gaussians_drawn; /* skipped: a number is not finite */
   size_t entries;                                                            /* of tiles' lists */
   double seconds_setup, seconds_sort, seconds_bin, seconds_composite;
+  conic_isa isa; /* what the hot loops used */
+  int tile;      /* edge in pixels */
   uint64_t reserved[8];
 } conic_gaussian_statistics;
 

@@ -90,7 +90,7 @@ static line_end project(const conic_camera *camera, const double place[3]) {
 }
 
 /* Of the line's share [t[0], t[1]], what is not below 0 where it goes from `begin` to `end`. */
-static void clip(double begin, double end, double t[2]) {
+static void clip_to_picture(double begin, double end, double t[2]) {
   double at = begin / (begin - end);
   if (begin < 0.0 && end < 0.0)
     t[1] = -1.0;
@@ -115,7 +115,7 @@ static void paint_dot(const box_picture *p, double x, double y, double z, const 
 /* A dot in each column or row that the line goes through, by which of both it goes faster. */
 static void paint_line(const box_picture *p, const double begin[3], const double end[3], const float color[3]) {
   double t[2] = {0.0, 1.0}, ends[2][3];
-  clip(begin[2] - p->near_z, end[2] - p->near_z, t);
+  clip_to_picture(begin[2] - p->near_z, end[2] - p->near_z, t);
   if (!(t[0] < t[1]))
     return;
   for (int i = 0; i < 2; i++)
@@ -124,10 +124,10 @@ static void paint_line(const box_picture *p, const double begin[3], const double
   line_end a = project(p->camera, ends[0]), b = project(p->camera, ends[1]);
   t[0] = 0.0;
   t[1] = 1.0;
-  clip(a.x, b.x, t);
-  clip(p->map->width - a.x, p->map->width - b.x, t);
-  clip(a.y, b.y, t);
-  clip(p->map->height - a.y, p->map->height - b.y, t);
+  clip_to_picture(a.x, b.x, t);
+  clip_to_picture(p->map->width - a.x, p->map->width - b.x, t);
+  clip_to_picture(a.y, b.y, t);
+  clip_to_picture(p->map->height - a.y, p->map->height - b.y, t);
   if (!(t[0] <= t[1]))
     return;
   double x = (b.x - a.x) * (t[1] - t[0]), y = (b.y - a.y) * (t[1] - t[0]);

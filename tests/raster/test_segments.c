@@ -40,7 +40,7 @@ static place outline_at(const conic_camera *c, const disc *d, const double trace
   return found;
 }
 
-static void consider(place at, place *a, place *b, int *n) {
+static void widen_segment(place at, place *a, place *b, int *n) {
   *a = !*n || at.along < a->along ? at : *a;
   *b = !*n || at.along > b->along ? at : *b;
   ++*n;
@@ -71,7 +71,7 @@ static place turning(const conic_camera *c, const disc *d, const double trace[2]
 }
 
 /* The points of the clipped outline with the least and the greatest place along the trace. */
-static int find_ends(const conic_camera *c, const disc *d, const double trace[2], segment *s) {
+static int ends_of_segment(const conic_camera *c, const disc *d, const double trace[2], segment *s) {
   const double step = 6.283185307179586 / N_ANGLES;
   int n = 0;
   for (int i = 0; i < N_ANGLES; i++) {
@@ -87,13 +87,13 @@ static int find_ends(const conic_camera *c, const disc *d, const double trace[2]
            to = along - outline_at(c, d, trace, after).along;
     for (int side = -1; side <= 1; side += 2)
       if (is_at_near || (side * from >= 0.0 && side * to >= 0.0))
-        consider(turning(c, d, trace, before, after, side), &s->a, &s->b, &n);
+        widen_segment(turning(c, d, trace, before, after, side), &s->a, &s->b, &n);
   }
   return n > 0;
 }
 
 /* 0 where rule 1 does not make a segment of the disc. */
-static int set_segment(const conic_camera *c, const disc *d, segment *s) {
+static int place_segment(const conic_camera *c, const disc *d, segment *s) {
   double n[3], h_z = hypot(d->tu[2], d->tv[2]);
   cross(d->tu, d->tv, n);
   double m = dot(d->p, n), g[2] = {n[0] / c->fx / m, n[1] / c->fy / m}, g_length = hypot(g[0], g[1]);
@@ -104,7 +104,7 @@ static int set_segment(const conic_camera *c, const disc *d, segment *s) {
     return 0;
   const double across[2] = {n[0] / c->fx, n[1] / c->fy}, steepness = hypot(across[0], across[1]);
   const double trace[2] = {-across[1] / steepness, across[0] / steepness};
-  if (!find_ends(c, d, trace, s))
+  if (!ends_of_segment(c, d, trace, s))
     return 0;
   double length = hypot(s->b.x - s->a.x, s->b.y - s->a.y);
   s->sigma2 = length * length / (4.0 * cutoff * cutoff);
@@ -138,7 +138,7 @@ typedef struct pixel {
   uint32_t count, id;
 } pixel;
 
-static void add(const fixture *f, const segment *s, const fragment *at, pixel *p) {
+static void note_place(const fixture *f, const segment *s, const fragment *at, pixel *p) {
   for (int axis = 0; axis < 3; axis++) {
     p->albedo[axis] += (double)f->splats.color[axis][at->i];
     p->normal[axis] += s->normal[axis];
@@ -168,13 +168,13 @@ static pixel evaluate(const fixture *f, const segment *segments, size_t n, int x
   for (size_t k = 0; k < n_covering; k++) {
     const fragment *at = &covering[k];
     if (fmax(at->iz, at->iz_plane) >= p.hides)
-      add(f, &segments[at->i], at, &p);
+      note_place(f, &segments[at->i], at, &p);
   }
   return p;
 }
 
 /* An ellipse in a plane through the eye, but for the rounding of its centre, that reaches a little beyond near. */
-static void set_random(fixture *f, size_t i, uint64_t *state) {
+static void fill_segment(fixture *f, size_t i, uint64_t *state) {
   double r[3] = {0.9 * (fixture_random(state) - 0.5), 0.9 * (fixture_random(state) - 0.5), 1.0}, w[3], p[3], tu[3],
          tv[3];
   double side[3] = {fixture_random(state) - 0.5, fixture_random(state) - 0.5, fixture_random(state) - 0.5}, n[3];
@@ -202,13 +202,13 @@ static size_t fill(fixture *f, segment *segments) {
   fixture_splats(f, N_DISCS);
   while (n < N_DISCS) {
     disc d;
-    set_random(f, n, &state);
+    fill_segment(f, n, &state);
     for (int i = 0; i < 3; i++) {
       d.p[i] = (double)f->splats.position[i][n];
       d.tu[i] = (double)f->splats.tangent_u[i][n];
       d.tv[i] = (double)f->splats.tangent_v[i][n];
     }
-    n += (size_t)set_segment(&f->camera, &d, &segments[n]);
+    n += (size_t)place_segment(&f->camera, &d, &segments[n]);
   }
   return n;
 }

@@ -4,7 +4,7 @@
 #include "raster/project/projected.h"
 #include "tests/support/examine.h"
 
-static double length_of(const double v[3]) {
+static double ray_length_of(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
@@ -22,12 +22,12 @@ typedef struct extremes {
 
 static const extremes no_extremes = {HUGE_VAL, -HUGE_VAL, 0};
 
-static void add_pixel(const fixture *f, int x, int y, const conic_contribution *c, extremes *found) {
+static void add_seen_pixel(const fixture *f, int x, int y, const conic_contribution *c, extremes *found) {
   double d[3], iz = fmin((double)c->inverse_depth, (double)c->plane_inverse_depth);
   if (!(iz > 1e-3)) /* the horizon and what is beyond it hide nothing that has a distance */
     return;
   ray_of(f, x, y, d);
-  double epsilon = length_of(d) / (double)c->hides - length_of(d) / iz;
+  double epsilon = ray_length_of(d) / (double)c->hides - ray_length_of(d) / iz;
   found->least = fmin(found->least, epsilon / f->options.epsilon);
   found->greatest = fmax(found->greatest, epsilon / f->options.epsilon);
   found->n++;
@@ -44,7 +44,7 @@ static extremes measure(const fixture *f) {
       CHECK_OK(conic_contributions_at(c, x, y, &list, &n));
       for (size_t i = 0; i < n; i++)
         if (list[i].verdict <= CONIC_CONTRIBUTION_HIDDEN)
-          add_pixel(f, x, y, &list[i], &found);
+          add_seen_pixel(f, x, y, &list[i], &found);
     }
   conic_contributions_destroy(c);
   return found;
@@ -80,9 +80,9 @@ static void test_floor(fixture *f) {
 static int is_seen_behind(fixture *f, int x, int y, double behind) {
   double d[3], p[3];
   ray_of(f, x, y, d);
-  double t = 1.0 / d[1] * length_of(d) + behind;
+  double t = 1.0 / d[1] * ray_length_of(d) + behind;
   for (int axis = 0; axis < 3; axis++)
-    p[axis] = t * d[axis] / length_of(d);
+    p[axis] = t * d[axis] / ray_length_of(d);
   fixture_set(f, 1, p, (const double[]){1e-3, 0, 0}, (const double[]){0, 1e-3, 0}, 0, 1, 0);
   fixture_render(f);
   return fixture_index(f, CONIC_PLANE_COUNT, x, y) == 2;

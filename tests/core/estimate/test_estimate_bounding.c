@@ -34,7 +34,7 @@ static void find_nearest(const conic_splats *points, size_t i, int k, double nea
 }
 
 /* Whether the splat is the least ellipse of the covariance's axes that holds the neighbours. */
-static int is_bound(const outlines_splat *s, double nearest[][2], int k) {
+static int is_within_ellipse(const outlines_splat *s, double nearest[][2], int k) {
   double xx = 0.0, xy = 0.0, yy = 0.0, farthest = 0.0;
   for (int n = 0; n < k; n++) {
     double x = nearest[n][0], y = nearest[n][1];
@@ -64,7 +64,7 @@ static void check_shapes(conic_context *context) {
     for (size_t i = 0; i < N_POINTS; i++) {
       outlines_splat s = outlines_get(&model.points, i);
       find_nearest(&model.points, i, k, nearest);
-      n_wrong += !is_bound(&s, nearest, k);
+      n_wrong += !is_within_ellipse(&s, nearest, k);
       n_spread += s.a > 0.0;
     }
     CHECK(n_wrong == 0 && n_spread == N_POINTS);

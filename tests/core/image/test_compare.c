@@ -201,10 +201,12 @@ static conic_image text_image(conic_context *context, conic_plane plane, const c
   conic_image image;
   CHECK_OK(conic_image_allocate(context, width, height, 1u << plane, &image));
   for (int i = 0; i < width * height; i++)
-    if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER)
+    if (plane == CONIC_PLANE_ID || plane == CONIC_PLANE_CLUSTER || plane == CONIC_PLANE_LAST)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#' ? 0 : CONIC_NO_ID;
     else if (plane == CONIC_PLANE_COUNT)
       ((uint32_t *)image.planes[plane])[i] = text[i] == '#';
+    else if (plane == CONIC_PLANE_TRANSPARENCY)
+      ((float *)image.planes[plane])[i] = text[i] == '#' ? 0.5f : 1.0f;
     else
       ((float *)image.planes[plane])[(i + 1) * n_channels - 1] = text[i] == '#' ? 0.5f : 0.0f;
   return image;

@@ -9,7 +9,7 @@ enum { SIDE = 512, TEXTURE_BYTES = SIDE * SIDE * 16 * 4 / 3 + 64, MOST_SEEN = 1 
 static char message[1024];
 static size_t largest; /* allocation */
 
-static void keep_message(void *cookie, conic_log_level level, const char *text) {
+static void keep_last_message(void *cookie, conic_log_level level, const char *text) {
   (void)cookie;
   if (level == CONIC_LOG_ERROR)
     snprintf(message, sizeof message, "%s", text);
@@ -32,7 +32,7 @@ static conic_context *open_context(size_t max_texture_bytes) {
   conic_context_options_init(&options);
   CHECK(options.max_texture_bytes == (size_t)4 << 30);
   options.threads = 1;
-  options.log = keep_message;
+  options.log = keep_last_message;
   options.allocate = note_size;
   options.release = give_back;
   options.max_texture_bytes = max_texture_bytes;

@@ -34,7 +34,7 @@ static void look_at_floor(fixture *f, double tilt_deg, double zoom) {
   octree_frame(f, SIZE, tilt_deg, 0.0, zoom);
 }
 
-static const float *draw_whole(fixture *f) {
+static const float *draw_whole_plane(fixture *f) {
   static float rgba[4 * SIZE * SIZE];
   fixture_render(f);
   memcpy(rgba, f->image.planes[CONIC_PLANE_RGBA], sizeof rgba);
@@ -67,7 +67,7 @@ static void test_floor(void) {
   double n_front = 0.0;
   for (double tilt = 0.0; tilt < 76.0; tilt += 15.0) {
     look_at_floor(&f, tilt, tilt < 70.0 ? 4.0 : 8.0);
-    double n = 0.0, pixels = count_covered(draw_whole(&f));
+    double n = 0.0, pixels = count_covered(draw_whole_plane(&f));
     for (int step = 0; step < 8; step++) {
       double error_px = 1.5 * pow(2.0, step / 8.0);
       octree_select(octree, &f, error_px, 0, &selection);
@@ -174,7 +174,7 @@ static double confetti_decibels(fixture *f, conic_octree *octree, size_t budget,
 /* With 1.2 times as many splats as Confetti's rule takes, the picture is as good at least. Returns by how much. */
 static double gain_over_confetti(fixture *f, conic_octree *octree, double error_px, const char *what) {
   conic_selection selection = {0};
-  const float *whole = draw_whole(f);
+  const float *whole = draw_whole_plane(f);
   octree_select(octree, f, error_px, 0, &selection);
   octree_draw(f, octree, &selection);
   double own = decibels(f, whole);
@@ -209,7 +209,7 @@ static void test_confetti_floor(void) {
   fixture_close(&f);
 }
 
-static void test_confetti(conic_scene_type type, int cull_back, double zoom, const char *what) {
+static void test_against_confetti(conic_scene_type type, int cull_back, double zoom, const char *what) {
   fixture f = fixture_open(2);
   fixture_scene(&f, type, 100000);
   octree_frame(&f, SIZE, 30.0, 15.0, zoom);
@@ -242,7 +242,7 @@ static double seen_cosine(const conic_octree *octree, const conic_octree_view *v
 
 /* No node counts less than the root of what its leaves show, than a share of its error, or less because its leaves face
  * in all directions; and some count less. */
-static void check_weights(fixture *f, const char *what) {
+static void check_tilt_weights(fixture *f, const char *what) {
   conic_octree_view view;
   conic_octree *octree = octree_build(f->context, &f->splats, 0);
   float *pixels = calloc(octree->n_nodes + CONIC_OCTREE_GROUP, sizeof *pixels);
@@ -277,7 +277,7 @@ static void test_weights(conic_scene_type type, double zoom, const char *what) {
   fixture f = fixture_open(2);
   fixture_scene(&f, type, 20000);
   octree_frame(&f, SIZE, 30.0, 10.0, zoom);
-  check_weights(&f, what);
+  check_tilt_weights(&f, what);
   fixture_close(&f);
 }
 
@@ -290,7 +290,7 @@ static void test_weights_nearby(void) {
     f.splats.position[2][i] -= 0.0026f;
   look_at_floor(&f, 83.7, 1.0);
   f.camera.cam_from_world[2][3] = 0.2;
-  check_weights(&f, "floors");
+  check_tilt_weights(&f, "floors");
   fixture_close(&f);
 }
 
@@ -313,7 +313,7 @@ static void test_descent(void) {
   f.options.near_z = conic_octree_near(octree);
   for (int frame = 0; frame < 50; frame++) {
     look_at_floor(&f, 60.0 + 0.5 * frame, 1.5);
-    memcpy(wholes[frame % 2], draw_whole(&f), sizeof wholes[0]);
+    memcpy(wholes[frame % 2], draw_whole_plane(&f), sizeof wholes[0]);
     octree_select(octree, &f, 1.0, 0, &selection);
     octree_draw(&f, octree, &selection);
     memcpy(chosen[frame % 2], f.image.planes[CONIC_PLANE_RGBA], sizeof chosen[0]);
@@ -330,10 +330,10 @@ static void test_descent(void) {
 int main(void) {
   test_floor();
   test_confetti_floor();
-  test_confetti(CONIC_SCENE_KNOT, 0, 1.0, "knot");
-  test_confetti(CONIC_SCENE_KNOT, 1, 1.0, "knot, --cull back");
-  test_confetti(CONIC_SCENE_SPHERE, 0, 1.0, "sphere");
-  test_confetti(CONIC_SCENE_TERRAIN, 0, 2.0, "terrain");
+  test_against_confetti(CONIC_SCENE_KNOT, 0, 1.0, "knot");
+  test_against_confetti(CONIC_SCENE_KNOT, 1, 1.0, "knot, --cull back");
+  test_against_confetti(CONIC_SCENE_SPHERE, 0, 1.0, "sphere");
+  test_against_confetti(CONIC_SCENE_TERRAIN, 0, 2.0, "terrain");
   test_weights(CONIC_SCENE_KNOT, 1.0, "knot");
   test_weights(CONIC_SCENE_TERRAIN, 2.0, "terrain");
   test_weights_nearby();
