@@ -85,15 +85,18 @@ typedef struct pass {
   conic_kept *kept;
   size_t room, n_kept[CONIC_BAND_BLOCKS + 1], not_kept[CONIC_BAND_BLOCKS + 1];
   uint64_t n_fragments;
-  lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* from the first wide splat on */
-  float greatest_length;
-  int has_lengths;
+  const conic_tile_rays *rays;
+  const float *ray_y;
+  lanes ray_length[(CONIC_BAND_BLOCKS + 1) * CONIC_PARTS]; /* of the blocks that has_lengths names by bits */
+  uint32_t has_lengths;
 } pass;
 
 CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
   p->kept = band->kept;
   p->room = band->keeps_indices ? 0 : CONIC_KEPT_SPLATS;
   p->n_fragments = 0;
+  p->rays = band->rays;
+  p->ray_y = conic_band_ray_y(band);
   p->has_lengths = 0;
   memset(p->n_kept, 0, sizeof p->n_kept);
   for (int block = 0; block < band->n_blocks; block++) {
@@ -102,17 +105,16 @@ CONIC_INLINE void begin_pass(const conic_band *band, pass *p) {
   }
 }
 
-static __attribute__((noinline)) void find_lengths(const conic_band *band, pass *p) {
-  const float *ray_y = conic_band_ray_y(band);
-  p->greatest_length = 1.0f;
-  for (int i = 0; i < (CONIC_BAND_BLOCKS + 1) * CONIC_PARTS; i++) {
-    const float *ray_x = band->rays->block_x[i / CONIC_PARTS];
-    size_t at = (size_t)(i % CONIC_PARTS) * CONIC_LANES;
-    p->ray_length[i] = ray_lengths(lanes_load(ray_x + at), lanes_load(ray_y + at));
-    for (int lane = 0; lane < CONIC_LANES; lane++)
-      p->greatest_length = p->ray_length[i][lane] > p->greatest_length ? p->ray_length[i][lane] : p->greatest_length;
+/* A block's, where the first wide splat meets it. */
+CONIC_INLINE void find_lengths(pass *p, uint32_t block) {
+  if (p->has_lengths >> block & 1)
+    return;
+  for (uint32_t part = 0; part < CONIC_PARTS; part++) {
+    size_t at = (size_t)part * CONIC_LANES;
+    p->ray_length[block * CONIC_PARTS + part] =
+        ray_lengths(lanes_load(p->rays->block_x[block] + at), lanes_load(p->ray_y + at));
   }
-  p->has_lengths = 1;
+  p->has_lengths |= 1u << block;
 }
 
 /* One splat, and what of it is the same in all blocks. */
@@ -125,9 +127,11 @@ typedef struct passing {
 } passing;
 
 /* conic_hiding_iz in a part of a block. */
-CONIC_INLINE lanes hiding_iz(const pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
-  if (kind == SPLAT_WIDE || (kind >= SPLAT_SPECIAL && conic_is_wide(splat->footprint)))
+CONIC_INLINE lanes hiding_iz(pass *p, const passing *splat, lanes iz, uint32_t part, splat_kind kind) {
+  if (kind == SPLAT_WIDE || (kind >= SPLAT_SPECIAL && conic_is_wide(splat->footprint))) {
+    find_lengths(p, part / CONIC_PARTS);
     return wide_hiding(splat->footprint, iz, p->ray_length[part]);
+  }
   return splat->nearness * iz;
 }
 
@@ -207,14 +211,24 @@ CONIC_INLINE int glance_at_block(pass *p, const sources *from, const sites *s, c
 /* What is known of a crowded band. */
 typedef struct crowd {
   uint32_t n_pixels;
-  float threshold; /* no pixel's is below it */
-  int is_full;     /* every block leaves out some that cover it */
+  float threshold;  /* no pixel's is below it */
+  int is_full;      /* every block leaves out some that cover it */
+  float ray_length; /* no pixel's is above it */
 } crowd;
+
+/* Of a band's rays: that of one of its corners. */
+static float greatest_length(const conic_band *band) {
+  const float *x = band->rays->x, *y = conic_band_ray_y(band);
+  float x_first = fabsf(x[0]), x_last = fabsf(x[band->n_blocks * CONIC_BLOCK_EDGE - 1]), y_first = fabsf(y[0]),
+        y_last = fabsf(y[CONIC_BLOCK_EDGE - 1]);
+  float x_most = x_first > x_last ? x_first : x_last, y_most = y_first > y_last ? y_first : y_last;
+  return sqrtf((x_most * x_most + y_most * y_most) + 1.0f);
+}
 
 static __attribute__((noinline)) void look_at_crowd(const conic_band *band, const size_t *not_kept, crowd *c) {
   const int n_columns = lesser_end(band->n_blocks * CONIC_BLOCK_EDGE, band->view->width - band->x);
   const int n_rows = lesser_end(CONIC_BLOCK_EDGE, band->view->height - band->y);
-  *c = (crowd){(uint32_t)(n_columns * n_rows), HUGE_VALF, 1};
+  *c = (crowd){(uint32_t)(n_columns * n_rows), HUGE_VALF, 1, greatest_length(band)};
   for (int block = 0; block < band->n_blocks; block++)
     c->is_full &= not_kept[block] < band->n;
   for (int x = 0; x < n_columns; x++)
@@ -227,8 +241,8 @@ static __attribute__((noinline)) void look_at_crowd(const conic_band *band, cons
 
 /* Whether a ray that covers all of the band does nothing else there: no place is left for it, and it raises no
  * threshold. */
-CONIC_INLINE int only_counts(const pass *p, const crowd *c, const conic_footprint *f, const crowd_depths *depths) {
-  float most = most_seen(f, depths), length = p->greatest_length;
+CONIC_INLINE int only_counts(const crowd *c, const conic_footprint *f, const crowd_depths *depths) {
+  float most = most_seen(f, depths), length = c->ray_length;
   float hides = f->nearness * most;
   if (conic_is_wide(f)) /* and what rounding adds: it grows with the length in exact arithmetic */
     hides = (1.0f + 0x1p-20f) * (most * (length / (length - hides)));
@@ -243,7 +257,7 @@ static __attribute__((noinline)) void pass_ray_in_crowd(pass *p, const sources *
   const crowd_span span = span_of(band, f);
   const crowd_depths depths = depths_of(f, &span);
   const float sure = sure_iz(from->view, f, ray, &span);
-  if (covers_span(ray, &span, &depths, sure) && only_counts(p, c, f, &depths)) {
+  if (covers_span(ray, &span, &depths, sure) && only_counts(c, f, &depths)) {
     p->n_fragments += c->n_pixels;
     return;
   }
@@ -257,7 +271,7 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
   enum { LOOK_EVERY = 32 };
   const sources from = sources_of(band);
   const int is_crowd = from.n > CONIC_KEPT_SPLATS;
-  crowd c = {0, 0.0f, 0};
+  crowd c = {0, 0.0f, 0, 0.0f};
   pass p;
   int has_special = 0;
   sites s;
@@ -269,12 +283,12 @@ CONIC_INLINE void visibility_with(conic_band *band, int is_profiled) {
     const int is_ellipse = footprint->s3 > 0.0f; /* without clip lines */
     if (is_crowd && has_special && i % LOOK_EVERY == 0)
       look_at_crowd(band, p.not_kept, &c);
-    if (!is_profiled && __builtin_expect(is_ellipse & (footprint->nearness > 0.0f), 1)) {
+    /* Neither is 0 or below: in one comparison. */
+    const float lesser = footprint->s3 < footprint->nearness ? footprint->s3 : footprint->nearness;
+    if (!is_profiled && __builtin_expect(lesser > 0.0f, 1)) {
       pass_splat(&p, &from, &s, i, SPLAT_USUAL);
       continue;
     }
-    if (!p.has_lengths)
-      find_lengths(band, &p);
     if (is_profiled)
       pass_splat(&p, &from, &s, i, SPLAT_PROFILED);
     else if (is_ellipse)

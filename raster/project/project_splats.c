@@ -378,7 +378,7 @@ static int is_wide(const splat_setup *s) {
   const conic_footprint *footprint = s->footprint;
   float x = fabsf((float)(s->p[0] * s->inverse_z)), y = fabsf((float)(s->p[1] * s->inverse_z));
   float slope = sqrtf(footprint->plane_dx * footprint->plane_dx + footprint->plane_dy * footprint->plane_dy);
-  float across_x = s->extent_px[0] / (float)view->fx, across_y = s->extent_px[1] / (float)view->fy;
+  float across_x = s->extent_px[0] * (1.0f / (float)view->fx), across_y = s->extent_px[1] * (1.0f / (float)view->fy);
   float change = (s->reach + slope * view->growth_px * (float)s->p[2]) +
                  ((x * across_x + y * across_y) + 0.5f * (across_x * across_x + across_y * across_y));
   return !(change <= CONIC_NARROW_CHANGE) || conic_is_laplace(footprint);

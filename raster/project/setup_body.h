@@ -205,8 +205,8 @@ typedef struct records {
 CONIC_INLINE lanes_mask are_wide(const conic_view *view, const group_splats *g, const group_screen *s,
                                  const records *r) {
   lanes slope = lanes_sqrt(r->footprint[10] * r->footprint[10] + r->footprint[11] * r->footprint[11]);
-  lanes across_x = (s->half_width[0] + lanes_absolute(s->shift[0])) / lanes_of((float)view->fx);
-  lanes across_y = (s->half_width[1] + lanes_absolute(s->shift[1])) / lanes_of((float)view->fy);
+  lanes across_x = (s->half_width[0] + lanes_absolute(s->shift[0])) * (1.0f / (float)view->fx);
+  lanes across_y = (s->half_width[1] + lanes_absolute(s->shift[1])) * (1.0f / (float)view->fy);
   lanes change = (g->reach + slope * view->growth_px * lanes_narrow(&g->p[2])) +
                  ((lanes_absolute(g->x) * across_x + lanes_absolute(g->y) * across_y) +
                   0.5f * (across_x * across_x + across_y * across_y));
