@@ -186,7 +186,7 @@ CONIC_INLINE void take_part(const conic_band *band, const sources *from, int str
   lanes_store_indices(footprint, to.nearest);
   lanes_gather_records(from->surfaces->color, footprint, surface);
   const kernel_kind kind = kind_of_view(from->view);
-  if (band->has_special) {
+  if (band->has_special || kind == KERNEL_PROFILE) {
     lanes scales = load_part(kept->scale + of_strip, strip_rows);
     for (int lane = 0; lane < CONIC_LANES; lane++)
       if (kind == KERNEL_PROFILE || !(from->footprints[footprint[lane]].s3 > 0.0f))
