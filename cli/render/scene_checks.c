@@ -37,6 +37,14 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
                      command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && strcmp(job->device.name, "cpu") != 0)
+    return cli_usage("%s: Gaussian scenes are drawn by the processor; --profile surface draws one by --device",
+                     command);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
+    return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
+                     command);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking)
+    return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
   if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
     return cli_usage("%s: the planes T, medianZ, inverseZ and last are of Gaussian scenes", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
@@ -81,7 +89,8 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
     return colors;
   job->opening.as = job->is_patch ? CONIC_AS_PATCHES : (conic_representation)words->as;
   job->abilities = conic_source_abilities(job->inputs, (size_t)job->n_inputs, &job->opening);
-  job->opening.is_whole = !cli_lod_is_wanted(job) && !job->boxes_path && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
+  job->opening.is_whole =
+      !cli_lod_is_wanted(job) && !job->boxes_path && !(job->may_stream && job->abilities & CONIC_SOURCE_STREAMS);
   int answer = check_choice(session, job, words->as);
   return answer == CLI_DONE ? cli_device_check(session, &job->device) : answer;
 }
