@@ -436,15 +436,23 @@ CONIC_INLINE void blend_rest(const conic_band *band, const sources *from, const 
   crowd c;
   look_at_crowd(band, band->not_kept, &c);
   for (size_t i = first; i < from->n; i++) {
-    const conic_footprint *footprint = &from->footprints[from->indices[i]];
-    const splat_rows rows = begin_splat(from, footprint, s->y, kind_of_splat(footprint, kind));
-    const crowd_span span = span_of(band, footprint);
     const uint32_t last = conic_word_last(from->words[i]);
-    const float flat = flat_in(from, footprint, &span, kind);
-    prefetch_splat(from, i);
-    if (band_hides(&c, footprint, &span))
+    uint32_t block = conic_word_first(from->words[i]);
+    while (block <= last && i < band->not_kept[block])
+      block++;
+    if (block > last)
       continue;
-    for (uint32_t block = conic_word_first(from->words[i]); block <= last; block++)
+    const conic_footprint *footprint = &from->footprints[from->indices[i]];
+    prefetch_splat(from, i);
+    float flat = HUGE_VALF;
+    if (__builtin_expect(is_plain_ray(footprint), 0)) {
+      const crowd_span span = span_of(band, footprint);
+      if (band_hides(&c, footprint, &span))
+        continue;
+      flat = flat_in(from, footprint, &span, kind);
+    }
+    const splat_rows rows = begin_splat(from, footprint, s->y, kind_of_splat(footprint, kind));
+    for (; block <= last; block++)
       for (size_t part = 0; part < CONIC_PARTS && i >= band->not_kept[block]; part++) {
         size_t at = block * CONIC_PARTS + part;
         lanes threshold = lanes_load(band->kept[block].threshold + part * CONIC_LANES);
@@ -473,25 +481,41 @@ CONIC_INLINE void finish_rest(conic_band *band, const sources *from, kernel_kind
       store_sums(&rest[block * CONIC_PARTS + part], (size_t)part * CONIC_LANES, &band->sums[block]);
 }
 
-CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
-  const sources from = sources_of(band);
-  size_t first = band->n;
-  band_sums rest;
-  for (int block = 0; block < band->n_blocks; block++) {
-    first = band->not_kept[block] < first ? band->not_kept[block] : first;
+/* Where every block keeps all that covers it: the sums stay in registers. */
+CONIC_INLINE void accumulate_kept(conic_band *band, const sources *from, kernel_kind kind) {
+  for (int block = 0; block < band->n_blocks; block++)
     for (int part = 0; part < CONIC_PARTS && !conic_block_is_empty(band, block); part++) {
       size_t at = (size_t)part * CONIC_LANES;
       part_sums of_part;
       clear_sums(&of_part);
-      blend_kept(&from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
-      if (band->not_kept[block] < band->n)
-        rest[block * CONIC_PARTS + part] = of_part;
-      else
-        store_sums(&of_part, at, &band->sums[block]);
+      blend_kept(from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, &of_part);
+      store_sums(&of_part, at, &band->sums[block]);
     }
-  }
-  if (first < band->n)
-    finish_rest(band, &from, kind, first, rest);
+}
+
+CONIC_INLINE void accumulate_more(conic_band *band, const sources *from, size_t first, kernel_kind kind) {
+  band_sums rest;
+  for (int block = 0; block < band->n_blocks; block++)
+    for (int part = 0; part < CONIC_PARTS && !conic_block_is_empty(band, block); part++) {
+      size_t at = (size_t)part * CONIC_LANES;
+      part_sums *of_part = &rest[block * CONIC_PARTS + part];
+      clear_sums(of_part);
+      blend_kept(from, &band->kept[block], band->n_kept[block], at, band->has_special, kind, of_part);
+      if (band->not_kept[block] == band->n)
+        store_sums(of_part, at, &band->sums[block]);
+    }
+  finish_rest(band, from, kind, first, rest);
+}
+
+CONIC_INLINE void accumulate_with(conic_band *band, kernel_kind kind) {
+  const sources from = sources_of(band);
+  size_t first = band->n;
+  for (int block = 0; block < band->n_blocks; block++)
+    first = band->not_kept[block] < first ? band->not_kept[block] : first;
+  if (__builtin_expect(first < band->n, 0))
+    accumulate_more(band, &from, first, kind);
+  else
+    accumulate_kept(band, &from, kind);
 }
 
 static void accumulate(conic_band *band) {

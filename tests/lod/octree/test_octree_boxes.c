@@ -110,7 +110,8 @@ static void test_nodes(void) {
   conic_selection_options_init(&options);
   options.error_px = 2.0;
   CHECK_OK(conic_octree_select(octree, &f.camera, &f.options, &options, &selection));
-  conic_octree_leaves(octree, &f.splats);
+  conic_splats_release(f.context, &f.splats);
+  CHECK_OK(conic_octree_leaves(octree, &f.splats));
   CHECK_OK(conic_render(f.renderer, &selection.splats, &f.camera, &f.options, &f.image, NULL));
   conic_selection_name(&selection, &f.image);
   CHECK_OK(conic_octree_draw_boxes(octree, &f.camera, 2, &f.image, &map));
