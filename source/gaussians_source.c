@@ -49,6 +49,8 @@ static conic_status outline_means(gaussians_source *g) {
     }
     outline->count++;
   }
+  if (outline->count == 0) /* all is faint: its picture will tell */
+    conic_splats_release(g->base.context, outline);
   return CONIC_OK;
 }
 
