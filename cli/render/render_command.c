@@ -87,6 +87,19 @@ static conic_status write_frame(cli_session *session, cli_render_job *job, const
   return status;
 }
 
+/* A picture beside the frame's, which it releases, where `status` says that it was made, from `start` on. */
+static conic_status write_beside(cli_session *session, cli_render_job *job, const char *name, int i_frame, double start,
+                                 conic_status status, conic_image *map) {
+  char *path = status == CONIC_OK ? cli_frame_name(job, name, i_frame) : NULL;
+  if (status == CONIC_OK) {
+    status = path ? conic_image_write_as(session->context, path, map, &job->writing) : CONIC_ERROR_MEMORY;
+    conic_image_release(session->context, map);
+  }
+  free(path);
+  job->write_ms += 1e3 * (cli_seconds() - start);
+  return status;
+}
+
 /* --overdraw: the count plane in false colours. */
 static conic_status write_overdraw(cli_session *session, cli_render_job *job, const conic_image *image, int i_frame) {
   conic_image map;
@@ -95,14 +108,7 @@ static conic_status write_overdraw(cli_session *session, cli_render_job *job, co
     return CONIC_OK;
   conic_status status = job->is_overdraw_confetti ? conic_image_overdraw_confetti(session->context, image, &map)
                                                   : conic_image_overdraw(session->context, image, &map);
-  char *path = cli_frame_name(job, job->overdraw_path, i_frame);
-  if (status == CONIC_OK) {
-    status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
-    conic_image_release(session->context, &map);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
+  return write_beside(session, job, job->overdraw_path, i_frame, start, status, &map);
 }
 
 /* --clusters: the clusters of a hybrid in false colours. */
@@ -126,14 +132,7 @@ static conic_status write_boxes(cli_session *session, cli_render_job *job, const
   if (!octree)
     return CONIC_OK;
   conic_status status = conic_octree_draw_boxes(octree, camera, job->box_level, image, &map);
-  char *path = cli_frame_name(job, job->boxes_path, i_frame);
-  if (status == CONIC_OK) {
-    status = path ? conic_image_write_as(session->context, path, &map, &job->writing) : CONIC_ERROR_MEMORY;
-    conic_image_release(session->context, &map);
-  }
-  free(path);
-  job->write_ms += 1e3 * (cli_seconds() - start);
-  return status;
+  return write_beside(session, job, job->boxes_path, i_frame, start, status, &map);
 }
 
 /* --deep: what is behind the picture's pixels. */
