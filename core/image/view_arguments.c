@@ -36,6 +36,11 @@ const char *conic_rotation_fault(const double rows[3][4]) {
 conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *c) {
   if (!conic_is_zero(c->reserved, sizeof c->reserved))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's reserved words are not zero", who);
+  if (c->kind >= CONIC_N_CAMERA_KINDS || c->lens >= CONIC_N_LENSES)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: there is no such kind of camera, or no such lens", who);
+  for (int i = 0; i < 8; i++)
+    if (!(fabs(c->distortion[i]) < 1e12))
+      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's distortion is out of range", who);
   if (c->width < 1 || c->width > 65535 || c->height < 1 || c->height > 65535)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's picture is 1 to 65535 pixels wide and high",
                       who);
@@ -47,11 +52,20 @@ conic_status conic_view_camera_check(conic_context *context, const char *who, co
   return fault ? conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera's cam_from_world %s", who, fault) : CONIC_OK;
 }
 
+conic_status conic_view_pinhole_check(conic_context *context, const char *who, const conic_camera *c) {
+  static const char *const kinds[] = {"perspective", "fisheye", "orthographic", "equirectangular"};
+  conic_status status = conic_view_camera_check(context, who, c);
+  if (status != CONIC_OK || (c->kind == CONIC_CAMERA_PERSPECTIVE && c->lens == CONIC_LENS_NONE))
+    return status;
+  return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera is %s%s, and this draws pinholes alone", who,
+                    kinds[c->kind], c->lens ? " with a lens that distorts" : "");
+}
+
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,
                                        const conic_render_options *options, conic_render_options *own) {
   conic_render_options_init(own);
   if (!camera || !conic_options_take(own, options))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an argument is null, or the options were not initialised",
                       who);
-  return conic_view_camera_check(context, who, camera);
+  return conic_view_pinhole_check(context, who, camera);
 }

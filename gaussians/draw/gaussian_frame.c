@@ -246,7 +246,7 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
                       "camera's size");
-  conic_status status = conic_view_camera_check(context, "gaussians", camera);
+  conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};

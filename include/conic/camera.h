@@ -1,7 +1,9 @@
-/* The pinhole camera, and how one is found for a scene.
+/* The camera, and how one is found for a scene.
  *
  * Camera space: x right, y down, z forward (COLMAP, OpenCV, gsplat); pixel (i, j) covers [i, i+1) × [j, j+1) and its
- * centre is at (i + 0.5, j + 0.5). A point at camera coordinates (x, y, z) projects to (fx·x/z + cx, fy·y/z + cy). */
+ * centre is at (i + 0.5, j + 0.5). A point at camera coordinates (x, y, z) projects to (fx·a + cx, fy·b + cy), where
+ * (a, b) is what the camera's kind makes of the point, distorted by its lens. A camera that is zero there is a pinhole:
+ * (a, b) = (x/z, y/z), which everything can draw. What cannot draw another kind or lens refuses it: ARGUMENT. */
 #ifndef CONIC_CAMERA_H
 #define CONIC_CAMERA_H
 
@@ -13,12 +15,33 @@
 extern "C" {
 #endif
 
+typedef enum conic_camera_kind {
+  CONIC_CAMERA_PERSPECTIVE,     /* (x/z, y/z) */
+  CONIC_CAMERA_FISHEYE,         /* (x, y)·θ/‖(x, y)‖, θ the angle from the z axis: equidistant */
+  CONIC_CAMERA_ORTHOGRAPHIC,    /* (x, y): fx and fy are pixels per unit */
+  CONIC_CAMERA_EQUIRECTANGULAR, /* (atan2(x, z), atan2(y, hypot(x, z))): fx and fy are pixels per radian */
+  CONIC_N_CAMERA_KINDS
+} conic_camera_kind;
+
+/* What a lens does to (a, b), named as COLMAP does. With s = a² + b², each gives (a', b') = (a, b)·r + d. */
+typedef enum conic_lens {
+  CONIC_LENS_NONE,   /* r = 1, d = 0 */
+  CONIC_LENS_RADIAL, /* k1 k2 k3 k4: r = 1 + k1·s + k2·s² + k3·s³ + k4·s⁴; of a fisheye, s is θ² */
+  CONIC_LENS_OPENCV, /* k1 k2 p1 p2 k3 k4 k5 k6: r = (1 + k1·s + k2·s² + k3·s³)/(1 + k4·s + k5·s² + k6·s³),
+                        d = (2·p1·a·b + p2·(s + 2·a²), p1·(s + 2·b²) + 2·p2·a·b) */
+  CONIC_LENS_THIN_PRISM, /* k1 k2 p1 p2 k3 k4 s1 s2: r as RADIAL's; d as OPENCV's plus (s1·s, s2·s) */
+  CONIC_LENS_FOV,        /* ω: r = atan(2·√s·tan(ω/2))/(ω·√s), d = 0 (Devernay and Faugeras 2001) */
+  CONIC_N_LENSES
+} conic_lens;
+
 typedef struct conic_camera {
   int width, height;           /* pixels, 1 to 65535 each */
   double fx, fy;               /* focal lengths in pixels */
   double cx, cy;               /* principal point in pixels */
   double cam_from_world[3][4]; /* rows of the rotation and the translation; columns act on (x, y, z, 1) */
-  uint64_t reserved[8];
+  uint32_t kind, lens;         /* conic_camera_kind, conic_lens */
+  double distortion[8];        /* the lens's numbers as listed; 0 past them */
+  uint64_t reserved[7];
 } conic_camera;
 
 /* How conic_camera_frame looks at a box. */

@@ -243,7 +243,7 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   if ((options && !conic_options_take(&own, options)) || (unsigned)question > CONIC_GAUSSIAN_VOLUME ||
       !conic_oracle_gaussian_rules(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: no such options, profile or question");
-  if (conic_view_camera_check(context, "oracle", camera) != CONIC_OK)
+  if (conic_view_pinhole_check(context, "oracle", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
   j.view.camera = camera;

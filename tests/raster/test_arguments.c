@@ -138,7 +138,7 @@ static void test_unusable_cameras(fixture *f) {
   CHECK_OK(conic_splats_append(f->context, &copy, &f->splats));
   CHECK_OK(conic_octree_build(f->context, &copy, &options, &octree));
   CHECK_OK(conic_octree_select(octree, &good, &f->options, &wanted, &selection));
-  for (int i = 0; i < 9; i++) {
+  for (int i = 0; i < 11; i++) {
     conic_camera bad = good;
     double *m = bad.cam_from_world[1];
     switch (i) {
@@ -169,8 +169,14 @@ static void test_unusable_cameras(fixture *f) {
     case 7:
       bad.width = 65536;
       break;
+    case 8:
+      bad.kind = CONIC_CAMERA_ORTHOGRAPHIC;
+      break;
+    case 9:
+      bad.lens = CONIC_LENS_RADIAL;
+      break;
     default:
-      bad.reserved[7] = 1;
+      bad.reserved[6] = 1;
     }
     conic_contributions *contributions;
     conic_reference reference;
