@@ -1,8 +1,7 @@
 """Pictures by gsplat's own code for torch, beside conic's, for torch.sh and for docs/notes/gaussians-measured.md.
 
 torch_pictures.py CONIC GSPLAT DATA [SIDE [FULL]]: crops of SIDE pixels (40) of biker and of a scene of garden.npz, by
-the gsplat in the folder GSPLAT; with FULL, all of the garden's points, more crops, and pictures in float. CONIC is the
-program.
+the gsplat in the folder GSPLAT; with FULL, more crops, and pictures in float, too. CONIC is the program.
 
 gsplat's code projects, evaluates harmonics, and sums up. In its releases the list of the pairs of a Gaussian and a pixel
 that are composited comes from CUDA, and the sums along rays from nerfacc; `pairs` and `nerfacc` below stand for these.
@@ -134,7 +133,7 @@ def pairs(means2d, radii, depths, alpha_at, side):
     order = order[(radii[order] > 0).all(1)]
     low = torch.floor((means2d[order] - radii[order]) / 16).clamp(min=0)
     high = torch.ceil((means2d[order] + radii[order]) / 16)
-    ids, pixels, doubts = [], [], torch.full((side * side, 3), 9.0, dtype=torch.float64)
+    ids, pixels, doubts = [], [], torch.full((side * side, 3), 9.0, dtype=precision)
     for tile_y in range((side + 15) // 16):
         for tile_x in range((side + 15) // 16):
             tile = torch.tensor([tile_x, tile_y])
@@ -155,7 +154,7 @@ def pairs(means2d, radii, depths, alpha_at, side):
             far = torch.full_like(alpha, 9.0)
             apart = torch.stack((torch.where(met, abs(alpha / LEAST - 1.0), far).min(1)[0],
                                  torch.where(met & covered, abs(after / STOP - 1.0), far).min(1)[0]), 1) if len(
-                here) else torch.full((len(x), 2), 9.0)
+                here) else torch.full((len(x), 2), 9.0, dtype=precision)
             doubts[y * side + x, :2] = apart
             for i in range(len(x)):
                 z = depths[here[met[i] & covered[i]]]
@@ -299,7 +298,7 @@ def main():
     whole = np.array(shown["world_to_camera"])
     camera = {"rotation": whole[:3, :3].astype(np.float32).astype(np.float64), "f": (shown["fx"], shown["fy"]),
               "translation": whole[:3, 3].astype(np.float32).astype(np.float64), "c": (shown["cx"], shown["cy"])}
-    for x, y in [(208, 180), (256, 300), (150, 150), (300, 100)][:4 if is_full else 1]:
+    for x, y in [(208, 180), (256, 300), (150, 150), (200, 330)][:4 if is_full else 1]:
         n_wrong += compare(conic, gsplat, "biker", scene, "biker.ply", crop(camera, x, y, side), is_full)
 
     garden = np.load(data + "/garden.npz")
@@ -310,15 +309,12 @@ def main():
     for i_camera, camera in enumerate(cameras):
         for x, y in [(290, 220), (80, 300), (420, 60)][:3 if is_full else 1]:
             cropped = crop(camera, x, y, side)
-            chosen = index if is_full else index[in_view(garden["means3d"], cropped, 8)]
+            chosen = index[in_view(garden["means3d"], cropped, 40 if is_full else 8)]
+            made = scene_of_points(garden["means3d"][chosen], garden["colors"][chosen], chosen)
             for n_scales in (3, 2):
-                if not is_full or x == 290:
-                    made = scene_of_points(garden["means3d"][chosen], garden["colors"][chosen], chosen) \
-                        if n_scales == 3 else {**made, "log_scale": made["log_scale"][:, :2]}
-                    write_ply(f"garden{n_scales}.ply", made)
                 scene = {**made, "log_scale": made["log_scale"][:, :n_scales]}
-                n_wrong += compare(conic, gsplat, f"garden, camera {i_camera}", scene, f"garden{n_scales}.ply", cropped,
-                                   is_full)
+                write_ply("garden.ply", scene)
+                n_wrong += compare(conic, gsplat, f"garden, camera {i_camera}", scene, "garden.ply", cropped, is_full)
     return 1 if n_wrong else 0
 
 
