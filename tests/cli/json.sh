@@ -64,6 +64,7 @@ declare -A wanted=(
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"
+  [diff-folders]="identical matched_by views_past_limits mean.psnr mean.ssim mean.flip views only_in_a only_in_b"
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z judged_pixels
     compared_pixels unstable_pixels covered_pixels undecided_ids unbounded_pixels unbounded_limit wrong_pixels
     unstable_by_reason.cutoff unstable_by_reason.visibility ms.render ms.oracle pass"
@@ -120,6 +121,11 @@ write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
+mkdir first second
+cp knot.exr first/a.exr
+cp lod.exr second/a.exr
+cp knot.exr first/b.exr
+write diff-folders diff_folders diff first second
 write verify verify verify thinner.ply --size 160x120
 write verify-samples verify verify thinner.ply --size 40x30 --samples 2
 write render-prefiltered render render thinner.ply --size 160x120 --prefilter 1.01 -o prefiltered.exr
