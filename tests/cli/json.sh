@@ -76,7 +76,8 @@ declare -A wanted=(
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
-    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics bytes?"
+    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
+    pictures.psnr? pictures.greatest? bytes?"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -150,7 +151,7 @@ write info-hybrid info_hybrid info tent.chy --check
 # Two Gaussians, as .splat has them.
 row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
 printf "$row$row" > two.splat
-write convert convert convert two.splat -o two.compressed.ply
+write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
