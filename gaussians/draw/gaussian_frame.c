@@ -163,7 +163,7 @@ static conic_status make_rooms(frame *f) {
   if (!f->rooms)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < threads; i++)
-    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 1, CONIC_GAUSSIAN_ROOM)))
+    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 16, CONIC_GAUSSIAN_ROOM)))
       return CONIC_ERROR_MEMORY;
   return CONIC_OK;
 }

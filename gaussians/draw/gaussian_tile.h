@@ -31,7 +31,7 @@ typedef struct conic_gaussian_tile {
   int x, y; /* of its first pixel */
 } conic_gaussian_tile;
 
-enum { CONIC_GAUSSIAN_ROOM = 512 };
+enum { CONIC_GAUSSIAN_ROOM = 320 };
 
 /* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
@@ -42,7 +42,7 @@ typedef struct conic_gaussian_list {
   int wants_all;                  /* else T and rgb alone */
   const uint32_t *entries;
   size_t n;
-  void *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and one more; aligned to 64 bytes */
+  void *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more; aligned to 64 bytes */
 } conic_gaussian_list;
 
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */

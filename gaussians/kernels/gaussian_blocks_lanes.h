@@ -75,6 +75,14 @@ CONIC_INLINE unsigned blocks_of_ellipse(const record *r, float half_reach) {
   return met & 0xffffu;
 }
 
+/* Entry i's footprint; asks for one of those that follow, since they lie all over the memory. */
+CONIC_INLINE const conic_gaussian_footprint *footprint_of_entry(const conic_gaussian_list *list, size_t i) {
+  enum { AHEAD = 8 };
+  if (i + AHEAD < list->n)
+    __builtin_prefetch(&list->footprints[list->entries[i + AHEAD]]);
+  return &list->footprints[list->entries[i]];
+}
+
 /* Which of n entries have the block's bit. */
 CONIC_INLINE size_t list_block(const uint32_t *blocks, size_t n, int block, uint32_t *listed) {
   size_t n_listed = 0;

@@ -16,7 +16,7 @@ typedef struct batch {
 static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first, batch *b) {
   b->n = 0;
   for (size_t i = first; i < list->n && i < first + BATCH; i++) {
-    const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+    const conic_gaussian_footprint *f = footprint_of_entry(list, i);
     record *r = &b->records[b->n];
     *r = record_of(tile, f);
     b->blocks[b->n] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
