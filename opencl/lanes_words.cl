@@ -26,8 +26,11 @@ typedef int16 lanes_mask;
 #define indices_of_ints(value) as_uint16((int_lanes)(value))
 #define lanes_columns() ((int_lanes)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3))
 #define lanes_rows() ((int_lanes)(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3))
+#define lanes_ascending(first) ((index_lanes)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (uint)(first))
 #define lanes_load(from) vload16(0, from)
 #define lanes_store(to, value) vstore16(value, 0, to)
+#define lanes_load_indices(from) vload16(0, from)
+#define lanes_store_indices(to, value) vstore16(value, 0, to)
 #define lanes_sqrt(value) sqrt((lanes)(value))
 #define lanes_absolute(value) fabs((lanes)(value))
 
@@ -57,6 +60,10 @@ CONIC_INLINE index_lanes lanes_select_indices(lanes_mask mask, index_lanes yes, 
 
 CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lanes no) {
   return mask ? yes : no;
+}
+
+CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
+  vstore16(mask ? value : vload16(0, to), 0, to);
 }
 
 CONIC_INLINE void lanes_replace_indices(uint *to, lanes_mask mask, index_lanes value) {
@@ -89,6 +96,17 @@ CONIC_INLINE int lanes_any(lanes_mask mask) {
   long2 c = as_long2(b);
   return (c.x | c.y) != 0;
 }
+
+/* Bit l for lane l. */
+CONIC_INLINE uint lanes_bits(lanes_mask mask) {
+  int16 bits = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+  int8 a = bits.lo | bits.hi;
+  int4 b = a.lo | a.hi;
+  int2 c = b.lo | b.hi;
+  return (uint)(c.x | c.y);
+}
+
+#define __builtin_ctz(bits) (31 - (int)clz((bits) & -(bits)))
 
 CONIC_INLINE uint lanes_count(lanes_mask mask) {
   int8 a = mask.lo + mask.hi;

@@ -1,4 +1,4 @@
-/* A Gaussian set up for one picture: what its pixels need of it. */
+/* A Gaussian set up for one picture: what its pixels need of it. C and OpenCL C share this text. */
 #ifndef CONIC_GAUSSIAN_FOOTPRINT_H
 #define CONIC_GAUSSIAN_FOOTPRINT_H
 

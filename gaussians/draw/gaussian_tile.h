@@ -5,7 +5,15 @@
 #include "core/lanes/instruction_sets.h"
 #include "gaussians/draw/gaussian_footprint.h"
 
-enum { CONIC_GAUSSIAN_TILE = 16, CONIC_GAUSSIAN_TILE_PIXELS = CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE };
+enum { CONIC_GAUSSIAN_TILE = 16 };
+#ifndef CONIC_GAUSSIAN_TILE_PIXELS /* 1 where a device has a work-item for each */
+#define CONIC_GAUSSIAN_TILE_PIXELS (CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE)
+#endif
+
+/* Where a frame's records lie: in a memory of its own on a device. */
+#ifndef CONIC_STORED
+#define CONIC_STORED
+#endif
 
 /* Pixels row by row; those beside the picture are there, too. */
 typedef struct conic_gaussian_tile {
@@ -29,24 +37,26 @@ typedef struct conic_gaussian_hit {
 /* What is composited in a tile. Footprints are numbered in the order of all. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
-  const conic_gaussian_footprint *footprints;
-  const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
-  const float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                  /* else T and rgb alone */
-  const uint32_t *entries;
+  const CONIC_STORED conic_gaussian_footprint *footprints;
+  const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
+  const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
+  int wants_all;                               /* else T and rgb alone */
+  const CONIC_STORED uint32_t *entries;
   size_t n;
-  conic_gaussian_hit *hits; /* room for n · CONIC_GAUSSIAN_TILE, of CONIC_SHAPE_RAY */
+  CONIC_STORED conic_gaussian_hit *hits; /* room for n · CONIC_GAUSSIAN_TILE, of CONIC_SHAPE_RAY */
 } conic_gaussian_list;
 
+#ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_kernels {
   void (*composite[3])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_kernels;
 
 CONIC_DECLARE_KERNELS(conic_gaussian_kernels);
+#endif
 
 /* Composites a pixel's hits, in the order of z, and of the list. */
-void conic_gaussian_composite_hits(const conic_gaussian_list *list, conic_gaussian_hit *hits, size_t n,
+void conic_gaussian_composite_hits(const conic_gaussian_list *list, CONIC_STORED conic_gaussian_hit *hits, size_t n,
                                    conic_gaussian_tile *tile, size_t pixel);
 
 #endif

@@ -1,4 +1,5 @@
-/* Compositing in lanes: 16 pixels of a row, as many at a time as there are lanes. Includes what fills the table. */
+/* Compositing in lanes: 16 pixels of a row, as many at a time as there are lanes. Includes what fills the table. C and
+ * OpenCL C share this text. */
 #include "core/lanes/lanes.h"
 #include "gaussians/draw/gaussian_tile.h"
 
@@ -17,12 +18,12 @@ CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile
                  lanes_of(rules->alpha_most),
                  lanes_of(rules->alpha_least),
                  lanes_of(rules->stop),
-                 lanes_of((float)(0.5 * rules->greatest_q)),
+                 lanes_of(rules->greatest_half_q),
                  rules->is_beyond_stop,
-                 rules->greatest_q > 0.0};
+                 rules->greatest_half_q > 0.0f};
 }
 
-CONIC_INLINE lanes lanes_alpha(const scene *s, const conic_gaussian_footprint *f, lanes half_q) {
+CONIC_INLINE lanes lanes_alpha(const scene *s, const CONIC_STORED conic_gaussian_footprint *f, lanes half_q) {
   return lanes_min(f->opacity * lanes_exp_negative(-half_q), s->most);
 }
 
@@ -61,7 +62,7 @@ CONIC_INLINE void end_pixels(conic_gaussian_tile *tile, lanes_mask ends, lanes b
 
 CONIC_INLINE void composite_lanes(const scene *s, uint32_t i_footprint, lanes_mask covered, lanes z, lanes alpha,
                                   size_t at) {
-  const conic_gaussian_footprint *f = &s->list->footprints[i_footprint];
+  const CONIC_STORED conic_gaussian_footprint *f = &s->list->footprints[i_footprint];
   conic_gaussian_tile *tile = s->tile;
   lanes before = lanes_load(tile->T + at), after = before * (1.0f - alpha), w = alpha * before;
   lanes_mask ends = s->is_beyond_stop ? lanes_at_least(s->stop, after) : lanes_less(after, s->stop);
@@ -77,10 +78,11 @@ CONIC_INLINE void composite_lanes(const scene *s, uint32_t i_footprint, lanes_ma
 }
 
 /* Columns of lanes, as offsets from the footprint's pixel; which of them lie within its box. */
-CONIC_INLINE lanes columns_of(const scene *s, const conic_gaussian_footprint *f, int column, lanes_mask *within) {
+CONIC_INLINE lanes columns_of(const scene *s, const CONIC_STORED conic_gaussian_footprint *f, int column,
+                              lanes_mask *within) {
   int_lanes x = ints_of_indices(lanes_ascending(0)) + (s->tile->x + column);
-  *within = lanes_not(lanes_less_int(x, (int_lanes){0} + (int32_t)f->box[0][0])) &
-            lanes_not(lanes_less_int((int_lanes){0} + (int32_t)f->box[1][0], x));
+  *within = lanes_not(lanes_less_int(x, lanes_of_int((int32_t)f->box[0][0]))) &
+            lanes_not(lanes_less_int(lanes_of_int((int32_t)f->box[1][0]), x));
   return lanes_of_ints(x - f->x);
 }
 
@@ -97,7 +99,7 @@ CONIC_INLINE int greater_of(int a, int b) {
   return a > b ? a : b;
 }
 
-CONIC_INLINE part part_in_tile(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
+CONIC_INLINE part part_in_tile(const conic_gaussian_tile *tile, const CONIC_STORED conic_gaussian_footprint *f) {
   return (part){greater_of(f->box[0][1] - tile->y, 0), lesser_of(f->box[1][1] - tile->y, CONIC_GAUSSIAN_TILE - 1),
                 greater_of(f->box[0][0] - tile->x, 0) / CONIC_LANES * CONIC_LANES,
                 lesser_of(f->box[1][0] - tile->x, CONIC_GAUSSIAN_TILE - 1)};
@@ -115,7 +117,7 @@ enum { LOOKS_AGAIN = 64 }; /* entries from one look whether compositing has ende
 static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   const scene s = scene_of(list, tile);
   for (size_t i = 0; i < list->n; i++) {
-    const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+    const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
     const part p = part_in_tile(tile, f);
     if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
       return;
@@ -141,7 +143,7 @@ typedef struct meeting_lanes {
   lanes half_q, z;
 } meeting_lanes;
 
-CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, float dy) {
+CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, float dy) {
   lanes g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = r->g[0][k] + r->g[1][k] * dx + r->g[2][k] * dy;
@@ -157,7 +159,7 @@ static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaus
   const scene s = scene_of(list, tile);
   const float near_z = list->rules->disc_near;
   for (size_t i = 0; i < list->n; i++) {
-    const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+    const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
     const part p = part_in_tile(tile, f);
     if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
       return;
@@ -196,7 +198,7 @@ static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gauss
   for (int row = 0; row < CONIC_GAUSSIAN_TILE; row++) {
     size_t n_hits[CONIC_GAUSSIAN_TILE] = {0};
     for (size_t i = 0; i < list->n; i++) {
-      const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
+      const CONIC_STORED conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       const part p = part_in_tile(tile, f);
       float y = (float)(tile->y + row - f->y);
       if (row < p.first_row || row > p.last_row)
@@ -217,8 +219,10 @@ static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gauss
   }
 }
 
+#ifndef CONIC_ON_DEVICE
 CONIC_FILL_KERNELS(conic_gaussian_kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
 }
+#endif
