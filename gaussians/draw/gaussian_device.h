@@ -8,7 +8,7 @@
 /* All of a picture's lists. */
 typedef struct conic_gaussian_composition {
   const conic_gaussian_rules *rules;
-  size_t n; /* footprints, in their order */
+  size_t n, n_drawn; /* footprints, and those of them that are drawn */
   const conic_gaussian_footprint *footprints;
   const conic_gaussian_ray *rays; /* null: the shape has none */
   const float (*normals)[3];      /* null: not wanted */

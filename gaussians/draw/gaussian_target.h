@@ -36,7 +36,7 @@ static inline void conic_gaussian_put_word(CONIC_STORED uint32_t *plane, size_t 
 
 static inline void conic_gaussian_put_pixel(const conic_gaussian_target *to, const conic_gaussian_tile *tile, size_t at,
                                             size_t pixel) {
-  float T = tile->T[at] > 0.0f ? tile->T[at] : tile->rest[at];
+  const float T = tile->T[at];
   conic_gaussian_put_number(to->transparency, pixel, T);
   conic_gaussian_put_number(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
   conic_gaussian_put_number(to->median_z, pixel, tile->median_z[at]);
@@ -51,10 +51,10 @@ static inline void conic_gaussian_put_pixel(const conic_gaussian_target *to, con
 }
 
 static inline void conic_gaussian_tile_end(const conic_gaussian_target *to, const conic_gaussian_tile *tile) {
-  for (int at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + at % CONIC_GAUSSIAN_TILE, y = tile->y + at / CONIC_GAUSSIAN_TILE;
+  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     if (x < to->width && y < to->height)
-      conic_gaussian_put_pixel(to, tile, (size_t)at, (size_t)y * (size_t)to->width + (size_t)x);
+      conic_gaussian_put_pixel(to, tile, at, (size_t)y * (size_t)to->width + (size_t)x);
   }
 }
 
