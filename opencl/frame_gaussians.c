@@ -17,7 +17,7 @@ typedef struct gaussian_frame {
   conic_device_gaussians picture;
   void *planes[N_PLANES];
   size_t plane_bytes[N_PLANES];
-  size_t n_tiles, hit_bytes; /* of an entry */
+  size_t n_tiles, room_bytes; /* for an entry */
 } gaussian_frame;
 
 static size_t entries_before(const gaussian_frame *g, size_t i_tile) {
@@ -43,7 +43,7 @@ static conic_status check_gaussian_memory(const gaussian_frame *g, size_t most_e
   const double buffers[] = {n * (double)sizeof *c->footprints, c->rays ? n * (double)sizeof *c->rays : 0.0,
                             c->normals ? n * (double)sizeof *c->normals : 0.0,
                             device->is_cpu ? 0.0 : (double)most_entries * (double)sizeof(uint32_t),
-                            (double)most_entries * (double)g->hit_bytes};
+                            (double)most_entries * (double)g->room_bytes};
   double sum = 0.0, greatest = 0.0;
   for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) {
     sum += buffers[i];
@@ -56,7 +56,7 @@ static conic_status check_gaussian_memory(const gaussian_frame *g, size_t most_e
   return conic_fail(g->frame.opencl->context, CONIC_ERROR_MEMORY,
                     "opencl:%d.%d: %zu Gaussians of this picture need %.1f MiB, %.1f in one piece; the device has %.1f "
                     "and %.1f",
-                    device->i_platform, device->i_device, c->n, sum / 1048576.0, greatest / 1048576.0,
+                    device->i_platform, device->i_device, c->n_drawn, sum / 1048576.0, greatest / 1048576.0,
                     (double)device->memory_bytes / 1048576.0, (double)device->greatest_buffer_bytes / 1048576.0);
 }
 
@@ -69,13 +69,13 @@ static size_t end_of_band(const gaussian_frame *g, size_t first, size_t most_ent
   return end;
 }
 
-/* So many entries are drawn at a time, whose hits take an eighth of the memory at most; but no fewer than the longest
+/* So many entries are drawn at a time, whose room takes an eighth of the memory at most; but no fewer than the longest
  * list has. */
 static size_t most_entries_of(const gaussian_frame *g) {
   const conic_opencl *opencl = g->frame.opencl;
   uint64_t most = opencl->part_splats ? opencl->part_splats : MOST_ENTRIES;
-  if (g->hit_bytes && opencl->device.memory_bytes / 8 / g->hit_bytes < most)
-    most = opencl->device.memory_bytes / 8 / g->hit_bytes;
+  if (g->room_bytes && opencl->device.memory_bytes / 8 / g->room_bytes < most)
+    most = opencl->device.memory_bytes / 8 / g->room_bytes;
   for (size_t i = 0; i < g->n_tiles; i++) {
     uint64_t n = entries_before(g, i + 1) - entries_before(g, i);
     most = n > most ? n : most;
@@ -99,8 +99,8 @@ static conic_status begin_gaussian_picture(gaussian_frame *g, size_t most_entrie
         conic_frame_copy(f, CONIC_BUFFER_GAUSSIAN_TILE_BEGIN, c->bins->tile_begin, (g->n_tiles + 1) * sizeof(uint64_t));
   if (status == CONIC_OK)
     status = conic_frame_room(f, CONIC_BUFFER_GAUSSIAN_PICTURE, 1, sizeof g->picture);
-  if (status == CONIC_OK && g->hit_bytes)
-    status = conic_frame_room(f, CONIC_BUFFER_GAUSSIAN_HITS, most_entries, g->hit_bytes);
+  if (status == CONIC_OK && g->room_bytes)
+    status = conic_frame_room(f, CONIC_BUFFER_GAUSSIAN_ROOM, most_entries, g->room_bytes);
   for (int i = 0; i < N_PLANES && status == CONIC_OK; i++)
     status = conic_frame_open_plane(f, CONIC_BUFFER_GAUSSIAN_PLANES + i, g->planes[i], g->plane_bytes[i]);
   return status;
@@ -166,8 +166,7 @@ conic_status conic_opencl_composite(conic_gaussian_device *device, const conic_g
   for (int i = 0; i < 3; i++)
     g.picture.background[i] = c->target.background[i];
   if (c->rules->shape == CONIC_SHAPE_RAY)
-    g.hit_bytes = sizeof(conic_gaussian_hit) *
-                  (opencl->work == CONIC_OPENCL_WORK_PIXELS ? CONIC_GAUSSIAN_TILE_PIXELS : CONIC_GAUSSIAN_TILE);
+    g.room_bytes = opencl->work == CONIC_OPENCL_WORK_PIXELS ? CONIC_PIXELS_ROOM : CONIC_TILES_ROOM;
   list_planes(&g);
   conic_status status = conic_opencl_need_gaussians(opencl);
   if (status == CONIC_OK)

@@ -5,6 +5,9 @@
 
 #include "gaussians/draw/gaussian_target.h"
 
+/* Of CONIC_SHAPE_RAY, the bytes for an entry of a tile: 12 a pixel; three vectors and a word. */
+enum { CONIC_PIXELS_ROOM = 12 * 256, CONIC_TILES_ROOM = 3 * 64 + 4 };
+
 /* Some of its tiles, one after the other, whose entries alone are there. */
 typedef struct conic_device_gaussians {
   conic_gaussian_rules rules;

@@ -12,7 +12,7 @@ __kernel void pixels_composite(GAUSSIAN_ARGUMENTS) {
   conic_gaussian_target target = GAUSSIAN_TARGET;
   conic_gaussian_list list = GAUSSIAN_LIST(i_tile);
   conic_gaussian_tile tile;
-  list.hits = hits + 256 * (tile_begin[i_tile] - picture.first_entry) + at * list.n;
+  list.room = room + CONIC_PIXELS_ROOM * (tile_begin[i_tile] - picture.first_entry) + CONIC_PIXELS_ROOM / 256 * at * list.n;
   conic_gaussian_tile_begin(&tile, x, y);
   if (picture.rules.shape == CONIC_SHAPE_ELLIPSE)
     composite_ellipses(&list, &tile);

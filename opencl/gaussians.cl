@@ -12,7 +12,7 @@
 #define GAUSSIAN_ARGUMENTS                                                                                             \
   __constant conic_device_gaussians *given, __global const ulong *tile_begin, __global const uint *entries,            \
       __global const conic_gaussian_footprint *footprints, __global const conic_gaussian_ray *rays,                    \
-      __global const float(*normals)[3], __global conic_gaussian_hit *hits, __global float *rgb,                       \
+      __global const float(*normals)[3], __global uchar *room, __global float *rgb,                       \
       __global float *transparency, __global float *z, __global float *median_z, __global float *inverse_z,            \
       __global float *normal, __global uint *count, __global uint *id, __global uint *last
 

@@ -62,10 +62,6 @@ CONIC_INLINE int_lanes lanes_select_ints(lanes_mask mask, int_lanes yes, int_lan
   return mask ? yes : no;
 }
 
-CONIC_INLINE void lanes_replace(float *to, lanes_mask mask, lanes value) {
-  vstore16(mask ? value : vload16(0, to), 0, to);
-}
-
 CONIC_INLINE void lanes_replace_indices(uint *to, lanes_mask mask, index_lanes value) {
   vstore16(mask ? value : vload16(0, to), 0, to);
 }
@@ -106,7 +102,20 @@ CONIC_INLINE uint lanes_bits(lanes_mask mask) {
   return (uint)(c.x | c.y);
 }
 
-#define __builtin_ctz(bits) (31 - (int)clz((bits) & -(bits)))
+CONIC_INLINE lanes_mask lanes_mask_of(uint bits) {
+  return (bits & (index_lanes)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)) != 0u;
+}
+
+CONIC_INLINE size_t lanes_append(uint *to, lanes_mask mask, index_lanes value) {
+  size_t n = 0;
+  for (int lane = 0; lane < CONIC_LANES; lane++) {
+    to[n] = ((const uint *)&value)[lane];
+    n += ((const int *)&mask)[lane] != 0;
+  }
+  return n;
+}
+
+#define __builtin_prefetch(pointer) CONIC_FETCH_AHEAD(pointer)
 
 CONIC_INLINE uint lanes_count(lanes_mask mask) {
   int8 a = mask.lo + mask.hi;

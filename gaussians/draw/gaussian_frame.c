@@ -93,18 +93,10 @@ static conic_status order_footprints(frame *f) {
 static conic_gaussian_target target_of(const frame *f) {
   const conic_gaussian_planes *p = f->planes;
   const float *background = f->options->background;
-  return (conic_gaussian_target){p->width,
-                                 p->height,
-                                 {background[0], background[1], background[2]},
-                                 p->rgb,
-                                 p->transparency,
-                                 p->z,
-                                 p->median_z,
-                                 p->inverse_z,
-                                 p->normal,
-                                 p->count,
-                                 p->id,
-                                 p->last};
+  return (conic_gaussian_target){p->width,    p->height,       {background[0], background[1], background[2]},
+                                 p->rgb,      p->transparency, p->z,
+                                 p->median_z, p->inverse_z,    p->normal,
+                                 p->count,    p->id,           p->last};
 }
 
 static int wants_all(const conic_gaussian_planes *p) {
@@ -143,16 +135,15 @@ static conic_status make_rooms(frame *f) {
   if (!f->rooms)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < threads; i++)
-    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 1, CONIC_GAUSSIAN_ROOM)))
+    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 16, CONIC_GAUSSIAN_ROOM)))
       return CONIC_ERROR_MEMORY;
   return CONIC_OK;
 }
 
 static conic_status composite_here(frame *f) {
   conic_status status = make_rooms(f);
-  return status == CONIC_OK
-             ? conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f)
-             : status;
+  return status == CONIC_OK ? conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f)
+                            : status;
 }
 
 static conic_status composite_on_device(const frame *f) {

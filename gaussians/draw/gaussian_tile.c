@@ -72,8 +72,9 @@ static void composite_ellipses(const conic_gaussian_list *list, conic_gaussian_t
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
       float half_q = 0.5f * (f->form[0] * dx * dx + f->form[2] * dy * dy) + f->form[1] * dx * dy;
       float alpha = alpha_of(rules, f, half_q);
-      if (covers_pixel(f, x, y) && half_q >= 0.0f && (!(rules->greatest_half_q > 0.0f) || rules->greatest_half_q >= half_q) &&
-          alpha >= rules->alpha_least && !composite_one(list, list->entries[i], f->z, alpha, tile, at))
+      if (covers_pixel(f, x, y) && half_q >= 0.0f &&
+          (!(rules->greatest_half_q > 0.0f) || rules->greatest_half_q >= half_q) && alpha >= rules->alpha_least &&
+          !composite_one(list, list->entries[i], f->z, alpha, tile, at))
         break;
     }
   }
@@ -88,7 +89,8 @@ static float affine(float at_reference, float by_x, float by_y, float dx, float 
 }
 
 /* The order of operations here is that of docs/reference/gaussians.md. */
-static meeting meet_ray(const CONIC_STORED conic_gaussian_footprint *f, const CONIC_STORED conic_gaussian_ray *r, int x, int y) {
+static meeting meet_ray(const CONIC_STORED conic_gaussian_footprint *f, const CONIC_STORED conic_gaussian_ray *r, int x,
+                        int y) {
   float dx = (float)(x - f->x), dy = (float)(y - f->y), g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = affine(r->g[0][k], r->g[1][k], r->g[2][k], dx, dy);

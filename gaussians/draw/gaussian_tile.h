@@ -39,7 +39,7 @@ typedef struct conic_gaussian_tile {
   int x, y; /* of its first pixel */
 } conic_gaussian_tile;
 
-enum { CONIC_GAUSSIAN_ROOM = 512 };
+enum { CONIC_GAUSSIAN_ROOM = 320 };
 
 /* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
@@ -47,10 +47,11 @@ typedef struct conic_gaussian_list {
   const CONIC_STORED conic_gaussian_footprint *footprints;
   const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
   const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                  /* else T and rgb alone */
+  int wants_all;                               /* else T and rgb alone */
   const CONIC_STORED uint32_t *entries;
   size_t n;
-  CONIC_STORED void *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and one more; aligned to 64 bytes */
+  CONIC_STORED void
+      *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more; aligned to 64 bytes */
 } conic_gaussian_list;
 
 #ifndef CONIC_ON_DEVICE /* where no pointer is to a function */

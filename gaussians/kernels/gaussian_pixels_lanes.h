@@ -108,6 +108,7 @@ CONIC_INLINE void composite_lanes(const scene *s, const response *r, pixels *p, 
   p->T = lanes_select(goes, after, p->T);
 }
 
+#ifndef CONIC_ON_DEVICE
 /* A number of each lane's own record, at `at` from the base. */
 CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
 #if defined(__AVX512F__)
@@ -121,5 +122,6 @@ CONIC_INLINE lanes lanes_gather(const float *base, index_lanes at) {
   return value;
 #endif
 }
+#endif
 
 #endif
