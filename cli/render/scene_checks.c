@@ -37,9 +37,6 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
                      command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && strcmp(job->device.name, "cpu") != 0)
-    return cli_usage("%s: Gaussian scenes are drawn by the processor; --profile surface draws one by --device",
-                     command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);

@@ -67,8 +67,8 @@ static void take_reference(const conic_gaussian_view *view, double x, double y, 
 
 /* Twice the logarithm of how much the opacity is above the least alpha: beyond this q nothing is. 0: nowhere. */
 static double reach_of(const conic_gaussian_rules *rules, double opacity) {
-  if (rules->greatest_q > 0.0)
-    return rules->greatest_q;
+  if (rules->greatest_half_q > 0.0f)
+    return 2.0 * (double)rules->greatest_half_q;
   if (!(opacity >= (double)rules->alpha_least))
     return 0.0;
   return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + 1e-3;

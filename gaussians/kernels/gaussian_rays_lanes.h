@@ -4,7 +4,6 @@
 #define CONIC_GAUSSIAN_RAYS_LANES_H
 
 #include "gaussians/kernels/gaussian_blocks_lanes.h"
-#include "gaussians/kernels/gaussian_order_lanes.h"
 #include "gaussians/kernels/gaussian_pixels_lanes.h"
 
 CONIC_INLINE lanes lanes_alpha(const scene *s, const record *r, lanes half_q) {
@@ -21,7 +20,7 @@ typedef struct meeting_lanes {
   lanes half_q, z;
 } meeting_lanes;
 
-CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, lanes dy) {
+CONIC_INLINE meeting_lanes meet_lanes(const CONIC_STORED conic_gaussian_ray *r, lanes dx, lanes dy) {
   lanes g[3], c[3];
   for (int k = 0; k < 3; k++) {
     g[k] = r->g[0][k] + r->g[1][k] * dx + r->g[2][k] * dy;
@@ -32,6 +31,9 @@ CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, lan
   return (meeting_lanes){lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
                          (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over};
 }
+
+#ifndef CONIC_ON_DEVICE /* which has opencl/gaussian_rays.cl */
+#include "gaussians/kernels/gaussian_order_lanes.h"
 
 /* What a Gaussian looks like wherever it meets a ray. */
 typedef struct look {
@@ -145,4 +147,5 @@ static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gauss
     composite_rays_block_by_block(list, tile, 0);
 }
 
+#endif
 #endif
