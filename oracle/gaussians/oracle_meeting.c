@@ -2,20 +2,29 @@
  * are in doubt. */
 #include "oracle/gaussians/oracle_uncertain.h"
 
+/* Whether the form is positive, whatever rounding does to its terms: then q is not below 0. */
+static int is_definite(const oracle_uncertain *g, double rounded) {
+  double least[2], most = bounded_high((bounded){fabs(g->form[1].v), g->form[1].off}) * (1.0 + rounded);
+  for (int axis = 0; axis < 2; axis++)
+    least[axis] = bounded_low(g->form[2 * axis]) * (1.0 - rounded);
+  return least[0] > 0.0 && least[1] > 0.0 && least[0] * least[1] >= most * most;
+}
+
 /* q/2 of the ellipse. Whatever the order of its operations, a term is rounded so often on its way into the sum. */
 static void meet_ellipse(const oracle_doubting *d, const bounded at[2], const oracle_uncertain *g, oracle_meeting *m) {
-  const double unit = ORACLE_FLOAT_UNIT;
+  const double rounded = d->model->n_form_roundings * ORACLE_FLOAT_UNIT;
   double sum = 0.0, off = 0.0;
   for (int k = 0; k < 3; k++) {
     bounded square = bounded_multiply(at[k == 2], at[k > 0], 0.0), term = bounded_multiply(g->form[k], square, 0.0);
     double share = k == 1 ? 1.0 : 0.5;
     sum += share * term.v;
-    off += share * (term.off + d->model->n_form_roundings * unit * (fabs(term.v) + term.off));
+    off += share * (term.off + rounded * (fabs(term.v) + term.off));
   }
-  off += ORACLE_UNDERFLOW;
   m->half_q_v = sum;
   m->half_q[0] = off < INFINITY ? sum - off : -INFINITY;
   m->half_q[1] = off < INFINITY ? sum + off : INFINITY;
+  if (is_definite(g, rounded))
+    m->half_q[0] = oracle_max(m->half_q[0], 0.0);
 }
 
 static bounded affine_on_screen(const bounded f[3], const double at[2]) {

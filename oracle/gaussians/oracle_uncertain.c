@@ -9,8 +9,9 @@
 
 #include "oracle/gaussians/oracle_uncertain.h"
 
-/* Of any term of the covariance: quaternion, rotation, two scales, view, Jacobian, and the sums. */
-static const double n_covariance_roundings = 32.0;
+/* Of any term of the covariance: some 44, of which a step of the set-up counts as four: quaternions 12, rotations 6,
+ * scales 2, view and Jacobian 12, sums 12. */
+static const double n_covariance_roundings = 11.0;
 
 /* How much more than the formula says the reach is, in pixels. */
 static const double reach_margin_px = 1.0;
