@@ -1,8 +1,9 @@
+/* conic's own JSON of one camera. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "conic/camera.h"
+#include "core/cameras/camera_list.h"
 #include "core/files/json_read.h"
 #include "core/image/view_arguments.h"
 
@@ -120,16 +121,15 @@ static conic_status read_camera(conic_json *json, conic_camera *camera) {
   return json->status;
 }
 
-conic_status conic_camera_read(conic_context *context, const char *path, conic_camera *camera) {
+conic_status conic_camera_json_read(conic_camera_list *list, const unsigned char *bytes, size_t n_bytes) {
   conic_json json;
   conic_camera found;
   memset(&found, 0, sizeof found);
-  conic_status status = conic_json_open(context, path, &json);
+  list->cameras->kind = CONIC_CAMERA_FILE_CONIC;
+  conic_status status = conic_json_take(list->context, list->name, bytes, n_bytes, &json);
   if (status != CONIC_OK)
     return status;
   status = read_camera(&json, &found);
   conic_json_close(&json);
-  if (status == CONIC_OK)
-    *camera = found;
-  return status;
+  return status == CONIC_OK ? conic_camera_list_add(list, &found, "", 0) : status;
 }
