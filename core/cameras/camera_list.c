@@ -29,6 +29,7 @@ void conic_cameras_release(conic_context *context, conic_cameras *cameras) {
   for (size_t i = 0; i < cameras->count; i++)
     conic_memory_release(context, cameras->names[i]);
   conic_memory_release(context, cameras->cameras);
+  conic_memory_release(context, cameras->path);
   conic_memory_release(context, cameras->names);
   memset(cameras, 0, sizeof *cameras);
 }
@@ -49,8 +50,7 @@ void conic_camera_resize(conic_camera *camera, int width, int height) {
 
 /* --- a camera --- */
 
-/* A copy that can be printed; null without memory. */
-static char *copy_view_name(conic_context *context, const char *name, size_t n_name) {
+char *conic_camera_text(conic_context *context, const char *name, size_t n_name) {
   char *copy = conic_memory_allocate(context, n_name + 1, 1);
   for (size_t i = 0; copy && i < n_name; i++)
     copy[i] = (char)((unsigned char)name[i] < 0x20 || name[i] == 0x7f ? '?' : name[i]);
@@ -82,7 +82,7 @@ conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *
                                   sizeof *cameras->names);
   if (status != CONIC_OK)
     return status;
-  char *copy = copy_view_name(list->context, name, n_name);
+  char *copy = conic_camera_text(list->context, name, n_name);
   if (!copy)
     return CONIC_ERROR_MEMORY;
   cameras->cameras[cameras->count] = camera;
@@ -215,13 +215,13 @@ conic_status conic_cameras_find(conic_context *context, const conic_cameras *cam
       if (*cameras->names[i] && is_called(cameras->names[i], name, how) && n++ == 0)
         *i_camera = i;
     if (n > 1)
-      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%zu views are called %s, such as view %zu, %s", n, name,
-                        *i_camera, cameras->names[*i_camera]);
+      return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: %zu views are called %s, such as view %zu, %s",
+                        cameras->path, n, name, *i_camera, cameras->names[*i_camera]);
     if (n == 1)
       return CONIC_OK;
   }
   const char *first = cameras->count ? cameras->names[0] : "",
              *last = cameras->count ? cameras->names[cameras->count - 1] : "";
-  return conic_fail(context, CONIC_ERROR_ARGUMENT, "there is no view %s; there are %zu%s%s%s%s", name, cameras->count,
-                    *first ? ", from " : "", first, *last ? " to " : "", last);
+  return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: there is no view %s; there are %zu%s%s%s%s", cameras->path,
+                    name, cameras->count, *first ? ", from " : "", first, *last ? " to " : "", last);
 }

@@ -20,6 +20,9 @@ typedef struct conic_camera_list {
 conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *camera, const char *name,
                                    size_t n_name);
 
+/* A copy that can be printed; null without memory. */
+char *conic_camera_text(conic_context *context, const char *name, size_t n_name);
+
 /* The size of a picture of which the file says none: that of the file `picture`, which may be null, beside the list's,
  * or what was asked for; names without an ending are tried with those of pictures. Errors: INPUT. */
 conic_status conic_camera_list_size(conic_camera_list *list, const char *picture, int *width, int *height);

@@ -226,7 +226,8 @@ conic_status conic_cameras_read(conic_context *context, const char *path, const 
   if ((options && !conic_options_take(&list.options, options)) || own->width < 0 || own->width > 65535 ||
       own->height < 0 || own->height > 65535 || !own->width != !own->height)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the options of its cameras make no sense", path);
-  conic_status status = read_camera_path(&list, path);
+  cameras->path = conic_camera_text(context, list.name, strlen(list.name));
+  conic_status status = cameras->path ? read_camera_path(&list, path) : CONIC_ERROR_MEMORY;
   if (status != CONIC_OK)
     conic_cameras_release(context, cameras);
   return status;

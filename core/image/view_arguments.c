@@ -64,12 +64,11 @@ conic_status conic_view_camera_check(conic_context *context, const char *who, co
 }
 
 conic_status conic_view_pinhole_check(conic_context *context, const char *who, const conic_camera *c) {
-  static const char *const kinds[] = {"perspective", "fisheye", "orthographic", "equirectangular"};
   conic_status status = conic_view_camera_check(context, who, c);
   if (status != CONIC_OK || (c->kind == CONIC_CAMERA_PERSPECTIVE && c->lens == CONIC_LENS_NONE))
     return status;
   return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: the camera is %s%s, and this draws pinholes alone", who,
-                    kinds[c->kind], c->lens ? " with a lens that distorts" : "");
+                    conic_camera_kind_name((conic_camera_kind)c->kind), c->lens ? " with a lens that distorts" : "");
 }
 
 conic_status conic_view_arguments_take(conic_context *context, const char *who, const conic_camera *camera,

@@ -31,6 +31,7 @@ typedef struct conic_cameras {
   size_t count;
   conic_camera *cameras; /* in the file's order; COLMAP's in the order of their names' bytes */
   char **names;          /* as the file has them, control characters replaced; "" where it names none */
+  char *path;            /* of the file or folder, for messages */
   uint32_t kind;         /* conic_camera_file */
   uint32_t reserved_int;
   uint64_t reserved[6];
