@@ -140,7 +140,7 @@ static int check_view_names(const cli_session *session, const cli_render_job *jo
 }
 
 /* Which there are, by numbers from 1. */
-static int check_numbers(const cli_session *session, cli_render_job *job) {
+static int check_frame_numbers(const cli_session *session, cli_render_job *job) {
   cli_frames *frames = &job->frames;
   int from = job->is_every_view ? 0 : 1; /* as users count */
   if (frames->is_given && !cli_frames_are_many(job))
@@ -157,7 +157,7 @@ static int check_numbers(const cli_session *session, cli_render_job *job) {
 }
 
 int cli_frames_check(const cli_session *session, cli_render_job *job, const char *const *paths, int n_paths) {
-  int answer = check_numbers(session, job);
+  int answer = check_frame_numbers(session, job);
   for (int i = 0; i < n_paths && answer == CLI_DONE && cli_frames_are_many(job); i++)
     answer = check_pattern(paths[i]);
   for (int i = 0; i < n_paths && answer == CLI_DONE && job->is_every_view; i++)

@@ -56,6 +56,7 @@ static void read_array_member(conic_json *json, const char *key, array_camera *c
 }
 
 static conic_status add_array_camera(conic_camera_list *list, conic_json *json, const array_camera *found) {
+  list->line = json->line;
   conic_camera camera = {.width = conic_camera_pixels(found->numbers[WIDE]),
                          .height = conic_camera_pixels(found->numbers[HIGH]),
                          .fx = found->numbers[FOCAL_X],

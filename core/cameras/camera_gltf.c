@@ -22,6 +22,7 @@ typedef struct gltf_camera_node {
   int has_matrix;
   double parent;
   size_t first_child, n_children;
+  uint64_t line;
   char name[64];
 } gltf_camera_node;
 
@@ -35,7 +36,7 @@ typedef struct gltf_camera_reader {
 } gltf_camera_reader;
 
 static conic_status gltf_camera_wrong(const gltf_camera_reader *reader, const char *what) {
-  return conic_fail(reader->list->context, CONIC_ERROR_INPUT, "%s: %s", reader->list->name, what);
+  return conic_camera_list_wrong(reader->list, what);
 }
 
 /* --- the JSON --- */
@@ -106,6 +107,7 @@ static conic_status read_camera_node(gltf_camera_reader *reader) {
     return status;
   gltf_camera_node *node = &reader->nodes[reader->n_nodes++];
   *node = start;
+  node->line = json->line;
   conic_json_begin_object(json);
   while (status == CONIC_OK && conic_json_next_member(json, key)) {
     if (strcmp(key, "camera") == 0)
@@ -247,6 +249,7 @@ static conic_status add_gltf_cameras(gltf_camera_reader *reader) {
     double place[3][4];
     if (node->camera == NO_NODE)
       continue;
+    reader->list->line = node->line;
     if (!is_index_of(node->camera, reader->n_lenses))
       return gltf_camera_wrong(reader, "a node's camera is not there");
     take_gltf_lens(reader->list, &reader->lenses[(size_t)node->camera], &camera);

@@ -166,6 +166,7 @@ conic_status conic_camera_json_read(conic_camera_list *list, const unsigned char
   if (status != CONIC_OK)
     return status;
   status = read_camera(&json, &found);
+  list->line = json.line;
   conic_json_close(&json);
   return status == CONIC_OK ? conic_camera_list_add(list, &found, "", 0) : status;
 }

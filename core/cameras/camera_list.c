@@ -48,6 +48,11 @@ void conic_camera_resize(conic_camera *camera, int width, int height) {
   camera->height = height;
 }
 
+conic_status conic_camera_list_wrong(const conic_camera_list *list, const char *what) {
+  return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: %s (%s %llu)", list->name, what,
+                    list->line ? "line" : "at byte", (unsigned long long)(list->line ? list->line : list->byte));
+}
+
 /* --- a camera --- */
 
 char *conic_camera_text(conic_context *context, const char *name, size_t n_name) {
@@ -66,15 +71,14 @@ conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *
   char wrong[CONIC_CAMERA_FAULT_ROOM];
   conic_camera_settle_lens(&camera);
   if (n_name >= CONIC_CAMERA_NAME_ROOM)
-    return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: the name of view %zu is too long", list->name,
-                      cameras->count);
+    return conic_camera_list_wrong(list, "the name of a view is too long");
   int is_wrong = conic_camera_is_wrong(&camera, wrong);
   if (!is_wrong && list->options.width) {
     conic_camera_resize(&camera, list->options.width, list->options.height);
     is_wrong = conic_camera_is_wrong(&camera, wrong);
   }
   if (is_wrong)
-    return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: view %zu: %s", list->name, cameras->count, wrong);
+    return conic_camera_list_wrong(list, wrong);
   conic_status status = conic_memory_reserve(list->context, &cameras->cameras, cameras->count, cameras->count + 1,
                                              &list->camera_room, sizeof *cameras->cameras);
   if (status == CONIC_OK)
@@ -175,19 +179,18 @@ conic_status conic_camera_list_size(conic_camera_list *list, const char *picture
     *height = list->options.height;
   }
   return *width ? CONIC_OK
-                : conic_fail(list->context, CONIC_ERROR_INPUT,
-                             "%s: it does not say how large its pictures are; give --size WxH, too", list->name);
+                : conic_camera_list_wrong(list, "it does not say how large its pictures are; give --size WxH, too");
 }
 
 /* --- finding one --- */
 
-static size_t base_of(const char *name) {
+static size_t view_base(const char *name) {
   const char *slash = strrchr(name, '/');
   return slash ? (size_t)(slash + 1 - name) : 0;
 }
 
 static int is_called(const char *name, const char *wanted, int how) {
-  size_t begin = how > 0 ? base_of(name) : 0, length = strlen(name) - begin, n_wanted = strlen(wanted);
+  size_t begin = how > 0 ? view_base(name) : 0, length = strlen(name) - begin, n_wanted = strlen(wanted);
   const char *dot = strrchr(name + begin, '.');
   if (how == 2 && dot && dot > name + begin)
     length = (size_t)(dot - name) - begin;
@@ -195,7 +198,7 @@ static int is_called(const char *name, const char *wanted, int how) {
 }
 
 /* The index that a text is; `none` where it is no number, or one with needless zeros. */
-static size_t take_index(const char *text, size_t none) {
+static size_t take_view_index(const char *text, size_t none) {
   size_t value = 0, n = strlen(text);
   if (n == 0 || n > 9 || strspn(text, "0123456789") != n || (*text == '0' && n > 1))
     return none;
@@ -206,7 +209,7 @@ static size_t take_index(const char *text, size_t none) {
 
 conic_status conic_cameras_find(conic_context *context, const conic_cameras *cameras, const char *name,
                                 size_t *i_camera) {
-  *i_camera = take_index(name, cameras->count);
+  *i_camera = take_view_index(name, cameras->count);
   if (*i_camera < cameras->count)
     return CONIC_OK;
   for (int how = 0; how < 3; how++) {

@@ -11,6 +11,7 @@ typedef struct conic_camera_list {
   const char *name; /* of the file, for messages */
   const char *path; /* beside which its pictures are; null: nowhere */
   conic_cameras_options options;
+  uint64_t line, byte; /* that is being read; of a line 0, the byte holds */
   conic_cameras *cameras;
   size_t camera_room, name_room;
 } conic_camera_list;
@@ -19,6 +20,9 @@ typedef struct conic_camera_list {
  * ended. Errors: INPUT (it is none to look through), MEMORY. */
 conic_status conic_camera_list_add(conic_camera_list *list, const conic_camera *camera, const char *name,
                                    size_t n_name);
+
+/* Logs "FILE: what is wrong (line N)". Returns INPUT. */
+conic_status conic_camera_list_wrong(const conic_camera_list *list, const char *what);
 
 /* A copy that can be printed; null without memory. */
 char *conic_camera_text(conic_context *context, const char *name, size_t n_name);

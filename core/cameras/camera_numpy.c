@@ -30,8 +30,8 @@ static conic_status open_npz_part(npz_reader *reader, const conic_zip *zip, int 
       reader->names[part] = names[part][i];
   const char *name = reader->names[part];
   if (!name && part <= INTRINSICS)
-    return conic_fail(reader->list->context, CONIC_ERROR_INPUT, "%s: it has no %s; cameras are viewmats and Ks",
-                      reader->list->name, names[part][0]);
+    return conic_fail(reader->list->context, CONIC_ERROR_INPUT,
+                      "%s: it has no %s; cameras are viewmats and Ks (at byte 0)", reader->list->name, names[part][0]);
   if (!name)
     return CONIC_OK;
   conic_status status = conic_zip_read(zip, name, most_array_bytes, &reader->blocks[part], &n);
@@ -58,17 +58,19 @@ static conic_status check_npz_shapes(npz_reader *reader) {
   const char *file = reader->list->name;
   if (!has_npz_shape(&arrays[VIEW_MATRICES], &reader->n, 4, 4) &&
       (reader->n = 0, !has_npz_shape(&arrays[VIEW_MATRICES], &reader->n, 3, 4)))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is of the shape (n, 4, 4)", file, reader->names[0]);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is of the shape (n, 4, 4) (at byte 0)", file,
+                      reader->names[0]);
   int is_list = arrays[INTRINSICS].n_axes == 1; /* fx, fy, cx, cy */
   if (!(is_list ? arrays[INTRINSICS].shape[0] == 4 : has_npz_shape(&arrays[INTRINSICS], &reader->n, 3, 3)))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is of the shape (n, 3, 3), as many as there are %s", file,
+    return conic_fail(context, CONIC_ERROR_INPUT,
+                      "%s: %s is of the shape (n, 3, 3), as many as there are %s (at byte 0)", file,
                       reader->names[INTRINSICS], reader->names[VIEW_MATRICES]);
   if (!reader->names[WIDTHS] != !reader->names[HEIGHTS])
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: it has one of width and height", file);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: it has one of width and height (at byte 0)", file);
   for (int part = WIDTHS; part <= HEIGHTS; part++)
     if (reader->names[part] && !has_npz_shape(&arrays[part], &reader->n, 0, 0))
-      return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is one number, or as many as there are %s", file,
-                        reader->names[part], reader->names[VIEW_MATRICES]);
+      return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is one number, or as many as there are %s (at byte 0)",
+                        file, reader->names[part], reader->names[VIEW_MATRICES]);
   return CONIC_OK;
 }
 
@@ -120,7 +122,7 @@ static conic_status add_npz_camera(npz_reader *reader, size_t i) {
   if (!wrong)
     wrong = take_intrinsics(&reader->arrays[INTRINSICS], i, &camera);
   if (wrong)
-    return conic_fail(reader->list->context, CONIC_ERROR_INPUT, "%s: view %zu: %s", reader->list->name, i, wrong);
+    return conic_camera_list_wrong(reader->list, wrong);
   for (int axis = 0; axis < 2 && reader->names[WIDTHS]; axis++)
     take_npz_numbers(&reader->arrays[WIDTHS + axis], i, 1, &size[axis]);
   camera.width = conic_camera_pixels(size[0]);

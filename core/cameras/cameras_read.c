@@ -237,7 +237,8 @@ conic_status conic_camera_read(conic_context *context, const char *path, conic_c
   conic_cameras cameras;
   conic_status status = conic_cameras_read(context, path, NULL, &cameras);
   if (status == CONIC_OK && cameras.count != 1)
-    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: it has %zu cameras, and one is needed", path, cameras.count);
+    status = conic_fail(context, CONIC_ERROR_INPUT, "%s: it has %zu cameras, and one is needed (at byte 0)", path,
+                        cameras.count);
   if (status == CONIC_OK)
     *camera = cameras.cameras[0];
   conic_cameras_release(context, &cameras);

@@ -50,7 +50,7 @@ typedef struct colmap_camera {
 
 typedef struct colmap_image {
   double quaternion[4], translation[3];
-  uint64_t camera;
+  uint64_t camera, line, byte; /* the last two: where it stands */
   const char *name;
   size_t n_name;
 } colmap_image;
@@ -107,9 +107,12 @@ static conic_status add_colmap_camera(colmap_reader *reader, uint64_t id, const 
 static conic_status add_colmap_image(colmap_reader *reader, const colmap_image *image) {
   conic_status status = conic_memory_reserve(reader->list->context, &reader->images, reader->n_images,
                                              reader->n_images + 1, &reader->image_room, sizeof *reader->images);
-  if (status == CONIC_OK)
-    reader->images[reader->n_images++] = *image;
-  return status;
+  if (status != CONIC_OK)
+    return status;
+  reader->images[reader->n_images] = *image;
+  reader->images[reader->n_images].line = reader->line;
+  reader->images[reader->n_images++].byte = reader->at;
+  return CONIC_OK;
 }
 
 static const colmap_model *find_model(colmap_reader *reader, uint64_t number, conic_status *status) {
@@ -124,7 +127,7 @@ static const colmap_model *find_model(colmap_reader *reader, uint64_t number, co
 /* --- binary --- */
 
 /* The next bytes, or null after a message. */
-static const unsigned char *take_bytes(colmap_reader *reader, uint64_t n, conic_status *status) {
+static const unsigned char *take_colmap_bytes(colmap_reader *reader, uint64_t n, conic_status *status) {
   const unsigned char *bytes = reader->file->bytes + reader->at;
   if (*status != CONIC_OK)
     return NULL;
@@ -136,26 +139,26 @@ static const unsigned char *take_bytes(colmap_reader *reader, uint64_t n, conic_
   return bytes;
 }
 
-static uint64_t take_word(colmap_reader *reader, size_t n_bytes, conic_status *status) {
-  const unsigned char *bytes = take_bytes(reader, n_bytes, status);
+static uint64_t take_colmap_word(colmap_reader *reader, size_t n_bytes, conic_status *status) {
+  const unsigned char *bytes = take_colmap_bytes(reader, n_bytes, status);
   return bytes ? conic_file_get(bytes, n_bytes) : 0;
 }
 
 static void take_numbers(colmap_reader *reader, double *numbers, int n, conic_status *status) {
-  const unsigned char *bytes = take_bytes(reader, (uint64_t)n * 8, status);
+  const unsigned char *bytes = take_colmap_bytes(reader, (uint64_t)n * 8, status);
   if (bytes)
     memcpy(numbers, bytes, (size_t)n * 8);
 }
 
 static conic_status read_binary_cameras(colmap_reader *reader) {
   conic_status status = CONIC_OK;
-  uint64_t n = take_word(reader, 8, &status);
+  uint64_t n = take_colmap_word(reader, 8, &status);
   for (uint64_t i = 0; i < n && status == CONIC_OK; i++) {
     double numbers[MOST_PARAMETERS] = {0}, size[2];
-    uint64_t id = take_word(reader, 4, &status), number = take_word(reader, 4, &status);
+    uint64_t id = take_colmap_word(reader, 4, &status), number = take_colmap_word(reader, 4, &status);
     const colmap_model *model = status == CONIC_OK ? find_model(reader, number, &status) : NULL;
     for (int axis = 0; axis < 2; axis++)
-      size[axis] = (double)take_word(reader, 8, &status);
+      size[axis] = (double)take_colmap_word(reader, 8, &status);
     if (model)
       take_numbers(reader, numbers, n_parameters(model), &status);
     if (status == CONIC_OK)
@@ -166,13 +169,13 @@ static conic_status read_binary_cameras(colmap_reader *reader) {
 
 static conic_status read_binary_images(colmap_reader *reader) {
   conic_status status = CONIC_OK;
-  uint64_t n = take_word(reader, 8, &status);
+  uint64_t n = take_colmap_word(reader, 8, &status);
   for (uint64_t i = 0; i < n && status == CONIC_OK; i++) {
     colmap_image image = {.name = NULL};
-    take_word(reader, 4, &status);
+    take_colmap_word(reader, 4, &status);
     take_numbers(reader, image.quaternion, 4, &status);
     take_numbers(reader, image.translation, 3, &status);
-    image.camera = take_word(reader, 4, &status);
+    image.camera = take_colmap_word(reader, 4, &status);
     if (status != CONIC_OK)
       return status;
     image.name = (const char *)reader->file->bytes + reader->at;
@@ -181,10 +184,10 @@ static conic_status read_binary_images(colmap_reader *reader) {
       return colmap_wrong(reader, "a name is not ended", "");
     image.n_name = (size_t)(end - image.name);
     reader->at += image.n_name + 1;
-    uint64_t n_points = take_word(reader, 8, &status); /* of 24 bytes each */
+    uint64_t n_points = take_colmap_word(reader, 8, &status); /* of 24 bytes each */
     if (status == CONIC_OK && n_points > reader->file->n_bytes / 24)
       return colmap_wrong(reader, "the file ends too early", "");
-    take_bytes(reader, n_points * 24, &status);
+    take_colmap_bytes(reader, n_points * 24, &status);
     if (status == CONIC_OK)
       status = add_colmap_image(reader, &image);
   }
@@ -337,7 +340,7 @@ static conic_status place_images(colmap_reader *reader) {
   conic_camera_list *list = reader->list;
   conic_status status = CONIC_OK;
   if (reader->n_images == 0)
-    return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: there are no images in it", reader->file->name);
+    return colmap_wrong(reader, "there are no images in it", "");
   if (reader->n_cameras)
     qsort(reader->cameras, reader->n_cameras, sizeof *reader->cameras, compare_ids);
   qsort(reader->images, reader->n_images, sizeof *reader->images, compare_image_names);
@@ -348,12 +351,12 @@ static conic_status place_images(colmap_reader *reader) {
         reader->n_cameras ? bsearch(&key, reader->cameras, reader->n_cameras, sizeof *reader->cameras, compare_ids)
                           : NULL;
     double rows[3][3];
+    list->line = image->line;
+    list->byte = image->byte;
     if (!found)
-      return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: an image's camera, %llu, is not there",
-                        reader->file->name, (unsigned long long)image->camera);
+      return conic_camera_list_wrong(list, "an image's camera is not there");
     if (!conic_camera_rotation(image->quaternion, rows))
-      return conic_fail(list->context, CONIC_ERROR_INPUT, "%s: an image's quaternion is no rotation",
-                        reader->file->name);
+      return conic_camera_list_wrong(list, "an image's quaternion is no rotation");
     conic_camera camera = found->camera;
     for (int row = 0; row < 3; row++) {
       memcpy(camera.cam_from_world[row], rows[row], sizeof rows[row]);
@@ -370,6 +373,7 @@ conic_status conic_camera_colmap_read(conic_camera_list *list, const conic_colma
   list->cameras->kind = CONIC_CAMERA_FILE_COLMAP;
   conic_status status = is_text ? read_text_cameras(&reader) : read_binary_cameras(&reader);
   reader.file = images;
+  list->name = images->name;
   reader.at = reader.line = 0;
   if (status == CONIC_OK)
     status = is_text ? read_text_images(&reader) : read_binary_images(&reader);

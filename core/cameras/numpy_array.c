@@ -52,7 +52,8 @@ static int take_npy_shape(npy_text header, conic_numpy_array *array) {
     size_t n = 0, start = i;
     for (; i < value.n && value.text[i] >= '0' && value.text[i] <= '9' && n < (size_t)1 << 40; i++)
       n = n * 10 + (size_t)(value.text[i] - '0');
-    if (i == start || array->n_axes == CONIC_NUMPY_MOST_AXES)
+    if (i == start || (i < value.n && value.text[i] >= '0' && value.text[i] <= '9') ||
+        array->n_axes == CONIC_NUMPY_MOST_AXES)
       return 0;
     array->shape[array->n_axes++] = n;
     while (i < value.n && (value.text[i] == ',' || value.text[i] == ' '))
@@ -67,24 +68,25 @@ conic_status conic_numpy_array_open(conic_context *context, const char *file, co
   int n_length = n_bytes >= 12 && bytes[6] == 1 ? 2 : 4;
   size_t start = 8 + (size_t)n_length;
   if (n_bytes < 12 || memcmp(bytes, "\x93NUMPY", 6) != 0 || bytes[6] < 1 || bytes[6] > 3)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is no NumPy array", file, name);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is no NumPy array (at byte 0)", file, name);
   size_t n_header = (size_t)conic_file_get(bytes + 8, (size_t)n_length);
   if (n_header > n_bytes - start)
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s ends too early", file, name);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s ends too early (at byte 0)", file, name);
   npy_text header = {(const char *)bytes + start, n_header};
   if (!take_npy_type(header, array))
-    return conic_fail(context, CONIC_ERROR_INPUT,
-                      "%s: %s is not of numbers that are read: little-endian float32, float64 or whole numbers", file,
-                      name);
+    return conic_fail(
+        context, CONIC_ERROR_INPUT,
+        "%s: %s is not of numbers that are read: little-endian float32, float64 or whole numbers (at byte 0)", file,
+        name);
   npy_text order = find_npy_value(header, "'fortran_order'");
   array->is_fortran = npy_begins(order, "True");
   if ((!array->is_fortran && !npy_begins(order, "False")) || !take_npy_shape(header, array))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s has no shape that is understood", file, name);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s has no shape that is understood (at byte 0)", file, name);
   double n = array->n_type_bytes;
   for (int axis = 0; axis < array->n_axes; axis++)
     n *= (double)array->shape[axis];
   if (n != (double)(n_bytes - start - n_header))
-    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is not as long as its shape says", file, name);
+    return conic_fail(context, CONIC_ERROR_INPUT, "%s: %s is not as long as its shape says (at byte 0)", file, name);
   array->bytes = bytes + start + n_header;
   return CONIC_OK;
 }

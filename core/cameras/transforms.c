@@ -53,6 +53,7 @@ typedef struct transforms_frame {
   frame_numbers own;
   double world_from_camera[3][4];
   char *name; /* null: none */
+  uint64_t line;
 } transforms_frame;
 
 typedef struct transforms_reader {
@@ -133,6 +134,7 @@ static conic_status read_frame(transforms_reader *reader) {
     return status;
   transforms_frame *frame = &reader->frames[reader->n_frames++];
   memset(frame, 0, sizeof *frame);
+  frame->line = reader->json.line;
   conic_json_begin_object(&reader->json);
   while (conic_json_next_member(&reader->json, key)) {
     if (strcmp(key, "file_path") == 0)
@@ -213,6 +215,7 @@ static void take_lens(const frame_numbers *n, conic_camera *camera) {
 static conic_status add_frame(conic_camera_list *list, const frame_numbers *shared, const transforms_frame *frame) {
   frame_numbers n = frame->own;
   conic_status status = CONIC_OK;
+  list->line = frame->line;
   merge_numbers(shared, &n);
   conic_camera camera = {
       .width = conic_camera_pixels(n.numbers[W]), .height = conic_camera_pixels(n.numbers[H]), .kind = n.model->kind};
