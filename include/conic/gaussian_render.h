@@ -38,7 +38,7 @@ typedef struct conic_gaussian_options {
   conic_gaussian_profile profile;
   float background[3];     /* behind the Gaussians: colour · T is added to R, G, B */
   conic_isa isa;           /* as the context has it */
-  uint32_t ignores_center; /* inria-2023 draws a camera whose centre is not the picture's as if it were: else refused */
+  uint32_t ignores_center; /* where the profile does, and would else refuse a camera that is not centred */
 } conic_gaussian_options;
 
 /* Exact, black. */
