@@ -79,6 +79,10 @@ static conic_status open_gaussians(conic_source *source, const char *const *path
   return outline_means(g);
 }
 
+const conic_gaussians *conic_source_gaussians(const conic_source *source) {
+  return source->kind == &conic_source_kind_gaussians ? &((const gaussians_source *)source)->gaussians : NULL;
+}
+
 static void close_gaussians(conic_source *source) {
   conic_gaussians_release(source->context, &((gaussians_source *)source)->gaussians);
 }

@@ -7,6 +7,9 @@
 #include "gaussians/draw/gaussian_outline.h"
 #include "gaussians/draw/harmonic_color.h"
 
+/* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
+static const double unit_slack = 0x1p-20;
+
 static int is_number(double v) {
   return v - v == 0.0;
 }
@@ -19,7 +22,8 @@ static int place_axes(const conic_gaussian_view *view, const conic_gaussians *se
   }
   if (!(squares > 0.0) || !is_number(squares))
     return 0;
-  double one_over = view->rules->takes_rotation_as_is ? 1.0 : 1.0 / sqrt(squares);
+  int is_as_it_is = view->rules->takes_rotation_as_is && squares - 1.0 < unit_slack && 1.0 - squares < unit_slack;
+  double one_over = is_as_it_is ? 1.0 : 1.0 / sqrt(squares);
   double w = q[0] * one_over, x = q[1] * one_over, y = q[2] * one_over, z = q[3] * one_over;
   const double rows[3][3] = {{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
                              {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
