@@ -68,7 +68,7 @@ static range add_ranges(range a, range b) {
 }
 
 /* The numbers that a Gaussian's weight multiplies. */
-static void values_of(const oracle_meeting *m, range values[N_SUMS]) {
+static void values_at_meeting(const oracle_meeting *m, range values[N_SUMS]) {
   const oracle_uncertain *g = m->g;
   for (int c = 0; c < 3; c++) {
     values[SUM_RGB + c] = range_of(bounded_low(g->color[c]), g->color[c].v, bounded_high(g->color[c]));
@@ -191,7 +191,7 @@ static void composite_meeting(const fork_job *j, size_t i, int is_sure, int does
   range weight = multiply_ranges(alpha, before), after = multiply_ranges(before, rest), values[N_SUMS];
   int counts = is_sure && !s->may_have_ended;
   after.low = oracle_max(after.low, 0.0);
-  values_of(m, values);
+  values_at_meeting(m, values);
   if (!is_sure)
     after.high = before.high;
   if (!counts)
@@ -229,8 +229,8 @@ static void add_slack(const fork_job *j, size_t i, fork_state *s) {
       continue;
     m->noted |= 1u << CONIC_DOUBT_ORDER;
     double both = s->group_T * before->alpha[1] * m->alpha[1] * (1.0 + 1e-6);
-    values_of(m, own);
-    values_of(before, other);
+    values_at_meeting(m, own);
+    values_at_meeting(before, other);
     for (int n = 0; n < N_SUMS; n++)
       s->slack[n] += both * oracle_max(own[n].high - other[n].low, other[n].high - own[n].low);
     j->steps[k].weight[0] *= 1.0 - m->alpha[1];
