@@ -225,7 +225,7 @@ static int is_middle_sample(int samples, int x, int y) {
   return x == (samples - 1) / 2 && y == (samples - 1) / 2;
 }
 
-static void add_sample(conic_gaussian_bound *sum, const conic_gaussian_bound *b, double share, int is_middle) {
+static void add_sample_bound(conic_gaussian_bound *sum, const conic_gaussian_bound *b, double share, int is_middle) {
   double *const to[] = {sum->value, sum->low, sum->high, sum->least, sum->most};
   const double *const from[] = {b->value, b->low, b->high, b->least, b->most};
   for (int k = 0; k < 5; k++)
@@ -261,7 +261,7 @@ static void bound_one_pixel(const oracle_bound_request *b, cell_worker *w, size_
       if (b->samples == 1)
         *bound = sample;
       else
-        add_sample(bound, &sample, 1.0 / b->samples / b->samples, is_middle_sample(b->samples, column, row));
+        add_sample_bound(bound, &sample, 1.0 / b->samples / b->samples, is_middle_sample(b->samples, column, row));
     }
 }
 
