@@ -45,6 +45,9 @@ static void init_gaussians_write(void *o, size_t size) {
 static void init_gaussian(void *o, size_t size) {
   conic_gaussian_options_init_sized(o, size);
 }
+static void init_cameras(void *o, size_t size) {
+  conic_cameras_options_init_sized(o, size);
+}
 static void init_read(void *o, size_t size) {
   conic_read_options_init_sized(o, size);
 }
@@ -140,6 +143,7 @@ static const struct {
            {init_gaussian, sizeof(conic_gaussian_options)},
            {init_gaussians_read, sizeof(conic_gaussians_read_options)},
            {init_gaussians_write, sizeof(conic_gaussians_write_options)},
+           {init_cameras, sizeof(conic_cameras_options)},
            {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
