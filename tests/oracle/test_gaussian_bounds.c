@@ -68,8 +68,11 @@ static void tell_verdict(const char *scene, int profile, const conic_gaussian_ve
 
 /* The renderer's picture lies within the bounds, and the double run's. */
 static void judge_renderer(conic_context *context, const char *name, const conic_gaussians *scene,
-                           const conic_camera *camera) {
+                           const conic_camera *given) {
   for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++) {
+    conic_camera own = *given, *camera = &own;
+    if (profile == CONIC_PROFILE_INRIA_2023 || profile == CONIC_PROFILE_2DGS_2024) /* which take the middle */
+      own.cx = 0.5 * own.width;
     conic_gaussian_planes p = picture_draw(context, scene, camera, (conic_gaussian_profile)profile, CONIC_ISA_AUTO);
     conic_image image = image_of(context, &p);
     conic_gaussian_verdict verdict = judge_image(context, scene, camera, profile, &image);
