@@ -83,6 +83,37 @@ static void judge_renderer(conic_context *context, const char *name, const conic
   }
 }
 
+/* What breaks others: at the eye, behind it, tiny, huge, needles, plates, NaN, no rotation, equal depths. */
+static void test_hostile(conic_context *context) {
+  for (uint64_t seed = 1; seed <= 3; seed++) {
+    conic_gaussians scene = gaussians_random(context, 60, 1, 0);
+    const conic_camera camera = camera_from(seed == 1 ? 4.0 : 1.5, 40, 30);
+    uint64_t state = seed;
+    for (size_t i = 0; i < scene.count; i++) {
+      for (int k = 0; k < 3; k++)
+        scene.scale[k][i] = (float)exp(-9.0 + 9.0 * random_unit(&state));
+      scene.opacity[i] = i % 3 == 0 ? 1.0f : (float)random_unit(&state);
+      if (i % 6 == 1)
+        scene.position[2][i] = scene.position[2][i - 1];
+    }
+    scene.scale[0][0] = scene.scale[1][0] = scene.scale[2][0] = 1e-9f;
+    scene.scale[0][1] = scene.scale[1][1] = scene.scale[2][1] = 1e9f;
+    scene.opacity[1] = 0.1f;
+    scene.scale[2][2] = 0.0f;
+    scene.scale[1][3] = -1.0f;
+    scene.position[1][4] = NAN;
+    for (int k = 0; k < 4; k++)
+      scene.rotation[k][5] = 0.0f;
+    scene.position[0][6] = scene.position[1][6] = 0.0f;
+    scene.position[2][6] = -(float)camera.cam_from_world[2][3]; /* at the eye */
+    scene.position[2][7] = -10.0f;
+    for (int k = 0; k < 4; k++)
+      scene.rotation[k][8] *= 3.0f;
+    judge_renderer(context, "hostile", &scene, &camera);
+    conic_gaussians_release(context, &scene);
+  }
+}
+
 static void test_renderer(conic_context *context) {
   for (int degree = 0; degree <= 4; degree += 2) {
     conic_gaussians scene = gaussians_random(context, 300, degree, degree == 2 ? CONIC_GAUSSIANS_HALF : 0);
@@ -375,6 +406,7 @@ static void test_double_run(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(2);
   test_renderer(context);
+  test_hostile(context);
   test_random_floats(context);
   test_doubts(context);
   test_mistakes(context);
