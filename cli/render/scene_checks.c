@@ -43,6 +43,9 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.prefilter > 0.0 &&
+      job->gaussians.profile != CONIC_PROFILE_EXACT)
+    return cli_usage("%s: --prefilter is of splats and of --profile exact; the others have what they have", command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking)
     return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
   if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))

@@ -21,10 +21,18 @@ typedef struct conic_gaussian_ray {
   float g[3][3], c[3][3], e[3]; /* at the reference pixel's centre, and by how much they grow in x and in y */
 } conic_gaussian_ray;
 
+/* What a filter adds to a ray. With X = x − both·Δy, Y = y + both·Δx, t = z²/|g|², of an orthographic camera 1/|g|²,
+ * |S| = 1 + t·(|X|² + |Y|²) + (t·area)²·|g|², and |S|·q gains t·((turn₀ − turn₂·Δy)² + (turn₁ + turn₂·Δx)²). */
+typedef struct conic_gaussian_filter {
+  float x[3], y[3], both[3], turn[3], area;
+} conic_gaussian_filter;
+
 typedef struct conic_gaussian_view {
   const conic_gaussian_rules *rules;
   const conic_camera *camera;
   double eye[3], center_px[2];
+  double prefilter; /* px²; of CONIC_SHAPE_RAY */
+  int is_parallel;  /* orthographic */
 } conic_gaussian_view;
 
 typedef enum conic_gaussian_fate {
@@ -33,9 +41,10 @@ typedef enum conic_gaussian_fate {
   CONIC_GAUSSIAN_SKIPPED = 2 /* a number is not finite, or a scale is negative */
 } conic_gaussian_fate;
 
-/* Sets up Gaussian i. `ray` is filled for the shapes that have one; `normal` may be null. */
+/* Sets up Gaussian i. `ray` is filled for the shapes that have one, `filter` where the view has one; `normal` may be
+ * null. */
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *footprint, conic_gaussian_ray *ray,
-                                          float normal[3]);
+                                          conic_gaussian_filter *filter, float normal[3]);
 
 #endif

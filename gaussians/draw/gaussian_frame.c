@@ -9,6 +9,7 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
+#include "gaussians/draw/filtered_rays.h"
 #include "gaussians/draw/gaussian_bins.h"
 
 enum { SET_UP_RUN = 2048 };
@@ -19,12 +20,13 @@ typedef struct frame {
   const conic_gaussian_options *options;
   conic_gaussian_planes *planes;
   conic_gaussian_view view;
-  conic_gaussian_kernels kernels;
+  void (*composite)(const conic_gaussian_list *list, conic_gaussian_tile *tile);
   conic_gaussian_statistics statistics;
   int has_rays;
   /* As they were set up, a run of the scene after the other, and in their order. */
   conic_gaussian_footprint *footprints, *ordered;
   conic_gaussian_ray *rays, *ordered_rays;
+  conic_gaussian_filter *filters, *ordered_filters;
   float (*normals)[3], (*ordered_normals)[3];
   size_t *n_of_run, *n_skipped_of_run, n_runs, n;
   conic_radix_item *order;
@@ -38,11 +40,12 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
   size_t begin = i_run * SET_UP_RUN, to = begin;
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
   conic_gaussian_ray unused;
+  conic_gaussian_filter unused_filter;
   (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     conic_gaussian_fate fate =
         conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], f->has_rays ? &f->rays[to] : &unused,
-                              f->normals ? f->normals[to] : NULL);
+                              f->filters ? &f->filters[to] : &unused_filter, f->normals ? f->normals[to] : NULL);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
@@ -59,6 +62,8 @@ static conic_status set_up_all(frame *f) {
       (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
   if (f->has_rays)
     is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
+  if (f->view.prefilter > 0.0)
+    is_done &= (f->filters = conic_memory_allocate(f->context, count, sizeof *f->filters)) != NULL;
   if (f->planes->normal)
     is_done &= (f->normals = conic_memory_allocate(f->context, count, sizeof *f->normals)) != NULL;
   if (!is_done)
@@ -88,6 +93,8 @@ static void move_run(void *data, size_t i_run, int i_thread) {
     f->ordered[i] = f->footprints[from];
     if (f->has_rays)
       f->ordered_rays[i] = f->rays[from];
+    if (f->filters)
+      f->ordered_filters[i] = f->filters[from];
     if (f->normals)
       memcpy(f->ordered_normals[i], f->normals[from], sizeof *f->normals);
   }
@@ -98,9 +105,12 @@ static conic_status order_footprints(frame *f) {
   f->ordered = conic_memory_allocate(f->context, f->n, sizeof *f->ordered);
   if (f->has_rays)
     f->ordered_rays = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_rays);
+  if (f->filters)
+    f->ordered_filters = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_filters);
   if (f->normals)
     f->ordered_normals = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_normals);
-  if (!f->order || !f->ordered || (f->has_rays && !f->ordered_rays) || (f->normals && !f->ordered_normals))
+  if (!f->order || !f->ordered || (f->has_rays && !f->ordered_rays) || (f->filters && !f->ordered_filters) ||
+      (f->normals && !f->ordered_normals))
     return CONIC_ERROR_MEMORY;
   size_t n = 0;
   for (size_t run = 0; run < f->n_runs; run++)
@@ -163,13 +173,15 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->ordered,
                               .rays = f->ordered_rays,
+                              .filters = f->ordered_filters,
+                              .is_parallel = f->view.is_parallel,
                               .normals = (const float(*)[3])f->ordered_normals,
                               .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
                                            to->id || to->last,
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .hits = f->hits ? f->hits[i_thread] : NULL};
-  f->kernels.composite[f->view.rules->shape](&list, &tile);
+  f->composite(&list, &tile);
   end_compositing(f, &tile);
 }
 
@@ -192,8 +204,9 @@ static conic_status make_room_for_hits(frame *f) {
 }
 
 static void release_frame(frame *f) {
-  void *const all[] = {f->footprints, f->ordered,          f->rays, f->ordered_rays, f->normals, f->ordered_normals,
-                       f->n_of_run,   f->n_skipped_of_run, f->order};
+  void *const all[] = {f->footprints, f->ordered,         f->rays,           f->ordered_rays,
+                       f->normals,    f->ordered_normals, f->n_of_run,       f->n_skipped_of_run,
+                       f->order,      f->filters,         f->ordered_filters};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(f->context, all[i]);
   for (int i = 0; f->hits && i < conic_context_threads(f->context); i++)
@@ -224,6 +237,14 @@ static conic_status draw_scene(frame *f) {
   return status;
 }
 
+static void choose_kernel(frame *f, conic_isa isa) {
+  conic_gaussian_kernels kernels;
+  conic_filtered_kernels filtered;
+  conic_gaussian_kernels_init(&kernels, isa);
+  conic_filtered_kernels_init(&filtered, isa);
+  f->composite = f->view.prefilter > 0.0 ? filtered.composite : kernels.composite[f->view.rules->shape];
+}
+
 static void look_through(const conic_camera *camera, conic_gaussian_view *view) {
   view->camera = camera;
   for (int axis = 0; axis < 3; axis++) {
@@ -246,7 +267,12 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
                       "camera's size");
-  conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
+  if (!(own.prefilter >= 0.0 && own.prefilter <= 1e4) || (own.prefilter > 0.0 && own.profile != CONIC_PROFILE_EXACT))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is out of range (0 to 10000), or of another profile than exact, which "
+                      "has its own");
+  int takes_all = own.profile == CONIC_PROFILE_EXACT;
+  conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
@@ -255,7 +281,9 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   f.statistics.gaussians_in = gaussians->count;
   f.statistics.isa = isa;
   f.statistics.tile = CONIC_GAUSSIAN_TILE;
-  conic_gaussian_kernels_init(&f.kernels, isa);
+  f.view.prefilter = own.prefilter;
+  f.view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  choose_kernel(&f, isa);
   look_through(camera, &f.view);
   status = draw_scene(&f);
   release_frame(&f);

@@ -8,7 +8,7 @@
 #include "gaussians/draw/harmonic_color.h"
 
 /* How much larger a box is made than the formulas say, in pixels: more than their roundings. */
-static const double slack_px = 0.0625;
+static const double slack_px = 0.0625, reach_slack = 1e-3;
 
 /* The Gaussian in camera space. */
 typedef struct placed {
@@ -101,7 +101,7 @@ static double reach_of(const conic_gaussian_rules *rules, double opacity) {
     return rules->greatest_q;
   if (!(opacity >= (double)rules->alpha_least))
     return 0.0;
-  return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + 1e-3;
+  return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + reach_slack;
 }
 
 /* Whole tiles of 16 pixels, as integers that are cut off towards 0. */
@@ -166,29 +166,70 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, place
   return reach > 0.0 && limit_box(view, least, most, f) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
-/* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
- * third scale where it is flat, so that nothing is divided by zero. */
-static int find_ray(const conic_gaussian_view *view, const placed *p, const conic_gaussian_footprint *f,
-                    conic_gaussian_ray *ray) {
+/* The rays of pixels: origin and direction at the reference pixel's centre, and by how much they grow in x and in y. */
+static void find_steps(const conic_gaussian_view *view, const conic_gaussian_footprint *f, double origin[3][3],
+                       double direction[3][3]) {
   const conic_camera *camera = view->camera;
   const double steps[3][3] = {{((double)f->x + 0.5 - view->center_px[0]) / camera->fx,
                                ((double)f->y + 0.5 - view->center_px[1]) / camera->fy, 1.0},
                               {1.0 / camera->fx, 0.0, 0.0},
                               {0.0, 1.0 / camera->fy, 0.0}};
-  double g[3][3], c[3][3], e[3], m[3], one_over[3], unit_of = 0.0;
+  memset(origin, 0, sizeof steps);
+  memcpy(direction, steps, sizeof steps);
+  if (view->is_parallel) {
+    memcpy(origin, steps, sizeof steps);
+    memset(direction, 0, sizeof steps);
+    direction[0][2] = 1.0;
+    origin[0][2] = 0.0;
+  }
+}
+
+/* docs/reference/gaussians.md, Filter; g and m before a flat Gaussian's are cut down, all over `unit_of`. */
+static void find_filter(const conic_gaussian_view *view, const double g[3][3], const double m[3][3], int is_flat,
+                        double unit_of, conic_gaussian_filter *filter) {
+  const double(*moves)[3] = view->is_parallel ? m : g, factor = sqrt(view->prefilter) / unit_of;
+  double x[3], y[3], both[3], area[3];
+  conic_cross(g[0], moves[1], x);
+  conic_cross(g[0], moves[2], y);
+  conic_cross(moves[1], moves[2], area);
+  for (int k = 0; k < 3; k++) {
+    int is_left = !is_flat || k < 2;
+    both[k] = view->is_parallel ? 0.0 : area[k];
+    filter->x[k] = is_left ? (float)(factor * x[k]) : 0.0f;
+    filter->y[k] = is_left ? (float)(factor * y[k]) : 0.0f;
+    filter->both[k] = is_left ? (float)(factor * both[k]) : 0.0f;
+  }
+  filter->turn[0] = (float)(factor * conic_dot(m[0], x));
+  filter->turn[1] = (float)(factor * conic_dot(m[0], y));
+  filter->turn[2] = (float)(factor * (view->is_parallel ? -conic_dot(m[2], x) : conic_dot(m[0], both)));
+  filter->area = (float)(view->prefilter * (conic_dot(g[0], area) / unit_of));
+}
+
+/* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
+ * third scale where it is flat, so that nothing is divided by zero. */
+static int find_ray(const conic_gaussian_view *view, const placed *p, const conic_gaussian_footprint *f,
+                    conic_gaussian_ray *ray, conic_gaussian_filter *filter) {
+  double g[3][3], whole[3][3], c[3][3], e[3], m[3][3], one_over[3], unit_of = 0.0, origin[3][3], direction[3][3];
+  const double *const mean = p->mean;
+  find_steps(view, f, origin, direction);
+  const double from_origin[3] = {mean[0] - origin[0][0], mean[1] - origin[0][1], mean[2] - origin[0][2]};
   for (int k = 0; k < 3; k++) {
     one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
-    m[k] = conic_dot(p->unit[k], p->mean) * one_over[k];
-    for (int step = 0; step < 3; step++)
-      g[step][k] = conic_dot(p->unit[k], steps[step]) * one_over[k];
+    for (int step = 0; step < 3; step++) {
+      g[step][k] = conic_dot(p->unit[k], direction[step]) * one_over[k];
+      m[step][k] = -(conic_dot(p->unit[k], origin[step]) * one_over[k]);
+    }
+    m[0][k] = conic_dot(p->unit[k], from_origin) * one_over[k];
   }
+  memcpy(whole, g, sizeof g);
   for (int step = 0; step < 3; step++) {
-    conic_cross(g[step], m, c[step]);
+    double *own_g = g[view->is_parallel ? 0 : step], *own_m = m[view->is_parallel ? step : 0];
+    conic_cross(whole[view->is_parallel ? 0 : step], own_m, c[step]);
     if (p->is_flat) {
       c[step][2] = 0.0;
-      g[step][0] = g[step][1] = 0.0;
+      own_g[0] = own_g[1] = 0.0;
     }
-    e[step] = p->is_flat ? g[step][2] * m[2] : conic_dot(g[step], m);
+    e[step] = p->is_flat ? own_g[2] * own_m[2] : conic_dot(own_g, own_m);
   }
   unit_of = conic_length(g[0]);
   for (int step = 1; step < 3; step++) /* of a plane seen from its edge, g may be zero here */
@@ -202,6 +243,8 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
     }
     ray->e[step] = (float)(e[step] / unit_of / unit_of);
   }
+  if (view->prefilter > 0.0)
+    find_filter(view, (const double(*)[3])whole, (const double(*)[3])m, p->is_flat, unit_of, filter);
   return is_number((double)(ray->c[0][0] + ray->c[0][1] + ray->c[0][2] + ray->e[0]));
 }
 
@@ -210,6 +253,7 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
 static int project_ellipsoid(const conic_gaussian_view *view, const placed *p, double reach, double least[2],
                              double most[2]) {
   const double focal[2] = {view->camera->fx, view->camera->fy};
+  const double growth_px = view->prefilter > 0.0 ? sqrt(reach * view->prefilter) : slack_px;
   double sigma[3][3] = {{0}};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -218,6 +262,13 @@ static int project_ellipsoid(const conic_gaussian_view *view, const placed *p, d
   double depth = reach * sigma[2][2] * (1.0 + 1e-9) - p->mean[2] * p->mean[2];
   if (depth < 0.0 && p->mean[2] < 0.0)
     return 0;
+  for (int axis = 0; axis < 2 && view->is_parallel; axis++) {
+    double half = sqrt(reach * sigma[axis][axis]);
+    least[axis] = focal[axis] * (p->mean[axis] - half) + view->center_px[axis] - growth_px;
+    most[axis] = focal[axis] * (p->mean[axis] + half) + view->center_px[axis] + growth_px;
+  }
+  if (view->is_parallel)
+    return 1;
   for (int axis = 0; axis < 2; axis++) {
     least[axis] = -1e9;
     most[axis] = 1e9;
@@ -226,15 +277,18 @@ static int project_ellipsoid(const conic_gaussian_view *view, const placed *p, d
     if (!(depth < -1e-9 * p->mean[2] * p->mean[2]) || !(root >= 0.0))
       continue;
     double middle = b / depth, half = sqrt(root) / -depth * (1.0 + 1e-9);
-    least[axis] = limited(focal[axis] * (middle - half) + view->center_px[axis] - slack_px, -1e9, 1e9);
-    most[axis] = limited(focal[axis] * (middle + half) + view->center_px[axis] + slack_px, -1e9, 1e9);
+    least[axis] = limited(focal[axis] * (middle - half) + view->center_px[axis] - growth_px, -1e9, 1e9);
+    most[axis] = limited(focal[axis] * (middle + half) + view->center_px[axis] + growth_px, -1e9, 1e9);
   }
   return 1;
 }
 
 static void take_mean(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f) {
   double x = view->center_px[0], y = view->center_px[1];
-  if (p->mean[2] > 0.0) {
+  if (view->is_parallel) {
+    x += view->camera->fx * p->mean[0];
+    y += view->camera->fy * p->mean[1];
+  } else if (p->mean[2] > 0.0) {
     x += view->camera->fx * (p->mean[0] / p->mean[2]);
     y += view->camera->fy * (p->mean[1] / p->mean[2]);
   }
@@ -242,12 +296,13 @@ static void take_mean(const conic_gaussian_view *view, const placed *p, conic_ga
 }
 
 static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f,
-                                      conic_gaussian_ray *ray) {
+                                      conic_gaussian_ray *ray, conic_gaussian_filter *filter) {
   double least[2], most[2], reach = reach_of(view->rules, p->opacity);
+  reach -= view->prefilter > 0.0 ? reach_slack : 0.0; /* a filter's box is a rule */
   if (!(reach > 0.0) || !project_ellipsoid(view, p, reach, least, most) || !limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_mean(view, p, f);
-  return find_ray(view, p, f, ray) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  return find_ray(view, p, f, ray, filter) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
 /* The centre of the box of the outline at the profile's cutoff, and half the box's size. */
@@ -300,21 +355,21 @@ static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, const pl
   if (!limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_reference(view, place[0], place[1], f);
-  return find_ray(view, p, f, ray) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  return find_ray(view, p, f, ray, NULL) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
 static void choose_normal(const conic_gaussian_view *view, const placed *p, float normal[3]) {
   int axis = 2;
   for (int k = 1; k >= 0 && !p->is_flat; k--)
     axis = p->scale[k] < p->scale[axis] ? k : axis;
-  double side = conic_dot(p->unit[axis], p->mean) > 0.0 ? -1.0 : 1.0;
-  (void)view;
+  double side = (view->is_parallel ? p->unit[axis][2] : conic_dot(p->unit[axis], p->mean)) > 0.0 ? -1.0 : 1.0;
   for (int row = 0; row < 3; row++)
     normal[row] = (float)(side * p->world[row][axis]);
 }
 
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
-                                          conic_gaussian_footprint *f, conic_gaussian_ray *ray, float normal[3]) {
+                                          conic_gaussian_footprint *f, conic_gaussian_ray *ray,
+                                          conic_gaussian_filter *filter, float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
   placed p;
   double from_eye[3];
@@ -331,7 +386,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (p.is_flat)
     p.scale[2] = 0.0;
   conic_gaussian_fate fate = rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
-                             : rules->shape == CONIC_SHAPE_RAY   ? set_up_ray(view, &p, f, ray)
+                             : rules->shape == CONIC_SHAPE_RAY   ? set_up_ray(view, &p, f, ray, filter)
                                                                  : set_up_disc(view, &p, f, ray);
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
@@ -341,5 +396,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   f->index = (uint32_t)i;
   if (normal)
     choose_normal(view, &p, normal);
+  if (view->is_parallel) /* from an eye that is infinitely far */
+    memcpy(from_eye, view->camera->cam_from_world[2], sizeof from_eye);
   return conic_harmonic_color(gaussians, i, from_eye, f->color) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_SKIPPED;
 }

@@ -30,9 +30,11 @@ typedef struct conic_gaussian_hit {
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
   const conic_gaussian_footprint *footprints;
-  const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
-  const float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                  /* else T and rgb alone */
+  const conic_gaussian_ray *rays;       /* by footprint; of shapes that have them */
+  const conic_gaussian_filter *filters; /* by footprint; of filtered rays */
+  int is_parallel;                      /* the rays are */
+  const float (*normals)[3];            /* by footprint; null: not wanted */
+  int wants_all;                        /* else T and rgb alone */
   const uint32_t *entries;
   size_t n;
   conic_gaussian_hit *hits; /* room for n · CONIC_GAUSSIAN_TILE, of CONIC_SHAPE_RAY */

@@ -39,9 +39,10 @@ typedef struct conic_gaussian_options {
   float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
   conic_isa isa;       /* as the context has it */
   uint32_t reserved;
+  double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
 
-/* Exact, black. */
+/* Exact, black, no filter. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
 

@@ -79,7 +79,8 @@ static void pick_normal(const oracle_gaussian_view *view, const double world[3][
   if (view->rules->form != ORACLE_FORM_DISC && !g->is_flat)
     for (int k = 1; k >= 0; k--)
       axis = g->scale[k] < g->scale[axis] ? k : axis;
-  double side = oracle_dot(g->unit[axis], g->mean) > 0.0 ? -1.0 : 1.0;
+  int is_parallel = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
+  double side = (is_parallel ? g->unit[axis][2] : oracle_dot(g->unit[axis], g->mean)) > 0.0 ? -1.0 : 1.0;
   for (int row = 0; row < 3; row++)
     g->normal[row] = side * world[row][axis];
 }
@@ -197,7 +198,8 @@ static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaus
   for (size_t k = 0; k < n; k++)
     sh[k] = set->sh ? (double)set->sh[i * n + k] : number_of_half(set->sh_half[i * n + k]);
   for (int axis = 0; axis < 3; axis++)
-    direction[axis] = mean[axis] - view->eye[axis];
+    direction[axis] = view->camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ? view->camera->cam_from_world[2][axis]
+                                                                      : mean[axis] - view->eye[axis];
   double length = oracle_length(direction);
   for (int axis = 0; axis < 3; axis++)
     direction[axis] = length > 0.0 ? direction[axis] / length : 0.0;
@@ -234,6 +236,8 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     g->is_drawn &= place_ellipse(view, g);
   if (rules->form == ORACLE_FORM_DISC)
     g->is_drawn &= place_disc(view, g);
+  if (view->prefilter > 0.0)
+    g->is_drawn &= conic_oracle_gaussian_box(view, g);
 }
 
 /* In the Gaussian's own frame, where it is a unit ball, the ray goes through z·d − m. Of a flat one, where the ray
@@ -241,11 +245,15 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width) {
   const conic_camera *camera = view->camera;
-  const double ray[3] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy, 1.0};
-  double d[3], m[3], cross[3];
+  double ray[3] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy, 1.0};
+  double to_mean[3] = {g->mean[0], g->mean[1], g->mean[2]}, d[3], m[3], cross[3];
+  for (int axis = 0; axis < 2 && camera->kind == CONIC_CAMERA_ORTHOGRAPHIC; axis++) {
+    to_mean[axis] -= ray[axis];
+    ray[axis] = 0.0;
+  }
   for (int axis = 0; axis < 3; axis++) {
     d[axis] = oracle_dot(g->unit[axis], ray);
-    m[axis] = oracle_dot(g->unit[axis], g->mean);
+    m[axis] = oracle_dot(g->unit[axis], to_mean);
   }
   if (g->is_flat || g->scale[2] == 0.0) {
     *z = m[2] / d[2];
@@ -288,11 +296,14 @@ static double disc_form(const oracle_gaussian_view *view, const oracle_gaussian 
 double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                    double *z) {
   const oracle_gaussian_rules *rules = view->rules;
-  double q, width;
+  double q, width, share = 1.0;
   if (x < g->box_px[0][0] || x >= g->box_px[1][0] || y < g->box_px[0][1] || y >= g->box_px[1][1])
     return 0.0;
   *z = g->mean[2];
-  if (rules->form == ORACLE_FORM_RAY) {
+  if (view->prefilter > 0.0) {
+    if (!conic_oracle_gaussian_filtered(view, g, x, y, &q, z, &share))
+      return 0.0;
+  } else if (rules->form == ORACLE_FORM_RAY) {
     if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
       return 0.0;
   } else if (rules->form == ORACLE_FORM_DISC) {
@@ -303,6 +314,6 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
   }
   if (!(q >= 0.0) || (rules->cutoff > 0.0 && q > rules->cutoff))
     return 0.0;
-  double alpha = oracle_min(rules->alpha_most, g->opacity * conic_oracle_exp(-0.5 * q));
+  double alpha = oracle_min(rules->alpha_most, g->opacity * share * conic_oracle_exp(-0.5 * q));
   return alpha >= rules->alpha_least ? alpha : 0.0;
 }

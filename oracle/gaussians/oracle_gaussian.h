@@ -33,6 +33,7 @@ typedef struct oracle_gaussian_view {
   const oracle_gaussian_rules *rules;
   double eye[3];       /* from which colours are seen */
   double center_px[2]; /* the principal point, as the profile has it */
+  double prefilter;    /* px²; of ORACLE_FORM_RAY */
 } oracle_gaussian_view;
 
 typedef struct oracle_gaussian {
@@ -60,6 +61,12 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
 /* Its response along the pixel's ray: the greatest, as q, where (z), and the width there in z. 0 where it has none. */
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width);
+
+/* The same under the filter: the filtered q, and by which share of itself the opacity remains. */
+int conic_oracle_gaussian_filtered(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
+                                   double *q, double *z, double *share);
+/* Under the filter, the pixels that are looked at; 0: none. */
+int conic_oracle_gaussian_box(const oracle_gaussian_view *view, oracle_gaussian *g);
 
 /* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
 void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);

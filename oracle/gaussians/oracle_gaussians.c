@@ -121,7 +121,8 @@ static double optical_depth(const job *j, const oracle_gaussian *g, double q, do
   if (j->question == CONIC_GAUSSIAN_OVERLAP)
     return -conic_oracle_log(1.0 - oracle_min(g->opacity * response, 0.99));
   double slope[2] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy};
-  double length = sqrt(slope[0] * slope[0] + slope[1] * slope[1] + 1.0);
+  double length =
+      camera->kind == CONIC_CAMERA_ORTHOGRAPHIC ? 1.0 : sqrt(slope[0] * slope[0] + slope[1] * slope[1] + 1.0);
   double radius = conic_oracle_exp(conic_oracle_log(g->scale[0] * g->scale[1] * g->scale[2]) / 3.0);
   return -conic_oracle_log(1.0 - oracle_min(g->opacity, 1.0 - 1e-12)) * width * length / radius * response;
 }
@@ -243,11 +244,15 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   if ((options && !conic_options_take(&own, options)) || (unsigned)question > CONIC_GAUSSIAN_VOLUME ||
       !conic_oracle_gaussian_rules(own.profile))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: no such options, profile or question");
-  if (conic_view_pinhole_check(context, "oracle", camera) != CONIC_OK)
+  if (!(own.prefilter >= 0.0 && own.prefilter <= 1e4) || (own.prefilter > 0.0 && own.profile != CONIC_PROFILE_EXACT))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "oracle: a prefilter of 0 to 10000 is of the profile exact");
+  int takes_all = own.profile == CONIC_PROFILE_EXACT || question != CONIC_GAUSSIAN_PROFILE;
+  if ((takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "oracle", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
   j.view.camera = camera;
   j.view.rules = conic_oracle_gaussian_rules(question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT);
+  j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);
   if (status != CONIC_OK)
