@@ -64,8 +64,6 @@ conic_status conic_view_pinhole_check(conic_context *context, const char *who, c
 
 conic_status conic_view_ray_check(conic_context *context, const char *who, const conic_camera *c) {
   conic_status status = conic_view_camera_check(context, who, c);
-  if (status == CONIC_OK && c->kind != CONIC_CAMERA_ORTHOGRAPHIC)
-    return conic_view_pinhole_check(context, who, c);
   if (status == CONIC_OK && c->lens &&
       (c->kind == CONIC_CAMERA_ORTHOGRAPHIC || c->kind == CONIC_CAMERA_EQUIRECTANGULAR))
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "%s: an orthographic or equirectangular camera has no lens", who);

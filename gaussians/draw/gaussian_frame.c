@@ -9,8 +9,9 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
-#include "gaussians/draw/filtered_rays.h"
 #include "gaussians/draw/gaussian_bins.h"
+#include "gaussians/draw/ray_kernels.h"
+#include "gaussians/draw/view_rays.h"
 
 enum { SET_UP_RUN = 2048 };
 
@@ -27,6 +28,8 @@ typedef struct frame {
   conic_gaussian_footprint *footprints, *ordered;
   conic_gaussian_ray *rays, *ordered_rays;
   conic_gaussian_filter *filters, *ordered_filters;
+  conic_gaussian_sight *sights, *ordered_sights;
+  conic_view_rays view_rays;
   float (*normals)[3], (*ordered_normals)[3];
   size_t *n_of_run, *n_skipped_of_run, n_runs, n;
   conic_radix_item *order;
@@ -41,11 +44,13 @@ static void set_up_run(void *data, size_t i_run, int i_thread) {
   size_t end = begin + SET_UP_RUN < f->set->count ? begin + SET_UP_RUN : f->set->count;
   conic_gaussian_ray unused;
   conic_gaussian_filter unused_filter;
+  conic_gaussian_sight unused_sight;
   (void)i_thread;
   for (size_t i = begin; i < end; i++) {
     conic_gaussian_fate fate =
         conic_gaussian_set_up(&f->view, f->set, i, &f->footprints[to], f->has_rays ? &f->rays[to] : &unused,
-                              f->filters ? &f->filters[to] : &unused_filter, f->normals ? f->normals[to] : NULL);
+                              f->filters ? &f->filters[to] : &unused_filter, f->sights ? &f->sights[to] : &unused_sight,
+                              f->normals ? f->normals[to] : NULL);
     f->n_skipped_of_run[i_run] += fate == CONIC_GAUSSIAN_SKIPPED;
     to += fate == CONIC_GAUSSIAN_DRAWN;
   }
@@ -62,6 +67,8 @@ static conic_status set_up_all(frame *f) {
       (f->n_skipped_of_run = conic_memory_allocate_zeroed(f->context, f->n_runs, sizeof *f->n_skipped_of_run)) != NULL;
   if (f->has_rays)
     is_done &= (f->rays = conic_memory_allocate(f->context, count, sizeof *f->rays)) != NULL;
+  if (f->view.rays)
+    is_done &= (f->sights = conic_memory_allocate(f->context, count, sizeof *f->sights)) != NULL;
   if (f->view.prefilter > 0.0)
     is_done &= (f->filters = conic_memory_allocate(f->context, count, sizeof *f->filters)) != NULL;
   if (f->planes->normal)
@@ -95,6 +102,8 @@ static void move_run(void *data, size_t i_run, int i_thread) {
       f->ordered_rays[i] = f->rays[from];
     if (f->filters)
       f->ordered_filters[i] = f->filters[from];
+    if (f->sights)
+      f->ordered_sights[i] = f->sights[from];
     if (f->normals)
       memcpy(f->ordered_normals[i], f->normals[from], sizeof *f->normals);
   }
@@ -105,12 +114,14 @@ static conic_status order_footprints(frame *f) {
   f->ordered = conic_memory_allocate(f->context, f->n, sizeof *f->ordered);
   if (f->has_rays)
     f->ordered_rays = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_rays);
+  if (f->sights)
+    f->ordered_sights = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_sights);
   if (f->filters)
     f->ordered_filters = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_filters);
   if (f->normals)
     f->ordered_normals = conic_memory_allocate(f->context, f->n, sizeof *f->ordered_normals);
   if (!f->order || !f->ordered || (f->has_rays && !f->ordered_rays) || (f->filters && !f->ordered_filters) ||
-      (f->normals && !f->ordered_normals))
+      (f->sights && !f->ordered_sights) || (f->normals && !f->ordered_normals))
     return CONIC_ERROR_MEMORY;
   size_t n = 0;
   for (size_t run = 0; run < f->n_runs; run++)
@@ -175,6 +186,8 @@ static void composite_tile(void *data, size_t i_tile, int i_thread) {
                               .rays = f->ordered_rays,
                               .filters = f->ordered_filters,
                               .is_parallel = f->view.is_parallel,
+                              .sights = f->ordered_sights,
+                              .tile_rays = f->view.rays ? &f->view.rays->tiles[i_tile] : NULL,
                               .normals = (const float(*)[3])f->ordered_normals,
                               .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
                                            to->id || to->last,
@@ -204,20 +217,23 @@ static conic_status make_room_for_hits(frame *f) {
 }
 
 static void release_frame(frame *f) {
-  void *const all[] = {f->footprints, f->ordered,         f->rays,           f->ordered_rays,
-                       f->normals,    f->ordered_normals, f->n_of_run,       f->n_skipped_of_run,
-                       f->order,      f->filters,         f->ordered_filters};
+  void *const all[] = {
+      f->footprints,       f->ordered, f->rays,    f->ordered_rays,    f->normals, f->ordered_normals, f->n_of_run,
+      f->n_skipped_of_run, f->order,   f->filters, f->ordered_filters, f->sights,  f->ordered_sights};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     conic_memory_release(f->context, all[i]);
   for (int i = 0; f->hits && i < conic_context_threads(f->context); i++)
     conic_memory_release(f->context, f->hits[i]);
   conic_memory_release(f->context, f->hits);
   conic_gaussian_bins_release(f->context, &f->bins);
+  conic_view_rays_release(f->context, &f->view_rays);
 }
 
 static conic_status draw_scene(frame *f) {
   double begin = conic_seconds_now(), now;
-  conic_status status = set_up_all(f);
+  conic_status status = f->view.rays ? conic_view_rays_make(f->context, f->view.camera, &f->view_rays) : CONIC_OK;
+  if (status == CONIC_OK)
+    status = set_up_all(f);
   f->statistics.seconds_setup = (now = conic_seconds_now()) - begin;
   if (status == CONIC_OK)
     status = order_footprints(f);
@@ -237,12 +253,19 @@ static conic_status draw_scene(frame *f) {
   return status;
 }
 
+/* Whether rays are affine on the screen. */
+static int is_affine(const conic_camera *camera) {
+  return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
+}
+
 static void choose_kernel(frame *f, conic_isa isa) {
   conic_gaussian_kernels kernels;
-  conic_filtered_kernels filtered;
+  conic_ray_kernels rays;
   conic_gaussian_kernels_init(&kernels, isa);
-  conic_filtered_kernels_init(&filtered, isa);
-  f->composite = f->view.prefilter > 0.0 ? filtered.composite : kernels.composite[f->view.rules->shape];
+  conic_ray_kernels_init(&rays, isa);
+  f->composite = f->view.rays              ? rays.composite_seen
+                 : f->view.prefilter > 0.0 ? rays.composite_filtered
+                                           : kernels.composite[f->view.rules->shape];
 }
 
 static void look_through(const conic_camera *camera, conic_gaussian_view *view) {
@@ -271,20 +294,24 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: the prefilter is out of range (0 to 10000), or of another profile than exact, which "
                       "has its own");
+  if (own.prefilter > 0.0 && !is_affine(camera))
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: the prefilter is of pinholes and of orthographic cameras");
   int takes_all = own.profile == CONIC_PROFILE_EXACT;
   conic_status status = (takes_all ? conic_view_ray_check : conic_view_pinhole_check)(context, "gaussians", camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};
   f.view.rules = conic_gaussian_rules_of(own.profile);
-  f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
   f.statistics.gaussians_in = gaussians->count;
   f.statistics.isa = isa;
   f.statistics.tile = CONIC_GAUSSIAN_TILE;
   f.view.prefilter = own.prefilter;
   f.view.is_parallel = camera->kind == CONIC_CAMERA_ORTHOGRAPHIC;
-  choose_kernel(&f, isa);
   look_through(camera, &f.view);
+  f.view.rays = is_affine(camera) ? NULL : &f.view_rays;
+  f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE && !f.view.rays;
+  choose_kernel(&f, isa);
   status = draw_scene(&f);
   release_frame(&f);
   if (statistics)

@@ -6,6 +6,7 @@
 #include "core/base/vectors.h"
 #include "gaussians/draw/gaussian_footprint.h"
 #include "gaussians/draw/harmonic_color.h"
+#include "gaussians/draw/view_rays.h"
 
 /* How much larger a box is made than the formulas say, in pixels: more than their roundings. */
 static const double slack_px = 0.0625, reach_slack = 1e-3;
@@ -305,6 +306,51 @@ static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, const pla
   return find_ray(view, p, f, ray, filter) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
+/* g and c about a direction, and their derivatives by directions; e of these. */
+static int find_sight(const conic_gaussian_view *view, const placed *p, conic_gaussian_sight *sight) {
+  double directions[4][3] = {{0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  double g[4][3], c[4][3], e[4], m[3], one_over[3], unit_of = 0.0;
+  conic_view_rays_towards(view->camera, p->mean, directions[0]);
+  for (int k = 0; k < 3; k++) {
+    one_over[k] = p->is_flat && k == 2 ? 1.0 : 1.0 / p->scale[k];
+    m[k] = conic_dot(p->unit[k], p->mean) * one_over[k];
+    sight->high[k] = (float)directions[0][k];
+    sight->low[k] = (float)(directions[0][k] - (double)sight->high[k]);
+  }
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++)
+      g[i][k] = conic_dot(p->unit[k], directions[i]) * one_over[k];
+    conic_cross(g[i], m, c[i]);
+    if (p->is_flat)
+      c[i][2] = g[i][0] = g[i][1] = 0.0;
+    e[i] = conic_dot(g[i], m);
+    unit_of = unit_of > conic_length(g[i]) ? unit_of : conic_length(g[i]);
+  }
+  if (!(unit_of > 0.0) || !is_number(unit_of))
+    return 0;
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++) {
+      sight->g[k][i] = (float)(g[i][k] / unit_of);
+      sight->c[k][i] = (float)(c[i][k] / unit_of);
+    }
+    sight->e[i] = (float)(e[i] / unit_of / unit_of);
+  }
+  return is_number((double)(sight->c[0][1] + sight->c[1][2] + sight->c[2][3] + sight->e[0]));
+}
+
+static conic_gaussian_fate set_up_sight(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f,
+                                        conic_gaussian_sight *sight) {
+  double reach = reach_of(view->rules, p->opacity), longest = 0.0;
+  for (int k = 0; k < 3; k++)
+    longest = p->scale[k] > longest ? p->scale[k] : longest;
+  if (!(reach > 0.0) || !conic_view_rays_box(view->rays, p->mean, sqrt(reach) * longest, f->box))
+    return CONIC_GAUSSIAN_CULLED;
+  f->x = f->box[0][0];
+  f->y = f->box[0][1];
+  f->dx = f->dy = 0.0f;
+  return find_sight(view, p, sight) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+}
+
 /* The centre of the box of the outline at the profile's cutoff, and half the box's size. */
 static int find_disc_box(const conic_gaussian_view *view, const placed *p, double place[2], double extent[2]) {
   const double focal[2] = {view->camera->fx, view->camera->fy};
@@ -369,7 +415,7 @@ static void choose_normal(const conic_gaussian_view *view, const placed *p, floa
 
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *f, conic_gaussian_ray *ray,
-                                          conic_gaussian_filter *filter, float normal[3]) {
+                                          conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
   placed p;
   double from_eye[3];
@@ -385,14 +431,16 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     return CONIC_GAUSSIAN_CULLED;
   if (p.is_flat)
     p.scale[2] = 0.0;
-  conic_gaussian_fate fate = rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
-                             : rules->shape == CONIC_SHAPE_RAY   ? set_up_ray(view, &p, f, ray, filter)
-                                                                 : set_up_disc(view, &p, f, ray);
+  conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
+                             : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
+                             : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
+                                                                   : set_up_disc(view, &p, f, ray);
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
+  int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE;
   f->opacity = (float)p.opacity;
   f->z = (float)z;
-  f->key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
+  f->key = (float)(rules->orders_by_distance || is_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)
     choose_normal(view, &p, normal);

@@ -26,6 +26,11 @@ typedef struct conic_gaussian_hit {
   uint32_t footprint;
 } conic_gaussian_hit;
 
+/* The directions of a tile's rays, row by row, each the sum of two floats; NaN where there is none. */
+typedef struct conic_tile_rays {
+  float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
+} conic_tile_rays;
+
 /* What is composited in a tile. Footprints are numbered in the order of all. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
@@ -33,8 +38,10 @@ typedef struct conic_gaussian_list {
   const conic_gaussian_ray *rays;       /* by footprint; of shapes that have them */
   const conic_gaussian_filter *filters; /* by footprint; of filtered rays */
   int is_parallel;                      /* the rays are */
-  const float (*normals)[3];            /* by footprint; null: not wanted */
-  int wants_all;                        /* else T and rgb alone */
+  const conic_gaussian_sight *sights;   /* by footprint; where the tile has rays of its own */
+  const conic_tile_rays *tile_rays;
+  const float (*normals)[3]; /* by footprint; null: not wanted */
+  int wants_all;             /* else T and rgb alone */
   const uint32_t *entries;
   size_t n;
   conic_gaussian_hit *hits; /* room for n · CONIC_GAUSSIAN_TILE, of CONIC_SHAPE_RAY */

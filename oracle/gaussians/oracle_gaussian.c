@@ -230,7 +230,10 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     return;
   pick_normal(view, world, g);
   color_towards_eye(view, set, mean, i, g);
-  g->key = (float)(rules->is_by_distance ? oracle_length(g->mean) : g->mean[2]);
+  g->key = (float)(rules->is_by_distance || view->camera->kind == CONIC_CAMERA_FISHEYE ||
+                           view->camera->kind == CONIC_CAMERA_EQUIRECTANGULAR
+                       ? oracle_length(g->mean)
+                       : g->mean[2]);
   g->is_drawn = oracle_is_finite(g->color[0] + g->color[1] + g->color[2]);
   if (rules->form == ORACLE_FORM_ELLIPSE)
     g->is_drawn &= place_ellipse(view, g);
@@ -245,12 +248,16 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width) {
   const conic_camera *camera = view->camera;
-  double ray[3] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy, 1.0};
-  double to_mean[3] = {g->mean[0], g->mean[1], g->mean[2]}, d[3], m[3], cross[3];
-  for (int axis = 0; axis < 2 && camera->kind == CONIC_CAMERA_ORTHOGRAPHIC; axis++) {
-    to_mean[axis] -= ray[axis];
-    ray[axis] = 0.0;
-  }
+  double origin[3], ray[3], d[3], m[3], cross[3];
+  if (view->rays) {
+    const oracle_ray *known = &view->rays[(size_t)y * (size_t)camera->width + (size_t)x];
+    memcpy(origin, known->origin, sizeof origin);
+    memcpy(ray, known->direction, sizeof ray);
+    if (!known->is_there)
+      return 0;
+  } else
+    conic_oracle_pixel_ray(camera, x, y, origin, ray);
+  const double to_mean[3] = {g->mean[0] - origin[0], g->mean[1] - origin[1], g->mean[2] - origin[2]};
   for (int axis = 0; axis < 3; axis++) {
     d[axis] = oracle_dot(g->unit[axis], ray);
     m[axis] = oracle_dot(g->unit[axis], to_mean);

@@ -1,5 +1,5 @@
 #if defined(__aarch64__)
-#include "gaussians/kernels/filtered_lanes.h"
+#include "gaussians/kernels/ray_lanes.h"
 #else
 typedef int conic_not_this_machine;
 #endif
