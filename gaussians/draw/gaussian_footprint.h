@@ -8,10 +8,10 @@
 typedef struct conic_gaussian_footprint {
   int32_t x, y;     /* the pixel that offsets are counted from */
   float dx, dy;     /* from the place on the screen to that pixel's centre */
-  float form[3];    /* of an ellipse: q = form₀·Δx² + 2·form₁·Δx·Δy + form₂·Δy² */
+  float form[3];    /* of an ellipse: q = form₀·Δx² + 2·form₁·Δx·Δy + form₂·Δy²; of other shapes 0 */
+  float half_reach; /* nothing is composited where half of that q is more */
   float opacity, z; /* z of the mean */
   float color[3];
-  float key;          /* by which Gaussians are ordered */
   uint32_t index;     /* in the scene */
   uint16_t box[2][2]; /* the pixels that it may cover, first and last in x and y */
 } conic_gaussian_footprint;
@@ -51,10 +51,10 @@ typedef enum conic_gaussian_fate {
   CONIC_GAUSSIAN_SKIPPED = 2 /* a number is not finite, or a scale is negative */
 } conic_gaussian_fate;
 
-/* Sets up Gaussian i. `ray` is filled for the shapes that have one, `filter` where the view has one, `sight` in place
- * of both where the view has rays; `normal` may be null. */
+/* Sets up Gaussian i. `key` is what Gaussians are ordered by. `ray` is filled for the shapes that have one, `filter`
+ * where the view has one, `sight` in place of both where the view has rays; `normal` may be null. */
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
-                                          conic_gaussian_footprint *footprint, conic_gaussian_ray *ray,
+                                          conic_gaussian_footprint *footprint, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]);
 
 #endif

@@ -105,6 +105,12 @@ static double reach_of(const conic_gaussian_rules *rules, double opacity) {
   return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + reach_slack;
 }
 
+/* Half of it, with room for roundings. Where the exponential ends at e⁻⁸⁰, it never falls below what is composited. */
+static float half_reach_of(const conic_gaussian_rules *rules, double opacity) {
+  double half = 0.5 * reach_of(rules, opacity);
+  return half < 79.0 ? (float)half + 1e-4f : INFINITY;
+}
+
 /* Whole tiles of 16 pixels, as integers that are cut off towards 0. */
 static double tile_border(double place, double size) {
   double n = place / 16.0, most = (double)(((int)size + 15) / 16);
@@ -414,7 +420,7 @@ static void choose_normal(const conic_gaussian_view *view, const placed *p, floa
 }
 
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
-                                          conic_gaussian_footprint *f, conic_gaussian_ray *ray,
+                                          conic_gaussian_footprint *f, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
   placed p;
@@ -431,6 +437,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     return CONIC_GAUSSIAN_CULLED;
   if (p.is_flat)
     p.scale[2] = 0.0;
+  f->form[0] = f->form[1] = f->form[2] = 0.0f;
   conic_gaussian_fate fate = view->rays                            ? set_up_sight(view, &p, f, sight)
                              : rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
                              : rules->shape == CONIC_SHAPE_RAY     ? set_up_ray(view, &p, f, ray, filter)
@@ -439,8 +446,9 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
     return fate;
   int is_by_distance = view->rays && view->camera->kind != CONIC_CAMERA_PERSPECTIVE;
   f->opacity = (float)p.opacity;
+  f->half_reach = half_reach_of(rules, p.opacity);
   f->z = (float)z;
-  f->key = (float)(rules->orders_by_distance || is_by_distance ? conic_length(p.mean) : z);
+  *key = (float)(rules->orders_by_distance || is_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
   if (normal)
     choose_normal(view, &p, normal);

@@ -2,6 +2,7 @@
 #include "gaussians/draw/gaussian_tile.h"
 
 #include "core/splats/kernel.h"
+#include "gaussians/draw/ray_meetings.h"
 
 CONIC_DEFINE_KERNELS(conic_gaussian_kernels)
 
@@ -29,12 +30,8 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
   const conic_gaussian_footprint *f = &list->footprints[i_footprint];
   const conic_gaussian_rules *rules = list->rules;
   float before = tile->T[at], after = before * (1.0f - alpha), w = alpha * before;
-  if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop)) {
-    if (before > 0.0f)
-      tile->rest[at] = before;
-    tile->T[at] = 0.0f;
+  if (after < rules->stop || (rules->is_beyond_stop && after == rules->stop))
     return 0;
-  }
   for (int c = 0; c < 3; c++)
     tile->rgb[c][at] += w * f->color[c];
   tile->T[at] = after;
@@ -43,24 +40,21 @@ static int composite_one(const conic_gaussian_list *list, uint32_t i_footprint, 
   return 1;
 }
 
-/* Insertion: the list is nearly in order. Numbers over 0 are ordered as their bits are. */
-static void sort_hits(conic_gaussian_hit *hits, size_t n) {
-  for (size_t i = 1; i < n; i++) {
-    conic_gaussian_hit hit = hits[i];
-    size_t at = i;
-    for (; at > 0 && (hits[at - 1].z > hit.z || (hits[at - 1].z == hit.z && hits[at - 1].footprint > hit.footprint));
-         at--)
-      hits[at] = hits[at - 1];
-    hits[at] = hit;
-  }
-}
+/* A pixel's response to a Gaussian that is ordered pixel by pixel. */
+typedef struct hit {
+  float z, alpha;
+  uint32_t footprint;
+} hit;
 
-void conic_gaussian_composite_hits(const conic_gaussian_list *list, conic_gaussian_hit *hits, size_t n,
-                                   conic_gaussian_tile *tile, size_t pixel) {
-  sort_hits(hits, n);
-  for (size_t i = 0; i < n; i++)
-    if (!composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, pixel))
-      return;
+/* Insertion: the list is nearly in order. What is equally far stays in the order of the list. */
+static void sort_hits(hit *hits, size_t n) {
+  for (size_t i = 1; i < n; i++) {
+    hit moved = hits[i];
+    size_t at = i;
+    for (; at > 0 && hits[at - 1].z > moved.z; at--)
+      hits[at] = hits[at - 1];
+    hits[at] = moved;
+  }
 }
 
 static float alpha_of(const conic_gaussian_rules *rules, const conic_gaussian_footprint *f, float half_q) {
@@ -76,7 +70,7 @@ static void composite_ellipses(const conic_gaussian_list *list, conic_gaussian_t
   const conic_gaussian_rules *rules = list->rules;
   const float greatest = (float)(0.5 * rules->greatest_q);
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + (int)at % CONIC_GAUSSIAN_TILE, y = tile->y + (int)at / CONIC_GAUSSIAN_TILE;
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       float dx = (float)(x - f->x) + f->dx, dy = (float)(y - f->y) + f->dy;
@@ -109,27 +103,54 @@ static meeting meet_ray(const conic_gaussian_footprint *f, const conic_gaussian_
   return (meeting){squares > 0.0f ? half_q : -1.0f, affine(r->e[0], r->e[1], r->e[2], dx, dy) * one_over};
 }
 
-static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+static conic_ray_meeting meet_by(const conic_gaussian_list *list, uint32_t footprint, int x, int y, size_t at,
+                                 conic_gaussian_shape shape) {
+  const conic_gaussian_footprint *f = &list->footprints[footprint];
+  if (shape == CONIC_SHAPE_FILTERED)
+    return conic_meet_filtered(list, footprint, x, y);
+  if (shape == CONIC_SHAPE_SIGHT)
+    return conic_meet_sight(list, footprint, at);
+  meeting m = meet_ray(f, &list->rays[footprint], x, y);
+  return (conic_ray_meeting){m.half_q, m.z, f->opacity};
+}
+
+static void composite_meetings(const conic_gaussian_list *list, conic_gaussian_tile *tile, conic_gaussian_shape shape) {
+  hit *hits = list->room;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + (int)at % CONIC_GAUSSIAN_TILE, y = tile->y + (int)at / CONIC_GAUSSIAN_TILE;
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     size_t n = 0;
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       if (!covers_pixel(f, x, y))
         continue;
-      meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
-      float alpha = alpha_of(list->rules, f, m.half_q);
+      conic_ray_meeting m = meet_by(list, list->entries[i], x, y, at, shape);
+      float alpha = m.opacity * conic_exp_negative(-m.half_q);
+      alpha = alpha < list->rules->alpha_most ? alpha : list->rules->alpha_most;
       if (m.z > 0.0f && m.half_q >= 0.0f && alpha >= list->rules->alpha_least)
-        list->hits[n++] = (conic_gaussian_hit){m.z, alpha, list->entries[i]};
+        hits[n++] = (hit){m.z, alpha, list->entries[i]};
     }
-    conic_gaussian_composite_hits(list, list->hits, n, tile, at);
+    sort_hits(hits, n);
+    for (size_t i = 0; i < n && composite_one(list, hits[i].footprint, hits[i].z, hits[i].alpha, tile, at); i++)
+      ;
   }
+}
+
+static void composite_rays(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, CONIC_SHAPE_RAY);
+}
+
+static void composite_filtered(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, CONIC_SHAPE_FILTERED);
+}
+
+static void composite_sights(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  composite_meetings(list, tile, CONIC_SHAPE_SIGHT);
 }
 
 static void composite_discs(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
   const conic_gaussian_rules *rules = list->rules;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + (int)at % CONIC_GAUSSIAN_TILE, y = tile->y + (int)at / CONIC_GAUSSIAN_TILE;
+    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
     for (size_t i = 0; i < list->n; i++) {
       const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
       meeting m = meet_ray(f, &list->rays[list->entries[i]], x, y);
@@ -147,4 +168,6 @@ void conic_gaussian_kernels_scalar(conic_gaussian_kernels *kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights;
 }

@@ -47,7 +47,7 @@ static void find_tile_rays(void *data, size_t i_tile, int i_thread) {
   size_t n = 0;
   (void)i_thread;
   for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int column = x + (int)at % CONIC_GAUSSIAN_TILE, row = y + (int)at / CONIC_GAUSSIAN_TILE;
+    int column = x + conic_gaussian_column(at), row = y + conic_gaussian_row(at);
     int is_there = column < camera->width && row < camera->height &&
                    conic_camera_ray(&j->camera_rays, column + 0.5, row + 0.5, origin, direction);
     for (int axis = 0; axis < 3; axis++) {

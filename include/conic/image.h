@@ -184,10 +184,17 @@ typedef struct conic_difference {
   size_t largest_hole;     /* pixels of the largest 4-connected set covered in the first and not in the second */
   conic_plane_difference planes[CONIC_MAX_PLANES];
   uint64_t lacks_alpha; /* of rgba only R, G and B are compared: at least one of the images has no A */
-  uint64_t reserved[7];
+  double ssim_padded;   /* ssim over the windows about all pixels, with zeros past the edges */
+  uint64_t is_display;  /* rgba were compared as display values: at least one of the images has them */
+  uint64_t reserved[5];
 } conic_difference;
 
-/* Compares `b` with the reference `a`. Errors: ARGUMENT, MEMORY. */
+/* Turns linear rgba into display values: R, G and B are divided by A, sRGB-encoded, and multiplied by A. An image that
+ * has display values, or no rgba, stays as it is. */
+CONIC_API void conic_image_encode(conic_image *image);
+
+/* Compares `b` with the reference `a`; where one of them has display values, the other one's are compared with these.
+ * Errors: ARGUMENT, MEMORY. */
 CONIC_API conic_status conic_image_compare(conic_context *context, const conic_image *a, const conic_image *b,
                                            conic_difference *difference);
 

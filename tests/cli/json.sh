@@ -64,6 +64,7 @@ declare -A wanted=(
   [render-layers]="$render methods.conic error_px layers.clouds layers.places_coarser layers.clouds_missing"
   [diff]="identical max_abs rmse p999 psnr ssim flip over_code differing_pixels largest_hole planes.rgba.max_abs
     planes.rgba.rmse"
+  [diff-folders]="identical matched_by views_past_limits mean.psnr mean.ssim mean.flip views only_in_a only_in_b"
   [verify]="against method planes.rgba.max_abs planes.rgba.p999 planes.id.max_abs bound.rgba bound.Z judged_pixels
     compared_pixels unstable_pixels covered_pixels undecided_ids unbounded_pixels unbounded_limit wrong_pixels
     unstable_by_reason.cutoff unstable_by_reason.visibility ms.render ms.oracle pass"
@@ -75,7 +76,8 @@ declare -A wanted=(
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
-    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics bytes?"
+    differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
+    pictures.psnr? pictures.greatest? bytes?"
   [info-hybrid]="kind triangles surfels nodes levels bytes bounds.min bounds.max sound?"
   [info-layers]="kind points clouds levels bytes bytes_per_point bits_per_sample bits.position bits.normal bits.colour
     bits.index bounds.min bounds.max sound?"
@@ -119,6 +121,11 @@ write octree-colored octree octree colored.ply -o colored.cot --color-by height
 write hybrid-colored hybrid hybrid tent.obj -o colored.chy --color-by height
 write diff diff diff knot.exr lod.exr
 write diff-sizes diff diff knot.exr triangle.exr
+mkdir first second
+cp knot.exr first/a.exr
+cp lod.exr second/a.exr
+cp knot.exr first/b.exr
+write diff-folders diff_folders diff first second
 write verify verify verify thinner.ply --size 160x120
 write verify-samples verify verify thinner.ply --size 40x30 --samples 2
 write render-prefiltered render render thinner.ply --size 160x120 --prefilter 1.01 -o prefiltered.exr
@@ -144,7 +151,7 @@ write info-hybrid info_hybrid info tent.chy --check
 # Two Gaussians, as .splat has them.
 row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
 printf "$row$row" > two.splat
-write convert convert convert two.splat -o two.compressed.ply
+write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
