@@ -358,7 +358,7 @@ static int explain(cli_session *session, explain_job *job) {
   if (status == CONIC_OK)
     status = cli_scene_open(session, &job->scene);
   exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
-  cli_scene_release(&job->scene);
+  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 

@@ -257,7 +257,7 @@ static int verify(cli_session *session, verify_job *job) {
   exit_code = status == CONIC_OK ? finish(session, job) : cli_exit_of(status);
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_scene_release(&job->scene);
+  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 

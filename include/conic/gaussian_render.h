@@ -36,10 +36,10 @@ CONIC_API const char *conic_gaussian_profile_name(conic_gaussian_profile profile
 typedef struct conic_gaussian_options {
   size_t size; /* sizeof(conic_gaussian_options), set by the init function */
   conic_gaussian_profile profile;
-  float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
-  conic_isa isa;       /* as the context has it */
-  uint32_t reserved;
-  double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
+  float background[3];     /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;           /* as the context has it */
+  uint32_t ignores_center; /* inria-2023 draws a camera whose centre is not the picture's as if it were: else refused */
+  double prefilter;        /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
 
 /* Exact, black, no filter. */
