@@ -5,6 +5,7 @@
 #include "cli/color_options.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/light_options.h"
+#include "cli/render/projection.h"
 #include "cli/render/scene_options.h"
 #include "cli/render/views.h"
 
@@ -112,6 +113,12 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .is_given = &raw.is_framing_given},
       {"zoom", CLI_NUMBER, &view->zoom, "Z", "multiplies the focal length [1]", 1e-6, 1e6,
        .is_given = &raw.is_framing_given},
+      {"projection", CLI_CHOICE, &job->projection, "HOW",
+       "perspective, or of a Gaussian scene by --profile exact: orthographic, fisheye or panorama [perspective]",
+       .choices = cli_projection_words, .is_given = &raw.is_framing_given},
+      {"eye", CLI_PARSED, job->eye, "X,Y,Z",
+       "the place from which the camera looks [where it sees all of the scene; a panorama's: the scene's middle]",
+       .parse = cli_parse_eye, .is_given = &job->is_eye_given},
       {"up", CLI_PARSED, view->up, "DIR", "what points up: x, y, z, -x … or X,Y,Z [the file's, or by its shape]",
        .parse = cli_parse_up, .is_given = &job->is_up_given},
       {"as", CLI_CHOICE, &raw.as, "WHAT",
@@ -227,7 +234,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
     view->width = raw.size[0];
     view->height = raw.size[1];
     memcpy(job->camera_size, raw.size, sizeof raw.size);
-  }
-  raw.is_framing_given |= job->is_elevation_given;
+  } else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR)
+    view->height = view->width / 2;
+  raw.is_framing_given |= job->is_elevation_given || job->is_eye_given;
   return cli_scene_check(session, &raw, job);
 }

@@ -290,6 +290,30 @@ static void test_cameras_by_oracle(conic_context *context, conic_context *one) {
   conic_gaussians_release(context, &flat);
 }
 
+/* The plane P: places that are projected again come to their pixels, at their depth. */
+static void test_places(conic_context *context) {
+  for (int i = -1; i < N_LENS_CASES; i++) {
+    conic_camera camera =
+        i < 0 ? camera_of(CONIC_CAMERA_ORTHOGRAPHIC, 0.0, 24, 20) : camera_of_case(&lens_cases[i], 0.0, 24, 20);
+    conic_image image = {0};
+    CHECK_OK(conic_image_allocate(context, 24, 20, 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_POSITION, &image));
+    float *z = image.planes[CONIC_PLANE_Z], *place = image.planes[CONIC_PLANE_POSITION];
+    for (int at = 0; at < 24 * 20; at++)
+      z[at] = 3.0f;
+    CHECK_OK(conic_image_locate(context, &camera, 1, &image));
+    for (int at = 0; at < 24 * 20; at++) {
+      const double p[3] = {(double)place[3 * at], (double)place[3 * at + 1], (double)place[3 * at + 2]};
+      double pixel[2] = {camera.fx * p[0] + camera.cx, camera.fy * p[1] + camera.cy};
+      if (i >= 0)
+        project_direction(&camera, p, pixel);
+      CHECK_NEAR(pixel[0], at % 24 + 0.5, 1e-4);
+      CHECK_NEAR(pixel[1], at / 24 + 0.5, 1e-4);
+      CHECK_NEAR(camera.kind == CONIC_CAMERA_PERSPECTIVE || i < 0 ? p[2] : conic_length(p), 3.0, 1e-6);
+    }
+    conic_image_release(context, &image);
+  }
+}
+
 /* A direction's pixel, and between pixels the mean of four. */
 static double color_between(const conic_gaussian_planes *p, const double pixel[2], int channel) {
   double x = pixel[0] - 0.5, y = pixel[1] - 0.5, sum = 0.0;
@@ -428,6 +452,7 @@ int main(void) {
   test_lens_round_trips();
   test_folds();
   test_cameras_by_oracle(context, one);
+  test_places(context);
   test_resampled(context);
   test_seam(context);
   test_refused_views(quiet);
