@@ -6,6 +6,7 @@
 #include "oracle/oracle_math.h"
 
 #define LEAST_ALPHA (1.0 / 255.0)
+#define UNIT_SLACK (1.0 / 1048576.0)
 #define AS_GSPLAT .near_z = 0.01, .alpha_least = LEAST_ALPHA, .stop = 1e-4, .stop_is_left_out = 1
 
 const oracle_gaussian_rules *conic_oracle_gaussian_rules(conic_gaussian_profile profile) {
@@ -55,7 +56,7 @@ static int turn_axes(const oracle_gaussian_view *view, const conic_gaussians *se
     q[k] = (double)set->rotation[k][i];
     length += q[k] * q[k];
   }
-  length = view->rules->is_inria ? 1.0 : sqrt(length);
+  length = view->rules->is_inria && fabs(length - 1.0) < UNIT_SLACK ? 1.0 : sqrt(length);
   for (int k = 0; k < 4; k++)
     q[k] /= length;
   rotation_of_quaternion(q, world);

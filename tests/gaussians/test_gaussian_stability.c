@@ -97,6 +97,27 @@ static void test_turned_together(conic_context *context) {
   }
 }
 
+/* A quaternion of another length is the same rotation in every profile. */
+static void test_quaternion_lengths(conic_context *context) {
+  conic_gaussians scene = gaussians_random(context, 200, 1, 0), longer = gaussians_random(context, 200, 1, 0);
+  const conic_camera camera = camera_turned(no_turn, 48, 48);
+  for (size_t i = 0; i < scene.count; i++)
+    for (int k = 0; k < 4; k++)
+      longer.rotation[k][i] *= i % 2 ? 3.0f : 0.999f;
+  for (int profile = 0; profile < CONIC_N_GAUSSIAN_PROFILES; profile++) {
+    conic_gaussian_profile name = (conic_gaussian_profile)profile;
+    conic_gaussian_planes a = picture_draw(context, &scene, &camera, name, CONIC_ISA_AUTO);
+    conic_gaussian_planes b = picture_draw(context, &longer, &camera, name, CONIC_ISA_AUTO);
+    conic_gaussian_reference r = picture_reference(context, &longer, &camera, name, CONIC_GAUSSIAN_PROFILE);
+    CHECK(pictures_apart(&a, &b) <= 1e-5 && picture_difference(b.rgb, r.rgb, 3 * 48 * 48) <= 1e-5);
+    conic_gaussian_reference_release(context, &r);
+    picture_release(&a);
+    picture_release(&b);
+  }
+  conic_gaussians_release(context, &scene);
+  conic_gaussians_release(context, &longer);
+}
+
 /* The eye looks elsewhere: in `exact` a ray has its colour, wherever on the picture it goes through. */
 static void test_same_ray(conic_context *context) {
   enum { WIDTH = 65, HEIGHT = 17 };
@@ -334,6 +355,7 @@ static void test_equal_depths(conic_context *context) {
 int main(void) {
   conic_context *context = check_context(2);
   test_turned_together(context);
+  test_quaternion_lengths(context);
   test_same_ray(context);
   test_pan(context);
   test_least_alpha(context);

@@ -7,19 +7,20 @@ set -uo pipefail
 source "$1/tests/support/program.bash"
 data=$1/../shared/data/gaussians
 
+finds() { # PYTHON MODULE: the folder that the module's own lies in; importing torch takes seconds
+  "$1" -c 'import importlib.util, os, sys
+found = importlib.util.find_spec(sys.argv[1])
+print(os.path.dirname(os.path.dirname(found.origin)) if found else "")' "$2" 2> /dev/null
+}
+
 python=
 for candidate in python3 /usr/bin/python3; do
-  "$candidate" -c 'import numpy, torch' 2> /dev/null && python=$candidate && break
+  [[ -n $(finds $candidate torch) && -n $(finds $candidate numpy) ]] && python=$candidate && break
 done
-if [[ -z $python ]]; then
-  echo "skipped: no python3 has torch (Debian: python3-torch)"
-  exit 77
-fi
-folders=${CONIC_GSPLAT-$("$python" -c 'import importlib.util, os
-found = importlib.util.find_spec("gsplat")
-print(os.path.dirname(os.path.dirname(found.origin)) if found else "")')}
-if [[ -z $folders || ! -e $data/biker.spz ]]; then
-  echo "skipped: gsplat (pip download --no-deps gsplat, unpacked, in CONIC_GSPLAT) or $data/biker.spz is not there"
+folders=${CONIC_GSPLAT-$(finds "${python:-python3}" gsplat)}
+if [[ -z $python || -z $folders || ! -e $data/biker.spz ]]; then
+  echo "skipped: torch (Debian: python3-torch), gsplat (pip download --no-deps gsplat, unpacked, in CONIC_GSPLAT) or" \
+    "$data/biker.spz is not there"
   exit 77
 fi
 IFS=: read -ra folders <<< "$folders"
