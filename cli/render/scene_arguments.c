@@ -147,7 +147,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given},
       {"ignore-center", CLI_FLAG, &ignores_center, NULL,
-       "of --profile inria-2023: take the picture's centre for the camera's, as that program does"},
+       "of --profile inria-2023 and 2dgs-2024: take the picture's centre for the camera's, as these do"},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
        "[good]",

@@ -1,8 +1,7 @@
-/* A Gaussian set up for one picture: what its pixels need of it. */
+/* A Gaussian set up for one picture: what its pixels need of it. C and OpenCL C share the records. */
 #ifndef CONIC_GAUSSIAN_FOOTPRINT_H
 #define CONIC_GAUSSIAN_FOOTPRINT_H
 
-#include "conic/gaussians.h"
 #include "gaussians/draw/gaussian_rules.h"
 
 typedef struct conic_gaussian_footprint {
@@ -21,6 +20,7 @@ typedef struct conic_gaussian_ray {
   float g[3][3], c[3][3], e[3]; /* at the reference pixel's centre, and by how much they grow in x and in y */
 } conic_gaussian_ray;
 
+#ifndef CONIC_ON_DEVICE
 /* What a filter adds to a ray. With X = x − both·Δy, Y = y + both·Δx, t = z²/|g|², of an orthographic camera 1/|g|²,
  * |S| = 1 + t·(|X|² + |Y|²) + (t·area)²·|g|², and |S|·q gains t·((turn₀ − turn₂·Δy)² + (turn₁ + turn₂·Δx)²). */
 typedef struct conic_gaussian_filter {
@@ -56,5 +56,6 @@ typedef enum conic_gaussian_fate {
 conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                           conic_gaussian_footprint *footprint, float *key, conic_gaussian_ray *ray,
                                           conic_gaussian_filter *filter, conic_gaussian_sight *sight, float normal[3]);
+#endif
 
 #endif

@@ -2,7 +2,11 @@
 #ifndef CONIC_GAUSSIAN_RULES_H
 #define CONIC_GAUSSIAN_RULES_H
 
+#ifdef CONIC_ON_DEVICE
+#include "conic/image.h"
+#else
 #include "conic/gaussian_render.h"
+#endif
 
 /* How a Gaussian meets a pixel. */
 typedef enum conic_gaussian_shape {
@@ -42,7 +46,9 @@ typedef struct conic_gaussian_rules {
   float disc_near; /* of the place on the disc; 0: no such border, and depths are those of means */
 } conic_gaussian_rules;
 
+#ifndef CONIC_ON_DEVICE
 /* Null for a number that is no profile. */
 const conic_gaussian_rules *conic_gaussian_rules_of(conic_gaussian_profile profile);
+#endif
 
 #endif

@@ -43,9 +43,9 @@ enum { CONIC_GAUSSIAN_ROOM = 320 };
 
 #ifndef CONIC_ON_DEVICE
 /* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
-typedef struct conic_tile_rays {
+typedef struct conic_sight_rays {
   float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
-} conic_tile_rays;
+} conic_sight_rays;
 #endif
 
 /* What is composited in a tile: the footprints that the entries name, in their order. */
@@ -62,7 +62,7 @@ typedef struct conic_gaussian_list {
 #ifndef CONIC_ON_DEVICE
   const conic_gaussian_filter *filters; /* by footprint; of CONIC_SHAPE_FILTERED */
   const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
-  const conic_tile_rays *tile_rays;     /* of CONIC_SHAPE_SIGHT */
+  const conic_sight_rays *tile_rays;     /* of CONIC_SHAPE_SIGHT */
   int is_parallel;                      /* rays are */
 #endif
 } conic_gaussian_list;

@@ -38,7 +38,7 @@ static inline conic_ray_meeting conic_meet_filtered(const conic_gaussian_list *l
 /* The order of operations here is that of docs/reference/gaussians.md. */
 static inline conic_ray_meeting conic_meet_sight(const conic_gaussian_list *list, uint32_t i_footprint, size_t at) {
   const conic_gaussian_sight *r = &list->sights[i_footprint];
-  const conic_tile_rays *rays = list->tile_rays;
+  const conic_sight_rays *rays = list->tile_rays;
   float d[3], g[3], c[3];
   for (int k = 0; k < 3; k++)
     d[k] = (rays->high[k][at] - r->high[k]) + (rays->low[k][at] - r->low[k]);

@@ -39,7 +39,7 @@ static void enclose(const double (*directions)[3], size_t n, conic_view_cone *co
 
 static void find_tile_rays(void *data, size_t i_tile, int i_thread) {
   ray_job *j = data;
-  conic_tile_rays *to = &j->rays->tiles[i_tile];
+  conic_sight_rays *to = &j->rays->tiles[i_tile];
   const conic_camera *camera = j->rays->camera;
   int x = (int)(i_tile % (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;
   int y = (int)(i_tile / (size_t)j->rays->n_tiles[0]) * CONIC_GAUSSIAN_TILE;

@@ -36,7 +36,7 @@ CONIC_INLINE meeting_lanes meet_filtered_lanes(const conic_gaussian_list *list, 
 
 CONIC_INLINE meeting_lanes meet_sight_lanes(const conic_gaussian_list *list, uint32_t i_footprint, size_t at) {
   const conic_gaussian_sight *r = &list->sights[i_footprint];
-  const conic_tile_rays *rays = list->tile_rays;
+  const conic_sight_rays *rays = list->tile_rays;
   lanes d[3], g[3], c[3];
   for (int k = 0; k < 3; k++)
     d[k] = (lanes_load(&rays->high[k][at]) - r->high[k]) + (lanes_load(&rays->low[k][at]) - r->low[k]);

@@ -42,6 +42,9 @@ static void init_gaussians_read(void *o, size_t size) {
 static void init_gaussians_write(void *o, size_t size) {
   conic_gaussians_write_options_init_sized(o, size);
 }
+static void init_cameras(void *o, size_t size) {
+  conic_cameras_options_init_sized(o, size);
+}
 static void init_read(void *o, size_t size) {
   conic_read_options_init_sized(o, size);
 }
@@ -136,6 +139,7 @@ static const struct {
            {init_coloring, sizeof(conic_coloring_options)},
            {init_gaussians_read, sizeof(conic_gaussians_read_options)},
            {init_gaussians_write, sizeof(conic_gaussians_write_options)},
+           {init_cameras, sizeof(conic_cameras_options)},
            {init_view, sizeof(conic_source_view)}};
 
 static void test_init_fills_what_the_caller_has(void) {
