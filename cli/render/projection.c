@@ -9,7 +9,7 @@ int cli_parse_eye(const char *text, void *eye) {
   return cli_parse_vector(text, eye);
 }
 
-static void place_eye(const double eye[3], conic_camera *camera) {
+static void stand_at(const double eye[3], conic_camera *camera) {
   for (int row = 0; row < 3; row++)
     camera->cam_from_world[row][3] = -conic_dot(camera->cam_from_world[row], eye);
 }
@@ -29,8 +29,8 @@ void cli_project(const cli_render_job *job, const conic_framing *framing, conic_
     camera->fx = camera->fy = framing->zoom * shorter / conic_radians(framing->fov_deg);
   else if (job->projection == CONIC_CAMERA_EQUIRECTANGULAR) { /* all around, from amid the scene */
     camera->fx = camera->fy = framing->zoom * camera->width / (2.0 * CONIC_PI);
-    place_eye(center, camera);
+    stand_at(center, camera);
   }
   if (job->is_eye_given)
-    place_eye(job->eye, camera);
+    stand_at(job->eye, camera);
 }

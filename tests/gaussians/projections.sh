@@ -38,6 +38,12 @@ run 2 render four.splat --profile exact --camera camera.json --eye 1,2,3 -o a.ex
 run 2 render four.splat --profile exact --projection fisheye --prefilter 1 -o a.exr
 run 0 render four.splat --profile exact --projection orthographic --prefilter 1 --size 60x40 -o a.exr
 
+# What judges takes neither, and says so.
+run_as_typed 2 verify four.splat --profile exact --prefilter 1 --size 40x40
+grep -q 'prefilter' err || fail "verify: $(cat err)"
+run_as_typed 2 verify four.splat --profile exact --projection fisheye --size 40x40
+grep -q 'pinholes alone' err || fail "verify: $(cat err)"
+
 # A file's camera that distorts, and a source that cannot draw it.
 sed -i 's/"kind": "equirectangular",/"lens": "opencv", "distortion": [-0.1, 0.01, 0.001, 0.001],/' camera.json
 sed -i 's/"width": 60/"width": 61/' camera.json

@@ -5,7 +5,7 @@
 #include "tests/support/check.h"
 #include "tests/support/gaussian_picture.h"
 
-static conic_camera camera_of(uint32_t kind, double distance, int width, int height) {
+static conic_camera camera_of_kind(uint32_t kind, double distance, int width, int height) {
   conic_camera camera = {.width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height, .kind = kind};
   camera.fx = camera.fy = kind == CONIC_CAMERA_ORTHOGRAPHIC ? 0.2 * height : 1.1 * height;
   for (int axis = 0; axis < 3; axis++)
@@ -88,7 +88,7 @@ static void test_filter_by_oracle(conic_context *context, conic_context *one) {
   conic_gaussians flat = gaussians_random(context, 200, 1, CONIC_GAUSSIANS_2D);
   for (int k = 0; k < 3; k++)
     for (int kind = 0; kind <= CONIC_CAMERA_ORTHOGRAPHIC; kind += CONIC_CAMERA_ORTHOGRAPHIC) {
-      const conic_camera camera = camera_of((uint32_t)kind, 5.0, 70, 60);
+      const conic_camera camera = camera_of_kind((uint32_t)kind, 5.0, 70, 60);
       compare_view(context, one, kind ? "filter, orthographic" : "filter", &scene, &camera, filters[k], 1e-6);
       compare_view(context, one, kind ? "filter, discs, orthographic" : "filter, discs", &flat, &camera, filters[k],
                    4e-6);
@@ -118,7 +118,7 @@ static void test_filter_by_convolution(conic_context *context) {
   for (int kind = 0; kind <= CONIC_CAMERA_ORTHOGRAPHIC; kind += CONIC_CAMERA_ORTHOGRAPHIC)
     for (int k = 0; k < 3; k++) {
       conic_gaussians scene = single_gaussian(context, places[k], scales[k], 0.9);
-      conic_camera camera = camera_of((uint32_t)kind, 5.0, SIDE, SIDE), fine;
+      conic_camera camera = camera_of_kind((uint32_t)kind, 5.0, SIDE, SIDE), fine;
       camera.fx = camera.fy = kind ? 6.0 : 30.0;
       fine = camera;
       fine.width = fine.height = SIDE * FINE;
@@ -147,7 +147,7 @@ static void test_filter_far(conic_context *context) {
   static const double place[3] = {0.0, 0.0, 0.0}, scale[3] = {0.1, 0.1, 0.1};
   conic_gaussians scene = single_gaussian(context, place, scale, 0.9);
   for (double distance = 1.0; distance <= 64.0; distance *= 1.3) {
-    conic_camera camera = camera_of(CONIC_CAMERA_PERSPECTIVE, distance, 64, 64);
+    conic_camera camera = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, distance, 64, 64);
     camera.cx = camera.cy = 32.0 + 0.37;
     conic_gaussian_planes p = draw_view(context, &scene, &camera, 1.0);
     double sum = 0.0, sigma = 0.1 * camera.fx / distance, light = 0.9 * 6.283185307179586 * sigma * sigma;
@@ -219,7 +219,7 @@ static const lens_case lens_cases[] = {
 enum { N_LENS_CASES = sizeof lens_cases / sizeof *lens_cases };
 
 static conic_camera camera_of_case(const lens_case *c, double distance, int width, int height) {
-  conic_camera camera = camera_of(c->kind, distance, width, height);
+  conic_camera camera = camera_of_kind(c->kind, distance, width, height);
   camera.lens = c->lens;
   camera.fx = camera.fy = c->focal * height;
   memcpy(camera.distortion, c->distortion, sizeof camera.distortion);
@@ -250,7 +250,7 @@ static void test_lens_round_trips(void) {
 
 /* Where a lens turns back there is no ray: r = 1 − s has its fold at 1/√3, where the radius is 2/(3·√3). */
 static void test_folds(void) {
-  conic_camera camera = camera_of(CONIC_CAMERA_PERSPECTIVE, 0.0, 1000, 1000);
+  conic_camera camera = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 0.0, 1000, 1000);
   conic_camera_rays rays;
   double origin[3], d[3], fold = 2.0 / (3.0 * sqrt(3.0));
   camera.fx = camera.fy = 1000.0;
@@ -294,7 +294,7 @@ static void test_cameras_by_oracle(conic_context *context, conic_context *one) {
 static void test_places(conic_context *context) {
   for (int i = -1; i < N_LENS_CASES; i++) {
     conic_camera camera =
-        i < 0 ? camera_of(CONIC_CAMERA_ORTHOGRAPHIC, 0.0, 24, 20) : camera_of_case(&lens_cases[i], 0.0, 24, 20);
+        i < 0 ? camera_of_kind(CONIC_CAMERA_ORTHOGRAPHIC, 0.0, 24, 20) : camera_of_case(&lens_cases[i], 0.0, 24, 20);
     conic_image image = {0};
     CHECK_OK(conic_image_allocate(context, 24, 20, 1u << CONIC_PLANE_Z | 1u << CONIC_PLANE_POSITION, &image));
     float *z = image.planes[CONIC_PLANE_Z], *place = image.planes[CONIC_PLANE_POSITION];
@@ -332,10 +332,10 @@ static void test_resampled(conic_context *context) {
   for (size_t i = 0; i < scene.count; i++)
     for (int k = 0; k < 3; k++) /* of which no pixel is a large part */
       scene.scale[k][i] = 0.1f + scene.scale[k][i];
-  const conic_camera pinhole = camera_of(CONIC_CAMERA_PERSPECTIVE, 8.0, 60, 60);
+  const conic_camera pinhole = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 8.0, 60, 60);
   conic_gaussian_planes wanted = draw_view(context, &scene, &pinhole, 0.0);
   for (int kind = CONIC_CAMERA_FISHEYE; kind < CONIC_N_CAMERA_KINDS; kind += 2) {
-    conic_camera camera = camera_of((uint32_t)kind, 8.0, 500, 500);
+    conic_camera camera = camera_of_kind((uint32_t)kind, 8.0, 500, 500);
     camera.fx = camera.fy = 450.0;
     conic_gaussian_planes p = draw_view(context, &scene, &camera, 0.0);
     double worst = 0.0, pixel[2];
@@ -357,7 +357,7 @@ static void test_resampled(conic_context *context) {
 static void test_seam(conic_context *context) {
   enum { W = 96, H = 48 };
   conic_gaussians scene = gaussians_random(context, 400, 0, 0);
-  conic_camera camera = camera_of(CONIC_CAMERA_EQUIRECTANGULAR, 0.3, W, H), turned;
+  conic_camera camera = camera_of_kind(CONIC_CAMERA_EQUIRECTANGULAR, 0.3, W, H), turned;
   camera.fx = camera.fy = W / 6.283185307179586;
   turned = camera;
   for (int k = 0; k < 4; k++) { /* half a turn about y */
@@ -381,13 +381,13 @@ static void test_seam(conic_context *context) {
 static void test_orthographic(conic_context *context, conic_context *one) {
   conic_gaussians scene = gaussians_random(context, 400, 2, 0),
                   flat = gaussians_random(context, 200, 0, CONIC_GAUSSIANS_2D);
-  const conic_camera camera = camera_of(CONIC_CAMERA_ORTHOGRAPHIC, 5.0, 70, 60);
+  const conic_camera camera = camera_of_kind(CONIC_CAMERA_ORTHOGRAPHIC, 5.0, 70, 60);
   compare_view(context, one, "orthographic", &scene, &camera, 0.0, 1e-6);
   compare_view(context, one, "orthographic, discs", &flat, &camera, 0.0, 4e-6);
   /* As a pinhole from very far sees it. */
-  conic_camera far = camera_of(CONIC_CAMERA_PERSPECTIVE, 2e4, 70, 60);
+  conic_camera far = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 2e4, 70, 60);
   far.fx = far.fy = camera.fx * 2e4;
-  conic_camera near = camera_of(CONIC_CAMERA_ORTHOGRAPHIC, 50.0, 70, 60);
+  conic_camera near = camera_of_kind(CONIC_CAMERA_ORTHOGRAPHIC, 50.0, 70, 60);
   conic_gaussian_planes a = draw_view(context, &scene, &near, 0.0), b = draw_view(context, &scene, &far, 0.0);
   double apart = 0.0;
   for (size_t i = 0; i < 3 * 70 * 60; i++)
@@ -402,7 +402,7 @@ static void test_orthographic(conic_context *context, conic_context *one) {
 
 static void test_refused_views(conic_context *quiet) {
   conic_gaussians scene = gaussians_random(quiet, 4, 0, 0);
-  conic_camera camera = camera_of(CONIC_CAMERA_PERSPECTIVE, 5.0, 16, 16);
+  conic_camera camera = camera_of_kind(CONIC_CAMERA_PERSPECTIVE, 5.0, 16, 16);
   conic_gaussian_planes p = picture_planes(&camera);
   conic_gaussian_options options = exact_options(-1.0, CONIC_ISA_AUTO);
   conic_gaussian_reference r;
@@ -416,7 +416,7 @@ static void test_refused_views(conic_context *quiet) {
           CONIC_ERROR_ARGUMENT);
   }
   for (uint32_t kind = CONIC_CAMERA_ORTHOGRAPHIC; kind < CONIC_N_CAMERA_KINDS; kind++) {
-    conic_camera other = camera_of(kind, 5.0, 16, 16);
+    conic_camera other = camera_of_kind(kind, 5.0, 16, 16);
     other.lens = CONIC_LENS_RADIAL;
     options.prefilter = 0.0;
     CHECK(conic_gaussians_render(quiet, &scene, &other, &options, &p, NULL) == CONIC_ERROR_ARGUMENT);
