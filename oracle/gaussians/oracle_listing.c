@@ -33,7 +33,7 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   e->fine.cy *= samples;
   conic_oracle_gaussian_look(&e->fine, e->options.profile, &e->view);
   const oracle_gaussian_rules *rules = e->view.rules;
-  e->bounding = (oracle_bounding){
+  e->bounding = (oracle_bound_request){
       .context = context,
       .doubting = {&e->view,
                    &e->model,
@@ -83,7 +83,7 @@ static void fill_entry(const oracle_doubting *d, const oracle_meeting *m, listin
 }
 
 /* The bound of those that may cover, whose notes go back to all. */
-static conic_status bound_meetings(const oracle_bounding *b, oracle_meeting *meetings, size_t n,
+static conic_status bound_meetings(const oracle_bound_request *b, oracle_meeting *meetings, size_t n,
                                    conic_gaussian_bound *bound) {
   oracle_meeting *those = conic_memory_allocate(b->context, n, sizeof *those);
   size_t *from = conic_memory_allocate(b->context, n, sizeof *from), n_those = 0;

@@ -27,7 +27,10 @@ printf 'v %s\n' '0 0 0' '1 0 0' '1 0 1' '0 0 1' > square.obj
 printf 'f 1 2 3 4\n' >> square.obj
 "$conic" octree sphere.ply -o sphere.cot
 "$conic" layer sphere.ply -o sphere.lpc
-for scene in sphere.ply square.obj sphere.cot sphere.lpc 'square.obj --as hybrid'; do
+printf 'ply\nformat ascii 1.0\nelement vertex 1\n' > one.ply
+printf 'property float %s\n' x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 >> one.ply
+printf 'end_header\n0 0 0 1 1 1 3 -1 -1 -1 1 0 0 0\n' >> one.ply
+for scene in sphere.ply square.obj sphere.cot sphere.lpc 'square.obj --as hybrid' 'one.ply --profile exact'; do
   # shellcheck disable=SC2086
   run 0 render $scene --camera own.json -o own.pfm
   for camera in 'colmap --view one' 'colmap/sparse/0/images.txt --view in/one.png' 'transforms.json --view 0' cameras.json; do
@@ -145,19 +148,14 @@ if [[ -r $garden ]]; then
 fi
 
 # A program that knows no other centre than the picture's
-if "$conic" help render | grep -q -- --ignore-center; then
-  printf 'ply\nformat ascii 1.0\nelement vertex 1\n' > one.ply
-  printf 'property float %s\n' x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 >> one.ply
-  printf 'end_header\n0 0 0 1 1 1 3 -1 -1 -1 1 0 0 0\n' >> one.ply
-  sed 's/"cx": 16/"cx": 17/' own.json > aside.json
-  run 2 render one.ply --camera aside.json --profile inria-2023 -o a.pfm
-  says 'inria-2023 ignores the camera'
-  run 0 render one.ply --camera aside.json --profile inria-2023 --ignore-center -o aside.pfm
-  run 0 render one.ply --camera own.json --profile inria-2023 -o own.pfm
-  cmp -s aside.pfm own.pfm || fail "the centre is not ignored"
-  run 0 render one.ply --camera aside.json --profile gsplat-1.6 -o aside.pfm
-  run 0 render one.ply --camera own.json --profile gsplat-1.6 -o own.pfm
-  cmp -s aside.pfm own.pfm && fail "gsplat ignores the centre"
-fi
+sed 's/"cx": 16/"cx": 17/' own.json > aside.json
+run 2 render one.ply --camera aside.json --profile inria-2023 -o a.pfm
+says 'inria-2023 ignores the camera'
+run 0 render one.ply --camera aside.json --profile inria-2023 --ignore-center -o aside.pfm
+run 0 render one.ply --camera own.json --profile inria-2023 -o own.pfm
+cmp -s aside.pfm own.pfm || fail "the centre is not ignored"
+run 0 render one.ply --camera aside.json --profile gsplat-1.6 -o aside.pfm
+run 0 render one.ply --camera own.json --profile gsplat-1.6 -o own.pfm
+cmp -s aside.pfm own.pfm && fail "gsplat ignores the centre"
 
 [[ $failures -eq 0 ]]
