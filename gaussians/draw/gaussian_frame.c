@@ -240,7 +240,7 @@ static int is_affine(const conic_camera *camera) {
   return camera->kind == CONIC_CAMERA_ORTHOGRAPHIC || (camera->kind == CONIC_CAMERA_PERSPECTIVE && !camera->lens);
 }
 
-static conic_status check_projection(conic_context *context, const conic_camera *camera,
+static conic_status check_sight(conic_context *context, const conic_camera *camera,
                                const conic_gaussian_options *options) {
   int takes_all = options->profile == CONIC_PROFILE_EXACT;
   double h = options->prefilter;
@@ -270,7 +270,7 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
     return conic_fail(context, CONIC_ERROR_ARGUMENT,
                       "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
                       "camera's size");
-  conic_status status = check_projection(context, camera, &own);
+  conic_status status = check_sight(context, camera, &own);
   if (status == CONIC_OK)
     status = check_center(context, &own, camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
