@@ -10,9 +10,12 @@
 
 /* How a Gaussian meets a pixel. */
 typedef enum conic_gaussian_shape {
-  CONIC_SHAPE_ELLIPSE = 0, /* an ellipse on the screen, by the Jacobian of the projection at the mean */
-  CONIC_SHAPE_RAY = 1,     /* along the pixel's ray */
-  CONIC_SHAPE_DISC = 2     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_ELLIPSE = 0,  /* an ellipse on the screen, by the Jacobian of the projection at the mean */
+  CONIC_SHAPE_RAY = 1,      /* along the pixel's ray */
+  CONIC_SHAPE_DISC = 2,     /* where the ray meets the plane of a 2D Gaussian, or a dot on the screen */
+  CONIC_SHAPE_FILTERED = 3, /* along the ray under the pixel's filter: of profiles of CONIC_SHAPE_RAY, as is the next */
+  CONIC_SHAPE_SIGHT = 4,    /* along the ray of a camera whose rays are not affine on the screen */
+  CONIC_N_SHAPES
 } conic_gaussian_shape;
 
 typedef enum conic_gaussian_coverage {
