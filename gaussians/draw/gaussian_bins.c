@@ -9,21 +9,26 @@
 
 typedef struct bin_job {
   const conic_gaussian_footprint *footprints;
+  const conic_radix_item *order;
   size_t n, a_run, n_runs;
   conic_gaussian_bins *bins;
   size_t *places; /* n_runs × n_tiles: counts, then places */
 } bin_job;
 
+enum { AHEAD = 16 };
+
 static void visit(const bin_job *j, size_t i_run, int writes) {
   size_t *places = &j->places[i_run * j->bins->n_tiles], across = j->bins->n_tiles_x;
   size_t end = (i_run + 1) * j->a_run < j->n ? (i_run + 1) * j->a_run : j->n;
   for (size_t i = i_run * j->a_run; i < end; i++) {
-    const conic_gaussian_footprint *f = &j->footprints[i];
+    const conic_gaussian_footprint *f = &j->footprints[j->order[i].value];
+    if (i + AHEAD < end) /* they lie all over the memory */
+      __builtin_prefetch(j->footprints[j->order[i + AHEAD].value].box);
     for (size_t y = f->box[0][1] / CONIC_GAUSSIAN_TILE; y <= f->box[1][1] / CONIC_GAUSSIAN_TILE; y++)
       for (size_t x = f->box[0][0] / CONIC_GAUSSIAN_TILE; x <= f->box[1][0] / CONIC_GAUSSIAN_TILE; x++) {
         size_t *place = &places[y * across + x];
         if (writes)
-          j->bins->entries[*place] = (uint32_t)i;
+          j->bins->entries[*place] = j->order[i].value;
         ++*place;
       }
   }
@@ -52,10 +57,11 @@ static size_t place_counts(const bin_job *j) {
   return j->bins->tile_begin[j->bins->n_tiles] = sum;
 }
 
-conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints, size_t n,
-                                      int width, int height, conic_gaussian_bins *bins) {
+conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints,
+                                      const conic_radix_item *order, size_t n, int width, int height,
+                                      conic_gaussian_bins *bins) {
   enum { LEAST_RUN = 16384, MOST_RUNS = 64 };
-  bin_job j = {.footprints = footprints, .n = n, .bins = bins};
+  bin_job j = {.footprints = footprints, .order = order, .n = n, .bins = bins};
   bins->n_tiles_x = ((size_t)width + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE;
   bins->n_tiles = bins->n_tiles_x * (((size_t)height + CONIC_GAUSSIAN_TILE - 1) / CONIC_GAUSSIAN_TILE);
   j.a_run = n / MOST_RUNS + 1 > LEAST_RUN ? n / MOST_RUNS + 1 : LEAST_RUN;

@@ -2,6 +2,7 @@
 #ifndef CONIC_GAUSSIAN_BINS_H
 #define CONIC_GAUSSIAN_BINS_H
 
+#include "core/base/radix.h"
 #include "gaussians/draw/gaussian_tile.h"
 
 typedef struct conic_gaussian_bins {
@@ -10,10 +11,11 @@ typedef struct conic_gaussian_bins {
   uint32_t *entries;
 } conic_gaussian_bins;
 
-/* Makes the lists of a picture of that size; the footprints are in their order. On failure *bins is to be released,
- * too. Errors: MEMORY. */
-conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints, size_t n,
-                                      int width, int height, conic_gaussian_bins *bins);
+/* Makes the lists of a picture of that size, of the footprints that the order names. On failure *bins is to be
+ * released, too. Errors: MEMORY. */
+conic_status conic_gaussian_bins_make(conic_context *context, const conic_gaussian_footprint *footprints,
+                                      const conic_radix_item *order, size_t n, int width, int height,
+                                      conic_gaussian_bins *bins);
 void conic_gaussian_bins_release(conic_context *context, conic_gaussian_bins *bins);
 
 #endif

@@ -1,16 +1,35 @@
-/* A tile of 16 × 16 pixels while Gaussians are composited in it, nearest first. */
+/* A tile of 16 × 16 pixels while Gaussians are composited in it, nearest first.
+ *
+ * Its pixels come block by block of 4 × 4, the blocks row by row, and the pixels of a block column by column. */
 #ifndef CONIC_GAUSSIAN_TILE_H
 #define CONIC_GAUSSIAN_TILE_H
 
 #include "core/lanes/instruction_sets.h"
 #include "gaussians/draw/gaussian_footprint.h"
 
-enum { CONIC_GAUSSIAN_TILE = 16, CONIC_GAUSSIAN_TILE_PIXELS = CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE };
+enum { CONIC_GAUSSIAN_TILE = 16 };
+#ifndef CONIC_GAUSSIAN_TILE_PIXELS /* 1 where a device has a work-item for each */
+#define CONIC_GAUSSIAN_TILE_PIXELS (CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE)
+#endif
 
-/* Pixels row by row; those beside the picture are there, too. */
+/* Where a frame's records lie: in a memory of its own on a device. */
+#ifndef CONIC_STORED
+#define CONIC_STORED
+#endif
+
+enum { CONIC_GAUSSIAN_BLOCK = 4, CONIC_GAUSSIAN_BLOCKS = 16, CONIC_GAUSSIAN_BLOCK_PIXELS = 16 };
+
+static inline int conic_gaussian_column(size_t pixel) {
+  return (int)(pixel / CONIC_GAUSSIAN_BLOCK_PIXELS % 4 * 4 + pixel % CONIC_GAUSSIAN_BLOCK_PIXELS / 4);
+}
+
+static inline int conic_gaussian_row(size_t pixel) {
+  return (int)(pixel / (4 * CONIC_GAUSSIAN_BLOCK_PIXELS) * 4 + pixel % 4);
+}
+
+/* Pixels beside the picture are there, too. */
 typedef struct conic_gaussian_tile {
-  float T[CONIC_GAUSSIAN_TILE_PIXELS];    /* 0 where compositing has ended; */
-  float rest[CONIC_GAUSSIAN_TILE_PIXELS]; /* this is T then */
+  float T[CONIC_GAUSSIAN_TILE_PIXELS];
   float rgb[3][CONIC_GAUSSIAN_TILE_PIXELS];
   float sum[CONIC_GAUSSIAN_TILE_PIXELS], sum_of_z[CONIC_GAUSSIAN_TILE_PIXELS]; /* of w, w·z */
   float inverse_z[CONIC_GAUSSIAN_TILE_PIXELS], median_z[CONIC_GAUSSIAN_TILE_PIXELS];
@@ -20,33 +39,41 @@ typedef struct conic_gaussian_tile {
   int x, y; /* of its first pixel */
 } conic_gaussian_tile;
 
-/* A pixel's response to a Gaussian that is ordered pixel by pixel. */
-typedef struct conic_gaussian_hit {
-  float z, alpha;
-  uint32_t footprint;
-} conic_gaussian_hit;
+enum { CONIC_GAUSSIAN_ROOM = 320 };
 
-/* What is composited in a tile. Footprints are numbered in the order of all. */
+#ifndef CONIC_ON_DEVICE
+/* The directions of a tile's rays, each the sum of two floats; NaN where there is none. */
+typedef struct conic_sight_rays {
+  float high[3][CONIC_GAUSSIAN_TILE_PIXELS], low[3][CONIC_GAUSSIAN_TILE_PIXELS];
+} conic_sight_rays;
+#endif
+
+/* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
-  const conic_gaussian_footprint *footprints;
-  const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
-  const float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                  /* else T and rgb alone */
-  const uint32_t *entries;
+  const CONIC_STORED conic_gaussian_footprint *footprints;
+  const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
+  const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
+  int wants_all;                               /* else T and rgb alone */
+  const CONIC_STORED uint32_t *entries;
   size_t n;
-  conic_gaussian_hit *hits; /* room for n · CONIC_GAUSSIAN_TILE, of CONIC_SHAPE_RAY */
+  CONIC_STORED void *room; /* of what is ordered along rays: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more;
+                              aligned to 64 bytes */
+#ifndef CONIC_ON_DEVICE
+  const conic_gaussian_filter *filters; /* by footprint; of CONIC_SHAPE_FILTERED */
+  const conic_gaussian_sight *sights;   /* by footprint; of CONIC_SHAPE_SIGHT */
+  const conic_sight_rays *tile_rays;     /* of CONIC_SHAPE_SIGHT */
+  int is_parallel;                      /* rays are */
+#endif
 } conic_gaussian_list;
 
+#ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_kernels {
-  void (*composite[3])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
+  void (*composite[CONIC_N_SHAPES])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_kernels;
 
 CONIC_DECLARE_KERNELS(conic_gaussian_kernels);
-
-/* Composites a pixel's hits, in the order of z, and of the list. */
-void conic_gaussian_composite_hits(const conic_gaussian_list *list, conic_gaussian_hit *hits, size_t n,
-                                   conic_gaussian_tile *tile, size_t pixel);
+#endif
 
 #endif

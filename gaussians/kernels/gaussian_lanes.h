@@ -1,224 +1,132 @@
-/* Compositing in lanes: 16 pixels of a row, as many at a time as there are lanes. Includes what fills the table. */
-#include "core/lanes/lanes.h"
-#include "gaussians/draw/gaussian_tile.h"
+/* Compositing in lanes: block by block, in each the Gaussians of the list that may cover it, its pixels in registers.
+ * Includes what fills the table. C and OpenCL C share this text, and what it includes. */
+#include "gaussians/kernels/gaussian_rays_lanes.h"
 
-/* What of a tile's list does not change. */
-typedef struct scene {
-  const conic_gaussian_list *list;
-  conic_gaussian_tile *tile;
-  lanes most, least, stop, greatest;
-  int is_beyond_stop, has_greatest;
-} scene;
+enum { BATCH = 256 }; /* entries that are cut up by blocks at a time */
 
-CONIC_INLINE scene scene_of(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  const conic_gaussian_rules *rules = list->rules;
-  return (scene){list,
-                 tile,
-                 lanes_of(rules->alpha_most),
-                 lanes_of(rules->alpha_least),
-                 lanes_of(rules->stop),
-                 lanes_of((float)(0.5 * rules->greatest_q)),
-                 rules->is_beyond_stop,
-                 rules->greatest_q > 0.0};
+typedef struct batch {
+  record records[BATCH];
+  uint32_t blocks[BATCH]; /* that each may cover, as bits */
+  uint32_t footprints[BATCH];
+  size_t n;
+  uint32_t listed[BATCH + CONIC_LANES];                       /* those of one block */
+  unsigned goes_on[CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES]; /* which pixels of each vector */
+} batch;
+
+static void take_batch(const conic_gaussian_list *list, const conic_gaussian_tile *tile, size_t first, batch *b) {
+  b->n = 0;
+  for (size_t i = first; i < list->n && i < first + BATCH; i++) {
+    const CONIC_STORED conic_gaussian_footprint *f = footprint_of_entry(list, i);
+    record *r = &b->records[b->n];
+    *r = record_of(tile, f);
+    b->blocks[b->n] = blocks_of_box(tile, f) & blocks_of_ellipse(r, f->half_reach);
+    b->footprints[b->n] = list->entries[i];
+    b->n += b->blocks[b->n] != 0;
+  }
+  memset(b->blocks + b->n, 0, (BATCH - b->n) * sizeof *b->blocks);
 }
 
-CONIC_INLINE lanes lanes_alpha(const scene *s, const conic_gaussian_footprint *f, lanes half_q) {
-  return lanes_min(f->opacity * lanes_exp_negative(-half_q), s->most);
+CONIC_INLINE lanes half_q_of_ellipse(const record *r, places at) {
+  lanes dx = (at.column + r->x) + r->dx, dy = (at.row + r->y) + r->dy;
+  return 0.5f * (r->form[0] * dx * dx + r->form[2] * dy * dy) + r->form[1] * dx * dy;
 }
 
-CONIC_INLINE void lanes_accumulate(float *to, lanes_mask mask, lanes value) {
-  lanes_store(to, lanes_load(to) + lanes_keep(mask, value));
+/* The lesser of the plane's and the dot's. */
+CONIC_INLINE meeting_lanes meet_disc(const record *r, const CONIC_STORED conic_gaussian_ray *ray, places at) {
+  lanes x = at.column + r->x, y = at.row + r->y, dx = x + r->dx, dy = y + r->dy;
+  meeting_lanes m = meet_lanes(ray, x, y);
+  m.half_q = lanes_min(m.half_q, dx * dx + dy * dy);
+  return m;
 }
 
-/* What is wanted beside colour. */
-CONIC_INLINE void composite_planes_in_lanes(const scene *s, uint32_t i_footprint, lanes_mask goes, lanes z, lanes w,
-                                            lanes before, lanes after, size_t at) {
+CONIC_INLINE response respond(const scene *s, const record *r, uint32_t footprint, places at,
+                              conic_gaussian_shape shape) {
   const conic_gaussian_list *list = s->list;
-  conic_gaussian_tile *tile = s->tile;
-  index_lanes index = lanes_of_index(list->footprints[i_footprint].index);
-  lanes_mask crosses = goes & lanes_less(lanes_of(0.5f), before);
-  if (!list->rules->has_late_median)
-    crosses = crosses & lanes_at_least(lanes_of(0.5f), after);
-  lanes_accumulate(tile->sum + at, goes, w);
-  lanes_accumulate(tile->sum_of_z + at, goes, w * z);
-  lanes_accumulate(tile->inverse_z + at, goes, w / z);
-  lanes_replace(tile->median_z + at, crosses, z);
-  lanes_mask is_heavier = goes & lanes_less(lanes_load(tile->heaviest + at), w);
-  lanes_replace(tile->heaviest + at, is_heavier, w);
-  lanes_replace_indices(tile->id + at, is_heavier, index);
-  lanes_replace_indices(tile->last + at, goes, index);
-  lanes_store_indices(tile->count + at, lanes_increment(goes, lanes_load_indices(tile->count + at)));
-  for (int c = 0; c < 3 && list->normals; c++)
-    lanes_accumulate(tile->normal[c] + at, goes, w * list->normals[i_footprint][c]);
+  const float near_z = list->rules->disc_near;
+  response to = {.z = lanes_of(r->z), .color = {lanes_of(r->color[0]), lanes_of(r->color[1]), lanes_of(r->color[2])}};
+  meeting_lanes m;
+  if (shape == CONIC_SHAPE_DISC)
+    m = meet_disc(r, &list->rays[footprint], at);
+  else
+    m.half_q = half_q_of_ellipse(r, at);
+  to.alpha = lanes_alpha(s, r, m.half_q);
+  to.covered = within_box(r, at) & lanes_at_least(m.half_q, lanes_of(0.0f)) & lanes_at_least(to.alpha, s->least);
+  if (shape == CONIC_SHAPE_ELLIPSE && s->has_greatest)
+    to.covered = to.covered & lanes_at_least(s->greatest, m.half_q);
+  if (shape == CONIC_SHAPE_DISC && near_z > 0.0f) {
+    to.covered = to.covered & lanes_at_least(m.z, lanes_of(near_z));
+    to.z = m.z;
+  }
+  return to;
 }
 
-/* Where compositing ends, T goes to `rest`, and 0 takes its place. */
-CONIC_INLINE void end_pixels(conic_gaussian_tile *tile, lanes_mask ends, lanes before, size_t at) {
-  ends = ends & lanes_less(lanes_of(0.0f), before);
-  lanes_replace(tile->rest + at, ends, before);
-  lanes_replace(tile->T + at, ends, lanes_of(0.0f));
+CONIC_INLINE void composite_vector(const scene *s, batch *b, size_t n_listed, size_t pixel, conic_gaussian_shape shape,
+                                   int wants_all) {
+  const conic_gaussian_list *list = s->list;
+  const places at = places_at(pixel);
+  pixels p = take_pixels(s->tile, b->goes_on[pixel / CONIC_LANES], pixel, wants_all);
+  for (size_t i = 0; i < n_listed && lanes_any(p.goes_on); i++) {
+    const record *r = &b->records[b->listed[i]];
+    const uint32_t footprint = b->footprints[b->listed[i]];
+    response to = respond(s, r, footprint, at, shape);
+    if (!lanes_any(to.covered))
+      continue;
+    if (wants_all)
+      add_planes_of_footprint(list, footprint, &to);
+    composite_lanes(s, &to, &p, wants_all);
+  }
+  put_pixels(s->tile, &p, pixel, wants_all);
+  b->goes_on[pixel / CONIC_LANES] = lanes_bits(p.goes_on);
 }
 
-CONIC_INLINE void composite_lanes(const scene *s, uint32_t i_footprint, lanes_mask covered, lanes z, lanes alpha,
-                                  size_t at) {
-  const conic_gaussian_footprint *f = &s->list->footprints[i_footprint];
-  conic_gaussian_tile *tile = s->tile;
-  lanes before = lanes_load(tile->T + at), after = before * (1.0f - alpha), w = alpha * before;
-  lanes_mask ends = s->is_beyond_stop ? lanes_at_least(s->stop, after) : lanes_less(after, s->stop);
-  lanes_mask goes = covered & lanes_not(ends);
-  ends = ends & covered;
-  lanes_replace(tile->T + at, goes, after);
-  for (int c = 0; c < 3; c++)
-    lanes_accumulate(tile->rgb[c] + at, goes, w * f->color[c]);
-  if (s->list->wants_all)
-    composite_planes_in_lanes(s, i_footprint, goes, z, w, before, after, at);
-  if (lanes_any(ends))
-    end_pixels(tile, ends, before, at);
-}
-
-/* Columns of lanes, as offsets from the footprint's pixel; which of them lie within its box. */
-CONIC_INLINE lanes columns_of(const scene *s, const conic_gaussian_footprint *f, int column, lanes_mask *within) {
-  int_lanes x = ints_of_indices(lanes_ascending(0)) + (s->tile->x + column);
-  *within = lanes_not(lanes_less_int(x, (int_lanes){0} + (int32_t)f->box[0][0])) &
-            lanes_not(lanes_less_int((int_lanes){0} + (int32_t)f->box[1][0], x));
-  return lanes_of_ints(x - f->x);
-}
-
-/* The part of the tile that the footprint's box meets, in rows and whole lanes. */
-typedef struct part {
-  int first_row, last_row, first_column, last_column;
-} part;
-
-CONIC_INLINE int lesser_of(int a, int b) {
-  return a < b ? a : b;
-}
-
-CONIC_INLINE int greater_of(int a, int b) {
-  return a > b ? a : b;
-}
-
-CONIC_INLINE part part_in_tile(const conic_gaussian_tile *tile, const conic_gaussian_footprint *f) {
-  return (part){greater_of(f->box[0][1] - tile->y, 0), lesser_of(f->box[1][1] - tile->y, CONIC_GAUSSIAN_TILE - 1),
-                greater_of(f->box[0][0] - tile->x, 0) / CONIC_LANES * CONIC_LANES,
-                lesser_of(f->box[1][0] - tile->x, CONIC_GAUSSIAN_TILE - 1)};
-}
-
-static int is_over(const conic_gaussian_tile *tile) {
-  lanes most = lanes_load(tile->T);
-  for (size_t at = CONIC_LANES; at < CONIC_GAUSSIAN_TILE_PIXELS; at += CONIC_LANES)
-    most = lanes_max(most, lanes_load(tile->T + at));
-  return !lanes_any(lanes_less(lanes_of(0.0f), most));
-}
-
-enum { LOOKS_AGAIN = 64 }; /* entries from one look whether compositing has ended to the next */
-
-static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  const scene s = scene_of(list, tile);
-  for (size_t i = 0; i < list->n; i++) {
-    const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-    const part p = part_in_tile(tile, f);
-    if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
-      return;
-    for (int column = p.first_column; column <= p.last_column; column += CONIC_LANES) {
-      lanes_mask within;
-      lanes dx = columns_of(&s, f, column, &within) + f->dx, first = f->form[0] * dx * dx, mixed = f->form[1] * dx;
-      for (int row = p.first_row; row <= p.last_row; row++) {
-        float dy = (float)(tile->y + row - f->y) + f->dy;
-        lanes half_q = 0.5f * (first + lanes_of(f->form[2] * dy * dy)) + mixed * dy;
-        lanes alpha = lanes_alpha(&s, f, half_q);
-        lanes_mask covered = within & lanes_at_least(half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s.least);
-        if (s.has_greatest)
-          covered = covered & lanes_at_least(s.greatest, half_q);
-        if (lanes_any(covered))
-          composite_lanes(&s, list->entries[i], covered, lanes_of(f->z), alpha,
-                          (size_t)(row * CONIC_GAUSSIAN_TILE + column));
-      }
+/* Returns 0 where compositing has ended at all pixels. */
+CONIC_INLINE int composite_batch(const scene *s, batch *b, conic_gaussian_shape shape, int wants_all) {
+  unsigned going = 0;
+  for (int block = 0; block < CONIC_GAUSSIAN_BLOCKS; block++) {
+    size_t n_listed = list_block(b->blocks, b->n, block, b->listed);
+    for (size_t pixel = (size_t)block * CONIC_GAUSSIAN_BLOCK_PIXELS;
+         pixel < (size_t)(block + 1) * CONIC_GAUSSIAN_BLOCK_PIXELS; pixel += CONIC_LANES) {
+      if (b->goes_on[pixel / CONIC_LANES])
+        composite_vector(s, b, n_listed, pixel, shape, wants_all);
+      going |= b->goes_on[pixel / CONIC_LANES];
     }
   }
+  return going != 0;
 }
 
-typedef struct meeting_lanes {
-  lanes half_q, z;
-} meeting_lanes;
-
-CONIC_INLINE meeting_lanes meet_lanes(const conic_gaussian_ray *r, lanes dx, float dy) {
-  lanes g[3], c[3];
-  for (int k = 0; k < 3; k++) {
-    g[k] = r->g[0][k] + r->g[1][k] * dx + r->g[2][k] * dy;
-    c[k] = r->c[0][k] + r->c[1][k] * dx + r->c[2][k] * dy;
+CONIC_INLINE void composite_in_order(const conic_gaussian_list *list, conic_gaussian_tile *tile,
+                                     conic_gaussian_shape shape, int wants_all) {
+  const scene s = scene_of(list, tile);
+  batch b;
+  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS / CONIC_LANES; i++)
+    b.goes_on[i] = (1u << CONIC_LANES) - 1;
+  for (size_t first = 0; first < list->n; first += BATCH) {
+    take_batch(list, tile, first, &b);
+    if (!composite_batch(&s, &b, shape, wants_all))
+      return;
   }
-  lanes squares = g[0] * g[0] + g[1] * g[1] + g[2] * g[2], one_over = 1.0f / squares;
-  lanes half_q = 0.5f * ((c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) * one_over);
-  return (meeting_lanes){lanes_select(lanes_less(lanes_of(0.0f), squares), half_q, lanes_of(-1.0f)),
-                         (r->e[0] + r->e[1] * dx + r->e[2] * dy) * one_over};
+}
+
+static void composite_ellipses_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
+  if (list->wants_all)
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 1);
+  else
+    composite_in_order(list, tile, CONIC_SHAPE_ELLIPSE, 0);
 }
 
 static void composite_discs_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  const scene s = scene_of(list, tile);
-  const float near_z = list->rules->disc_near;
-  for (size_t i = 0; i < list->n; i++) {
-    const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-    const part p = part_in_tile(tile, f);
-    if (i % LOOKS_AGAIN == LOOKS_AGAIN - 1 && is_over(tile))
-      return;
-    for (int column = p.first_column; column <= p.last_column; column += CONIC_LANES) {
-      lanes_mask within;
-      lanes x = columns_of(&s, f, column, &within), dx = x + f->dx;
-      for (int row = p.first_row; row <= p.last_row; row++) {
-        float y = (float)(tile->y + row - f->y), dy = y + f->dy;
-        meeting_lanes m = meet_lanes(&list->rays[list->entries[i]], x, y);
-        lanes half_q = lanes_min(m.half_q, dx * dx + lanes_of(dy * dy)), alpha = lanes_alpha(&s, f, half_q);
-        lanes_mask covered = within & lanes_at_least(half_q, lanes_of(0.0f)) & lanes_at_least(alpha, s.least);
-        if (near_z > 0.0f)
-          covered = covered & lanes_at_least(m.z, lanes_of(near_z));
-        if (lanes_any(covered))
-          composite_lanes(&s, list->entries[i], covered, near_z > 0.0f ? m.z : lanes_of(f->z), alpha,
-                          (size_t)(row * CONIC_GAUSSIAN_TILE + column));
-      }
-    }
-  }
+  if (list->wants_all)
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, 1);
+  else
+    composite_in_order(list, tile, CONIC_SHAPE_DISC, 0);
 }
 
-/* Appends the lanes that are covered to their pixels' hits. */
-CONIC_INLINE void append_hits(const conic_gaussian_list *list, uint32_t i_footprint, unsigned bits, lanes z,
-                              lanes alpha, size_t column, size_t *n_hits) {
-  float depths[CONIC_LANES], alphas[CONIC_LANES];
-  lanes_store(depths, z);
-  lanes_store(alphas, alpha);
-  for (; bits; bits &= bits - 1) {
-    size_t lane = (size_t)__builtin_ctz(bits), pixel = column + lane;
-    list->hits[pixel * list->n + n_hits[pixel]++] = (conic_gaussian_hit){depths[lane], alphas[lane], i_footprint};
-  }
-}
-
-static void composite_rays_in_lanes(const conic_gaussian_list *list, conic_gaussian_tile *tile) {
-  const scene s = scene_of(list, tile);
-  for (int row = 0; row < CONIC_GAUSSIAN_TILE; row++) {
-    size_t n_hits[CONIC_GAUSSIAN_TILE] = {0};
-    for (size_t i = 0; i < list->n; i++) {
-      const conic_gaussian_footprint *f = &list->footprints[list->entries[i]];
-      const part p = part_in_tile(tile, f);
-      float y = (float)(tile->y + row - f->y);
-      if (row < p.first_row || row > p.last_row)
-        continue;
-      for (int column = p.first_column; column <= p.last_column; column += CONIC_LANES) {
-        lanes_mask within;
-        lanes x = columns_of(&s, f, column, &within);
-        meeting_lanes m = meet_lanes(&list->rays[list->entries[i]], x, y);
-        lanes alpha = lanes_alpha(&s, f, m.half_q);
-        lanes_mask covered = within & lanes_less(lanes_of(0.0f), m.z) & lanes_at_least(m.half_q, lanes_of(0.0f)) &
-                             lanes_at_least(alpha, s.least);
-        append_hits(list, list->entries[i], lanes_bits(covered), m.z, alpha, (size_t)column, n_hits);
-      }
-    }
-    for (size_t pixel = 0; pixel < CONIC_GAUSSIAN_TILE; pixel++)
-      conic_gaussian_composite_hits(list, list->hits + pixel * list->n, n_hits[pixel], tile,
-                                    (size_t)row * CONIC_GAUSSIAN_TILE + pixel);
-  }
-}
-
+#ifndef CONIC_ON_DEVICE
 CONIC_FILL_KERNELS(conic_gaussian_kernels) {
   kernels->composite[CONIC_SHAPE_ELLIPSE] = composite_ellipses_in_lanes;
   kernels->composite[CONIC_SHAPE_RAY] = composite_rays_in_lanes;
   kernels->composite[CONIC_SHAPE_DISC] = composite_discs_in_lanes;
+  kernels->composite[CONIC_SHAPE_FILTERED] = composite_filtered_in_lanes;
+  kernels->composite[CONIC_SHAPE_SIGHT] = composite_sights_in_lanes;
 }
+#endif
