@@ -44,9 +44,10 @@ typedef struct conic_gaussian_options {
   conic_isa isa;                 /* as the context has it */
   uint32_t ignores_center;       /* where the profile does, and would else refuse a camera that is not centred */
   conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
+  double prefilter; /* of `exact`: the variance of the filter on the screen, h, in square pixels, 0 to 10000 */
 } conic_gaussian_options;
 
-/* Exact, black. */
+/* Exact, black, no filter. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
 
