@@ -18,6 +18,8 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
       (model && !conic_options_take(&e->model, model)) || !conic_oracle_gaussian_rules(e->options.profile) ||
       samples < 1 || samples > CONIC_MAX_SAMPLES)
     return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples");
+  if (e->options.prefilter != 0.0)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: a picture under a prefilter is not judged");
   if (conic_view_pinhole_check(context, "judge", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   if ((long)camera->width * samples > 65535 || (long)camera->height * samples > 65535)

@@ -80,6 +80,7 @@ declare -A wanted=(
   [info]="kind points bytes? bytes_per_point? bounds.min bounds.max sound?"
   [info-octree]="kind points nodes inner_nodes levels bytes bytes_per_point bounds.min bounds.max sound?"
   [info-gaussians]="kind gaussians sh_degree 2d antialiased bytes? bounds.min bounds.max sound?"
+  [info-cameras]="kind format views"
   [convert]="kind_in kind_out gaussians sh_degree_in sh_degree_out reordered lossless? lost? differences.position
     differences.scale differences.rotation_deg differences.opacity differences.color differences.harmonics pictures.views?
     pictures.psnr? pictures.greatest? bytes?"
@@ -160,6 +161,14 @@ write info-hybrid info_hybrid info tent.chy --check
 # Two Gaussians, as .splat has them.
 row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
 printf "$row$row" > two.splat
+mkdir model
+printf '1 RADIAL_FISHEYE 9 8 7 4 4 .1 .2\n' > model/cameras.txt
+printf '1 1 0 0 0 0 0 0 1 one.png\n\n' > model/images.txt
+printf '[{"img_name": "one", "width": 9, "height": 8, "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "fx": 7, "fy": 7}]' > cameras.json
+write info-cameras info_cameras info model
+write info-camera info_cameras info cameras.json --check
+write render-view render render knot.ply --camera cameras.json -o knot.exr --frames 0 --view all
 write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
 write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100

@@ -50,6 +50,7 @@ static conic_gaussian_verdict judge_image(conic_context *context, const conic_ga
   conic_gaussian_verdict verdict;
   conic_gaussian_options_init(&options);
   options.profile = (conic_gaussian_profile)profile;
+  options.ignores_center = 1;
   CHECK_OK(conic_gaussian_judge(context, scene, camera, &options, NULL, image, NULL, &verdict));
   return verdict;
 }
