@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/render/backdrop.h"
 #include "cli/render/frames.h"
+#include "conic/gaussian_judge.h"
 #include "core/base/message.h"
 
 static int compare_frames(const void *a, const void *b) {
@@ -191,6 +192,18 @@ static void warn_of_error(cli_session *session, cli_render_job *job) {
   job->is_error_warned = 1;
 }
 
+/* The plane doubt is not the renderer's, but the oracle's about what it may have drawn. */
+static conic_status find_doubts(cli_session *session, const cli_render_job *job, const conic_camera *camera,
+                                conic_image *image) {
+  conic_gaussian_judging judging;
+  if (!image->planes[CONIC_PLANE_DOUBT])
+    return CONIC_OK;
+  conic_gaussian_judging_init(&judging);
+  judging.samples = job->view.samples;
+  return conic_gaussian_find_doubts(session->context, conic_source_gaussians(job->source), camera, &job->gaussians,
+                                    &judging, image);
+}
+
 static conic_status render_frame(cli_session *session, cli_render_job *job, int i_frame, conic_image *image,
                                  conic_render_statistics *repeats) {
   conic_camera camera;
@@ -210,6 +223,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   for (int i = 0; i < job->repeat; i++)
     job->frames_ms += repeats[i].ms.frame;
   status = conic_image_locate(session->context, &camera, job->view.samples, image);
+  if (status == CONIC_OK)
+    status = find_doubts(session, job, &camera, image);
   if (status != CONIC_OK)
     return status;
   take_medians(job, repeats, (size_t)job->repeat);

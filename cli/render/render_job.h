@@ -72,6 +72,7 @@ typedef struct cli_render_job {
   conic_layers_access access;
   conic_coloring_options coloring; /* the opening's, if it has one; `by` null: not given */
   int is_for_looking;              /* the command makes pictures, several samples a pixel unless said otherwise */
+  int may_composite;               /* or asks about such pictures: Gaussian scenes stay what they are */
   int may_stream;                  /* the command draws without having to know what */
   unsigned abilities;              /* what the source can do, bits of conic_source_ability; known before it is open */
   conic_source_view view;

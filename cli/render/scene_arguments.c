@@ -167,7 +167,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        .parse = cli_parse_exposure},
       {"aov", CLI_PARSED, &job->planes, "LIST",
        "planes: rgba,Z,N,albedo,weight,count,id or all; P, places in the world; cluster of hybrids; T, medianZ, "
-       "inverseZ, last of "
+       "inverseZ, last, doubt of "
        "Gaussian scenes [rgba,Z]",
        .parse = cli_parse_planes, .is_given = &job->is_aov_given},
       {"degree", CLI_INT, &job->patches.surface.degree, "D", "patch: of the polynomials, 1 to 4 [3]", 1,
@@ -195,7 +195,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (!job->is_patch)
     o->method = (conic_method)method;
   job->gaussians.profile = (conic_gaussian_profile)profile;
-  if (profile < CONIC_N_GAUSSIAN_PROFILES && (raw.is_profile_given || (job->is_for_looking && !job->is_plain)))
+  if (profile < CONIC_N_GAUSSIAN_PROFILES &&
+      (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
     job->opening.gaussians = &job->gaussians;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;

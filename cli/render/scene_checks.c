@@ -37,16 +37,13 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
                      command);
   if (is_hybrid)
     return job->n_inputs == 1 ? CLI_DONE : cli_usage("%s: a hybrid is drawn by itself, and made of one mesh", command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && strcmp(job->device.name, "cpu") != 0)
-    return cli_usage("%s: Gaussian scenes are drawn by the processor; --profile surface draws one by --device",
-                     command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && (job->deep_path || job->has_mattes || job->is_exposure_automatic))
     return cli_usage("%s: --deep, --cryptomatte and --exposure auto are of splats; give --profile surface, too",
                      command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking)
+  if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking && !job->may_composite)
     return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
   if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
-    return cli_usage("%s: the planes T, medianZ, inverseZ and last are of Gaussian scenes", command);
+    return cli_usage("%s: the planes T, medianZ, inverseZ, last and doubt are of Gaussian scenes", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)
     return cli_usage("%s: --only, --clusters and the plane cluster are of hybrids: a .chy, or --as hybrid", command);
   if (job->abilities & CONIC_SOURCE_STREAMS && cli_lod_is_wanted(job) && !job->may_stream)

@@ -15,11 +15,15 @@ typedef struct bin_job {
   size_t *places; /* n_runs × n_tiles: counts, then places */
 } bin_job;
 
+enum { AHEAD = 16 };
+
 static void visit(const bin_job *j, size_t i_run, int writes) {
   size_t *places = &j->places[i_run * j->bins->n_tiles], across = j->bins->n_tiles_x;
   size_t end = (i_run + 1) * j->a_run < j->n ? (i_run + 1) * j->a_run : j->n;
   for (size_t i = i_run * j->a_run; i < end; i++) {
     const conic_gaussian_footprint *f = &j->footprints[j->order[i].value];
+    if (i + AHEAD < end) /* they lie all over the memory */
+      __builtin_prefetch(j->footprints[j->order[i + AHEAD].value].box);
     for (size_t y = f->box[0][1] / CONIC_GAUSSIAN_TILE; y <= f->box[1][1] / CONIC_GAUSSIAN_TILE; y++)
       for (size_t x = f->box[0][0] / CONIC_GAUSSIAN_TILE; x <= f->box[1][0] / CONIC_GAUSSIAN_TILE; x++) {
         size_t *place = &places[y * across + x];

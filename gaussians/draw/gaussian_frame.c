@@ -9,7 +9,7 @@
 #include "core/base/real.h"
 #include "core/base/threads.h"
 #include "core/image/view_arguments.h"
-#include "gaussians/draw/gaussian_bins.h"
+#include "gaussians/draw/gaussian_device.h"
 
 enum { SET_UP_RUN = 2048 };
 
@@ -90,63 +90,35 @@ static conic_status order_footprints(frame *f) {
   return conic_radix_sort(f->context, f->order, n, 32);
 }
 
-static void begin_compositing(const frame *f, size_t i_tile, conic_gaussian_tile *tile) {
-  memset(tile, 0, sizeof *tile);
-  for (size_t i = 0; i < CONIC_GAUSSIAN_TILE_PIXELS; i++) {
-    tile->T[i] = 1.0f;
-    tile->id[i] = tile->last[i] = CONIC_NO_ID;
-  }
-  tile->x = (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
-  tile->y = (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE;
+static conic_gaussian_target target_of(const frame *f) {
+  const conic_gaussian_planes *p = f->planes;
+  const float *background = f->options->background;
+  return (conic_gaussian_target){p->width,    p->height,       {background[0], background[1], background[2]},
+                                 p->rgb,      p->transparency, p->z,
+                                 p->median_z, p->inverse_z,    p->normal,
+                                 p->count,    p->id,           p->last};
 }
 
-static void put_number(float *plane, size_t pixel, float value) {
-  if (plane)
-    plane[pixel] = value;
-}
-
-static void put_word(uint32_t *plane, size_t pixel, uint32_t value) {
-  if (plane)
-    plane[pixel] = value;
-}
-
-static void end_compositing(const frame *f, const conic_gaussian_tile *tile) {
-  conic_gaussian_planes *to = f->planes;
-  for (size_t at = 0; at < CONIC_GAUSSIAN_TILE_PIXELS; at++) {
-    int x = tile->x + conic_gaussian_column(at), y = tile->y + conic_gaussian_row(at);
-    size_t pixel = (size_t)y * (size_t)to->width + (size_t)x;
-    if (x >= to->width || y >= to->height)
-      continue;
-    put_number(to->transparency, pixel, tile->T[at]);
-    put_number(to->z, pixel, tile->sum[at] > 0.0f ? tile->sum_of_z[at] / tile->sum[at] : 0.0f);
-    put_number(to->median_z, pixel, tile->median_z[at]);
-    put_number(to->inverse_z, pixel, tile->inverse_z[at]);
-    put_word(to->count, pixel, tile->count[at]);
-    put_word(to->id, pixel, tile->id[at]);
-    put_word(to->last, pixel, tile->last[at]);
-    for (int c = 0; c < 3; c++) {
-      put_number(to->rgb, 3 * pixel + (size_t)c, tile->rgb[c][at] + tile->T[at] * f->options->background[c]);
-      put_number(to->normal, 3 * pixel + (size_t)c, tile->normal[c][at]);
-    }
-  }
+static int wants_all(const conic_gaussian_planes *p) {
+  return p->z || p->median_z || p->inverse_z || p->normal || p->count || p->id || p->last;
 }
 
 static void composite_tile(void *data, size_t i_tile, int i_thread) {
   frame *f = data;
-  const conic_gaussian_planes *to = f->planes;
+  const conic_gaussian_target target = target_of(f);
   conic_gaussian_tile tile;
-  begin_compositing(f, i_tile, &tile);
+  conic_gaussian_tile_begin(&tile, (int)(i_tile % f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE,
+                            (int)(i_tile / f->bins.n_tiles_x) * CONIC_GAUSSIAN_TILE);
   conic_gaussian_list list = {.rules = f->view.rules,
                               .footprints = f->footprints,
                               .rays = f->rays,
                               .normals = (const float(*)[3])f->normals,
-                              .wants_all = to->z || to->median_z || to->inverse_z || to->normal || to->count ||
-                                           to->id || to->last,
+                              .wants_all = wants_all(f->planes),
                               .entries = f->bins.entries + f->bins.tile_begin[i_tile],
                               .n = f->bins.tile_begin[i_tile + 1] - f->bins.tile_begin[i_tile],
                               .room = f->rooms ? f->rooms[i_thread] : NULL};
   f->kernels.composite[f->view.rules->shape](&list, &tile);
-  end_compositing(f, &tile);
+  conic_gaussian_tile_end(&target, &tile);
 }
 
 /* Room for the longest list. */
@@ -163,9 +135,28 @@ static conic_status make_rooms(frame *f) {
   if (!f->rooms)
     return CONIC_ERROR_MEMORY;
   for (size_t i = 0; i < threads; i++)
-    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 1, CONIC_GAUSSIAN_ROOM)))
+    if (!(f->rooms[i] = conic_memory_allocate(f->context, longest + 16, CONIC_GAUSSIAN_ROOM)))
       return CONIC_ERROR_MEMORY;
   return CONIC_OK;
+}
+
+static conic_status composite_here(frame *f) {
+  conic_status status = make_rooms(f);
+  return status == CONIC_OK ? conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f)
+                            : status;
+}
+
+static conic_status composite_on_device(const frame *f) {
+  const conic_gaussian_composition composition = {.rules = f->view.rules,
+                                                  .n_drawn = f->n,
+                                                  .n = f->set->count,
+                                                  .footprints = f->footprints,
+                                                  .rays = f->rays,
+                                                  .normals = (const float(*)[3])f->normals,
+                                                  .wants_all = wants_all(f->planes),
+                                                  .bins = &f->bins,
+                                                  .target = target_of(f)};
+  return f->options->device->composite(f->options->device, &composition);
 }
 
 static void release_frame(frame *f) {
@@ -191,11 +182,9 @@ static conic_status draw_scene(frame *f) {
                                       &f->bins);
   f->statistics.seconds_bin = conic_seconds_now() - now;
   now = conic_seconds_now();
-  if (status == CONIC_OK)
-    status = make_rooms(f);
   if (status == CONIC_OK) {
     f->statistics.entries = f->bins.tile_begin[f->bins.n_tiles];
-    status = conic_parallel_told(f->context, "composite", 0.5, 1.0, f->bins.n_tiles, composite_tile, f);
+    status = f->options->device ? composite_on_device(f) : composite_here(f);
   }
   f->statistics.seconds_composite = conic_seconds_now() - now;
   return status;
@@ -231,6 +220,7 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   f.has_rays = f.view.rules->shape != CONIC_SHAPE_ELLIPSE;
   f.statistics.gaussians_in = gaussians->count;
   f.statistics.isa = isa;
+  f.statistics.device_units = own.device ? (uint64_t)own.device->n_units : 0;
   f.statistics.tile = CONIC_GAUSSIAN_TILE;
   conic_gaussian_kernels_init(&f.kernels, isa);
   look_through(camera, &f.view);

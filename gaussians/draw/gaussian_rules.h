@@ -29,7 +29,7 @@ typedef struct conic_gaussian_rules {
   double compensation_least; /* the opacity is multiplied by √max(this, det/det′); negative: it is not */
   double slope_margin;       /* x/z and y/z of the Jacobian are clamped so far beyond the picture, as a share of half
                                 its width; negative: not */
-  double greatest_q;         /* beyond which nothing is; 0: no such border */
+  float greatest_half_q;     /* beyond which nothing is; 0: no such border */
   int takes_rotation_as_is;  /* quaternions that are of length 1 but for roundings */
   int takes_middle;          /* the middle of the picture in place of the principal point */
   int orders_by_distance;

@@ -4,27 +4,17 @@
 
 #include "core/base/power.h"
 #include "core/base/vectors.h"
-#include "gaussians/draw/gaussian_footprint.h"
+#include "gaussians/draw/gaussian_outline.h"
 #include "gaussians/draw/harmonic_color.h"
-
-/* How much larger a box is made than the formulas say, in pixels: more than their roundings. */
-static const double slack_px = 0.0625;
 
 /* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
 static const double unit_slack = 0x1p-20;
-
-/* The Gaussian in camera space. */
-typedef struct placed {
-  double mean[3], unit[3][3], scale[3], opacity;
-  double world[3][3]; /* its axes' directions in the world, as columns */
-  int is_flat;
-} placed;
 
 static int is_number(double v) {
   return v - v == 0.0;
 }
 
-static int place_axes(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, placed *p) {
+static int place_axes(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, conic_gaussian_placed *p) {
   double q[4], squares = 0.0;
   for (int k = 0; k < 4; k++) {
     q[k] = (double)set->rotation[k][i];
@@ -52,8 +42,8 @@ static int place_axes(const conic_gaussian_view *view, const conic_gaussians *se
 }
 
 /* Returns 0 where a number is not finite. */
-static int place_in_camera(const conic_gaussian_view *view, const conic_gaussians *set, size_t i, placed *p,
-                           double from_eye[3]) {
+static int place_in_camera(const conic_gaussian_view *view, const conic_gaussians *set, size_t i,
+                           conic_gaussian_placed *p, double from_eye[3]) {
   double mean[3];
   for (int axis = 0; axis < 3; axis++) {
     mean[axis] = set->origin[axis] + (double)set->position[axis][i];
@@ -70,54 +60,33 @@ static int place_in_camera(const conic_gaussian_view *view, const conic_gaussian
   return is_number(p->opacity);
 }
 
-static double limited(double value, double least, double most) {
-  return value > least ? (value < most ? value : most) : least;
-}
-
 /* The pixel that a place is in, or the nearest one within a picture's width of the picture, and the rest. */
 static void take_reference(const conic_gaussian_view *view, double x, double y, conic_gaussian_footprint *f) {
   double width = view->camera->width, height = view->camera->height;
-  f->x = (int32_t)limited(x, -width, 2.0 * width);
-  f->y = (int32_t)limited(y, -height, 2.0 * height);
+  f->x = (int32_t)conic_limited(x, -width, 2.0 * width);
+  f->y = (int32_t)conic_limited(y, -height, 2.0 * height);
   f->dx = (float)((double)f->x + 0.5 - x);
   f->dy = (float)((double)f->y + 0.5 - y);
 }
 
-/* Limits the box to pixels whose centres are within, and to the picture. Returns 0 where it is empty. */
-static int limit_box(const conic_gaussian_view *view, const double least[2], const double most[2],
-                     conic_gaussian_footprint *f) {
-  const int size[2] = {view->camera->width, view->camera->height};
-  for (int axis = 0; axis < 2; axis++) {
-    double first = limited(least[axis] - 0.5, 0.0, 65536.0), last = limited(most[axis] - 0.5, -1.0, size[axis] - 1);
-    int whole = (int)first;
-    whole += (double)whole < first;
-    if (!(last >= (double)whole) || whole >= size[axis])
-      return 0;
-    f->box[0][axis] = (uint16_t)whole;
-    f->box[1][axis] = (uint16_t)(int)last;
-  }
-  return 1;
-}
-
 /* Twice the logarithm of how much the opacity is above the least alpha: beyond this q nothing is. 0: nowhere. */
 static double reach_of(const conic_gaussian_rules *rules, double opacity) {
-  if (rules->greatest_q > 0.0)
-    return rules->greatest_q;
+  if (rules->greatest_half_q > 0.0f)
+    return 2.0 * (double)rules->greatest_half_q;
   if (!(opacity >= (double)rules->alpha_least))
     return 0.0;
   return 2.0 * conic_logarithm(opacity / (double)rules->alpha_least) + 1e-3;
 }
 
 /* Half of it, with room for roundings. Where the exponential ends at e⁻⁸⁰, it never falls below what is composited. */
-static float half_reach_of(const conic_gaussian_rules *rules, double opacity) {
-  double half = 0.5 * reach_of(rules, opacity);
-  return half < 79.0 ? (float)half + 1e-4f : INFINITY;
+static float half_reach_of(double reach) {
+  return reach < 158.0 ? (float)(0.5 * reach) + 1e-4f : INFINITY;
 }
 
 /* Whole tiles of 16 pixels, as integers that are cut off towards 0. */
 static double tile_border(double place, double size) {
   double n = place / 16.0, most = (double)(((int)size + 15) / 16);
-  return 16.0 * (double)(int)limited(n, 0.0, most);
+  return 16.0 * (double)(int)conic_limited(n, 0.0, most);
 }
 
 static void cover_square(const conic_gaussian_view *view, const double place[2], double radius, double least[2],
@@ -132,11 +101,12 @@ static void cover_square(const conic_gaussian_view *view, const double place[2],
 }
 
 static double round_up(double value) {
-  double whole = (double)(int64_t)limited(value, -1e15, 1e15);
+  double whole = (double)(int64_t)conic_limited(value, -1e15, 1e15);
   return whole + (whole < value);
 }
 
-static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, placed *p, conic_gaussian_footprint *f) {
+static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, conic_gaussian_placed *p,
+                                          conic_gaussian_footprint *f) {
   const conic_gaussian_rules *rules = view->rules;
   const conic_camera *camera = view->camera;
   const double focal[2] = {camera->fx, camera->fy}, size[2] = {camera->width, camera->height};
@@ -146,8 +116,8 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, place
     double slope = p->mean[axis] / p->mean[2], half = 0.5 * size[axis] / focal[axis], c = view->center_px[axis];
     place[axis] = focal[axis] * slope + c;
     if (rules->slope_margin >= 0.0)
-      slope = limited(slope, -(c / focal[axis] + rules->slope_margin * half),
-                      (size[axis] - c) / focal[axis] + rules->slope_margin * half);
+      slope = conic_limited(slope, -(c / focal[axis] + rules->slope_margin * half),
+                            (size[axis] - c) / focal[axis] + rules->slope_margin * half);
     for (int k = 0; k < 3; k++)
       rows[axis][k] = focal[axis] / p->mean[2] * (p->unit[k][axis] - slope * p->unit[k][2]) * p->scale[k];
   }
@@ -162,24 +132,25 @@ static conic_gaussian_fate set_up_ellipse(const conic_gaussian_view *view, place
     p->opacity *= sqrt(bare / wide > rules->compensation_least ? bare / wide : rules->compensation_least);
   const double variance[2] = {xx, yy}, reach = reach_of(rules, p->opacity);
   for (int axis = 0; axis < 2; axis++) {
-    least[axis] = place[axis] - (sqrt(reach * variance[axis]) + slack_px);
-    most[axis] = place[axis] + (sqrt(reach * variance[axis]) + slack_px);
+    least[axis] = place[axis] - (sqrt(reach * variance[axis]) + CONIC_GAUSSIAN_SLACK_PX);
+    most[axis] = place[axis] + (sqrt(reach * variance[axis]) + CONIC_GAUSSIAN_SLACK_PX);
   }
   if (rules->coverage == CONIC_COVERAGE_TILES) {
     double mean = 0.5 * (xx + yy), apart = mean * mean - wide;
     cover_square(view, place, round_up(3.0 * sqrt(mean + sqrt(apart > 0.1 ? apart : 0.1))), least, most);
   }
   take_reference(view, place[0], place[1], f);
+  f->half_reach = half_reach_of(reach);
   f->form[0] = (float)(yy / wide);
   f->form[1] = (float)(-xy / wide);
   f->form[2] = (float)(xx / wide);
-  return reach > 0.0 && limit_box(view, least, most, f) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  return reach > 0.0 && conic_gaussian_limit_box(view, least, most, f) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
 /* g, c and e at a place of the screen, and their gradients. In the frame where the Gaussian is a unit ball, times its
  * third scale where it is flat, so that nothing is divided by zero. */
-static int find_ray(const conic_gaussian_view *view, const placed *p, const conic_gaussian_footprint *f,
-                    conic_gaussian_ray *ray) {
+static int find_ray(const conic_gaussian_view *view, const conic_gaussian_placed *p, const conic_gaussian_footprint *f,
+                    conic_gaussian_ray *ray, double *unit) {
   const conic_camera *camera = view->camera;
   const double steps[3][3] = {{((double)f->x + 0.5 - view->center_px[0]) / camera->fx,
                                ((double)f->y + 0.5 - view->center_px[1]) / camera->fy, 1.0},
@@ -205,6 +176,7 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
     unit_of = unit_of > conic_length(g[step]) ? unit_of : conic_length(g[step]);
   if (!(unit_of > 0.0) || !is_number(unit_of))
     return 0;
+  *unit = unit_of;
   for (int step = 0; step < 3; step++) {
     for (int k = 0; k < 3; k++) {
       ray->g[step][k] = (float)(g[step][k] / unit_of);
@@ -215,34 +187,7 @@ static int find_ray(const conic_gaussian_view *view, const placed *p, const coni
   return is_number((double)(ray->c[0][0] + ray->c[0][1] + ray->c[0][2] + ray->e[0]));
 }
 
-/* The box of the ellipsoid at q = reach: its dual conic, ρ²Σ − ppᵀ, cut by the planes through the eye that are upright
- * or level. All of the screen where it comes up to the plane of the eye. Returns 0 where it lies behind that. */
-static int project_ellipsoid(const conic_gaussian_view *view, const placed *p, double reach, double least[2],
-                             double most[2]) {
-  const double focal[2] = {view->camera->fx, view->camera->fy};
-  double sigma[3][3] = {{0}};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++)
-        sigma[i][j] += p->unit[k][i] * p->scale[k] * (p->unit[k][j] * p->scale[k]);
-  double depth = reach * sigma[2][2] * (1.0 + 1e-9) - p->mean[2] * p->mean[2];
-  if (depth < 0.0 && p->mean[2] < 0.0)
-    return 0;
-  for (int axis = 0; axis < 2; axis++) {
-    least[axis] = -1e9;
-    most[axis] = 1e9;
-    double a = reach * sigma[axis][axis] - p->mean[axis] * p->mean[axis];
-    double b = reach * sigma[axis][2] - p->mean[axis] * p->mean[2], root = b * b - a * depth;
-    if (!(depth < -1e-9 * p->mean[2] * p->mean[2]) || !(root >= 0.0))
-      continue;
-    double middle = b / depth, half = sqrt(root) / -depth * (1.0 + 1e-9);
-    least[axis] = limited(focal[axis] * (middle - half) + view->center_px[axis] - slack_px, -1e9, 1e9);
-    most[axis] = limited(focal[axis] * (middle + half) + view->center_px[axis] + slack_px, -1e9, 1e9);
-  }
-  return 1;
-}
-
-static void take_mean(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f) {
+static void take_mean(const conic_gaussian_view *view, const conic_gaussian_placed *p, conic_gaussian_footprint *f) {
   double x = view->center_px[0], y = view->center_px[1];
   if (p->mean[2] > 0.0) {
     x += view->camera->fx * (p->mean[0] / p->mean[2]);
@@ -251,17 +196,22 @@ static void take_mean(const conic_gaussian_view *view, const placed *p, conic_ga
   take_reference(view, x, y, f);
 }
 
-static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f,
-                                      conic_gaussian_ray *ray) {
-  double least[2], most[2], reach = reach_of(view->rules, p->opacity);
-  if (!(reach > 0.0) || !project_ellipsoid(view, p, reach, least, most) || !limit_box(view, least, most, f))
+static conic_gaussian_fate set_up_ray(const conic_gaussian_view *view, conic_gaussian_placed *p,
+                                      conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
+  double least[2], most[2], unit_of, reach = reach_of(view->rules, p->opacity);
+  if (!(reach > 0.0) || !conic_gaussian_project(view, p, reach, least, most) ||
+      !conic_gaussian_limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_mean(view, p, f);
-  return find_ray(view, p, f, ray) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  f->half_reach = half_reach_of(reach);
+  return find_ray(view, p, f, ray, &unit_of) && conic_gaussian_find_outline(view, p, reach, ray, unit_of, f)
+             ? CONIC_GAUSSIAN_DRAWN
+             : CONIC_GAUSSIAN_CULLED;
 }
 
 /* The centre of the box of the outline at the profile's cutoff, and half the box's size. */
-static int find_disc_box(const conic_gaussian_view *view, const placed *p, double place[2], double extent[2]) {
+static int find_disc_box(const conic_gaussian_view *view, const conic_gaussian_placed *p, double place[2],
+                         double extent[2]) {
   const double focal[2] = {view->camera->fx, view->camera->fy};
   const double square = view->rules->disc_cutoff * view->rules->disc_cutoff;
   double rows[3][3], weight;
@@ -283,21 +233,22 @@ static int find_disc_box(const conic_gaussian_view *view, const placed *p, doubl
   return is_number(place[0]) && is_number(place[1]);
 }
 
-static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, const placed *p, conic_gaussian_footprint *f,
-                                       conic_gaussian_ray *ray) {
+static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, conic_gaussian_placed *p,
+                                       conic_gaussian_footprint *f, conic_gaussian_ray *ray) {
   const conic_gaussian_rules *rules = view->rules;
   const double size[2] = {view->camera->width, view->camera->height}, reach = reach_of(rules, p->opacity);
-  double place[2], extent[2], least[2], most[2];
-  if (!(reach > 0.0) || !find_disc_box(view, p, place, extent) || !project_ellipsoid(view, p, reach, least, most))
+  double place[2], extent[2], least[2], most[2], unit_of;
+  if (!(reach > 0.0) || !find_disc_box(view, p, place, extent) || !conic_gaussian_project(view, p, reach, least, most))
     return CONIC_GAUSSIAN_CULLED;
   for (int axis = 0; axis < 2; axis++) { /* or the dot, whose variance is ½ px² */
-    double dot = sqrt(0.5 * reach) + slack_px;
+    double dot = sqrt(0.5 * reach) + CONIC_GAUSSIAN_SLACK_PX;
     least[axis] = least[axis] < place[axis] - dot ? least[axis] : place[axis] - dot;
     most[axis] = most[axis] > place[axis] + dot ? most[axis] : place[axis] + dot;
   }
   if (rules->coverage == CONIC_COVERAGE_TILES)
-    cover_square(view, place, round_up(limited(extent[0] > extent[1] ? extent[0] : extent[1], 3.0 * 0.707106, 1e15)),
-                 least, most);
+    cover_square(view, place,
+                 round_up(conic_limited(extent[0] > extent[1] ? extent[0] : extent[1], 3.0 * 0.707106, 1e15)), least,
+                 most);
   for (int axis = 0; axis < 2 && rules->coverage == CONIC_COVERAGE_BOX; axis++) {
     double radius = round_up(rules->disc_extent * extent[axis]);
     if (place[axis] + radius <= 0.0 || place[axis] - radius >= size[axis])
@@ -307,13 +258,14 @@ static conic_gaussian_fate set_up_disc(const conic_gaussian_view *view, const pl
     least[axis] = least[axis] > first ? least[axis] : first;
     most[axis] = most[axis] < behind ? most[axis] : behind;
   }
-  if (!limit_box(view, least, most, f))
+  if (!conic_gaussian_limit_box(view, least, most, f))
     return CONIC_GAUSSIAN_CULLED;
   take_reference(view, place[0], place[1], f);
-  return find_ray(view, p, f, ray) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
+  f->half_reach = half_reach_of(reach);
+  return find_ray(view, p, f, ray, &unit_of) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_CULLED;
 }
 
-static void choose_normal(const conic_gaussian_view *view, const placed *p, float normal[3]) {
+static void choose_normal(const conic_gaussian_view *view, const conic_gaussian_placed *p, float normal[3]) {
   int axis = 2;
   for (int k = 1; k >= 0 && !p->is_flat; k--)
     axis = p->scale[k] < p->scale[axis] ? k : axis;
@@ -327,7 +279,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
                                           conic_gaussian_footprint *f, float *key, conic_gaussian_ray *ray,
                                           float normal[3]) {
   const conic_gaussian_rules *rules = view->rules;
-  placed p;
+  conic_gaussian_placed p;
   double from_eye[3];
   if (!place_in_camera(view, gaussians, i, &p, from_eye) || !place_axes(view, gaussians, i, &p))
     return CONIC_GAUSSIAN_SKIPPED;
@@ -348,7 +300,6 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (fate != CONIC_GAUSSIAN_DRAWN)
     return fate;
   f->opacity = (float)p.opacity;
-  f->half_reach = half_reach_of(rules, p.opacity);
   f->z = (float)z;
   *key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;

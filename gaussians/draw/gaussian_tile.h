@@ -7,7 +7,15 @@
 #include "core/lanes/instruction_sets.h"
 #include "gaussians/draw/gaussian_footprint.h"
 
-enum { CONIC_GAUSSIAN_TILE = 16, CONIC_GAUSSIAN_TILE_PIXELS = CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE };
+enum { CONIC_GAUSSIAN_TILE = 16 };
+#ifndef CONIC_GAUSSIAN_TILE_PIXELS /* 1 where a device has a work-item for each */
+#define CONIC_GAUSSIAN_TILE_PIXELS (CONIC_GAUSSIAN_TILE * CONIC_GAUSSIAN_TILE)
+#endif
+
+/* Where a frame's records lie: in a memory of its own on a device. */
+#ifndef CONIC_STORED
+#define CONIC_STORED
+#endif
 
 enum { CONIC_GAUSSIAN_BLOCK = 4, CONIC_GAUSSIAN_BLOCKS = 16, CONIC_GAUSSIAN_BLOCK_PIXELS = 16 };
 
@@ -31,25 +39,28 @@ typedef struct conic_gaussian_tile {
   int x, y; /* of its first pixel */
 } conic_gaussian_tile;
 
-enum { CONIC_GAUSSIAN_ROOM = 512 };
+enum { CONIC_GAUSSIAN_ROOM = 320 };
 
 /* What is composited in a tile: the footprints that the entries name, in their order. */
 typedef struct conic_gaussian_list {
   const conic_gaussian_rules *rules;
-  const conic_gaussian_footprint *footprints;
-  const conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
-  const float (*normals)[3];      /* by footprint; null: not wanted */
-  int wants_all;                  /* else T and rgb alone */
-  const uint32_t *entries;
+  const CONIC_STORED conic_gaussian_footprint *footprints;
+  const CONIC_STORED conic_gaussian_ray *rays; /* by footprint; of shapes that have them */
+  const CONIC_STORED float (*normals)[3];      /* by footprint; null: not wanted */
+  int wants_all;                               /* else T and rgb alone */
+  const CONIC_STORED uint32_t *entries;
   size_t n;
-  void *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and one more; aligned to 64 bytes */
+  CONIC_STORED void
+      *room; /* of CONIC_SHAPE_RAY: CONIC_GAUSSIAN_ROOM bytes for each entry and 16 more; aligned to 64 bytes */
 } conic_gaussian_list;
 
+#ifndef CONIC_ON_DEVICE /* where no pointer is to a function */
 /* One slot a shape: composites the list in the tile, whose sums and T's begin. */
 typedef struct conic_gaussian_kernels {
   void (*composite[3])(const conic_gaussian_list *list, conic_gaussian_tile *tile);
 } conic_gaussian_kernels;
 
 CONIC_DECLARE_KERNELS(conic_gaussian_kernels);
+#endif
 
 #endif

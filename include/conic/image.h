@@ -34,7 +34,9 @@ typedef enum conic_plane {
   CONIC_PLANE_MEDIAN_Z = 13,     /* 1 float: z of the Gaussian with which T comes to ½; 0 where it does not */
   CONIC_PLANE_INVERSE_Z = 14,    /* 1 float: Σ w/z; 0 where nothing is */
   CONIC_PLANE_LAST = 15,         /* 1 uint32: the last Gaussian composited, 0xFFFFFFFF where nothing is */
-  CONIC_N_PLANES = 16
+  CONIC_PLANE_DOUBT = 16,        /* 1 uint32: how many decisions rounding may take either way;
+                                    conic_gaussian_find_doubts' */
+  CONIC_N_PLANES = 17
 } conic_plane;
 
 /* The planes that drawing fills: the first ones; and as bits. */
@@ -42,13 +44,13 @@ typedef enum conic_plane {
 #define CONIC_DRAWN_PLANES ((1u << CONIC_PLANE_CLUSTER) - 1u)
 
 /* Those that only Gaussian scenes have. */
-#define CONIC_GAUSSIAN_PLANES (15u << CONIC_PLANE_TRANSPARENCY)
+#define CONIC_GAUSSIAN_PLANES (31u << CONIC_PLANE_TRANSPARENCY)
 
 /* The planes of a Cryptomatte, as bits. */
 #define CONIC_MATTE_PLANES (7u << CONIC_PLANE_MATTE_0)
 
 /* Room for planes in structs, so that a later version may have more. */
-#define CONIC_MAX_PLANES 16
+#define CONIC_MAX_PLANES 24
 
 #define CONIC_NO_ID 0xFFFFFFFFu
 

@@ -49,6 +49,9 @@ typedef struct oracle_gaussian {
   double box_px[2][2];         /* no pixel outside is covered: minimum, maximum */
 } oracle_gaussian;
 
+/* Looks through a camera as the profile does; the view refers to it. */
+void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile, oracle_gaussian_view *view);
+
 /* Sets up Gaussian i; is_drawn is 0 where the profile leaves it out everywhere. */
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *gaussians, size_t i,
                                  oracle_gaussian *g);
@@ -61,6 +64,8 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
 int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y,
                                 double *q, double *z, double *width);
 
+/* The real harmonics up to a degree, of a direction of unit length: (degree + 1)² numbers. */
+void conic_oracle_harmonic_values(int degree, const double direction[3], double *y);
 /* The colour seen along a direction (of unit length): max(0, ½ + Σ sh·Y). `sh` has (degree + 1)² × 3 numbers. */
 void conic_oracle_harmonics(const double *sh, int degree, const double direction[3], double color[3]);
 

@@ -206,13 +206,18 @@ static void release_job(job *j) {
 }
 
 /* The eye is −RᵀT; a profile that is named after a program has it in floats, as those programs do. */
-static void eye_of_profile(const conic_camera *camera, oracle_gaussian_view *view) {
+void conic_oracle_gaussian_look(const conic_camera *camera, conic_gaussian_profile profile,
+                                oracle_gaussian_view *view) {
+  view->camera = camera;
+  view->rules = conic_oracle_gaussian_rules(profile);
   for (int axis = 0; axis < 3; axis++) {
     double eye = 0.0;
     for (int row = 0; row < 3; row++)
       eye -= camera->cam_from_world[row][axis] * camera->cam_from_world[row][3];
     view->eye[axis] = view->rules->form == ORACLE_FORM_RAY ? eye : (double)(float)eye;
   }
+  view->center_px[0] = view->rules->is_inria ? 0.5 * camera->width : camera->cx;
+  view->center_px[1] = view->rules->is_inria ? 0.5 * camera->height : camera->cy;
 }
 
 static conic_status draw_gaussians_again(job *j) {
@@ -220,9 +225,6 @@ static conic_status draw_gaussians_again(job *j) {
   conic_status status = allocate_job(j, camera->width, camera->height);
   if (status != CONIC_OK)
     return status;
-  eye_of_profile(camera, &j->view);
-  j->view.center_px[0] = j->view.rules->is_inria ? 0.5 * camera->width : camera->cx;
-  j->view.center_px[1] = j->view.rules->is_inria ? 0.5 * camera->height : camera->cy;
   status = conic_parallel_told(j->context, "verify", 0.0, 0.05, (j->set->count + SET_UP_RUN - 1) / SET_UP_RUN,
                                place_gaussians, j);
   if (status != CONIC_OK)
@@ -246,8 +248,7 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
   if (conic_view_pinhole_check(context, "oracle", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
-  j.view.camera = camera;
-  j.view.rules = conic_oracle_gaussian_rules(question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT);
+  conic_oracle_gaussian_look(camera, question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT, &j.view);
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);
   if (status != CONIC_OK)

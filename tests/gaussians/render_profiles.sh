@@ -33,7 +33,7 @@ for profile in inria-2023 gsplat-1.5 gsplat-1.5-aa gsplat-1.6 gsplat-1.6-aa 2dgs
   done
 done
 run 1 diff exact.exr gsplat-1.6.exr
-for what in "--deep d.exr" "--cryptomatte" "--exposure auto" "--device opencl" "--error 1"; do
+for what in "--deep d.exr" "--cryptomatte" "--exposure auto" "--error 1"; do
   # shellcheck disable=SC2086
   run_as_typed 2 render two.ply --size 40x40 -o a.exr $what
 done

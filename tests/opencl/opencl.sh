@@ -70,6 +70,18 @@ else
   echo "lion is left out: $data/lion.ply is not there"
 fi
 
+# Gaussian scenes, whose program is the only one that they need.
+row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\177\200\200'
+printf "$row$row" > two.splat
+scene=two.splat
+[[ ! -f $data/gaussians/biker.spz ]] || scene=$data/gaussians/biker.spz
+mv cache other-cache
+for profile in exact gsplat-1.6 2dgs-2024; do
+  same "Gaussians, $profile" "$scene" --profile $profile --size 90x70 --samples 2
+done
+[[ $(cd cache/conic && echo *) =~ ^gaussian_tiles-[0-9a-f]*.bin$ ]] || fail "Gaussians built $(ls cache/conic)"
+rm -r cache && mv other-cache cache
+
 # Meshes as triangles, whose program nobody needed before.
 [[ -z $(ls cache/conic/triangles-*.bin 2> /dev/null) ]] || fail "the triangles' program was built for splats"
 printf 'v %s 0 2\nv 0.9 %s 0\nv -1 1 0.3\nv 0.1 -1 0.2\nf 1 2 3\nf 1 2 4\nf 4 3 1\nf 2 3 4\n' 0.2 0.4 > tetrahedron.obj

@@ -30,6 +30,12 @@ static void init_image(void *o, size_t size) {
 static void init_framing(void *o, size_t size) {
   conic_framing_init_sized(o, size);
 }
+static void init_floats(void *o, size_t size) {
+  conic_float_model_init_sized(o, CONIC_FLOATS_OWN, size);
+}
+static void init_judging(void *o, size_t size) {
+  conic_gaussian_judging_init_sized(o, size);
+}
 static void init_gaussians_read(void *o, size_t size) {
   conic_gaussians_read_options_init_sized(o, size);
 }
@@ -108,6 +114,8 @@ static const struct {
            {init_framing, sizeof(conic_framing)},
            {init_read, sizeof(conic_read_options)},
            {init_write, sizeof(conic_write_options)},
+           {init_floats, sizeof(conic_float_model)},
+           {init_judging, sizeof(conic_gaussian_judging)},
            {init_estimate, sizeof(conic_estimate_options)},
            {init_scene, sizeof(conic_scene_options)},
            {init_render, sizeof(conic_render_options)},
