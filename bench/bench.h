@@ -12,6 +12,7 @@
 /* How files are looked at; what is made has a way of its own. */
 typedef struct cli_bench_look {
   const char *camera_path; /* null: framed; its size is not taken */
+  const char *view;        /* of it; null: the only one */
   int culls_back;
 } cli_bench_look;
 

@@ -4,6 +4,7 @@
 
 #include "bench/bench.h"
 #include "cli/arguments.h"
+#include "cli/render/views.h"
 #include "core/base/nearest_word.h"
 #include "core/base/random.h"
 #include "core/base/vectors.h"
@@ -185,6 +186,18 @@ static conic_status make_analytic(cli_session *session, const wish *w, conic_spl
   return status;
 }
 
+/* One of the file's, whatever the size of its pictures. */
+static conic_status read_bench_camera(cli_session *session, const cli_bench_look *look, conic_camera *camera) {
+  const cli_views_wish wanted = {.path = look->camera_path, .view = look->view};
+  conic_cameras cameras;
+  size_t i_view;
+  conic_status status = cli_views_read(session, &wanted, &cameras, &i_view);
+  if (status == CONIC_OK)
+    *camera = cameras.cameras[i_view];
+  conic_cameras_release(session->context, &cameras);
+  return status;
+}
+
 static conic_status read_bench_file(cli_session *session, const char *path, const cli_bench_look *look,
                                     cli_bench_scene *scene) {
   conic_source_options options;
@@ -201,7 +214,7 @@ static conic_status read_bench_file(cli_session *session, const char *path, cons
     return CONIC_ERROR_ARGUMENT;
   }
   if (look->camera_path)
-    status = conic_camera_read(session->context, look->camera_path, &scene->camera);
+    status = read_bench_camera(session, look, &scene->camera);
   return status == CONIC_OK ? conic_source_open(session->context, &path, 1, &options, &scene->source) : status;
 }
 

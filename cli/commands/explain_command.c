@@ -362,7 +362,7 @@ static int explain(cli_session *session, explain_job *job) {
     exit_code = cli_explain_composited(session, &job->scene, job->pixel[0], job->pixel[1]);
   else
     exit_code = status == CONIC_OK ? answer(session, job) : cli_exit_of(status);
-  cli_scene_release(&job->scene);
+  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 

@@ -262,7 +262,7 @@ static int verify(cli_session *session, verify_job *job) {
   }
   conic_reference_release(session->context, &job->reference);
   conic_image_release(session->context, &job->image);
-  cli_scene_release(&job->scene);
+  cli_scene_release(session, &job->scene);
   return exit_code;
 }
 

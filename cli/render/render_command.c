@@ -213,6 +213,8 @@ static conic_status render_frame(cli_session *session, cli_render_job *job, int 
   job->camera_ms += 1e3 * (cli_seconds() - start);
   if (status == CONIC_OK)
     status = cli_choose_exposure(session, job, &camera);
+  if (conic_image_planes(image) && (image->width != camera.width || image->height != camera.height))
+    conic_image_release(session->context, image);
   if (status == CONIC_OK && !conic_image_planes(image))
     status = conic_image_allocate(session->context, camera.width, camera.height, job->planes, image);
   for (int i = 0; i < job->repeat && status == CONIC_OK; i++)
@@ -262,8 +264,8 @@ static int render_scene(cli_session *session, cli_render_job *job) {
   conic_render_statistics *repeats = calloc((size_t)job->repeat, sizeof *repeats);
   conic_status status = repeats ? CONIC_OK : CONIC_ERROR_MEMORY;
   for (int i = 0, n = cli_frames_count(job); i < n && status == CONIC_OK; i++) {
-    if (job->is_turntable)
-      cli_session_part(session, "frame", i + 1, n);
+    if (cli_frames_are_many(job))
+      cli_session_part(session, job->is_turntable ? "frame" : "view", i + 1, n);
     status = render_frame(session, job, job->frames.first - 1 + i * job->frames.step, &image, repeats);
   }
   if (status == CONIC_OK) {
@@ -296,18 +298,20 @@ static int run(cli_session *session, int argc, char **argv) {
   enum { MANY = 16 };
   job.start_seconds = start;
   if (exit_code == CLI_DONE) {
-    session->draws_many_frames = (double)job.repeat * cli_frames_count(&job) >= MANY;
+    session->draws_many_frames = job.is_every_view || (double)job.repeat * cli_frames_count(&job) >= MANY;
     exit_code = cli_session_open(session);
   }
   if (exit_code == CLI_DONE) {
     conic_status status = check_formats(session, &job);
     if (status == CONIC_OK)
       status = cli_scene_begin(session, &job);
+    if (status == CONIC_OK && cli_render_views_check(session, &job) != CLI_DONE)
+      status = CONIC_ERROR_ARGUMENT;
     job.begun_seconds = cli_seconds();
     if (status == CONIC_OK)
       status = cli_scene_open(session, &job);
     exit_code = status == CONIC_OK ? render_scene(session, &job) : cli_exit_of(status);
-    cli_scene_release(&job);
+    cli_scene_release(session, &job);
   }
   free(job.inputs);
   return exit_code < 0 ? CLI_DONE : exit_code;

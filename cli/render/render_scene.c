@@ -5,6 +5,7 @@
 
 #include "cli/render/frames.h"
 #include "cli/render/light_options.h"
+#include "cli/render/views.h"
 #include "core/files/file.h"
 
 int cli_lod_is_wanted(const cli_render_job *job) {
@@ -13,6 +14,17 @@ int cli_lod_is_wanted(const cli_render_job *job) {
 
 const char *cli_method_name(const cli_render_job *job) {
   return job->is_patch ? "patch" : conic_method_name(job->options.method);
+}
+
+static conic_status read_views(cli_session *session, cli_render_job *job) {
+  const cli_views_wish wish = {job->camera_path, job->view_name, job->camera_size[0], job->camera_size[1]};
+  conic_status status = cli_views_read(session, &wish, &job->cameras, &job->i_view);
+  if (status != CONIC_OK)
+    return status;
+  job->camera = job->cameras.cameras[job->i_view];
+  if (job->is_every_view)
+    job->n_frames = (int)job->cameras.count;
+  return CONIC_OK;
 }
 
 conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
@@ -26,7 +38,7 @@ conic_status cli_scene_begin(cli_session *session, cli_render_job *job) {
   }
   conic_status status = cli_device_open(session, &job->device, &job->renderer);
   if (status == CONIC_OK && job->camera_path)
-    status = conic_camera_read(session->context, job->camera_path, &job->camera);
+    status = read_views(session, job);
   return status;
 }
 
@@ -84,7 +96,8 @@ conic_status cli_scene_open(cli_session *session, cli_render_job *job) {
   return status;
 }
 
-void cli_scene_release(cli_render_job *job) {
+void cli_scene_release(cli_session *session, cli_render_job *job) {
+  conic_cameras_release(session->context, &job->cameras);
   conic_renderer_destroy(job->renderer);
   conic_source_close(job->source);
 }
@@ -105,6 +118,12 @@ static double elevation_for(const conic_source_scale *scale, const double up[3])
 
 conic_status cli_scene_camera(cli_render_job *job, int i_frame, conic_camera *camera) {
   conic_framing framing = job->framing;
+  if (job->is_every_view) {
+    job->i_view = (size_t)i_frame;
+    *camera = job->camera = job->cameras.cameras[i_frame];
+    cli_lights_turn(job);
+    return CONIC_OK;
+  }
   if (job->camera_path) {
     *camera = job->camera;
     cli_frame_orbit(job, i_frame, camera);

@@ -6,6 +6,7 @@
 #include "cli/render/backdrop.h"
 #include "cli/render/light_options.h"
 #include "cli/render/scene_options.h"
+#include "cli/render/views.h"
 
 static const char *const cull_words[] = {"none", "back", NULL};
 static const char *const as_words[] = {"auto", "points", "mesh", "hybrid", NULL};
@@ -92,11 +93,16 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
                          .prefilter = (double)job->options.prefilter};
   conic_render_options *o = &job->options;
   conic_framing *view = &job->framing;
-  int method = (int)o->method, shading = (int)o->shading, profile = 0;
+  int method = (int)o->method, shading = (int)o->shading, profile = 0, ignores_center = 0;
   const library_words words = find_words();
   const cli_option table[] = {
-      {"size", CLI_SIZE, raw.size, "WxH", "pixels [1024x1024]", 1, 65535, .is_given = &raw.is_size_given},
-      {"camera", CLI_TEXT, &job->camera_path, "FILE", "a pinhole camera in JSON, in place of the framing"},
+      {"size", CLI_SIZE, raw.size, "WxH",
+       "pixels; a file's cameras are scaled to it, each axis by itself [1024x1024, or the file's]", 1, 65535,
+       .is_given = &raw.is_size_given},
+      {"camera", CLI_TEXT, &job->camera_path, "FILE", CLI_CAMERA_HELP},
+      {"view", CLI_TEXT, &job->view_name, "VIEW",
+       "of --camera: an index from 0, the name of an image with or without its folder and ending, or all [the only "
+       "one]"},
       {"azimuth", CLI_NUMBER, &view->azimuth_deg, "DEG", "the camera's place around the scene [30]", -1e6, 1e6,
        .is_given = &raw.is_framing_given},
       {"elevation", CLI_NUMBER, &view->elevation_deg, "DEG",
@@ -133,6 +139,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
        "how a Gaussian scene is drawn: exact, as a version of another program (inria-2023, gsplat-1.5, gsplat-1.5-aa, "
        "gsplat-1.6, gsplat-1.6-aa, 2dgs-2024, 2dgs-gsplat, khr-2026), or surface: as opaque splats [exact]",
        .choices = words.profiles, .is_given = &raw.is_profile_given},
+      {"ignore-center", CLI_FLAG, &ignores_center, NULL,
+       "of --profile inria-2023: take the picture's centre for the camera's, as that program does"},
       {"quality", CLI_CHOICE, &raw.quality, "HOW",
        "draft (conic, 1 sample), good (auto, 2 x 2 samples) or final (auto, 4 x 4); --method and --samples go first "
        "[good]",
@@ -196,6 +204,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (!job->is_patch)
     o->method = (conic_method)method;
   job->gaussians.profile = (conic_gaussian_profile)profile;
+  job->gaussians.ignores_center = (uint32_t)ignores_center;
   if (profile < CONIC_N_GAUSSIAN_PROFILES &&
       (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
     job->opening.gaussians = &job->gaussians;
@@ -219,6 +228,7 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (raw.is_size_given) {
     view->width = raw.size[0];
     view->height = raw.size[1];
+    memcpy(job->camera_size, raw.size, sizeof raw.size);
   }
   raw.is_framing_given |= job->is_elevation_given;
   return cli_scene_check(session, &raw, job);

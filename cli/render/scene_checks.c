@@ -5,6 +5,7 @@
 #include "cli/color_options.h"
 #include "cli/outputs.h"
 #include "cli/render/scene_options.h"
+#include "cli/render/views.h"
 
 /* Colours that are made of something need all of it at once. */
 static int check_colors(const cli_session *session, cli_render_job *job, int as) {
@@ -65,8 +66,13 @@ int cli_scene_check(const cli_session *session, const cli_scene_words *words, cl
   const char *command = session->command;
   if (job->n_inputs == 0)
     return cli_usage("%s: no input; see conic help %s", command, command);
-  if (job->camera_path && words->is_size_given)
-    return cli_usage("%s: --size is the camera file's; give one of both", command);
+  if (job->view_name && !job->camera_path)
+    return cli_usage("%s: --view is of a file of cameras; give --camera, too", command);
+  if (cli_views_are_all(job->view_name) && !job->is_for_looking)
+    return cli_usage("%s: it takes one view; conic render draws all", command);
+  if (cli_views_are_all(job->view_name) && (job->is_turntable || job->progressive_path))
+    return cli_usage("%s: --view all draws every view once: not with --turntable or --progressive", command);
+  job->is_every_view = cli_views_are_all(job->view_name);
   if (job->camera_path && words->is_framing_given)
     return cli_usage("%s: --azimuth, --elevation, --fov and --zoom frame the scene; --camera does it itself", command);
   if (job->opening.texture_path && words->as == CONIC_AS_POINTS)

@@ -8,6 +8,11 @@
 /* What makes a matrix no rotation and translation, or null. */
 const char *conic_rotation_fault(const double rows[3][4]);
 
+enum { CONIC_CAMERA_FAULT_ROOM = 128 };
+
+/* Whether a camera is none to look through, and why, as "the camera's focal lengths are out of range". */
+int conic_camera_is_wrong(const conic_camera *camera, char wrong[CONIC_CAMERA_FAULT_ROOM]);
+
 /* Errors: ARGUMENT: the camera is none to look through. */
 conic_status conic_view_camera_check(conic_context *context, const char *who, const conic_camera *camera);
 

@@ -1,4 +1,5 @@
 /* A picture of Gaussians: set up, put in order, binned, composited. */
+#include <math.h>
 #include <string.h>
 
 #include "core/base/clock.h"
@@ -190,6 +191,20 @@ static conic_status draw_scene(frame *f) {
   return status;
 }
 
+/* What knows of no centre but the picture's would draw another one's picture somewhere else. */
+static conic_status check_center(conic_context *context, const conic_gaussian_options *options,
+                                 const conic_camera *camera) {
+  static const double slack_px = 1e-6; /* of a scaled camera */
+  double across = camera->cx - 0.5 * camera->width, down = camera->cy - 0.5 * camera->height;
+  if (!conic_gaussian_rules_of(options->profile)->takes_middle || options->ignores_center ||
+      (fabs(across) <= slack_px && fabs(down) <= slack_px))
+    return CONIC_OK;
+  return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                    "gaussians: %s ignores the camera's centre, which is %g, %g pixels off the picture's; "
+                    "--ignore-center draws it all the same",
+                    conic_gaussian_profile_name(options->profile), across, down);
+}
+
 static void look_through(const conic_camera *camera, conic_gaussian_view *view) {
   view->camera = camera;
   for (int axis = 0; axis < 3; axis++) {
@@ -216,6 +231,8 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
         "gaussians: an argument is null, there is no such profile, it has no such filter, or the planes are not "
         "of the camera's size");
   conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
+  if (status == CONIC_OK)
+    status = check_center(context, &own, camera);
   if (status != CONIC_OK || (status = conic_isa_choose(context, own.isa, &isa)) != CONIC_OK)
     return status;
   frame f = {.context = context, .set = gaussians, .options = &own, .planes = planes};

@@ -18,6 +18,7 @@
 #define CONIC_CONIC_H
 
 #include "conic/camera.h"
+#include "conic/cameras.h"
 #include "conic/coloring.h"
 #include "conic/context.h"
 #include "conic/contributions.h"

@@ -40,9 +40,9 @@ typedef struct conic_gaussian_device conic_gaussian_device;
 typedef struct conic_gaussian_options {
   size_t size; /* sizeof(conic_gaussian_options), set by the init function */
   conic_gaussian_profile profile;
-  float background[3]; /* behind the Gaussians: colour · T is added to R, G, B */
-  conic_isa isa;       /* as the context has it */
-  uint32_t reserved;
+  float background[3];     /* behind the Gaussians: colour · T is added to R, G, B */
+  conic_isa isa;           /* as the context has it */
+  uint32_t ignores_center; /* inria-2023 draws a camera whose centre is not the picture's as if it were: else refused */
   conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
   float prefilter;               /* of `exact`: a low-pass variance in px², 0 or more; of the others 0, for they say it */
   uint32_t reserved_end;

@@ -153,6 +153,7 @@ row='\0\0\0\0\0\0\200\77\0\0\0\100\0\0\200\77\0\0\200\77\0\0\0\77\1\2\3\4\200\17
 printf "$row$row" > two.splat
 write convert convert convert two.splat -o two.compressed.ply --measure 2
 write info-gaussians info_gaussians info two.compressed.ply --check
+write chart-gaussians chart chart two.compressed.ply -o chart --quick --pixels 100
 write render-gaussians render render two.compressed.ply --profile gsplat-1.6 --size 64x64 -o two.exr --aov all
 write devices devices devices
 # What no run above writes, or not on every machine.
