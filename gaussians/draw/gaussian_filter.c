@@ -47,7 +47,7 @@ static int turn_rows(double factor[3][COLUMNS], double axes[3][3], int i, int j)
 
 /* The axes of the variance whose factor this is, the shortest last: Jacobi's method on one side, which keeps the short
  * ones exact, too. */
-static void find_axes(double factor[3][COLUMNS], conic_gaussian_placed *p) {
+static void find_filtered_axes(double factor[3][COLUMNS], conic_gaussian_placed *p) {
   double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, lengths[3];
   int is_turned = 1, order[3] = {0, 1, 2};
   for (int sweep = 0; sweep < MOST_SWEEPS && is_turned; sweep++) {
@@ -84,7 +84,7 @@ void conic_gaussian_filter(const conic_gaussian_view *view, conic_gaussian_place
       factor[row][k] = p->unit[k][row] * p->scale[k];
   factor[0][3] = deviation * z / view->camera->fx;
   factor[1][4] = deviation * z / view->camera->fy;
-  find_axes(factor, p);
+  find_filtered_axes(factor, p);
   p->is_flat = p->scale[2] <= 1e-12 * (p->scale[0] + p->scale[1]);
   if (p->is_flat)
     p->scale[2] = 0.0;

@@ -337,7 +337,7 @@ static void test_hard_by_oracle(conic_context *context) {
 
 /* Discs, needles and random Gaussians through the filter of `exact`, as the oracle has it; a needle thinner than a
  * pixel keeps what light it takes, wherever it lies on the grid. */
-static void test_filter(conic_context *context) {
+static void test_gaussian_filter(conic_context *context) {
   const unsigned fields[2] = {0, CONIC_GAUSSIANS_2D};
   const conic_camera camera = camera_turned(no_turn, 64, 48);
   for (int k = 0; k < 6; k++) {
@@ -416,7 +416,7 @@ int main(void) {
   test_least_alpha(context);
   test_stop(context);
   test_hard_by_oracle(context);
-  test_filter(context);
+  test_gaussian_filter(context);
   test_filtered_needle(context);
   test_equal_depths(context);
   conic_context_destroy(context);
