@@ -148,9 +148,8 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
       {"kernel", CLI_PARSED, &o->kernel, "NAME", "gauss, confetti:A,B,N, hat or box [gauss]",
        .parse = cli_parse_kernel},
       {"cutoff", CLI_NUMBER, &raw.cutoff, "F", "standard deviations at which a splat ends [1.5]", 0.25, 5},
-      {"prefilter", CLI_NUMBER, &raw.prefilter, "V",
-       "variance of the low-pass in square pixels; 0: none [1; of a Gaussian scene by exact 0]", 0, 10000,
-       .is_given = &raw.is_prefilter_given},
+      {"prefilter", CLI_NUMBER, &raw.prefilter, "V", "variance of the low-pass in square pixels; 0: none [1]", 0,
+       10000},
       {"epsilon", CLI_PARSED, &job->epsilon, "E",
        "depth tolerance along the ray, also in spacings (2x), or auto [auto]", .parse = cli_parse_epsilon},
       {"passes", CLI_INT, &raw.passes, "N", "3: blend a surface's splats; 1: the nearest splat wins [3]", 1, 3},
@@ -208,8 +207,6 @@ int cli_scene_parse(cli_session *session, const cli_option *own, int n_own, int 
   if (profile < CONIC_N_GAUSSIAN_PROFILES &&
       (raw.is_profile_given || ((job->is_for_looking || job->may_composite) && !job->is_plain)))
     job->opening.gaussians = &job->gaussians;
-  if (raw.is_prefilter_given)
-    job->gaussians.prefilter = (float)raw.prefilter;
   o->shading = (conic_shading)shading;
   o->kernel.cutoff = (float)raw.cutoff;
   o->prefilter = (float)raw.prefilter;

@@ -43,10 +43,6 @@ static int check_choice(const cli_session *session, const cli_render_job *job, i
                      command);
   if (job->abilities & CONIC_SOURCE_COMPOSITES && !job->is_for_looking && !job->may_composite)
     return cli_usage("%s: it takes splats apart; give --profile surface, or none", command);
-  if (job->abilities & CONIC_SOURCE_COMPOSITES && job->gaussians.prefilter > 0.0f &&
-      (job->gaussians.profile != CONIC_PROFILE_EXACT || !job->is_for_looking))
-    return cli_usage("%s: --prefilter is of splats, and of Gaussian scenes that conic render draws by --profile exact",
-                     command);
   if (job->planes & CONIC_GAUSSIAN_PLANES && !(job->abilities & CONIC_SOURCE_COMPOSITES))
     return cli_usage("%s: the planes T, medianZ, inverseZ, last and doubt are of Gaussian scenes", command);
   if (job->view.only_kind >= 0 || job->clusters_path || job->planes & 1u << CONIC_PLANE_CLUSTER)

@@ -25,7 +25,6 @@ typedef struct conic_gaussian_view {
   const conic_gaussian_rules *rules;
   const conic_camera *camera;
   double eye[3], center_px[2];
-  double prefilter; /* variance in px²; of CONIC_SHAPE_RAY alone */
 } conic_gaussian_view;
 
 typedef enum conic_gaussian_fate {

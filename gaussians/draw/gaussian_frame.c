@@ -223,13 +223,10 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   conic_isa isa;
   conic_gaussian_options_init(&own);
   if (!gaussians || !camera || !planes || (options && !conic_options_take(&own, options)) ||
-      !conic_gaussian_rules_of(own.profile) || !(own.prefilter >= 0.0f && own.prefilter < 1e9f) ||
-      (own.prefilter > 0.0f && own.profile != CONIC_PROFILE_EXACT) || planes->width != camera->width ||
-      planes->height != camera->height)
-    return conic_fail(
-        context, CONIC_ERROR_ARGUMENT,
-        "gaussians: an argument is null, there is no such profile, it has no such filter, or the planes are not "
-        "of the camera's size");
+      !conic_gaussian_rules_of(own.profile) || planes->width != camera->width || planes->height != camera->height)
+    return conic_fail(context, CONIC_ERROR_ARGUMENT,
+                      "gaussians: an argument is null, or there is no such profile, or the planes are not of the "
+                      "camera's size");
   conic_status status = conic_view_pinhole_check(context, "gaussians", camera);
   if (status == CONIC_OK)
     status = check_center(context, &own, camera);
@@ -244,7 +241,6 @@ conic_status conic_gaussians_render(conic_context *context, const conic_gaussian
   f.statistics.tile = CONIC_GAUSSIAN_TILE;
   conic_gaussian_kernels_init(&f.kernels, isa);
   look_through(camera, &f.view);
-  f.view.prefilter = (double)own.prefilter;
   status = draw_scene(&f);
   release_frame(&f);
   if (statistics)

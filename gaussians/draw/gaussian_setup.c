@@ -4,7 +4,7 @@
 
 #include "core/base/power.h"
 #include "core/base/vectors.h"
-#include "gaussians/draw/gaussian_filter.h"
+#include "gaussians/draw/gaussian_outline.h"
 #include "gaussians/draw/harmonic_color.h"
 
 /* Whose squares add up to 1 but for this, a quaternion was made a unit one in floats. */
@@ -294,10 +294,6 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   if (p.is_flat)
     p.scale[2] = 0.0;
   f->form[0] = f->form[1] = f->form[2] = 0.0f;
-  if (normal)
-    choose_normal(view, &p, normal);
-  if (view->prefilter > 0.0)
-    conic_gaussian_filter(view, &p);
   conic_gaussian_fate fate = rules->shape == CONIC_SHAPE_ELLIPSE ? set_up_ellipse(view, &p, f)
                              : rules->shape == CONIC_SHAPE_RAY   ? set_up_ray(view, &p, f, ray)
                                                                  : set_up_disc(view, &p, f, ray);
@@ -307,5 +303,7 @@ conic_gaussian_fate conic_gaussian_set_up(const conic_gaussian_view *view, const
   f->z = (float)z;
   *key = (float)(rules->orders_by_distance ? conic_length(p.mean) : z);
   f->index = (uint32_t)i;
+  if (normal)
+    choose_normal(view, &p, normal);
   return conic_harmonic_color(gaussians, i, from_eye, f->color) ? CONIC_GAUSSIAN_DRAWN : CONIC_GAUSSIAN_SKIPPED;
 }

@@ -44,11 +44,9 @@ typedef struct conic_gaussian_options {
   conic_isa isa;           /* as the context has it */
   uint32_t ignores_center; /* inria-2023 draws a camera whose centre is not the picture's as if it were: else refused */
   conic_gaussian_device *device; /* composites in the place of the processor; null: none. No bit depends on it. */
-  float prefilter;               /* of `exact`: a low-pass variance in px², 0 or more; of the others 0, for they say it */
-  uint32_t reserved_end;
 } conic_gaussian_options;
 
-/* Exact, black, without a filter. */
+/* Exact, black. */
 CONIC_API void conic_gaussian_options_init_sized(conic_gaussian_options *options, size_t size);
 #define conic_gaussian_options_init(options) conic_gaussian_options_init_sized(options, sizeof *(options))
 

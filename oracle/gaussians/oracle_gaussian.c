@@ -205,19 +205,6 @@ static void color_towards_eye(const oracle_gaussian_view *view, const conic_gaus
   conic_oracle_harmonics(sh, set->sh_degree, direction, g->color);
 }
 
-/* |Σ′|/|Σ′ + hI| of the variance on the screen, by the Jacobian at the mean. */
-static double share_that_filter_leaves(const oracle_gaussian_view *view, const oracle_gaussian *g) {
-  const double focal[2] = {view->camera->fx, view->camera->fy}, h = view->prefilter;
-  double rows[2][3], cross[3];
-  for (int axis = 0; axis < 2; axis++)
-    for (int k = 0; k < 3; k++)
-      rows[axis][k] =
-          focal[axis] * (g->axes[k][axis] * g->mean[2] - g->axes[k][2] * g->mean[axis]) / (g->mean[2] * g->mean[2]);
-  oracle_cross(rows[0], rows[1], cross);
-  double bare = oracle_dot(cross, cross);
-  return bare / (bare + h * (oracle_dot(rows[0], rows[0]) + oracle_dot(rows[1], rows[1])) + h * h);
-}
-
 void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_gaussians *set, size_t i,
                                  oracle_gaussian *g) {
   const oracle_gaussian_rules *rules = view->rules;
@@ -248,8 +235,6 @@ void conic_oracle_gaussian_place(const oracle_gaussian_view *view, const conic_g
     g->is_drawn &= place_ellipse(view, g);
   if (rules->form == ORACLE_FORM_DISC)
     g->is_drawn &= place_disc(view, g);
-  if (view->prefilter > 0.0 && g->mean[2] > 0.0)
-    g->opacity *= sqrt(share_that_filter_leaves(view, g));
 }
 
 /* In the Gaussian's own frame, where it is a unit ball, the ray goes through z·d − m. Of a flat one, where the ray
@@ -282,29 +267,6 @@ int conic_oracle_gaussian_along(const oracle_gaussian_view *view, const oracle_g
   return *z > 0.0 && oracle_is_finite(*q) && oracle_is_finite(*z);
 }
 
-/* The greatest response of the widened Gaussian along the ray, as that of what is left of it where it is moved along
- * the ray onto the plane of the eye: there it is two numbers with a variance of their own, which the filter's adds to.
- */
-static double filtered_form(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y, double *z) {
-  const conic_camera *camera = view->camera;
-  const double slope[2] = {(x - camera->cx) / camera->fx, (y - camera->cy) / camera->fy}, depth = g->mean[2];
-  const double width[2] = {depth / camera->fx, depth / camera->fy};
-  double moved[2][3], off[2], along[2] = {0.0, 0.0};
-  for (int axis = 0; axis < 2; axis++) {
-    off[axis] = g->mean[axis] - slope[axis] * depth;
-    for (int k = 0; k < 3; k++) {
-      moved[axis][k] = g->axes[k][axis] - slope[axis] * g->axes[k][2];
-      along[axis] += moved[axis][k] * g->axes[k][2];
-    }
-  }
-  double xx = oracle_dot(moved[0], moved[0]) + view->prefilter * width[0] * width[0];
-  double yy = oracle_dot(moved[1], moved[1]) + view->prefilter * width[1] * width[1];
-  double xy = oracle_dot(moved[0], moved[1]), area = xx * yy - xy * xy;
-  double u = (yy * off[0] - xy * off[1]) / area, v = (xx * off[1] - xy * off[0]) / area;
-  *z = depth - (along[0] * u + along[1] * v);
-  return *z > 0.0 ? u * off[0] + v * off[1] : -1.0;
-}
-
 static double disc_form(const oracle_gaussian_view *view, const oracle_gaussian *g, double x, double y, double *z) {
   double k[3], l[3], p[3];
   for (int i = 0; i < 3; i++) {
@@ -331,9 +293,7 @@ double conic_oracle_gaussian_alpha(const oracle_gaussian_view *view, const oracl
   if (x < g->box_px[0][0] || x >= g->box_px[1][0] || y < g->box_px[0][1] || y >= g->box_px[1][1])
     return 0.0;
   *z = g->mean[2];
-  if (view->prefilter > 0.0 && g->mean[2] > 0.0) {
-    q = filtered_form(view, g, x, y, z);
-  } else if (rules->form == ORACLE_FORM_RAY) {
+  if (rules->form == ORACLE_FORM_RAY) {
     if (!conic_oracle_gaussian_along(view, g, x, y, &q, z, &width))
       return 0.0;
   } else if (rules->form == ORACLE_FORM_DISC) {

@@ -33,7 +33,6 @@ typedef struct oracle_gaussian_view {
   const oracle_gaussian_rules *rules;
   double eye[3];       /* from which colours are seen */
   double center_px[2]; /* the principal point, as the profile has it */
-  double prefilter;    /* of `exact`, px² */
 } oracle_gaussian_view;
 
 typedef struct oracle_gaussian {

@@ -249,7 +249,6 @@ conic_status conic_gaussian_oracle_render(conic_context *context, const conic_ga
     return CONIC_ERROR_ARGUMENT;
   job j = {.context = context, .set = gaussians, .options = &own, .question = question, .reference = reference};
   conic_oracle_gaussian_look(camera, question == CONIC_GAUSSIAN_PROFILE ? own.profile : CONIC_PROFILE_EXACT, &j.view);
-  j.view.prefilter = question == CONIC_GAUSSIAN_PROFILE ? (double)own.prefilter : 0.0;
   conic_status status = draw_gaussians_again(&j);
   release_job(&j);
   if (status != CONIC_OK)

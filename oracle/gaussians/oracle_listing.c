@@ -14,10 +14,10 @@ conic_status conic_oracle_enter(conic_context *context, const conic_gaussians *g
   memset(e, 0, sizeof *e);
   conic_gaussian_options_init(&e->options);
   conic_float_model_init(&e->model, CONIC_FLOATS_OWN);
-  if (!gaussians || !camera || (options && !conic_options_take(&e->options, options)) || e->options.prefilter != 0.0f ||
+  if (!gaussians || !camera || (options && !conic_options_take(&e->options, options)) ||
       (model && !conic_options_take(&e->model, model)) || !conic_oracle_gaussian_rules(e->options.profile) ||
       samples < 1 || samples > CONIC_MAX_SAMPLES)
-    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples, or a filter");
+    return conic_fail(context, CONIC_ERROR_ARGUMENT, "judge: no such options, profile, floats or samples");
   if (conic_view_pinhole_check(context, "judge", camera) != CONIC_OK)
     return CONIC_ERROR_ARGUMENT;
   if ((long)camera->width * samples > 65535 || (long)camera->height * samples > 65535)

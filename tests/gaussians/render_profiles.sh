@@ -40,15 +40,6 @@ done
 run_as_typed 0 verify two.ply --size 40x40
 run_as_typed 0 verify two.ply --size 40x40 --profile exact
 run_as_typed 0 render two.ply --size 40x40 -o a.png --overdraw o.png --samples 3 --background 1,0,0
-# The filter is of exact alone, and no picture of it is judged.
-run_as_typed 0 render two.ply --size 40x40 --samples 1 -o a.exr --prefilter 0
-run_as_typed 0 render two.ply --size 40x40 --samples 1 -o b.exr
-run 0 diff a.exr b.exr
-run_as_typed 0 render two.ply --size 40x40 --samples 1 -o a.exr --prefilter 9
-run 1 diff a.exr b.exr
-run_as_typed 2 render two.ply --size 40x40 -o a.exr --prefilter 0.5 --profile gsplat-1.6
-run_as_typed 2 verify two.ply --size 40x40 --prefilter 0.5 --profile exact
-run_as_typed 0 render two.ply --size 40x40 -o a.exr --prefilter 0.5 --profile surface
 run 2 render two.ply --profile gsplat-9 --size 40x40 -o a.exr
 run 2 render two.ply --size 40x40 --aov T -o a.exr
 grep -q 'Gaussian' err || fail "T of splats: $(cat err)"

@@ -335,61 +335,6 @@ static void test_hard_by_oracle(conic_context *context) {
     }
 }
 
-/* Discs, needles and random Gaussians through the filter of `exact`, as the oracle has it; a needle thinner than a
- * pixel keeps what light it takes, wherever it lies on the grid. */
-static void test_gaussian_filter(conic_context *context) {
-  const unsigned fields[2] = {0, CONIC_GAUSSIANS_2D};
-  const conic_camera camera = camera_turned(no_turn, 64, 48);
-  for (int k = 0; k < 6; k++) {
-    conic_gaussians scene = gaussians_random(context, 200, 1, fields[k % 2]);
-    conic_gaussian_options options;
-    conic_gaussian_planes p = picture_planes(&camera);
-    conic_gaussian_reference r;
-    conic_gaussian_options_init(&options);
-    options.prefilter = k < 2 ? 0.3f : k < 4 ? 1.0f : 25.0f;
-    for (size_t i = 0; i < scene.count / 2; i++)
-      scene.scale[i % 2][i] *= 1e-4f;
-    CHECK_OK(conic_gaussians_render(context, &scene, &camera, &options, &p, NULL));
-    CHECK_OK(conic_gaussian_oracle_render(context, &scene, &camera, &options, CONIC_GAUSSIAN_PROFILE, &r));
-    double apart = picture_difference(p.rgb, r.rgb, 3 * 64 * 48), of_z = picture_difference(p.z, r.z, 64 * 48);
-    printf("filter of %g px2, %dD: %.2g from the oracle, Z %.2g\n", (double)options.prefilter, k % 2 ? 2 : 3, apart,
-           of_z);
-    CHECK(apart <= 1e-5 && of_z <= 1e-4);
-    options.profile = CONIC_PROFILE_GSPLAT_1_6;
-    CHECK(conic_gaussians_render(context, &scene, &camera, &options, &p, NULL) == CONIC_ERROR_ARGUMENT);
-    conic_gaussian_reference_release(context, &r);
-    picture_release(&p);
-    conic_gaussians_release(context, &scene);
-  }
-}
-
-static double light_taken(conic_context *context, double shift, float prefilter) {
-  const float opacity = 0.2f;
-  conic_camera camera = camera_turned(no_turn, SIDE, SIDE);
-  conic_gaussians scene = make_stack(context, 1, &opacity);
-  conic_gaussian_planes p = picture_planes(&camera);
-  conic_gaussian_options options;
-  double sum = 0.0;
-  conic_gaussian_options_init(&options);
-  options.prefilter = prefilter;
-  camera.cx += shift;
-  scene.scale[0][0] = 0.03f; /* a fifth of a pixel */
-  CHECK_OK(conic_gaussians_render(context, &scene, &camera, &options, &p, NULL));
-  for (int i = 0; i < SIDE * SIDE; i++)
-    sum += 1.0 - (double)p.transparency[i];
-  picture_release(&p);
-  conic_gaussians_release(context, &scene);
-  return sum;
-}
-
-static void test_filtered_needle(conic_context *context) {
-  double bare[2] = {light_taken(context, 0.0, 0.0f), light_taken(context, 0.5, 0.0f)};
-  double wide[2] = {light_taken(context, 0.0, 0.5f), light_taken(context, 0.5, 0.5f)};
-  printf("needle on the grid and between: %.3g, %.3g; filtered %.3g, %.3g\n", bare[0], bare[1], wide[0], wide[1]);
-  CHECK(bare[0] > 3.0 * bare[1]);
-  CHECK_NEAR(wide[0] / wide[1], 1.0, 0.1);
-}
-
 /* Means of one depth: in the order of the file, but by `exact` in that along the ray. */
 static void test_equal_depths(conic_context *context) {
   conic_gaussians scene = gaussians_random(context, 200, 0, 0);
@@ -416,8 +361,6 @@ int main(void) {
   test_least_alpha(context);
   test_stop(context);
   test_hard_by_oracle(context);
-  test_gaussian_filter(context);
-  test_filtered_needle(context);
   test_equal_depths(context);
   conic_context_destroy(context);
   return check_result();
